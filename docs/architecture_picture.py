@@ -17,7 +17,7 @@ matplotlib.rcParams.update({"font.size": 8, "svg.fonttype": "none", "svg.hashsal
 import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib.patches import FancyBboxPatch  # noqa: E402
 
-from gaspart.reproduction.points.modules import PACKAGE, imported  # noqa: E402
+from gaspart.reproduction.points.modules import PACKAGE, find_imports  # noqa: E402
 
 DOCS = Path(__file__).parent
 WIDTH, HEIGHT = 0.86, 0.62  # of a box; places are 1 apart
@@ -41,7 +41,7 @@ def imports():
     for path in PACKAGE.rglob("*.py"):
         package = package_of(path)
         if package:
-            used = {package_of(other) for other in imported(path)} - {package, None}
+            used = {package_of(other) for other in find_imports(path)} - {package, None}
             found.setdefault(package, set()).update(used)
     return found
 

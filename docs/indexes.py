@@ -13,7 +13,7 @@ import thumbnails
 from sphinx.pycode import ModuleAnalyzer
 
 from gaspart.cli import lines
-from gaspart.reproduction.claims.table import filled, read
+from gaspart.reproduction.claims.table import fill_caption, read
 from gaspart.reproduction.families.registry import chapter, families
 from gaspart.reproduction.report.page import CHAPTERS
 from gaspart.yaml_text import read_yaml
@@ -67,7 +67,7 @@ def finding(figure):
     """The finding of a figure, reStructuredText, with its measured numbers if the workflow has run."""
     caption = (ROOT / f"workflow/report/{figure}.rst").read_text(encoding="utf-8")
     claims = ROOT / f"results/claims/{figure}.csv"
-    caption = filled(caption, read(claims) if claims.exists() else [], "…")
+    caption = fill_caption(caption, read(claims) if claims.exists() else [], "…")
     return _CITED.sub(r"\1", " ".join(_FINDING.match(caption)[1].split()))
 
 

@@ -22,7 +22,7 @@ from gaspart.cli import commands
 from gaspart.cli.arguments import WIDTH
 from gaspart.cli.new import templates
 from gaspart.public import read_stub
-from gaspart.reproduction.claims.table import filled
+from gaspart.reproduction.claims.table import fill_caption
 from gaspart.reproduction.families.registry import families, titles
 from gaspart.reproduction.reference import pages as reference
 
@@ -141,7 +141,7 @@ def figures(folder):
                 shutil.copyfile(drawn, folder / f"figures/{figure}.svg")
                 text += f".. image:: {figure}.svg\n   :alt: {figure}\n\n"
             caption = (ROOT / f"workflow/report/{figure}.rst").read_text(encoding="utf-8")
-            text += filled(caption, [], "(see the claims)") + "\n\n"
+            text += fill_caption(caption, [], "(see the claims)") + "\n\n"
             text += claims_of(ROOT / f"results/claims/{figure}.csv")
             text += f".. code-block:: sh\n\n   snakemake --cores all results/figures/{figure}.png\n\n"
         for kind, name in (("measure", "Measurement"), ("claims", "Claims")):
@@ -239,7 +239,7 @@ def paper():
         with path.open(newline="", encoding="utf-8") as file:
             rows += [{**row, "claim": f"{row['figure']}: {row['claim']}"} for row in csv.DictReader(file)]
     text = (ROOT / "workflow/report/paper.md").read_text(encoding="utf-8")
-    return {"paper.md": filled(text, rows, "(see the claims)")}
+    return {"paper.md": fill_caption(text, rows, "(see the claims)")}
 
 
 def changelog():

@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from gaspart.reproduction.claims.table import filled, place_fault
+from gaspart.reproduction.claims.table import fill_caption, place_fault
 from gaspart.reproduction.families.registry import families
 
 TEXT = (Path(__file__).parents[1] / "workflow/report/paper.md").read_text(encoding="utf-8")
@@ -18,5 +18,5 @@ def test_it_is_short_and_states_no_measured_number_itself():
 
 def test_every_place_is_filled_from_the_claim_that_begins_so():
     rows = [{"claim": f"{place} and more", "measured": 1.234, "uncertainty": 0.01} for place in PLACES]
-    text = filled(TEXT, rows, "absent")
+    text = fill_caption(TEXT, rows, "absent")
     assert text.count("1.234(10)") == len(PLACES) and "absent" not in text and "{{" not in text

@@ -15,7 +15,7 @@ from gaspart.cli import main
 from gaspart.errors import SceneError
 from gaspart.files import is_same_file, open_regular
 from gaspart.reproduction.archive.metadata import read_citation
-from gaspart.reproduction.config import checked
+from gaspart.reproduction.config import open_config
 from gaspart.yaml_text import write_yaml
 
 SCENE = gas(2, 10, 0.1)
@@ -139,7 +139,7 @@ def test_as_a_file_that_another_one_names(folder, kind):
         "figures": {},
     }
     write_yaml(folder / "config.yaml", config)
-    with at_once(), pytest.raises(SceneError), checked(folder / "config.yaml"):
+    with at_once(), pytest.raises(SceneError), open_config(folder / "config.yaml"):
         pass
     with at_once(), pytest.raises(SceneError):
         read_citation(folder / name)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from gaspart.reproduction.config import checked
+from gaspart.reproduction.config import open_config
 
 ROOT = Path(__file__).parents[1]
 PACKAGE, RULES = ROOT / "src/gaspart", ROOT / "workflow/rules"
@@ -159,7 +159,7 @@ def test_parameters_of_points_are_plain_numbers_and_texts():
     import numpy as np
 
     assert foreign_types({"a": [1, (2.0, "b", None)], "c": np.float64(1.0)}) == {"float64"}
-    with checked(ROOT / "config/smoke.yaml") as (config, points):
+    with open_config(ROOT / "config/smoke.yaml") as (config, points):
         settings = list(config["figures"].values())
         parameters = [[one.parameters, one.to_dict()] for of in points.values() for one in of.values()]
     assert len(parameters) > 100

@@ -6,8 +6,8 @@ from reproduction.claims.data import claim
 
 from gaspart.reproduction import allocation
 from gaspart.reproduction import cost as budget
-from gaspart.reproduction.allocation import IN_HAND, LONGEST, SHORTEST, Demand, allocated
-from gaspart.reproduction.points.lengths import scaled
+from gaspart.reproduction.allocation import IN_HAND, LONGEST, SHORTEST, Demand, allocate
+from gaspart.reproduction.points.lengths import scale_length
 from gaspart.reproduction.table import Table, table
 
 COST = {"gas/a": 1.0, "gas/b": 4.0, "gas/c": 10.0}
@@ -16,11 +16,11 @@ COST = {"gas/a": 1.0, "gas/b": 4.0, "gas/c": 10.0}
 def test_two_points_of_one_claim_share_the_time_as_neyman_allocates_it():
     """x ~ sqrt(c / t): with parts 0.2 and 0.8, times 1 and 4, both are the same."""
     one = Demand("z", "a difference", {"gas/a": 0.2, "gas/b": 0.8}, 0.0, 4.0)
-    lengths, (price,) = allocated([one], COST, {"z": ["gas/a", "gas/b"]})
+    lengths, (price,) = allocate([one], COST, {"z": ["gas/a", "gas/b"]})
     assert price == pytest.approx(5.0 / 4.0, rel=1e-3)  # the whole time, which is inverse to the variance
     assert lengths["gas/a"] == pytest.approx(lengths["gas/b"], rel=1e-3) == pytest.approx(0.25, rel=1e-3)
     other = Demand("z", "a difference", {"gas/a": 0.5, "gas/b": 0.5}, 0.0, 4.0)
-    lengths, _ = allocated([other], COST, {"z": ["gas/a", "gas/b"]})
+    lengths, _ = allocate([other], COST, {"z": ["gas/a", "gas/b"]})
     assert lengths["gas/a"] / lengths["gas/b"] == pytest.approx(2.0, rel=1e-3)
     assert sum(0.5 / lengths[name] for name in ("gas/a", "gas/b")) == pytest.approx(4.0, rel=1e-3)
 
@@ -33,7 +33,7 @@ def test_all_claims_are_met_and_no_cheaper_choice_is():
     for k in range(20):
         parts = zip(rng.choice(names, 4, replace=False), rng.dirichlet(np.ones(4)), strict=True)
         demanded.append(Demand("z", str(k), dict(parts), 0.0, rng.uniform(1.0, 6.0)))
-    lengths, _ = allocated(demanded, cost, {"z": names})
+    lengths, _ = allocate(demanded, cost, {"z": names})
 
     def met(chosen):
         return all(
@@ -51,10 +51,10 @@ def test_all_claims_are_met_and_no_cheaper_choice_is():
 
 def test_points_that_no_row_states_have_the_length_of_their_neediest_claim():
     known = Demand("z", "known", {"gas/a": 1.0}, 0.0, 5.0)
-    lengths, _ = allocated([known], COST, {"z": ["gas/a", "gas/b"], "film": ["gas/c"]})
+    lengths, _ = allocate([known], COST, {"z": ["gas/a", "gas/b"], "film": ["gas/c"]})
     assert lengths == pytest.approx({"gas/a": 0.2, "gas/b": 0.2, "gas/c": 1.0}, rel=1e-3)
     unknown = Demand("z", "in part", {"gas/a": 0.5}, 0.5, 2.0)
-    assert allocated([unknown], COST, {"z": ["gas/a"]})[0]["gas/a"] == pytest.approx(0.5, rel=1e-3)
+    assert allocate([unknown], COST, {"z": ["gas/a"]})[0]["gas/a"] == pytest.approx(0.5, rel=1e-3)
 
 
 class Named:
@@ -101,15 +101,15 @@ def test_rows_of_replicas_have_parts_too(monkeypatch):
 
 def test_a_multiple_is_one_of_replicas_then_of_the_length_at_the_same_interval():
     gas = {"collisions_per_particle": 4000, "equilibration": 200, "samples": 100, "replicas": 2}
-    assert scaled("simulate", gas, 0.5) == {**gas, "collisions_per_particle": 2000.0, "samples": 50}
-    assert scaled("simulate", gas, 0.1)["samples"] == 32
+    assert scale_length("simulate", gas, 0.5) == {**gas, "collisions_per_particle": 2000.0, "samples": 50}
+    assert scale_length("simulate", gas, 0.1)["samples"] == 32
     many = {"duration": 60.0, "samples": 12, "replicas": 24}  # proceeds: no equilibration
-    assert scaled("simulate", many, 0.5) == {**many, "replicas": 12}
-    assert scaled("simulate", many, 0.1) == {**many, "replicas": 6}
+    assert scale_length("simulate", many, 0.5) == {**many, "replicas": 12}
+    assert scale_length("simulate", many, 0.1) == {**many, "replicas": 6}
     lags = {"duration": 100.0, "equilibration": 1.0, "samples": 800, "lags": 8, "frames": 100}
-    made = scaled("simulate", lags, 0.333)
+    made = scale_length("simulate", lags, 0.333)
     assert made["samples"] / made["duration"] == 8.0 and made["samples"] == 8 * made["frames"] == 272
     timed = {"steps": 450, "samples": 9}
-    assert scaled("measure_cost", timed, 0.1) == {"steps": 150, "samples": 3}
-    assert scaled("fill", {"attempts": 500, "replicas": 32}, 0.5) == {"attempts": 500, "replicas": 16}
-    assert scaled("simulate", gas, 1.0) == gas
+    assert scale_length("measure_cost", timed, 0.1) == {"steps": 150, "samples": 3}
+    assert scale_length("fill", {"attempts": 500, "replicas": 32}, 0.5) == {"attempts": 500, "replicas": 16}
+    assert scale_length("simulate", gas, 1.0) == gas

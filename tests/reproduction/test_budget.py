@@ -37,10 +37,10 @@ def test_a_job_states_its_memory_and_its_processor_time_with_that_of_its_childre
     log.parent.mkdir(parents=True)
     with log.open("w") as file:
         subprocess.run([sys.executable, "-c", SPIN], stdout=file, check=True)
-    used = job_time.used(tmp_path, "simulate", "virial", "eta=0.25")
+    used = job_time.read_used(tmp_path, "simulate", "virial", "eta=0.25")
     assert (
         used.seconds >= 0.58 and 5.0 < used.memory < 4000.0
     )  # of a copy of this process at first, before it runs another program
     log.write_text("processor time: 1.0 s of something\n")
-    assert job_time.used(tmp_path, "simulate", "virial", "eta=0.25") is None
-    assert job_time.used(tmp_path, "simulate", "virial", "eta=0.2") is None
+    assert job_time.read_used(tmp_path, "simulate", "virial", "eta=0.25") is None
+    assert job_time.read_used(tmp_path, "simulate", "virial", "eta=0.2") is None

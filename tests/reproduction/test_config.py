@@ -15,7 +15,7 @@ import yaml
 from malformed import one_line
 
 from gaspart.errors import SceneError
-from gaspart.reproduction.config import check, explained, judge_config, merged_with_default, read_numbers
+from gaspart.reproduction.config import check, explain_error, judge_config, merged_with_default, read_numbers
 from gaspart.reproduction.cost import predict
 from gaspart.yaml_text import dump_yaml, read_yaml
 
@@ -118,9 +118,9 @@ def test_what_the_config_of_a_module_lacks_is_named_and_no_folder(tmp_path, monk
     """Where this workflow is a module of another one, there is no config/config.yaml."""
     monkeypatch.chdir(tmp_path)
     error = SceneError("points", None, "is required")
-    assert explained(error, {"title": "my gas"}, module=True) is error
-    assert "configfile" in str(explained(error, {}, module=True))
-    assert "config/config.yaml" in str(explained(error, {}, module=False))
+    assert explain_error(error, {"title": "my gas"}, module=True) is error
+    assert "configfile" in str(explain_error(error, {}, module=True))
+    assert "config/config.yaml" in str(explain_error(error, {}, module=False))
 
 
 def test_a_key_that_is_missing_is_named():

@@ -6,7 +6,7 @@ import xarray as xr
 from reproduction.families.virial.data import equation_of_state
 
 from gaspart import theory
-from gaspart.reproduction.measured import COLUMNS, measured
+from gaspart.reproduction.measured import COLUMNS, reference_values
 
 
 def gases(**columns):
@@ -34,7 +34,7 @@ def folder(tmp_path):
 
 
 def test_every_quantity_has_its_unit_and_two_digits_of_its_error(folder):
-    rows = list(measured(folder))
+    rows = list(reference_values(folder))
     assert all(tuple(row) == COLUMNS for row in rows)
     found = {(row["dimension"], row["quantity"], row["packing_fraction"]): row for row in rows}
     assert found[3, "diffusion", "0.1"]["value"] == "0.9000"
@@ -52,7 +52,7 @@ def test_every_quantity_has_its_unit_and_two_digits_of_its_error(folder):
 def test_a_missing_measurement_is_an_error(folder):
     (folder / "conductivity.nc").unlink()
     with pytest.raises(OSError, match="conductivity"):
-        list(measured(folder))
+        list(reference_values(folder))
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

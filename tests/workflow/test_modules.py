@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from gaspart.reproduction.families.registry import titles
-from gaspart.reproduction.points.modules import PACKAGE, closure, imported
+from gaspart.reproduction.points.modules import PACKAGE, closure, find_imports
 
 ROOT = Path(__file__).parents[2]
 
@@ -53,7 +53,7 @@ def parsed(path):
 
 def test_the_imports_that_are_searched_for_are_those_that_a_parser_finds():
     for path in [*PACKAGE.rglob("*.py"), *(ROOT / "workflow/scripts").glob("*.py")]:
-        assert imported(path) == parsed(path), path
+        assert find_imports(path) == parsed(path), path
 
 
 @pytest.mark.parametrize("family", titles())

@@ -49,7 +49,7 @@ def test_the_budget_has_the_time_and_the_decided_claims_of_every_figure(smoke, m
     logs = Path("results/smoke/logs")
     names = [log.relative_to(logs).with_suffix("").parts for log in logs.rglob("*.log")]
     assert len(names) > 300
-    used = {name: job_time.used(logs.parent, *name) for name in names}
+    used = {name: job_time.read_used(logs.parent, *name) for name in names}
     assert not [name for name, one in used.items() if not (one and one.seconds > 0.0 and one.memory > 1.0)]
     with (smoke.path / "results/smoke/tables/claims.csv").open(newline="") as file:
         verdicts = {(row["figure"], row["claim"]): row["verdict"] for row in csv.DictReader(file)}

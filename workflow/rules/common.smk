@@ -20,9 +20,9 @@ if " " in sys.executable:
     sys.executable = shlex.quote(sys.executable)
 
 from gaspart.reproduction import job_server
-from gaspart.reproduction.claims.table import filled
+from gaspart.reproduction.claims.table import fill_caption
 from gaspart.reproduction.claims.table import summary
-from gaspart.reproduction.config import check, explained
+from gaspart.reproduction.config import check, explain_error
 from gaspart.reproduction.config import read_numbers
 from gaspart.reproduction.families import registry
 from gaspart.reproduction.families.registry import caption, functions, of_claims, titles
@@ -48,7 +48,7 @@ if workflow.is_main_process:
     except SceneError as error:
         # A user's mistake: one line and exit code 2, instead of a WorkflowError with its place in this file.
         used = Path(str(workflow.main_snakefile)).resolve() != ROOT / "Snakefile"
-        print(f"gaspart: {explained(error, config, used)}", file=sys.stderr)
+        print(f"gaspart: {explain_error(error, config, used)}", file=sys.stderr)
         sys.exit(2)
 else:
     read_numbers(config, files)
@@ -150,7 +150,7 @@ def caption_of(wildcards):
     text = OWN_CAPTIONS.get(wildcards.figure)
     if text is None:
         text = (ROOT / f"workflow/report/{wildcards.figure}.rst").read_text(encoding="utf-8")
-    return filled(text, [], "(see the claims)")
+    return fill_caption(text, [], "(see the claims)")
 
 
 def flagged(path, kind):

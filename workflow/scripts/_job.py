@@ -56,7 +56,7 @@ def job(snakemake):
                     traceback.print_exc(file=log)
             report(str(error) if expected else f"{type(error).__name__}: {error}")
             sys.exit(2 if expected else 1)
-        print(job_time.stated())
+        print(job_time.describe())
 
 
 def function(module, name):

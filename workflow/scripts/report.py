@@ -62,7 +62,7 @@ with job(snakemake):
             page.Section(
                 name=figure,
                 family_name=params.figures[figure],
-                caption=page.captioned(captions[figure], rows),
+                caption=page.make_caption(captions[figure], rows),
                 claims=rows,
                 films=[film for film, beside in params.films.items() if beside == figure],
                 settings=json.dumps(json.loads(made["settings"]), indent=1),
@@ -80,8 +80,8 @@ with job(snakemake):
     )
     environment.filters["number"] = "{:.5g}".format
     texts = [*captions.values(), *(row[key] for row in claims for key in ("source", "allowance_source"))]
-    sources = references.used(texts, references.read_references(given.references))
-    environment.filters["cite"] = lambda text: Markup(references.linked(str(escape(text)), sources))
+    sources = references.cited_references(texts, references.read_references(given.references))
+    environment.filters["cite"] = lambda text: Markup(references.link_citations(str(escape(text)), sources))
     text = environment.get_template(Path(given.template).name).render(
         title=params.title,
         one_file=params.one_file,

@@ -26,7 +26,7 @@ import xarray as xr
 
 from gaspart.reproduction import cost as budget
 from gaspart.reproduction.claims.judging import judge, sufficient
-from gaspart.reproduction.config import checked
+from gaspart.reproduction.config import open_config
 from gaspart.reproduction.table import MADE_OF
 
 IN_HAND = 1.3
@@ -60,7 +60,7 @@ def demands(figure: str, block: Mapping, dataset: xr.Dataset) -> Iterator[Demand
     """Find the demands of the claims of a figure that runs decide and that are decided."""
     before = budget.claims_of(figure, block, dataset)
     rows = list(_rows(dataset))
-    after = [budget.claims_of(figure, block, _enlarged(dataset, place)) for place, _ in rows]
+    after = [budget.claims_of(figure, block, _enlarge_errors(dataset, position)) for position, _ in rows]
     for n, (claim, verdict) in enumerate(zip(before, judge(before), strict=True)):
         multiple = sufficient(claim)
         if not budget.is_decided_by_runs(claim) or not multiple <= 1.0 or verdict == "inconclusive":
@@ -82,20 +82,20 @@ def _rows(dataset: xr.Dataset) -> Iterator[tuple[dict[str, int], list[str]]]:
     """Find the rows of a measurement that state their points: place by dimension, points."""
     for name, column in dataset.variables.items():
         if str(name).endswith(MADE_OF):
-            for place, text in np.ndenumerate(column.values.astype(object)):
+            for position, text in np.ndenumerate(column.values.astype(object)):
                 if isinstance(text, str):  # else a gap of a table with two dimensions
-                    yield dict(zip(map(str, column.dims), place, strict=True)), text.splitlines()
+                    yield dict(zip(map(str, column.dims), position, strict=True)), text.splitlines()
 
 
-def _enlarged(dataset: xr.Dataset, place: Mapping[str, int]) -> xr.Dataset:
+def _enlarge_errors(dataset: xr.Dataset, position: Mapping[str, int]) -> xr.Dataset:
     """Return the data with enlarged uncertainties, and an enlarged scatter of replicas, in a row."""
-    factor = np.ones([dataset.sizes[over] for over in place])
-    factor[tuple(place.values())] = math.sqrt(_ENLARGED)
-    scale = xr.DataArray(factor, dims=tuple(place))
+    factor = np.ones([dataset.sizes[over] for over in position])
+    factor[tuple(position.values())] = math.sqrt(_ENLARGED)
+    scale = xr.DataArray(factor, dims=tuple(position))
     changed = {}
     for name, column in dataset.data_vars.items():
         replicas = [dim for dim in column.dims if str(dim).endswith("replica")]
-        if not set(place) <= set(column.dims):
+        if not set(position) <= set(column.dims):
             continue
         if str(name).endswith("_error"):
             changed[name] = (column * scale).transpose(*column.dims)
@@ -105,13 +105,13 @@ def _enlarged(dataset: xr.Dataset, place: Mapping[str, int]) -> xr.Dataset:
     return dataset.assign(changed)
 
 
-def allocated(
-    demanded: Sequence[Demand], cost: Mapping[str, float], shown: Mapping[str, Sequence[str]]
+def allocate(
+    demanded: Sequence[Demand], cost: Mapping[str, float], figures: Mapping[str, Sequence[str]]
 ) -> tuple[dict[str, float], list[float]]:
     """Return the multiple of the length of each point, and the price of each demand.
 
     cost : time of each point, in s.
-    shown : points of each figure.
+    figures : points of each figure.
 
     The price is the time in s that e times (2.72) the variance would save. Points of a figure that no row
     states, and the points of a claim with a rest, have the multiple that would suffice if all points had it.
@@ -123,14 +123,14 @@ def allocated(
     for k, demand in enumerate(demanded):
         for point, part in demand.parts.items():
             shares[k, index[point]] = part
-    for figure, points in shown.items():
+    for figure, points in figures.items():
         own = [demand for demand in demanded if demand.figure == figure]
         stated = {point for demand in own for point in demand.parts}
-        needed = max((1.0 / demand.most for demand in own), default=1.0)
+        multiple = max((1.0 / demand.most for demand in own), default=1.0)
         uniform = max((1.0 / demand.most for demand in own if demand.rest), default=SHORTEST)
         for point in points:
             n = index[point]
-            least[n] = max(least[n], min(uniform if point in stated else needed, 1.0))
+            least[n] = max(least[n], min(uniform if point in stated else multiple, 1.0))
     most = np.array([demand.most for demand in demanded])
     times = np.array([max(cost[name], 1e-3) for name in names])
     lengths, prices = _least_cost(shares / most[:, None], times, least)
@@ -154,27 +154,27 @@ def _least_cost(shares: np.ndarray, times: np.ndarray, least: np.ndarray) -> tup
 
 def main(path: str, page: str) -> None:
     """Allocate lengths from the run of a config; see the module."""
-    with checked(path) as (config, planned):
+    with open_config(path) as (config, planned):
         results = Path("results") / (config.get("run") or "")
-        shown = budget.shown_points(config, planned)
+        figures = budget.shown_points(config, planned)
         demanded = [
             demand
-            for figure in shown
-            for demand in demands(figure, config["figures"][figure], _measured(results, figure))
+            for figure in figures
+            for demand in demands(figure, config["figures"][figure], _read_measurement(results, figure))
         ]
-        names = {figure: ["/".join(point) for point in points] for figure, points in shown.items()}
-        points = {point for points in shown.values() for point in points}
+        names = {figure: ["/".join(point) for point in points] for figure, points in figures.items()}
+        points = {point for points in figures.values() for point in points}
         cost = {"/".join(point): budget.point_seconds(results, point) for point in points}
-        found, prices = allocated(demanded, cost, names)
+        multiples, prices = allocate(demanded, cost, names)
         had = config.get("lengths") or {}
-    for name in found:
+    for name in multiples:
         experiment, _, point = name.partition("/")
-        found[name] = max(SHORTEST, found[name] * (had.get(experiment) or {}).get(point, 1.0))
-    _write_lengths(Path(path), found)
-    Path(page).write_text(_page(found, cost, demanded, prices), encoding="utf-8")
+        multiples[name] = max(SHORTEST, multiples[name] * (had.get(experiment) or {}).get(point, 1.0))
+    _write_lengths(Path(path), multiples)
+    Path(page).write_text(_page(multiples, cost, demanded, prices), encoding="utf-8")
 
 
-def _measured(results: Path, figure: str) -> xr.Dataset:
+def _read_measurement(results: Path, figure: str) -> xr.Dataset:
     return xr.load_dataset(results / "measurements" / f"{figure}.nc")
 
 
@@ -200,7 +200,9 @@ def _page(
     """
     rows = ["| point | s in the run | multiple | claim that needs it most |", "| --- | --- | --- | --- |"]
     for point in sorted(multiples, key=lambda name: -cost[name]):
-        neediest = max(demanded, key=lambda one: one.parts.get(point, 0.0) / one.most, default=None)
+        neediest = max(
+            demanded, key=lambda candidate: candidate.parts.get(point, 0.0) / candidate.most, default=None
+        )
         text = f"{neediest.figure}: {neediest.claim}" if neediest and point in neediest.parts else "–"
         rows.append(f"| {point} | {cost[point]:.1f} | {multiples[point]:.2g} | {text} |")
     rows += ["", "| claim | s saved by e times its variance | length that it needs |", "| --- | --- | --- |"]

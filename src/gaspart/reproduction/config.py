@@ -16,13 +16,13 @@ from gaspart.errors import SceneError, unknown_word
 from gaspart.files import resolve_path
 from gaspart.keys import Kind, choice, names, record, require
 from gaspart.keys.values import finite, size
-from gaspart.reproduction.claims.table import filled, place_fault
+from gaspart.reproduction.claims.table import fill_caption, place_fault
 from gaspart.reproduction.families import registry
 from gaspart.reproduction.points import jobs, point_keys
 from gaspart.reproduction.points import points as config_keys
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
 from gaspart.reproduction.points.points import POINT, figure_points, points
-from gaspart.reproduction.report.page import divided
+from gaspart.reproduction.report.page import split_caption
 from gaspart.yaml_text import DEEPEST, MOST_VALUES, is_exponential, read_yaml
 
 if TYPE_CHECKING:
@@ -46,15 +46,15 @@ def merged_with_default(path: Path, base: Path | None = None) -> tuple[dict[str,
         content = read_yaml(file)
         if not isinstance(content, dict):
             raise SceneError("config", content, "must be a mapping of keys to values", str(file))
-        merged = _merged(merged, content)
+        merged = _merge(merged, content)
     return merged, files
 
 
-def _merged(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
+def _merge(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
     """Merge mappings key by key; replace anything else."""
     both = {key: value for key, value in above.items() if isinstance(value, dict)}
     both = {key: value for key, value in both.items() if isinstance(below.get(key), dict)}
-    return {**below, **above, **{key: _merged(below[key], value) for key, value in both.items()}}
+    return {**below, **above, **{key: _merge(below[key], value) for key, value in both.items()}}
 
 
 def read_numbers(config: dict, files: Sequence[str | Path]) -> None:
@@ -88,7 +88,7 @@ def origin(key: str, config: dict, contents: list[tuple[str, Any]]) -> str | Non
     dotted = parts.index("scene") if "scene" in parts else len(parts)  # `scene.` and what follows is one key
     parts[dotted:] = [".".join(parts[dotted:])]
 
-    def held(block: Any) -> tuple[int, Any]:
+    def content_below(block: Any) -> tuple[int, Any]:
         reached = 0
         for part in parts:
             if not isinstance(block, dict) or part not in block:
@@ -96,12 +96,12 @@ def origin(key: str, config: dict, contents: list[tuple[str, Any]]) -> str | Non
             block, reached = block[part], reached + 1
         return reached, block
 
-    depth, value = held(config)
+    depth, value = content_below(config)
     if contents and depth and not isinstance(value, dict):
         # in their written form, in which nan is equal to itself
-        if repr((depth, value)) not in [repr(held(content)) for _, content in contents]:
+        if repr((depth, value)) not in [repr(content_below(content)) for _, content in contents]:
             return "--config"
-    return max(reversed(contents), key=lambda content: held(content[1])[0])[0] if contents else None
+    return max(reversed(contents), key=lambda content: content_below(content[1])[0])[0] if contents else None
 
 
 # The JSON schemas of a config and of a scene file, from the declarations of their keys.
@@ -142,7 +142,7 @@ def scene_schema() -> Kind:
 
 
 @contextmanager
-def checked(path: str | Path) -> Iterator[tuple[dict[str, Any], dict[str, dict[str, Point]]]]:
+def open_config(path: str | Path) -> Iterator[tuple[dict[str, Any], dict[str, dict[str, Point]]]]:
     """Yield the valid config of a file and its points.
 
     The working directory is its scene folder: the folder above a file in a folder named `config`; else the
@@ -170,9 +170,9 @@ def check(config: dict, files: Sequence[str | Path] = ()) -> dict[str, dict[str,
                 raise SceneError("lengths", experiment, unknown_word(experiment, config["experiments"]))
         planned = {experiment: checked_points(config, experiment) for experiment in config["experiments"]}
         for figure, block in config["figures"].items():
-            shown = figure_points(config, figure, planned)
+            points = figure_points(config, figure, planned)
             if "kind" in block:
-                registry.validate(figure, block, shown)
+                registry.validate(figure, block, points)
                 _check_caption(figure, block)
         for animation, block in config.get("animations", {}).items():
             _animation(config, animation, block)
@@ -232,7 +232,7 @@ def _installed_kinds(config: object) -> tuple[tuple[str, str], ...]:
     Raises SceneError for a kind that is unknown, or whose package cannot be used.
     """
     figures = config.get("figures") if isinstance(config, dict) else None
-    found = []
+    pairs = []
     for figure, block in figures.items() if isinstance(figures, dict) else ():
         kind = block.get("kind") if isinstance(block, dict) else None
         if kind is None or kind in list(registry.kinds()):
@@ -244,8 +244,8 @@ def _installed_kinds(config: object) -> tuple[tuple[str, str], ...]:
             registry.settings_of_kind(kind)
         except SceneError as error:
             raise error.inside(where) from None
-        found.append((figure, kind))
-    return tuple(found)
+        pairs.append((figure, kind))
+    return tuple(pairs)
 
 
 def _check_caption(figure: str, block: dict) -> None:
@@ -257,7 +257,7 @@ def _check_caption(figure: str, block: dict) -> None:
     fault = place_fault(text)
     if not fault and find_spec("docutils"):
         try:
-            divided(filled(text, []))
+            split_caption(fill_caption(text, []))
         except ValueError as error:
             fault = str(error)
     if fault:
@@ -267,7 +267,7 @@ def _check_caption(figure: str, block: dict) -> None:
 def _animation(config: dict, animation: str, block: dict | None) -> None:
     """Refuse a film of an experiment that is missing in the config, or has no trajectories."""
     experiment = block["experiment"] if block else None
-    kinds = {name: made.get("job", "simulate") for name, made in config["experiments"].items()}
+    kinds = {name: definition.get("job", "simulate") for name, definition in config["experiments"].items()}
     if block and kinds.get(experiment) != TRAJECTORIES:
         rule = "must be the name of an experiment that makes trajectories"
         raise SceneError(f"animations.{animation}.experiment", experiment, rule)
@@ -281,10 +281,10 @@ def checked_points(config: dict, experiment: str) -> dict[str, Point]:
 
     Each value of the grid is checked too. Raises SceneError.
     """
-    made = gridded_points(config, experiment)
-    for point in made.values():
+    points = gridded_points(config, experiment)
+    for point in points.values():
         check_point(point)
-    return made
+    return points
 
 
 def gridded_points(config: dict, experiment: str) -> dict[str, Point]:
@@ -323,7 +323,7 @@ def _grid_values(block: Any) -> Iterator[tuple[str, object]]:
             yield key, value
 
 
-def explained(error: SceneError, config: dict, module: bool) -> SceneError:
+def explain_error(error: SceneError, config: dict, module: bool) -> SceneError:
     """Return an error of a config, with an explanation if all keys are missing.
 
     `config` is the merged one; `module` is True if the Snakefile of another workflow uses this one as a
@@ -349,7 +349,7 @@ def judge_config(path: Path) -> list[Check]:
     """
     from gaspart.inspection.checks import Check  # .5 s, which planning does not need
 
-    with checked(path) as (merged, planned):
+    with open_config(path) as (merged, planned):
         counts = [point.extents.particles for points in planned.values() for point in points.values()]
     text = f"{len(planned)} experiments of {len(counts)} points, up to {max(counts)} particles; "
     return [Check("config", True, text + f"{len(merged['figures'])} figures")]

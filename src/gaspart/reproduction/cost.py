@@ -16,7 +16,7 @@ from gaspart.errors import SceneError
 from gaspart.files import whole_file
 from gaspart.reproduction import job_time
 from gaspart.reproduction.claims.judging import Claim, judge, sufficient
-from gaspart.reproduction.config import checked
+from gaspart.reproduction.config import open_config
 from gaspart.reproduction.families import registry
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.gas import Gas
@@ -32,15 +32,15 @@ def predict(path: str) -> list[str]:
     SceneError.
     """
     lines, total, unknown = [], 0.0, []
-    with checked(path) as (_, planned):
+    with open_config(path) as (_, planned):
         for experiment, points in planned.items():
             costs = [_seconds(point) for point in points.values()]
-            known = [seconds for seconds in costs if seconds is not None]
-            if len(known) < len(costs):
+            predicted = [seconds for seconds in costs if seconds is not None]
+            if len(predicted) < len(costs):
                 unknown.append(experiment)
                 continue
-            total += sum(known)
-            lines.append(f"{experiment:28s} {sum(known) / 3600.0:10.4f} core-hours")
+            total += sum(predicted)
+            lines.append(f"{experiment:28s} {sum(predicted) / 3600.0:10.4f} core-hours")
     lines.append(f"{'all of them':28s} {total / 3600.0:10.4f} core-hours")
     if unknown:
         rule = "not predicted (other jobs, or scenes whose collisions no theory counts)"
@@ -65,10 +65,16 @@ def _seconds(point: Point) -> float | None:
     rate = float(theory.collision_rate(**fluid.parameters))
     contacts = 0.5 * gas.count * rate * point.schedule.duration * point.replicas
     step, fine = engine.timed_step(point.scene), 1.0
-    known = [
-        made for precision, made in table.steps(gas.dimension, engine.timed_as) if precision == "float64"
+    table_steps = [
+        table_step
+        for precision, table_step in table.steps(gas.dimension, engine.timed_as)
+        if precision == "float64"
     ]
-    nearest = step if not step else min(known, key=lambda one: abs(math.log(one / step)), default=step)
+    nearest = (
+        step
+        if not step
+        else min(table_steps, key=lambda candidate: abs(math.log(candidate / step)), default=step)
+    )
     if step and nearest > step:  # shorter steps than any in the table cost in proportion to their number
         fine = nearest / step
     each = fine * table.seconds(gas.dimension, gas.packing_fraction, engine.timed_as, "float64", nearest)
@@ -140,17 +146,17 @@ def budgets(path: str | Path) -> list[Budget]:
     """
     import xarray as xr
 
-    with checked(path) as (config, planned):
+    with open_config(path) as (config, planned):
         results = Path("results") / (config.get("run") or "")
         every = shown_points(config, planned)
-        made = []
+        rows = []
         for figure, points in every.items():
             dataset = results / "measurements" / f"{figure}.nc"
             if not dataset.is_file():
                 raise SceneError("results", str(dataset), "is not there: run the workflow first")
             others = {point for other in every if other != figure for point in every[other]}
             times = {point: point_seconds(results, point) for point in points}
-            made.append(
+            rows.append(
                 Budget(
                     figure,
                     sum(times.values()) + _made(results, figure),
@@ -158,7 +164,7 @@ def budgets(path: str | Path) -> list[Budget]:
                     _needs(claims_of(figure, config["figures"][figure], xr.load_dataset(dataset))),
                 )
             )
-    return sorted(made, key=lambda one: -one.seconds)
+    return sorted(rows, key=lambda row: -row.seconds)
 
 
 def lines(path: str | Path, target: str | Path | None = None) -> list[str]:
@@ -166,26 +172,26 @@ def lines(path: str | Path, target: str | Path | None = None) -> list[str]:
 
     If `target` is a CSV file, they are written there instead, a line for each claim.
     """
-    found = budgets(path)
+    rows = budgets(path)
     if target is not None:
-        _write(found, target)
+        _write(rows, target)
         return []
     text = [f"{'figure':26s} {'CPU s':>8s} {'shared':>8s}  decided  of {'length that suffices':>22s}"]
-    for one in found:
-        length = f"{one.sufficient:.2g}" if one.conclusive else ""
-        counted = f"{len(one.conclusive):7d} {len(one.needs):4d}"
-        text.append(f"{one.figure:26s} {one.seconds:8.1f} {one.shared:8.1f}  {counted} {length:>22s}")
-        text += [f"    {need.multiple:8.2g} times: {need.claim}" for need in one.needs if need.multiple > 1.0]
+    for row in rows:
+        length = f"{row.sufficient:.2g}" if row.conclusive else ""
+        counted = f"{len(row.conclusive):7d} {len(row.needs):4d}"
+        text.append(f"{row.figure:26s} {row.seconds:8.1f} {row.shared:8.1f}  {counted} {length:>22s}")
+        text += [f"    {need.multiple:8.2g} times: {need.claim}" for need in row.needs if need.multiple > 1.0]
     return text
 
 
-def _write(found: Sequence[Budget], target: str | Path) -> None:
+def _write(rows: Sequence[Budget], target: str | Path) -> None:
     with whole_file(target) as partial, partial.open("w", newline="", encoding="utf-8") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(_COLUMNS)
-        for one in found:
-            own = one.figure, f"{one.seconds:.1f}", f"{one.shared:.1f}"
-            for need in one.needs:
+        for row in rows:
+            own = row.figure, f"{row.seconds:.1f}", f"{row.shared:.1f}"
+            for need in row.needs:
                 numbers = (f"{number:.3g}" for number in (need.required, need.reached, need.multiple))
                 table.writerow((*own, need.claim, need.verdict, *numbers))
 
@@ -203,14 +209,14 @@ def shown_points(
 def point_seconds(results: Path, point: tuple[str, str]) -> float:
     """Return the processor time of a point's job. Raises SceneError if it was not made."""
     for rule in ("simulate", "compute"):
-        if used := job_time.used(results, rule, *point):
+        if used := job_time.read_used(results, rule, *point):
             return used.seconds
     raise SceneError("results", str(results / "logs"), f"has no time of the point {'/'.join(point)}")
 
 
 def _made(results: Path, figure: str) -> float:
     """Return the CPU time of the jobs that make numbers, verdicts and picture of a figure."""
-    jobs = (job_time.used(results, rule, figure) for rule in ("measure", "judge", "draw"))
+    jobs = (job_time.read_used(results, rule, figure) for rule in ("measure", "judge", "draw"))
     return sum(used.seconds for used in jobs if used)
 
 
@@ -228,9 +234,9 @@ def is_decided_by_runs(claim: Claim) -> bool:
 
 def _needs(stated: Sequence[Claim]) -> tuple[Need, ...]:
     """Return those claims of a figure that runs decide, the most demanding first."""
-    found = []
+    needs = []
     for claim, verdict in zip(stated, judge(stated), strict=True):
         multiple = sufficient(claim)
         if is_decided_by_runs(claim) and math.isfinite(multiple):
-            found.append(Need(claim.claim, verdict, claim.required, claim.measured.error, multiple))
-    return tuple(sorted(found, key=lambda need: -need.multiple))
+            needs.append(Need(claim.claim, verdict, claim.required, claim.measured.error, multiple))
+    return tuple(sorted(needs, key=lambda need: -need.multiple))

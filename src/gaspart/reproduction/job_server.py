@@ -99,7 +99,7 @@ def serve(listener: socket.socket, path: Path) -> None:
             for key, _ in selector.select():
                 if key.fileobj is listener:
                     connection, _ = listener.accept()
-                    if process := _copied(connection, dispositions):
+                    if process := _start_process(connection, dispositions):
                         jobs[connection] = process
                         selector.register(connection, selectors.EVENT_READ)
                 elif key.fileobj == wake:
@@ -128,7 +128,7 @@ def _preload() -> None:
     gc.freeze()  # or the copies would write to all objects
 
 
-def _copied(connection: socket.socket, dispositions: dict) -> int | None:
+def _start_process(connection: socket.socket, dispositions: dict) -> int | None:
     """Return the process of a request, and tell the client; None if there is no request."""
     data, files, _, _ = socket.recv_fds(connection, _MOST, 3)
     while data and not data.endswith(b"\n"):

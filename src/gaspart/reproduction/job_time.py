@@ -26,12 +26,12 @@ class Used(NamedTuple):
     memory: float
 
 
-def stated() -> str:
+def describe() -> str:
     """Return the line for the log of this process."""
     return f"processor time: {sum(os.times()[:4]):.2f} s, memory: {largest_memory() / 1e6:.1f} MB"
 
 
-def used(results: Path, rule: str, *names: str) -> Used | None:
+def read_used(results: Path, rule: str, *names: str) -> Used | None:
     """Return what the log of a job states; None if it states nothing.
 
     `results` is the folder of the logs' folder; `names` are the wildcards of the rule, as folders and file of
@@ -39,7 +39,9 @@ def used(results: Path, rule: str, *names: str) -> Used | None:
     """
     log = (results / "logs").joinpath(rule, *names)
     try:
-        found = _LINE.findall(log.with_name(f"{log.name}.log").read_text(encoding="utf-8", errors="replace"))
+        matches = _LINE.findall(
+            log.with_name(f"{log.name}.log").read_text(encoding="utf-8", errors="replace")
+        )
     except FileNotFoundError:
         return None
-    return Used(*map(float, found[-1])) if found else None
+    return Used(*map(float, matches[-1])) if matches else None

@@ -31,7 +31,7 @@ Value = tuple[int, str, Row, Estimate]
 """Dimension, quantity, the row of the measurement, and the value."""
 
 
-def measured(folder: Path) -> Iterator[dict[str, object]]:
+def reference_values(folder: Path) -> Iterator[dict[str, object]]:
     """Yield the rows of the table, from the files <figure>.nc of a folder.
 
     Units are the diameter, the mass and k_B T. Raises OSError for a file that is missing.
@@ -78,4 +78,4 @@ def _values(figure: str, dataset: xr.Dataset) -> Iterator[Value]:
 if __name__ == "__main__":
     writer = csv.DictWriter(sys.stdout, COLUMNS, lineterminator="\n")
     writer.writeheader()
-    writer.writerows(measured(Path(sys.argv[1])))
+    writer.writerows(reference_values(Path(sys.argv[1])))

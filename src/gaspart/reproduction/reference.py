@@ -95,7 +95,7 @@ def _figure_keys() -> list[str]:
 
 
 def _features() -> list[str]:
-    return [_models(), "## What excludes what\n", _excluded()]
+    return [_models(), "## What excludes what\n", _describe_exclusions()]
 
 
 def _models() -> str:
@@ -106,8 +106,8 @@ def _models() -> str:
         rows.append(f"| {feature.meaning} | {' | '.join(marks)} |")
     for engine in ENGINES.values():
         for pair in engine.excludes:
-            one, other = (FEATURES[name].meaning for name in pair)
-            rows += ["", f"Not together with engine `{engine.name}`: {one} and {other}."]
+            first, second = (FEATURES[name].meaning for name in pair)
+            rows += ["", f"Not together with engine `{engine.name}`: {first} and {second}."]
     return "\n".join([*rows, ""])
 
 
@@ -126,31 +126,31 @@ def _observables() -> list[str]:
     )
     heads += ("theory", "`--until`")
     rows = [f"| {' | '.join(heads)} |", f"|{' --- |' * len(heads)}"]
-    for name, one in OBSERVABLES.items():
-        along = ", ".join(DIMENSIONS[dim].meaning for dim in one.along)
-        where = " ".join((condition.__doc__ or "").split("\n")[0] for condition in one.conditions)
+    for name, observable in OBSERVABLES.items():
+        along = ", ".join(DIMENSIONS[dim].meaning for dim in observable.along)
+        where = " ".join((condition.__doc__ or "").split("\n")[0] for condition in observable.conditions)
         cells = (
-            f"`{name}`{f' ({one.symbol})' if one.symbol else ''}",
+            f"`{name}`{f' ({observable.symbol})' if observable.symbol else ''}",
             ", ".join(f"`{alias}`" for alias, other in ALIASES.items() if other == name),
-            one.definition,
-            f"`{one.units}`",
+            observable.definition,
+            f"`{observable.units}`",
             f"by {along}" if along else "number",
-            ", ".join(f"`{key}`" for key in one.selections),
-            one.needs,
+            ", ".join(f"`{key}`" for key in observable.selections),
+            observable.needs,
             where,
-            ", ".join(f"`{equation}`" for equation in one.nothing),
-            "yes" if one.theory else "",
-            "yes" if one.ends_runs else "",
+            ", ".join(f"`{equation}`" for equation in observable.nothing),
+            "yes" if observable.theory else "",
+            "yes" if observable.ends_runs else "",
         )
         rows.append(f"| {' | '.join(cells)} |")
     return ["\n".join([*rows, ""])]
 
 
-def _excluded() -> str:
+def _describe_exclusions() -> str:
     """Describe the features that exclude each other in any scene."""
     rows = ["| feature | excludes | why |", "| --- | --- | --- |"]
-    for (one, other), why in EXCLUDED.items():
-        rows.append(f"| {FEATURES[one].meaning} | {FEATURES[other].meaning} | {why} |")
+    for (first, second), reason in EXCLUDED.items():
+        rows.append(f"| {FEATURES[first].meaning} | {FEATURES[second].meaning} | {reason} |")
     return "\n".join([*rows, ""])
 
 
@@ -197,29 +197,29 @@ def in_words(kind: Kind) -> str:
         return ", ".join(f"`{value}`" for value in kind["enum"] if value is not None)
     if "anyOf" in kind:
         return " or ".join(dict.fromkeys(map(in_words, kind["anyOf"])))
-    given = kind.get("type", "anything")
-    types = [name for name in ([given] if isinstance(given, str) else given) if name != "null"]
-    return " or ".join(_typed(kind, name) for name in types)
+    declared = kind.get("type", "anything")
+    types = [name for name in ([declared] if isinstance(declared, str) else declared) if name != "null"]
+    return " or ".join(_describe_type(kind, name) for name in types)
 
 
-def _typed(kind: Kind, name: str) -> str:
+def _describe_type(kind: Kind, name: str) -> str:
     """Describe one of the types of a kind, with the rules for it."""
-    word = _TYPES.get(name, name)
+    noun = _TYPES.get(name, name)
     if name in ("number", "integer"):
         rules = [f"{sign}{kind[end]:.10g}" for end, sign in _ENDS.items() if end in kind]
-        return f"{word} {' and '.join(rules)}".rstrip()
+        return f"{noun} {' and '.join(rules)}".rstrip()
     if name == "object" and kind.get("properties"):
         return "mapping of " + ", ".join(
             f"`{key}` ({in_words(item)})" for key, item in kind["properties"].items()
         )
     if name != "array":
-        return word
+        return noun
     minimum, maximum = kind.get("minItems", 0), kind.get("maxItems")
     if maximum == 0:
         return "empty list"
     size = "" if maximum is None else f" {maximum}" if minimum == maximum else f" {minimum} to {maximum}"
     item = f" ({in_words(kind['items'])})" if "items" in kind else ""
-    return f"{word} of{size} values{item}" if size else f"{word}{item}"
+    return f"{noun} of{size} values{item}" if size else f"{noun}{item}"
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ from gaspart.reproduction.points.measurable import distinct, require_observable
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.points.point_keys import ENGINE_KEYS, EXTENTS, GAS, PREFIX
 from gaspart.reproduction.sweep_points import axes_of, make_all, names_of
-from gaspart.reproduction.sweep_table import Measured, SweepTable, measured, table
+from gaspart.reproduction.sweep_table import Measured, SweepTable, measure_point, table
 from gaspart.runs.ending import Accuracy
 from gaspart.scene.scene import Scene, require_scene
 from gaspart.trajectory.correlator import Correlations
@@ -148,12 +148,14 @@ def sweep(
     axes = axes_of(over)
     names = names_of(observables, axes)
     length = _length(duration, until, at_most, samples, equilibration)
-    point = {**length, **_settings(scene, axes, engine), **_kept(names, correlations, length)}
+    point = {**length, **_settings(scene, axes, engine), **_contents_settings(names, correlations, length)}
     point["replicas"] = count_of("replicas", replicas, least=1)
-    plan = _planned(_experiment(point, axes, engine), _root(folder), count_of("seed", seed))
+    plan = _make_plan(_experiment(point, axes, engine), _root(folder), count_of("seed", seed))
     _require_measurable(names, plan.able)
     _make(plan, count_of("workers", workers, least=1), bool(overwrite), progress or _print)
-    rows = [_row(one, names, equilibration is None, plan.failures.get(one.name, "")) for one in plan.points]
+    rows = [
+        _row(point, names, equilibration is None, plan.failures.get(point.name, "")) for point in plan.points
+    ]
     return table(rows, names, axes, {"scene": scene, "engine": engine, "seed": seed})
 
 
@@ -182,14 +184,14 @@ def _make(plan: _Plan, workers: int, overwrite: bool, progress: Progress) -> Non
     for name, reason in plan.failures.items():
         _complain(name, reason)
 
-    def finished(point: Point, reason: str) -> None:
+    def report(point: Point, reason: str) -> None:
         if reason:
             plan.failures[point.name] = reason
             _complain(point.name, reason)
         progress(next(done), len(plan.points), point.name)
 
     _make_folder(plan.points[0].root)
-    make_all(plan.able, workers, overwrite, finished)
+    make_all(plan.able, workers, overwrite, report)
 
 
 def _root(folder: Any) -> str:
@@ -229,14 +231,16 @@ def _length(
         if at_most is not None:
             raise SceneError("at_most", at_most, "needs until")
         return {"samples": _SAMPLES, **settings}
-    asked = tuple(until) if isinstance(until, list | tuple) else (until,)
-    for one in Until(asked, settings["duration"]).accuracies:  # raises SceneError for other things
-        if one.start is not None:
-            raise SceneError("until.start", one.start, "is the equilibration of a sweep")
-    return {**settings, "until": {one.name: one.accuracy for one in asked}}
+    accuracies = tuple(until) if isinstance(until, list | tuple) else (until,)
+    for accuracy in Until(accuracies, settings["duration"]).accuracies:  # raises SceneError for other things
+        if accuracy.start is not None:
+            raise SceneError("until.start", accuracy.start, "is the equilibration of a sweep")
+    return {**settings, "until": {accuracy.name: accuracy.accuracy for accuracy in accuracies}}
 
 
-def _kept(names: list[str], correlations: Correlations | None, length: dict[str, Any]) -> dict[str, Any]:
+def _contents_settings(
+    names: list[str], correlations: Correlations | None, length: dict[str, Any]
+) -> dict[str, Any]:
     """Return the keys of the contents of a point's files, or raise SceneError."""
     needs = {OBSERVABLES[name].needs for name in names}
     if "until" in length:
@@ -259,7 +263,7 @@ def _kept(names: list[str], correlations: Correlations | None, length: dict[str,
 
 
 def point_keys(engine: Engine) -> set[str]:
-    """Return the keys of a config that a sweep may vary: the keys of a gas and of the engine.
+    """Return the config keys that a sweep may vary: keys of a gas and of the engine.
 
     Parameters
     ----------
@@ -316,8 +320,8 @@ def _gas(scene: Scene, axes: Mapping[str, list], varied: str) -> dict[str, Any]:
         "side": list(container.lengths),
     }
     same = {"count": species.count, "radius": species.radius, "side": list(container.lengths)}
-    given = {key: value for key, value in {**settings, **same}.items() if value is not None}
-    if Point(EXPERIMENT, "", "simulate", given, "", 0).scene != scene:
+    explicit = {key: value for key, value in {**settings, **same}.items() if value is not None}
+    if Point(EXPERIMENT, "", "simulate", explicit, "", 0).scene != scene:
         raise SceneError(f"over.{varied}", axes[varied], rule)
     order = _KEPT if species.alike else _KEPT_OF_SIZES
     kept = [key for key in order if key not in axes][: 3 - sum(key in axes for key in EXTENTS)]
@@ -327,7 +331,7 @@ def _gas(scene: Scene, axes: Mapping[str, list], varied: str) -> dict[str, Any]:
     return {key: value for key, value in settings.items() if key not in axes}
 
 
-def _planned(experiment: dict, root: str, seed: int) -> _Plan:
+def _make_plan(experiment: dict, root: str, seed: int) -> _Plan:
     """Return the points of an experiment, in the order of the product of its values.
 
     Raises SceneError for values that no point can use, and if no point can be run.
@@ -386,10 +390,10 @@ def _row(point: Point, names: list[str], part: bool, failure: str) -> Measured:
     """Return the row of a point: its results, or the reason of its failure."""
     if failure:
         return Measured({}, [], failure)
-    found, refused = measured(point, names, part)
+    result, refused = measure_point(point, names, part)
     for name, error in refused.items():
         _complain(point.name, str(error), name)
-    return replace(found, failure="; ".join(str(error) for error in refused.values()))
+    return replace(result, failure="; ".join(str(error) for error in refused.values()))
 
 
 def _print(done: int, points: int, name: str) -> None:
@@ -397,5 +401,5 @@ def _print(done: int, points: int, name: str) -> None:
 
 
 def _complain(point: str, reason: str, observable: str = "") -> None:
-    what = f": {observable}" if observable else ""
-    print(f"{EXPERIMENT}[{point}]{what} is NaN: {reason}", file=sys.stderr, flush=True)
+    subject = f": {observable}" if observable else ""
+    print(f"{EXPERIMENT}[{point}]{subject} is NaN: {reason}", file=sys.stderr, flush=True)

@@ -28,9 +28,9 @@ from gaspart.workers import in_processes, require_processes
 
 
 def make_all(
-    points: Sequence[Point], workers: int, overwrite: bool, finished: Callable[[Point, str], None]
+    points: Sequence[Point], workers: int, overwrite: bool, report: Callable[[Point, str], None]
 ) -> None:
-    """Make the trajectories of all points, and call finished(point, reason) for each.
+    """Make the trajectories of all points, and call report(point, reason) for each.
 
     The reason states why it could not be made, or is "". Points whose trajectories exist come first: a
     conflict is then found before anything is run. Raises SceneError for files that cannot be written or are
@@ -39,14 +39,16 @@ def make_all(
     ordered = sorted(points, key=lambda point: not Path(point.path).exists())
     if workers == 1:
         for point in ordered:
-            finished(point, make(point, overwrite))
+            report(point, make(point, overwrite))
         return
     require_processes("workers", workers)
-    for one in {variant(point): point for point in ordered}.values():  # or each process would compile them
+    for representative in {
+        variant(point): point for point in ordered
+    }.values():  # or each process would compile them
         with suppress(SceneError, SimulationError):  # of its own point alone
-            compile_kernels(compile_task(one))
+            compile_kernels(compile_task(representative))
     calls = [(point.to_dict(), point.path, overwrite) for point in ordered]
-    in_processes(_make_in_process, calls, workers, lambda n, reason: finished(ordered[n], str(reason)))
+    in_processes(_make_in_process, calls, workers, lambda n, reason: report(ordered[n], str(reason)))
 
 
 def make(point: Point, overwrite: bool) -> str:
@@ -56,12 +58,12 @@ def make(point: Point, overwrite: bool) -> str:
     """
     folder = Path(point.path)
     try:
-        wanted = recipes(**point.arguments)
+        all_recipes = recipes(**point.arguments)
         with only_process(folder, wait=True):
             if not folder.exists():
-                write_replicas(record, wanted, folder, None, overwrite)
+                write_replicas(record, all_recipes, folder, None, overwrite)
                 return ""
-            for path, recipe in zip(replica_paths(folder, len(wanted)), wanted, strict=True):
+            for path, recipe in zip(replica_paths(folder, len(all_recipes)), all_recipes, strict=True):
                 record(recipe, path, overwrite)
     except OSError as error:
         rule = f"cannot be written: {error.strerror}"
@@ -117,10 +119,10 @@ def axes_of(over: object) -> dict[str, list]:
 
 def names_of(observables: object, axes: Mapping[str, list]) -> list[str]:
     """Return the observables, each once; a single name counts as a list of one; raise SceneError."""
-    given = [observables] if isinstance(observables, str) else observables
-    if not isinstance(given, Iterable) or isinstance(given, bytes | Mapping):
+    listed = [observables] if isinstance(observables, str) else observables
+    if not isinstance(listed, Iterable) or isinstance(listed, bytes | Mapping):
         raise SceneError("observables", observables, "must be the names of observables")
-    names = list(dict.fromkeys([known(name) for name in given]))
+    names = list(dict.fromkeys([known(name) for name in listed]))
     for name in names:
         if name in axes:
             rule = f"is also a key that varies: vary species.0.{name} instead"
@@ -128,15 +130,15 @@ def names_of(observables: object, axes: Mapping[str, list]) -> list[str]:
     return names
 
 
-def _values(where: str, given: Any) -> list:
+def _values(where: str, values: Any) -> list:
     """Return the values of a key; raise SceneError for too many, or an iterator that fails."""
-    plain = _plain(given)
+    plain = _plain(values)
     if isinstance(plain, str | bytes | Mapping) or not isinstance(plain, Iterable):
         return [plain]
     try:
         listed = list(islice(plain, MOST_POINTS + 1))
     except Exception:  # an iterator of the user's own
-        raise SceneError(where, given, "must be a list of values") from None
+        raise SceneError(where, values, "must be a list of values") from None
     if len(listed) > MOST_POINTS:
         raise SceneError(where, len(listed), f"a grid may have {MOST_POINTS} points")
     if not listed:
@@ -161,10 +163,10 @@ def _refuse_repeated(where: str, values: list) -> None:
     """Raise SceneError for a value that is there twice, also as 1 and as 1.0."""
     seen = set()
     for value in values:
-        one = _hashable(value)
-        if one in seen:
+        key = _hashable(value)
+        if key in seen:
             raise SceneError(where, value, "is there twice: every point of a grid must be different")
-        seen.add(one)
+        seen.add(key)
 
 
 def _hashable(value: Any) -> Hashable:

@@ -41,7 +41,7 @@ class SweepTable(ByFace):
     def plot(  # type: ignore[override]
         self, observable: str | None = None, along: str | None = None, axis: Axes | None = None
     ) -> Axes:
-        """Draw an observable with bars of one standard deviation, and theory as lines where it is known.
+        """Draw an observable with bars of one standard deviation, and theory as lines.
 
         Each value of the other dimensions gives one curve.
 
@@ -66,9 +66,9 @@ class SweepTable(ByFace):
         """
         import matplotlib.pyplot as plt
 
-        name = _known("observable", observable, self.observables)
+        name = _check_name("observable", observable, self.observables)
         values = self[name]
-        along = _known("along", along, _preferred(values))
+        along = _check_name("along", along, _order_dimensions(values))
         if axis is None:
             axis = plt.figure(layout="constrained").add_subplot()
         others = [str(dim) for dim in values.dims if dim != along]
@@ -83,16 +83,16 @@ class SweepTable(ByFace):
         return axis
 
 
-def _known(key: str, given: str | None, known: list[str]) -> str:
+def _check_name(key: str, name: str | None, names: list[str]) -> str:
     """Return a name of the table, by default the first; raise SceneError."""
-    if not known:
-        raise SceneError(key, given, "there is nothing to be drawn: the sweep has one point")
-    if given is not None and given not in known:
-        raise SceneError(key, given, unknown_word(given, known, "name"))
-    return given or known[0]
+    if not names:
+        raise SceneError(key, name, "there is nothing to be drawn: the sweep has one point")
+    if name is not None and name not in names:
+        raise SceneError(key, name, unknown_word(name, names, "name"))
+    return name or names[0]
 
 
-def _preferred(values: xr.DataArray) -> list[str]:
+def _order_dimensions(values: xr.DataArray) -> list[str]:
     """Return the dimensions of an observable, those first that make the best axis."""
     dims = [str(dim) for dim in values.dims]
     numbers = [dim for dim in dims if _is_number(values, dim)]
@@ -121,16 +121,16 @@ def _draw_curve(axis: Axes, curve: xr.Dataset, name: str, along: str, label: str
     If positions are words, it is drawn as crosses.
     """
     values, error = np.broadcast_arrays(curve[name].values, curve[f"{name}_error"].values)
-    places: Any = np.arange(values.size)
+    positions: Any = np.arange(values.size)
     for at in (f"{along}_places", along):
         if at in curve:
-            places = curve[at].values
+            positions = curve[at].values
             break
-    words = places.dtype.kind not in "fiu"
-    x = np.arange(values.size) if words else places
+    words = positions.dtype.kind not in "fiu"
+    x = np.arange(values.size) if words else positions
     bars = axis.errorbar(x, values, error, fmt="o", markersize=3, capsize=2, label=label or None)
     if words:
-        axis.set_xticks(x, [str(text) for text in places])
+        axis.set_xticks(x, [str(text) for text in positions])
     if f"{name}_theory" in curve:
         order = np.argsort(x)
         theory = curve[f"{name}_theory"].values
@@ -153,13 +153,13 @@ class Measured:
     failure: str = ""
 
 
-def measured(point: Point, names: Sequence[str], part: bool) -> tuple[Measured, dict[str, SceneError]]:
+def measure_point(point: Point, names: Sequence[str], part: bool) -> tuple[Measured, dict[str, SceneError]]:
     """Measure observables of a point, by name, and return the error of each that fails.
 
     Frames count after the equilibration, or, with `part`, after the first quarter of each run.
     """
     start = None if part else point.schedule.equilibration
-    found: dict[str, list[Observable]] = {name: [] for name in names}
+    observables: dict[str, list[Observable]] = {name: [] for name in names}
     durations: list[float] = []
     refused: dict[str, SceneError] = {}
     for path in point.replica_paths:
@@ -168,12 +168,12 @@ def measured(point: Point, names: Sequence[str], part: bool) -> tuple[Measured, 
                 durations.append(float(trajectory["time"][-1]))
                 for name in names:
                     try:
-                        found[name].append(measure(trajectory, name, start))
+                        observables[name].append(measure(trajectory, name, start))
                     except SceneError as error:
                         refused.setdefault(name, error.inside(f"{name} of {path}"))
         except SceneError as error:  # a damaged file
             refused |= {name: refused.get(name, error) for name in names}
-    return Measured({name: found[name] for name in names if name not in refused}, durations), refused
+    return Measured({name: observables[name] for name in names if name not in refused}, durations), refused
 
 
 def table(
@@ -190,12 +190,12 @@ def table(
     )
     failures = [row.failure for row in rows]
     for name in names:
-        found = [row.observables.get(name) for row in rows]
-        for number in _of_other_form(found):
-            found[number] = None
+        replicas = [row.observables.get(name) for row in rows]
+        for number in _of_other_form(replicas):
+            replicas[number] = None
             reasons = [failures[number], f"{name}: has other components than elsewhere"]
             failures[number] = "; ".join(filter(None, reasons))
-        of_one = xr.Dataset(_variables(name, found, axes))
+        of_one = xr.Dataset(_variables(name, replicas, axes))
         data = xr.merge([data, of_one], join="outer", compat="no_conflicts", combine_attrs="override")
     durations = [float(np.mean(row.durations)) if row.durations else np.nan for row in rows]
     shape = [len(values) for values in axes.values()]
@@ -207,8 +207,12 @@ def table(
 
 def _of_other_form(points: Sequence[list[Observable] | None]) -> list[int]:
     """Return the numbers of the points whose observable has other dimensions than the first one's."""
-    known = [(number, replicas[0]) for number, replicas in enumerate(points) if replicas]
-    return [number for number, one in known if one.estimate.dims != known[0][1].estimate.dims]
+    available = [(number, replicas[0]) for number, replicas in enumerate(points) if replicas]
+    return [
+        number
+        for number, observable in available
+        if observable.estimate.dims != available[0][1].estimate.dims
+    ]
 
 
 def _attributes(scene: Scene, engine: Engine, seed: int) -> dict[str, Any]:
@@ -227,32 +231,34 @@ def _variables(
 
     An observable that is unknown at a point has the value None there.
     """
-    known = [replicas for replicas in points if replicas]
-    if not known:
-        nothing = xr.DataArray(_stacked(points, axes), dims=tuple(axes))
+    available = [replicas for replicas in points if replicas]
+    if not available:
+        nothing = xr.DataArray(_stack(points, axes), dims=tuple(axes))
         return {name: nothing, f"{name}_error": nothing}
-    first = known[0][0]
+    first = available[0][0]
     along = [str(dim) for dim in first.estimate.dims]
-    places = [[one.estimate[dim].values for dim in along] for replicas in known for one in replicas]
-    common = all(np.array_equal(a, b) for row in places for a, b in zip(row, places[0], strict=True))
+    positions = [
+        [replica.estimate[dim].values for dim in along] for replicas in available for replica in replicas
+    ]
+    common = all(np.array_equal(a, b) for row in positions for a, b in zip(row, positions[0], strict=True))
     inner = [dim if common and DIMENSIONS[dim].names else f"{name}_{dim}" for dim in along]
     dims = (*axes, *inner)
-    found = {}
+    variables = {}
     for part in _PARTS:
         each = [mean_of(replicas, part) if replicas else None for replicas in points]
-        if part == "_theory" and all(one is None for one in each):
+        if part == "_theory" and all(value is None for value in each):
             continue
         about = dict(first.estimate.attrs)
-        found[name + part] = xr.DataArray(_stacked(each, axes), dims=dims, attrs=about)
+        variables[name + part] = xr.DataArray(_stack(each, axes), dims=dims, attrs=about)
     for axis, dim in enumerate(along):
         about = dict(first[dim].attrs)
         if common:
-            found[inner[axis]] = xr.DataArray(places[0][axis], dims=(inner[axis],), attrs=about)
+            variables[inner[axis]] = xr.DataArray(positions[0][axis], dims=(inner[axis],), attrs=about)
         else:
             each = [replicas[0].estimate[dim].values if replicas else None for replicas in points]
-            at = xr.DataArray(_stacked(each, axes), dims=(*axes, f"{name}_{dim}"), attrs=about)
-            found[f"{name}_{dim}_places"] = at
-    return found
+            at = xr.DataArray(_stack(each, axes), dims=(*axes, f"{name}_{dim}"), attrs=about)
+            variables[f"{name}_{dim}_places"] = at
+    return variables
 
 
 def mean_of(replicas: list[Observable], part: str) -> np.ndarray | None:
@@ -263,9 +269,9 @@ def mean_of(replicas: list[Observable], part: str) -> np.ndarray | None:
     lengths, of which the common part is taken.
     """
     quantity = replicas[0].attrs["quantity"]
-    if part.startswith("_theory") and any(one.theory is None for one in replicas):
+    if part.startswith("_theory") and any(replica.theory is None for replica in replicas):
         return None
-    values = [one[quantity + part].values for one in replicas]
+    values = [replica[quantity + part].values for replica in replicas]
     shape = np.min([value.shape for value in values], axis=0).astype(int)
     values = [value[tuple(slice(size) for size in shape)] for value in values]
     if part == "_error":
@@ -273,17 +279,17 @@ def mean_of(replicas: list[Observable], part: str) -> np.ndarray | None:
     return np.mean(values, axis=0)
 
 
-def _stacked(each: Sequence[Any], axes: Mapping[str, list]) -> np.ndarray:
+def _stack(each: Sequence[Any], axes: Mapping[str, list]) -> np.ndarray:
     """Join the arrays of all points, some shorter or missing (None), to one.
 
     The rest is nan.
     """
-    known = [np.asarray(one) for one in each if one is not None]
-    inner = tuple(np.max([one.shape for one in known], axis=0).astype(int)) if known else ()
-    numbers = all(one.dtype.kind in "fiu" for one in known)
-    whole = np.full((len(each), *inner), np.nan if numbers else "", dtype=float if numbers else object)
-    for row, one in enumerate(each):
-        if one is not None:
-            at: tuple[Any, ...] = (row, *(slice(size) for size in np.shape(one)))
-            whole[at] = one
-    return whole.reshape([len(values) for values in axes.values()] + list(inner))
+    arrays = [np.asarray(value) for value in each if value is not None]
+    inner = tuple(np.max([value.shape for value in arrays], axis=0).astype(int)) if arrays else ()
+    numbers = all(value.dtype.kind in "fiu" for value in arrays)
+    joined = np.full((len(each), *inner), np.nan if numbers else "", dtype=float if numbers else object)
+    for row, value in enumerate(each):
+        if value is not None:
+            at: tuple[Any, ...] = (row, *(slice(size) for size in np.shape(value)))
+            joined[at] = value
+    return joined.reshape([len(values) for values in axes.values()] + list(inner))

@@ -140,7 +140,7 @@ def table(
     line for each.
     """
     rows = [_spread(row(point, *rest)) for point in points]
-    named = ["\n".join(made_of(one)) for one in (points if of is None else of)]
+    named = ["\n".join(made_of(item)) for item in (points if of is None else of)]
     data = from_rows(over, rows, inner, units)
     return data.assign({f"{over}{MADE_OF}": (over, named)}) if named and all(named) else data
 
@@ -153,7 +153,7 @@ def made_of(value: Any) -> list[str]:
     if hasattr(value, "experiment") and hasattr(value, "name"):
         return [f"{value.experiment}/{value.name}"]
     inner = value.values() if isinstance(value, Mapping) else value
-    return [name for one in inner for name in made_of(one)] if isinstance(inner, _NESTED) else []
+    return [name for item in inner for name in made_of(item)] if isinstance(inner, _NESTED) else []
 
 
 def each(rows: Table, claim: str, form: Callable[..., Claim] = Claim, **stated: Any) -> list[Claim]:
@@ -165,11 +165,11 @@ def each(rows: Table, claim: str, form: Callable[..., Claim] = Claim, **stated: 
     Texts may name columns, as "Z at {packing_fraction:.2g}". Lists, arrays and estimates of arrays have one
     element for each row; ValueError if they do not.
     """
-    made = []
+    claims = []
     for n, row in enumerate(rows):
         fields = {name: _of_row(name, value, n, len(rows), row) for name, value in stated.items()}
-        made.append(form(claim=claim.format_map(row), **fields))
-    return made
+        claims.append(form(claim=claim.format_map(row), **fields))
+    return claims
 
 
 def _of_row(name: str, value: Any, n: int, count: int, row: Row) -> Any:
@@ -222,7 +222,7 @@ def from_rows(
     columns = {}
     for name in dict.fromkeys(name for row in rows for name in row):
         key = name.removesuffix("_error")
-        values = _stacked([np.asarray(row.get(name, np.nan)) for row in rows])
+        values = _stack([np.asarray(row.get(name, np.nan)) for row in rows])
         dims = inner if isinstance(inner, tuple) else inner.get(key.removesuffix("_freedom"), ())
         dims = dims[: values.ndim - 1]  # one number of degrees of freedom may be that of an array
         attributes = {} if units is None or values.dtype.kind in "OSU" else {"units": units.get(key, "1")}
@@ -249,7 +249,7 @@ def entries(numbers: Mapping[str, Estimate | tuple[Any, Any]], freedom: int | No
     return row
 
 
-def _stacked(arrays: list[np.ndarray]) -> np.ndarray:
+def _stack(arrays: list[np.ndarray]) -> np.ndarray:
     """Join arrays of one number of dimensions along a new first one.
 
     NaN alone stands for an empty array.

@@ -6,7 +6,7 @@ import pytest
 from gaspart.reproduction.claims.table import (
     NOT_MEASURED,
     concise,
-    filled,
+    fill_caption,
     literal_copies,
 )
 
@@ -22,12 +22,12 @@ ROWS = [
 def test_a_place_is_filled_with_the_value_of_its_claim():
     caption = "The rate is {{friction\nrate, mass 100}}, and D {{ diffusion }} or {{viscosity}}, {{another}}."
     expected = f"The rate is 0.51(3), and D {NOT_MEASURED} or {NOT_MEASURED}, {NOT_MEASURED}."
-    assert filled(caption, ROWS) == expected
+    assert fill_caption(caption, ROWS) == expected
 
 
 def test_a_place_names_one_claim():
     with pytest.raises(ValueError, match="2 claims begin so"):
-        filled("{{friction rate}}", ROWS)
+        fill_caption("{{friction rate}}", ROWS)
 
 
 @pytest.mark.parametrize(

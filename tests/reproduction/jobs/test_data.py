@@ -8,7 +8,7 @@ import xarray as xr
 
 from gaspart.reproduction.jobs.data import PointData
 from gaspart.reproduction.points.jobs import JOBS
-from gaspart.reproduction.points.modules import PACKAGE, imported
+from gaspart.reproduction.points.modules import PACKAGE, find_imports
 
 
 def test_what_is_written_is_what_xarray_makes_of_it(tmp_path):
@@ -34,7 +34,7 @@ def test_what_is_written_is_what_xarray_makes_of_it(tmp_path):
 
 def test_jobs_load_neither_xarray_nor_pandas():
     """But for the echo, which needs the exponent of `gaspart.analysis`."""
-    files = set().union(*(imported(PACKAGE / "reproduction/jobs" / f"{name}.py") for name in JOBS))
+    files = set().union(*(find_imports(PACKAGE / "reproduction/jobs" / f"{name}.py") for name in JOBS))
     files = {path for path in files if "analysis" not in path.parts}
     assert PACKAGE / "trajectory/run.py" in files and PACKAGE / "kernels/insertion.py" in files
     names = [".".join(("gaspart", *path.relative_to(PACKAGE).with_suffix("").parts)) for path in files]

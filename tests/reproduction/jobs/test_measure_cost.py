@@ -94,8 +94,8 @@ def test_refuses_boxes_below_a_diameter():
 
 
 def test_work_that_differs_between_repeats_is_an_error(monkeypatch):
-    timed, counts = cost._timed, iter([{"steps": 1}, {"steps": 2}])
-    monkeypatch.setattr(cost, "_timed", lambda *given: (timed(*given)[0], next(counts)))
+    timed, counts = cost._time, iter([{"steps": 1}, {"steps": 2}])
+    monkeypatch.setattr(cost, "_time", lambda *given: (timed(*given)[0], next(counts)))
     with pytest.raises(SimulationError, match="twice"):
         measured([TimeStepped(0.01, boxes_per_side=4)])
 
@@ -156,6 +156,6 @@ def test_runs_at_once_have_one_thread_each():
 
 def test_runs_at_once_that_differ_are_an_error(monkeypatch):
     counts = iter([{"steps": 1}, {"steps": 2}])
-    monkeypatch.setattr(cost, "_counted", lambda dynamics: next(counts))
+    monkeypatch.setattr(cost, "_count", lambda dynamics: next(counts))
     with pytest.raises(SimulationError, match="at once"):
         measure_cost(DISCS, [EventDriven()], (1, 2), 0.0, 1.0, 1, {"copies": 2})

@@ -3,7 +3,7 @@
 import pytest
 
 from gaspart.cli import main
-from gaspart.reproduction.report.page import divided, html_of
+from gaspart.reproduction.report.page import html_of, split_caption
 from gaspart.yaml_text import write_yaml
 
 UNCLOSED = [
@@ -77,7 +77,7 @@ def test_addresses_that_run_code_are_refused(tmp_path, capsys, form):
 def divided_or_none(caption):
     """The HTML of a caption, if it is not refused."""
     try:
-        parts = divided(caption)
+        parts = split_caption(caption)
     except ValueError:
         return []
     return [address for part in (parts.finding, parts.reading, parts.details) for address in links(part)]

@@ -9,10 +9,10 @@ import pytest
 from gaspart.reproduction.report.explore import (
     CITATION,
     Reference,
-    cited,
-    linked,
+    cited_references,
+    find_reference,
+    link_citations,
     read_references,
-    used,
 )
 
 ROOT = Path(__file__).parents[3]
@@ -51,20 +51,23 @@ TEXTS |= {f"{path.parent.name}/{path.stem}": list(strings(path)) for path in CLA
     ],
 )
 def test_a_citation_is_names_and_a_link_to_the_number_of_its_reference(text, names, numbers):
-    made = linked(text, BY_KEY)
+    made = link_citations(text, BY_KEY)
     assert [int(number) for number in re.findall(r'href="#reference-(\d+)"', made)] == numbers
     assert all(f"{name}\N{NO-BREAK SPACE}<a " in made for name in names)
     assert numbers or made == text
 
 
 def test_only_cited_references_are_listed_and_numbered_from_1():
-    kept = used(["[Ernst 1970], [0, 1]", "the figure of [Source C]; [van\nZon 1998]"], BY_KEY)
+    kept = cited_references(["[Ernst 1970], [0, 1]", "the figure of [Source C]; [van\nZon 1998]"], BY_KEY)
     assert [(one.key, one.number) for one in kept.values()] == [
         ("van Zon 1998", 1),
         ("Ernst 1970", 2),
         ("source C", 3),
     ]
-    assert 'href="#reference-3"' in linked("[source C]", kept) and used(["nothing"], BY_KEY) == {}
+    assert (
+        'href="#reference-3"' in link_citations("[source C]", kept)
+        and cited_references(["nothing"], BY_KEY) == {}
+    )
 
 
 def test_a_reference_is_listed_by_authors_place_and_year():
@@ -86,7 +89,7 @@ def test_references_are_in_the_order_of_their_authors_with_valid_dois_and_their_
 def citations(text):
     """(match, reference) of each text in brackets that is a key, or ends with a year as keys do."""
     for match in CITATION.finditer(text):
-        reference = cited(match, REFERENCES)
+        reference = find_reference(match, REFERENCES)
         if reference or YEAR.search(match[1]):
             yield match, reference
 

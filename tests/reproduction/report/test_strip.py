@@ -27,7 +27,7 @@ def test_a_value_is_at_its_deviation_and_a_bounded_number_at_its_place(claim, pl
 
 def test_dots_do_not_hide_one_another_and_stay_on_the_axis():
     found = dots([row(0.1), row(0.0), row(0.05), row(99.0), row(-math.inf)])
-    assert [dot.place for dot in found] == pytest.approx([0.0, 50.0, 50.5, 51.0, 100.0])
+    assert [dot.position for dot in found] == pytest.approx([0.0, 50.0, 50.5, 51.0, 100.0])
     assert [dot.level for dot in found] == [0, 0, 1, 2, 0]
     assert max(dot.level for dot in dots([row(0.0)] * 20)) == 3
     assert LIMIT > 3.0

@@ -15,7 +15,7 @@ from gaspart.errors import SceneError
 from gaspart.files import resolve_path
 from gaspart.reproduction.archive.limits import name_fault
 from gaspart.reproduction.claims import table
-from gaspart.reproduction.claims.table import filled
+from gaspart.reproduction.claims.table import fill_caption
 from gaspart.reproduction.config import check, merged_with_default
 from gaspart.reproduction.families.registry import caption
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
@@ -32,7 +32,7 @@ def scene_files(config: Any) -> list[str]:
     Paths have no "./" and the like. They are the values of `scene` in a point and in a grid; anything else
     under that key is left to the validation of configs.
     """
-    found: dict[str, None] = {}
+    paths: dict[str, None] = {}
     blocks = [config.get("experiments") if isinstance(config, dict) else None]
     while blocks:
         block = blocks.pop()
@@ -40,11 +40,11 @@ def scene_files(config: Any) -> list[str]:
             named = block.get("scene")
             for name in named if isinstance(named, list) else [named]:
                 if isinstance(name, str):
-                    found[posixpath.normpath(name)] = None
+                    paths[posixpath.normpath(name)] = None
             blocks += block.values()
         elif isinstance(block, list):
             blocks += block
-    return list(found)
+    return list(paths)
 
 
 # A finished run of the workflow: its folder, its config, and the results that it must have.
@@ -131,8 +131,8 @@ def find_finished(results: str | Path, config: str | Path | None = None) -> Fini
         rule = "holds no results of a finished run: tables/claims.csv is missing"
         raise SceneError("results", str(results), rule)
     named = folder.name != "results"
-    place = folder.parents[1] if named else folder.parent
-    root = _project_of(place)
+    parent = folder.parents[1] if named else folder.parent
+    root = _project_of(parent)
     if (named and folder.parent.name != "results") or root is None:
         rule = "must be the folder results of a project, or that of a run in it, results/<run>"
         raise SceneError("results", str(results), rule)
@@ -141,31 +141,31 @@ def find_finished(results: str | Path, config: str | Path | None = None) -> Fini
     merged, files = merged_with_default(file, root / _BASE)
     if merged.get("run") != name:
         raise SceneError("run", merged.get("run"), f"must be {name or 'absent'}, as {results} is", str(file))
-    prefix = place.relative_to(root)
-    inside = [str(one.relative_to(root)) for one in files if one.is_relative_to(root)]
+    prefix = parent.relative_to(root)
+    inside = [str(path.relative_to(root)) for path in files if path.is_relative_to(root)]
     with chdir(root):  # from which scene files are read
-        points = _used(merged, check(merged, files))
+        points = _select_points(merged, check(merged, files))
         points = [replace(point, root=str(prefix / point.root)) for point in points]
-        found = Finished(root, str(folder.relative_to(root)), merged, points, inside)
-        _check_places(found, file)
-        _check_complete(found, results)
-        _check_settings(found)
-    return found
+        run = Finished(root, str(folder.relative_to(root)), merged, points, inside)
+        _check_places(run, file)
+        _check_complete(run, results)
+        _check_settings(run)
+    return run
 
 
 def _project_of(folder: Path) -> Path | None:
     """Return the nearest folder with a workflow, from `folder` upwards, or None."""
     return next(
         (
-            place
-            for place in (folder, *folder.parents)
-            if any((place / name).is_file() for name in _WORKFLOWS)
+            candidate
+            for candidate in (folder, *folder.parents)
+            if any((candidate / name).is_file() for name in _WORKFLOWS)
         ),
         None,
     )
 
 
-def _used(config: dict, planned: dict[str, dict[str, Point]]) -> list[Point]:
+def _select_points(config: dict, planned: dict[str, dict[str, Point]]) -> list[Point]:
     """Return the points of figures and films, each once.
 
     No rule of `all` makes the other points.
@@ -207,15 +207,15 @@ def _check_places(run: Finished, file: Path) -> None:
 
     Raises SceneError.
     """
-    place = Path(run.config.get("points", "results/points"))
-    if place.is_absolute() or ".." in place.parts:
-        raise SceneError("points", str(place), "must be in the project's folder for an archive", str(file))
+    path = Path(run.config.get("points", "results/points"))
+    if path.is_absolute() or ".." in path.parts:
+        raise SceneError("points", str(path), "must be in the project's folder for an archive", str(file))
 
 
 def _check_complete(run: Finished, results: str | Path) -> None:
     """Raise SceneError if a result is missing."""
-    needed = [run.report, *run.outputs(), *(path for _, _, path in run.trajectories())]
-    missing = [path for path in needed if not (run.root / path).is_file()]
+    paths = [run.report, *run.outputs(), *(path for _, _, path in run.trajectories())]
+    missing = [path for path in paths if not (run.root / path).is_file()]
     if missing:
         rule = f"is not complete: {missing[0]}{_others(len(missing))}; run the workflow to its end"
         raise SceneError("results", str(results), rule)
@@ -228,14 +228,14 @@ def _others(count: int) -> str:
 def _check_settings(run: Finished) -> None:
     """Raise SceneError for a trajectory whose scene, engine, seed or times differ from the config."""
     for point, replica, path in run.trajectories():
-        recipe, wanted = read_recipe(run.root / path), point.arguments
+        recipe, arguments = read_recipe(run.root / path), point.arguments
         finest = recipe.correlations.interval if recipe.correlations else recipe.sample_interval
         same = (
             recipe.scene == point.scene
-            and recipe.seed == wanted["seeds"][replica]
-            and recipe.engine == wanted["engine"].resolved(recipe.scene, finest)
-            and recipe.sample_interval == wanted["sample_interval"]
-            and recipe.duration == wanted["duration"]
+            and recipe.seed == arguments["seeds"][replica]
+            and recipe.engine == arguments["engine"].resolved(recipe.scene, finest)
+            and recipe.sample_interval == arguments["sample_interval"]
+            and recipe.duration == arguments["duration"]
         )
         if not same:
             rule = "was made with other settings than those of the config; run the workflow again"
@@ -265,13 +265,13 @@ def sources(run: Finished) -> Iterator[str]:
     this one as a module has some of these files, and CITATION.cff. Raises SceneError if a necessary file is
     missing.
     """
-    needed = (run.workflow, CITATION, *(_NEEDED if run.is_copy else ()))
-    for name in needed:
+    required = (run.workflow, CITATION, *(_NEEDED if run.is_copy else ()))
+    for name in required:
         if not (run.root / name).is_file():
             raise SceneError("folder", str(run.root), f"has no {name}, which an archive needs")
         yield name
     yield from (
-        name for name in (*_NEEDED, *_IF_PRESENT) if name not in needed and (run.root / name).is_file()
+        name for name in (*_NEEDED, *_IF_PRESENT) if name not in required and (run.root / name).is_file()
     )
     for folder in folders(run):
         yield from _files(run.root, folder)
@@ -292,10 +292,10 @@ def _files(root: Path, folder: str) -> Iterator[str]:
 
     Caches are left there by Python and pip.
     """
-    for place, folders, names in os.walk(root / folder):
+    for parent, folders, names in os.walk(root / folder):
         folders[:] = sorted(name for name in folders if name != "__pycache__" and _is_kept(name))
         for name in sorted(filter(_is_kept, names)):
-            path = Path(place, name)
+            path = Path(parent, name)
             if path.is_file() and not path.is_symlink():
                 yield str(path.relative_to(root))
 
@@ -315,7 +315,9 @@ def captions(run: Finished) -> dict[str, str]:
     rows = table.read(run.root / run.results / "tables/claims.csv")
     texts = {figure: _caption(run, figure) for figure in run.figures}
     return {
-        f"{run.results}/captions/{figure}.rst": filled(text, [row for row in rows if row["figure"] == figure])
+        f"{run.results}/captions/{figure}.rst": fill_caption(
+            text, [row for row in rows if row["figure"] == figure]
+        )
         for figure, text in texts.items()
         if text is not None
     }

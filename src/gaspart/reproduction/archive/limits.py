@@ -57,8 +57,8 @@ def check_names(path: Path, names: Iterable[str]) -> None:
     """
     seen: dict[str, str] = {}
     folders: set[str] = set()
-    for given in names:
-        name = given.removesuffix("/")
+    for entry in names:
+        name = entry.removesuffix("/")
         if fault := name_fault(name):
             raise SceneError("archive", str(path), f"has a name that {fault}: {name}")
         key = name.casefold()
@@ -68,11 +68,11 @@ def check_names(path: Path, names: Iterable[str]) -> None:
             )
             raise SceneError("archive", str(path), rule)
         seen[key] = name
-        above = key.split("/")[: None if given.endswith("/") else -1]
+        above = key.split("/")[: None if entry.endswith("/") else -1]
         folders.update("/".join(above[: n + 1]) for n in range(len(above)))
-    for given in names:
-        if not given.endswith("/") and given.casefold() in folders:
-            raise SceneError("archive", str(path), f"has a file that is also a folder: {given}")
+    for entry in names:
+        if not entry.endswith("/") and entry.casefold() in folders:
+            raise SceneError("archive", str(path), f"has a file that is also a folder: {entry}")
 
 
 def check_size(path: Path, stated: int, there: int) -> None:
@@ -110,13 +110,13 @@ def check_directory(path: Path, file: IO[bytes]) -> None:
     file.seek(max(0, size - _END_BYTES - _COMMENT - 56 - 20))
     tail = file.read()
     for mark, form, at in ((_END, "<I", 12), (_END_64, "<Q", 40)):
-        place = tail.find(mark)
-        while place >= 0:
-            if place + at + struct.calcsize(form) <= len(tail):
-                (length,) = struct.unpack_from(form, tail, place + at)
+        offset = tail.find(mark)
+        while offset >= 0:
+            if offset + at + struct.calcsize(form) <= len(tail):
+                (length,) = struct.unpack_from(form, tail, offset + at)
                 if _DIRECTORY < length <= size:  # a larger one than the file is refused by its reader
                     raise SceneError("archive", str(path), "has a list of entries that is too long")
-            place = tail.find(mark, place + 1)
+            offset = tail.find(mark, offset + 1)
 
 
 # SHA-256 digests of files, of the numbers in a trajectory, and of sets of files.
@@ -164,23 +164,23 @@ def digest_of_numbers(path: Path) -> str:
     return total.hexdigest()
 
 
-def joint_digest(paths: Iterable[str], known: Mapping[str, str]) -> str:
+def joint_digest(paths: Iterable[str], digests: Mapping[str, str]) -> str:
     """Compute the digest of a set of files, from the lines "<digest>  <path>".
 
     The lines are in the order of the paths.
 
-    paths : files, or folders, which stand for all `known` files in them.
-    known : digest of each file.
+    paths : files, or folders, which stand for all files of `digests` in them.
+    digests : digest of each file.
 
     Raises KeyError for a path that is neither.
     """
     lines: set[str] = set()
-    names = sorted(known)
+    names = sorted(digests)
     for path in paths:
         below = slice(bisect(names, f"{path}/"), bisect(names, f"{path}0"))  # "0" comes after "/"
-        files = [path] if path in known else names[below]
+        files = [path] if path in digests else names[below]
         if not files:
             raise KeyError(path)
-        lines |= {f"{name}\0{known[name]}" for name in files}
+        lines |= {f"{name}\0{digests[name]}" for name in files}
     ordered = (line.split("\0") for line in sorted(lines))
     return hashlib.sha256("".join(f"{value}  {name}\n" for name, value in ordered).encode()).hexdigest()

@@ -72,19 +72,19 @@ def read_citation(path: Path) -> Citation:
         creators,
         str(licence[0] if isinstance(licence, list) else licence),
         str(content["version"]),
-        [str(word) for word in content.get("keywords", [])],
+        [str(keyword) for keyword in content.get("keywords", [])],
         str(content.get("repository-code") or content.get("url") or ""),
     )
 
 
 def _creator(author: Any, where: str, path: Path) -> Creator:
     """Read an author: an entity has a `name`, a person `given-names` and `family-names`."""
-    known = author if isinstance(author, dict) else {}
-    identity = next((str(known[key]) for key in _IDENTITIES if known.get(key)), "")
-    affiliation = str(known.get("affiliation", ""))
-    if known.get("name"):
-        return Creator(str(known["name"]), False, identity, affiliation)
-    parts = [str(known[key]) for key in ("given-names", "name-particle", "family-names") if known.get(key)]
+    fields = author if isinstance(author, dict) else {}
+    identity = next((str(fields[key]) for key in _IDENTITIES if fields.get(key)), "")
+    affiliation = str(fields.get("affiliation", ""))
+    if fields.get("name"):
+        return Creator(str(fields["name"]), False, identity, affiliation)
+    parts = [str(fields[key]) for key in ("given-names", "name-particle", "family-names") if fields.get(key)]
     if not parts:
         raise SceneError(where, author, "must have a name, or given-names and family-names", str(path))
     return Creator(" ".join(parts), True, identity, affiliation)
@@ -159,10 +159,10 @@ def metadata(described: Described, citation: Citation) -> str:
     files = {path: _add_file(crate, path, described) for path in listed}
     folders = [_add_folder(crate, folder) for folder in described.folders]
     workflow = _add_workflow(crate, described, citation, creators)
-    made = [file for path, file in files.items() if path.startswith(f"{described.summary['results']}/")]
+    results = [file for path, file in files.items() if path.startswith(f"{described.summary['results']}/")]
     used = [files[path] for path in (tables.CONFIG, contents.LOCKED) if path in files] + folders
     _add_parameters(crate, workflow, described, files)
-    _add_run(crate, workflow, described, creators, (used, made))
+    _add_run(crate, workflow, described, creators, (used, results))
     return json.dumps(crate.metadata.generate(), indent=1, ensure_ascii=False) + "\n"
 
 
@@ -222,13 +222,13 @@ def _describe_root(
 
 def _add_file(crate: ROCrate, path: str, described: Described) -> Any:
     size, digest = described.files[path]
-    place = PurePosixPath(path)
-    properties = {"name": place.name, "contentSize": str(size), "sha256": digest}
-    properties["encodingFormat"] = _ENCODINGS.get(place.suffix, "text/plain")
-    caption = f"{described.summary['results']}/captions/{place.stem}.rst"
+    file_path = PurePosixPath(path)
+    properties = {"name": file_path.name, "contentSize": str(size), "sha256": digest}
+    properties["encodingFormat"] = _ENCODINGS.get(file_path.suffix, "text/plain")
+    caption = f"{described.summary['results']}/captions/{file_path.stem}.rst"
     if path in _MEANINGS:
         properties["description"] = _MEANINGS[path]
-    elif "figures" in place.parts and caption in described.captions:
+    elif "figures" in file_path.parts and caption in described.captions:
         properties["description"] = described.captions[caption]
     file = crate.add_file(dest_path=path, properties=properties)
     if path == contents.README:

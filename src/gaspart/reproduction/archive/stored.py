@@ -42,7 +42,7 @@ from gaspart.reproduction.archive.limits import (
 )
 from gaspart.reproduction.archive.tables import RUN, rows_of
 from gaspart.reproduction.archive.writing import MANIFEST
-from gaspart.reproduction.config import checked
+from gaspart.reproduction.config import open_config
 from gaspart.reproduction.jobs.simulate import recipes, record
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
 from gaspart.trajectory import provenance
@@ -66,14 +66,14 @@ class Stored:
     names: frozenset[str]
     opener: Callable[[str], IO[bytes]]
 
-    def refused(self, rule: str) -> SceneError:
+    def make_error(self, rule: str) -> SceneError:
         """Return the error about this archive."""
         return SceneError("archive", str(self.path), rule)
 
     def open(self, name: str) -> IO[bytes]:
         """Return a file of the archive; raise SceneError for another name, and DAMAGE."""
         if name not in self.names:
-            raise self.refused(f"has no file {name}")
+            raise self.make_error(f"has no file {name}")
         return self.opener(name)
 
     def text(self, name: str, most: int = MOST_BYTES) -> str:
@@ -85,12 +85,12 @@ class Stored:
             with self.open(name) as file:
                 content = file.read(most + 1)
             if len(content) > most:
-                raise self.refused(f"has a {name} of more than {most} bytes")
+                raise self.make_error(f"has a {name} of more than {most} bytes")
             return content.decode()
         except SceneError:
             raise
         except DAMAGE as error:
-            raise self.refused(f"has a damaged {name}: {_reason(error)}") from None
+            raise self.make_error(f"has a damaged {name}: {_reason(error)}") from None
 
     def copy(self, name: str, target: Path) -> None:
         """Write a file to `target`. Raises SceneError for one that is missing or damaged."""
@@ -100,7 +100,7 @@ class Stored:
         except SceneError:
             raise
         except DAMAGE as error:
-            raise self.refused(f"has a damaged {name}: {_reason(error)}") from None
+            raise self.make_error(f"has a damaged {name}: {_reason(error)}") from None
 
     def rows(self, name: str, columns: Sequence[str] = ()) -> list[dict[str, str]]:
         """Return the rows of a table that has at least these columns; raise SceneError."""
@@ -109,7 +109,7 @@ class Stored:
         except SceneError:
             raise
         except ValueError as error:
-            raise self.refused(f"has a table that cannot be read, {name}: {error}") from None
+            raise self.make_error(f"has a table that cannot be read, {name}: {error}") from None
 
     def digest(self, name: str) -> str:
         """Return the digest of a file; "" if it cannot be read."""
@@ -125,27 +125,27 @@ class Stored:
         Raises SceneError for another content.
         """
         try:
-            found = json.loads(self.text(RUN, 1 << 20))
+            content = json.loads(self.text(RUN, 1 << 20))
         except RecursionError:
-            raise self.refused(f"has a {RUN} that is nested too deep") from None
+            raise self.make_error(f"has a {RUN} that is nested too deep") from None
         except ValueError as error:
             if isinstance(error, SceneError):
                 raise
-            raise self.refused(f"has a {RUN} that cannot be read: {error}") from None
+            raise self.make_error(f"has a {RUN} that cannot be read: {error}") from None
         for key in _STATED:
-            if not (isinstance(found, dict) and isinstance(found.get(key), str)):
-                raise self.refused(f"has a {RUN} that does not state {key}, a text")
-        return dict(found)
+            if not (isinstance(content, dict) and isinstance(content.get(key), str)):
+                raise self.make_error(f"has a {RUN} that does not state {key}, a text")
+        return dict(content)
 
     def manifest(self) -> dict[str, str]:
         """Return {path: digest} as the manifest states them; raise SceneError for another text."""
-        found: dict[str, str] = {}
+        digests: dict[str, str] = {}
         for line in io.StringIO(self.text(MANIFEST)):
             value, gap, name = line.removesuffix("\n").partition("  ")
-            if not gap or len(value) != _DIGITS or name in found:
-                raise self.refused(f"has a {MANIFEST} that cannot be read")
-            found[name] = value
-        return found
+            if not gap or len(value) != _DIGITS or name in digests:
+                raise self.make_error(f"has a {MANIFEST} that cannot be read")
+            digests[name] = value
+        return digests
 
 
 def _reason(error: BaseException) -> str:
@@ -173,9 +173,9 @@ def opened_archive(path: str | Path) -> Iterator[Stored]:
         yield _zip_file(path, source)
 
 
-def _checked(stored: Stored) -> Stored:
+def _require_manifest(stored: Stored) -> Stored:
     if MANIFEST not in stored.names:
-        raise stored.refused(f"is no archive of gaspart: it has no {MANIFEST}")
+        raise stored.make_error(f"is no archive of gaspart: it has no {MANIFEST}")
     stored.text(MANIFEST)
     return stored
 
@@ -196,7 +196,7 @@ def _zip_file(path: Path, source: IO[bytes]) -> Stored:
     check_names(path, [entry.orig_filename for entry in entries])
     check_size(path, sum(entry.file_size for entry in entries), size)
     names = frozenset(entry.filename for entry in entries if not entry.is_dir())
-    return _checked(Stored(path, names, file.open))
+    return _require_manifest(Stored(path, names, file.open))
 
 
 def _check_entry(path: Path, entry: zipfile.ZipInfo) -> None:
@@ -226,16 +226,18 @@ def _folder(path: Path) -> Stored:
     if not (path / MANIFEST).is_file():
         raise SceneError("archive", str(path), f"is no archive of gaspart: it has no {MANIFEST}")
     names, stated, there = [], 0, 0
-    for name, found in _below(path, ""):
-        if not stat.S_ISREG(found.st_mode):
+    for name, status in _below(path, ""):
+        if not stat.S_ISREG(status.st_mode):
             raise SceneError("archive", str(path), f"has what is no regular file: {name}")
         names.append(name)
-        stated, there = stated + found.st_size, there + 512 * found.st_blocks
+        stated, there = stated + status.st_size, there + 512 * status.st_blocks
         if len(names) > MOST_FILES:
             raise SceneError("archive", str(path), f"has more than {MOST_FILES} files")
     check_names(path, names)
     check_size(path, stated, there)
-    return _checked(Stored(path, frozenset(names), lambda name: open_regular(path / name, follow=False)))
+    return _require_manifest(
+        Stored(path, frozenset(names), lambda name: open_regular(path / name, follow=False))
+    )
 
 
 def _below(folder: Path, beginning: str) -> Iterable[tuple[str, os.stat_result]]:
@@ -262,8 +264,10 @@ def chosen(stored: Stored, folder: Path, count: int) -> list[Point]:
     are written to `folder`. Raises SceneError for a config that cannot be planned.
     """
     _write_config(stored, folder)
-    with checked(folder / "config/config.yaml") as (_, planned):
-        points = {(one.experiment, one.name): one for each in planned.values() for one in each.values()}
+    with open_config(folder / "config/config.yaml") as (_, planned):
+        points = {
+            (point.experiment, point.name): point for each in planned.values() for point in each.values()
+        }
     rows = stored.rows(tables.POINTS, tables.PointFile._fields)
     listed = list(
         dict.fromkeys((row["experiment"], row["point"]) for row in rows if row["job"] == TRAJECTORIES)
@@ -272,7 +276,7 @@ def chosen(stored: Stored, folder: Path, count: int) -> list[Point]:
     missing = [f"{experiment}/{name}" for experiment, name in drawn if (experiment, name) not in points]
     if missing:
         raise SceneError("archive", str(stored.path), f"has a point that its config has not: {missing[0]}")
-    return [points[one] for one in drawn]
+    return [points[key] for key in drawn]
 
 
 def _write_config(stored: Stored, folder: Path) -> None:
@@ -284,7 +288,7 @@ def _write_config(stored: Stored, folder: Path) -> None:
     config = parse_yaml(stored.text(tables.CONFIG), tables.CONFIG)
     for name in scene_files(config):
         if name not in stored.names:
-            raise stored.refused(f"has a config with a scene that is not in the archive: {name}")
+            raise stored.make_error(f"has a config with a scene that is not in the archive: {name}")
         target = folder / name
         target.parent.mkdir(parents=True, exist_ok=True)
         stored.copy(name, target)
@@ -296,27 +300,27 @@ def rerun(stored: Stored, point: Point, folder: Path) -> Check:
     """Simulate all replicas of a point, and compare the digests of their numbers."""
     load_numba(ours=True)
     rows = stored.rows(tables.POINTS, tables.PointFile._fields)
-    known = {
+    digests = {
         row["replica"]: row["numbers_sha256"]
         for row in rows
         if (row["experiment"], row["point"]) == (point.experiment, point.name)
     }
     other = []
     for replica, recipe in enumerate(recipes(**point.arguments)):
-        made = folder / "again.nc"
+        output = folder / "again.nc"
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of coarse settings, which the config has on purpose
-            record(recipe, made, True)
-        if digest_of_numbers(made) != known.get(str(replica)):
+            record(recipe, output, True)
+        if digest_of_numbers(output) != digests.get(str(replica)):
             other.append(str(replica))
-        made.unlink()
+        output.unlink()
     name = f"{point.experiment}/{point.name}"
     if not other:
-        return Check("rerun", True, f"{name}: the same bits in {_counted(point.replicas)}")
+        return Check("rerun", True, f"{name}: the same bits in {_count_text(point.replicas)}")
     return Check("rerun", False, f"{name}: other bits in replica {', '.join(other)}{_differing(stored)}")
 
 
-def _counted(count: int) -> str:
+def _count_text(count: int) -> str:
     return "1 trajectory" if count == 1 else f"{count} trajectories"
 
 
@@ -366,12 +370,12 @@ def _files(stored: Stored, stated: Mapping[str, str]) -> Check:
     missing = sorted(stated.keys() - stored.names)
     unknown = sorted(stored.names - stated.keys() - {MANIFEST})
     changed = [name for name in sorted(stated.keys() & stored.names) if stored.digest(name) != stated[name]]
-    found = {"missing": missing, "changed or damaged": changed, "not of the archive": unknown}
-    faults = [f"{what}: {_shown(names)}" for what, names in found.items() if names]
+    faulty = {"missing": missing, "changed or damaged": changed, "not of the archive": unknown}
+    faults = [f"{kind}: {_join_names(names)}" for kind, names in faulty.items() if names]
     return Check("files", not faults, "; ".join(faults) or f"{len(stated)} have the digests of {MANIFEST}")
 
 
-def _shown(names: list[str]) -> str:
+def _join_names(names: list[str]) -> str:
     more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
     return ", ".join(names[:_NAMED]) + more
 
@@ -382,17 +386,17 @@ def _tables(stored: Stored, stated: Mapping[str, str]) -> Iterator[Check]:
     Raises SceneError for tables that `gaspart archive` cannot have written, though they have their digests.
     """
     try:
-        yield _stated(stored)
+        yield _describe_run(stored)
         yield _claims(stored, stated)
         yield _points(stored)
     except SceneError as error:
         rule = f"has tables that cannot be read, though they have their digests: it {error.rule}"
-        raise stored.refused(rule) from None
+        raise stored.make_error(rule) from None
     except KeyError as error:
-        raise stored.refused(f"has claims made of a file that it does not list: {error.args[0]}") from None
+        raise stored.make_error(f"has claims made of a file that it does not list: {error.args[0]}") from None
 
 
-def _stated(stored: Stored) -> Check:
+def _describe_run(stored: Stored) -> Check:
     """Describe the run; this check cannot fail."""
     run = stored.summary()
     revision = f", revision {run['revision']}" if run["revision"] else ""
@@ -410,15 +414,15 @@ def _claims(stored: Stored, stated: Mapping[str, str]) -> Check:
     named = [tuple(row[key] for key in _JUDGED) for row in listed]
     if named != [tuple(row[key] for key in _JUDGED) for row in judged]:
         return Check("claims", False, f"{tables.CLAIMS} and the results list different claims")
-    known = dict(stated) | {row["path"]: row["sha256"] for row in points}
+    digests = dict(stated) | {row["path"]: row["sha256"] for row in points}
     wrong = []
     inputs = {data: _inputs(stored, data) for data in dict.fromkeys(row["data"] for row in listed)}
-    joint = {data: joint_digest(paths, known) for data, paths in inputs.items()}
+    joint = {data: joint_digest(paths, digests) for data, paths in inputs.items()}
     for row in listed:
         if row["data_sha256"] != stated.get(row["data"]) or row["inputs_sha256"] != joint[row["data"]]:
             wrong.append(row["figure"])
     if wrong:
-        return Check("claims", False, f"made of other data: those of {_shown(sorted({*wrong}))}")
+        return Check("claims", False, f"made of other data: those of {_join_names(sorted({*wrong}))}")
     return Check("claims", True, f"{len(listed)}, made of {len(joint)} measurements with these digests")
 
 
@@ -430,7 +434,7 @@ def _inputs(stored: Stored, name: str) -> list[str]:
         try:
             return tables.inputs_of(copy)
         except (OSError, RuntimeError, AttributeError, ValueError) as error:
-            raise stored.refused(f"has a measurement that cannot be read, {name}: {error}") from None
+            raise stored.make_error(f"has a measurement that cannot be read, {name}: {error}") from None
 
 
 def _points(stored: Stored) -> Check:
@@ -438,5 +442,5 @@ def _points(stored: Stored) -> Check:
     listed = stored.rows(tables.POINTS, tables.PointFile._fields)
     rows = [row for row in listed if row["path"] in stored.names]
     wrong = [row["path"] for row in rows if stored.digest(row["path"]) != row["sha256"]]
-    text = f"other digests than in {tables.POINTS}: {_shown(wrong)}" if wrong else f"{len(rows)} files"
+    text = f"other digests than in {tables.POINTS}: {_join_names(wrong)}" if wrong else f"{len(rows)} files"
     return Check("points", not wrong, text)

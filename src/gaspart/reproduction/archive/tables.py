@@ -104,14 +104,14 @@ def inputs_of(measurement: Path) -> list[str]:
 
 def claim_rows(run: Finished, files: Iterable[PointFile]) -> list[ClaimData]:
     """Return all claims with the digests of their data."""
-    known = {file.path: file.sha256 for file in files}
+    digests = {file.path: file.sha256 for file in files}
     for figure in run.figures:
         path = f"{run.results}/claims/{figure}.csv"
-        known[path] = digest_of_file(run.root / path)
+        digests[path] = digest_of_file(run.root / path)
     data: dict[str, tuple[str, str, str]] = {}
     for figure in run.figures:
         path = f"{run.results}/measurements/{figure}.nc"
-        joint = joint_digest(inputs_of(run.root / path), known)
+        joint = joint_digest(inputs_of(run.root / path), digests)
         data[figure] = (path, digest_of_file(run.root / path), joint)
     rows = table.read(run.root / run.results / "tables/claims.csv")
     return [ClaimData(row["figure"], row["claim"], row["verdict"], *data[row["figure"]]) for row in rows]
@@ -123,7 +123,10 @@ def job_times(run: Finished) -> list[JobTime]:
     The times are from Snakemake's benchmarks and the jobs' logs, without points that the config no longer
     has.
     """
-    folder, kept = run.root / run.results / "benchmarks", {(one.experiment, one.name) for one in run.points}
+    folder, kept = (
+        run.root / run.results / "benchmarks",
+        {(point.experiment, point.name) for point in run.points},
+    )
     rows = []
     for path in sorted(folder.rglob("*.tsv")):
         rule, *names = path.relative_to(folder).with_suffix("").parts
@@ -132,7 +135,7 @@ def job_times(run: Finished) -> list[JobTime]:
         with path.open(newline="", encoding="utf-8") as file:
             timed = next(csv.DictReader(file, delimiter="\t"))
         ended = datetime.fromtimestamp(path.stat().st_mtime, UTC).isoformat(timespec="seconds")
-        own = job_time.used(run.root / run.results, rule, *names)
+        own = job_time.read_used(run.root / run.results, rule, *names)
         stated = (f"{own.seconds:.2f}", f"{own.memory:.1f}") if own else ("", "")
         rows.append(JobTime(rule, "/".join(names), timed["s"], *stated, ended))
     return rows
@@ -172,7 +175,7 @@ def rows_of(text: str, columns: Sequence[str] = ()) -> list[dict[str, str]]:
 
 def machine() -> dict[str, Any]:
     """Return processor, memory and system of this machine, and the installed packages."""
-    packages = {one.name: one.version for one in distributions() if one.name}
+    packages = {package.name: package.version for package in distributions() if package.name}
     return {
         "processor": _processor(),
         "architecture": platform.machine(),
@@ -180,7 +183,7 @@ def machine() -> dict[str, Any]:
         "memory_bytes": memory(),
         "system": platform.platform(),
         "python": platform.python_version(),
-        "packages": dict(sorted(packages.items(), key=lambda one: one[0].lower())),
+        "packages": dict(sorted(packages.items(), key=lambda item: item[0].lower())),
     }
 
 

@@ -172,17 +172,17 @@ _NUMBER = re.compile(r"(?<![\w.^/-])\d+\.\d+(?![\w.])")
 NOT_MEASURED = "(not measured in this run)"
 
 
-def filled(caption: str, rows: Iterable[dict[str, Any]], absent: str = NOT_MEASURED) -> str:
+def fill_caption(caption: str, rows: Iterable[dict[str, Any]], absent: str = NOT_MEASURED) -> str:
     """Fill in the measured values of claims, as 0.930(16), at the places of a caption.
 
     The values are from rows of its figure's claims table, or `absent` without such a claim. Raises ValueError
     if a place names several claims.
     """
-    known = list(rows)
+    entries = list(rows)
 
-    def value(place: re.Match) -> str:
-        beginning = " ".join(place[1].split())
-        matching = [row for row in known if row["claim"].startswith(beginning)]
+    def value(match: re.Match) -> str:
+        beginning = " ".join(match[1].split())
+        matching = [row for row in entries if row["claim"].startswith(beginning)]
         if len(matching) > 1:
             raise ValueError(f"{{{{{beginning}}}}}: {len(matching)} claims begin so")
         if not matching or not math.isfinite(_number(matching[0], "measured")):
@@ -194,7 +194,7 @@ def filled(caption: str, rows: Iterable[dict[str, Any]], absent: str = NOT_MEASU
 
 def place_fault(caption: str) -> str:
     """Return the fault of the places of a caption; "" without a fault."""
-    if any(not place.strip() for place in _PLACE.findall(caption)):
+    if any(not beginning.strip() for beginning in _PLACE.findall(caption)):
         return "{{ }} must hold the beginning of a claim"
     if "{{" in _PLACE.sub("", caption):
         return "{{ is not closed by }}"
@@ -229,9 +229,9 @@ def literal_copies(caption: str, rows: Iterable[dict[str, Any]]) -> list[str]:
     """
     copies = []
     for text in _NUMBER.findall(_PLACE.sub("", caption)):
-        places = len(text.split(".")[1])
+        digits = len(text.split(".")[1])
         for row in rows:
-            measured, expected = (round(_number(row, name), places) for name in ("measured", "expected"))
+            measured, expected = (round(_number(row, name), digits) for name in ("measured", "expected"))
             if float(text) == measured != expected:
                 copies.append(f"{text}: {row['claim']}")
     return copies

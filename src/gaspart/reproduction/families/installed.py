@@ -30,12 +30,12 @@ _PARTS = ("measure", "claims", "figure")
 @cache
 def _entry_points() -> dict[str, list[EntryPoint]]:
     """Return the entry points of each kind, of which there should be one."""
-    found: dict[str, list[EntryPoint]] = {}
+    by_kind: dict[str, list[EntryPoint]] = {}
     for entry_point in entry_points_of(GROUP):
-        others = found.setdefault(entry_point.name, [])
+        others = by_kind.setdefault(entry_point.name, [])
         if entry_point not in others:  # a package that is on the path twice
             others.append(entry_point)
-    return found
+    return by_kind
 
 
 def kinds() -> list[str]:
@@ -57,10 +57,10 @@ def package(kind: str) -> ModuleType:
     Raises SceneError, with the installed package, its entry point and the reason, for a package that cannot
     be imported or does not have the form of a family.
     """
-    with blamed(kind):
-        found = import_module(family(kind))
-        _check(found, kind)
-    return found
+    with blame_package(kind):
+        module = import_module(family(kind))
+        _check(module, kind)
+    return module
 
 
 def source(kind: str) -> str:
@@ -83,7 +83,7 @@ def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) 
     """
     rules = getattr(package(settings["kind"]), "validate", None)
     if rules is not None:
-        with blamed(settings["kind"], f"figures.{figure}"):
+        with blame_package(settings["kind"], f"figures.{figure}"):
             rules(figure, settings, points)
 
 
@@ -92,16 +92,16 @@ def caption(settings: Mapping[str, Any]) -> str:
 
     Raises SceneError.
     """
-    found = package(settings["kind"])
-    with blamed(settings["kind"]):
-        text = found.caption(settings)
+    module = package(settings["kind"])
+    with blame_package(settings["kind"]):
+        text = module.caption(settings)
         if not isinstance(text, str):
             raise TypeError(f"caption() must return text, not {type(text).__name__}")
     return text
 
 
 @contextmanager
-def blamed(kind: str, where: str = "") -> Iterator[None]:
+def blame_package(kind: str, where: str = "") -> Iterator[None]:
     """Convert any error of a package within this context to a SceneError that names it.
 
     The message has one line.
@@ -120,14 +120,19 @@ def blamed(kind: str, where: str = "") -> Iterator[None]:
 
 
 def _entry_point(kind: str) -> EntryPoint:
-    found = _entry_points()[kind]
-    if len(found) > 1:
-        owners = ", ".join(sorted(one.dist.name if one.dist else one.value for one in found))
+    entry_points = _entry_points()[kind]
+    if len(entry_points) > 1:
+        owners = ", ".join(
+            sorted(
+                entry_point.dist.name if entry_point.dist else entry_point.value
+                for entry_point in entry_points
+            )
+        )
         raise SceneError("kind", kind, f"several installed packages bring this kind ({GROUP}): {owners}")
-    return found[0]
+    return entry_points[0]
 
 
-def _check(found: ModuleType, kind: str) -> None:
+def _check(module: ModuleType, kind: str) -> None:
     """Raise an error with the reason unless a package has the form of a family.
 
     The family has the kind.
@@ -136,11 +141,11 @@ def _check(found: ModuleType, kind: str) -> None:
 
     from gaspart.keys import record
 
-    if Path(__file__).with_name(found.__name__).is_dir():
+    if Path(__file__).with_name(module.__name__).is_dir():
         raise ValueError("it has the name of a family of gaspart")
-    if not isinstance(getattr(found, "TITLE", None), str):
+    if not isinstance(getattr(module, "TITLE", None), str):
         raise TypeError("its TITLE must be text")
-    settings = getattr(found, "KINDS", None)
+    settings = getattr(module, "KINDS", None)
     if not isinstance(settings, dict) or not isinstance(settings.get(kind), dict):
         raise TypeError(f"its KINDS must have the settings of {kind}, a mapping from keys to their kinds")
     try:
@@ -148,8 +153,8 @@ def _check(found: ModuleType, kind: str) -> None:
     except SchemaError as error:
         where = ".".join(str(part) for part in list(error.absolute_path)[1:])
         raise TypeError(f"its KINDS of {kind}: {where}: {error.message}") from None
-    if not callable(getattr(found, "caption", None)):
+    if not callable(getattr(module, "caption", None)):
         raise TypeError("it must have a function caption(settings)")
     for part in _PARTS:
-        if find_spec(f"{found.__name__}.{part}") is None:
+        if find_spec(f"{module.__name__}.{part}") is None:
             raise ModuleNotFoundError(f"it has no module {part}")

@@ -112,7 +112,7 @@ def caption(settings: Mapping[str, Any]) -> str:
 
 
 def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) -> None:
-    """Apply the rules of a figure with a name of its own, beyond the kinds of settings.
+    """Apply a figure's own rules, beyond the kinds of its settings.
 
     `points` are the points that it shows. Raises SceneError.
     """

@@ -34,7 +34,7 @@ _FORMS: dict[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
 
 def to_plain(arguments: dict[str, Any]) -> dict[str, Any]:
     """Convert scenes, engines, tuples and endings to numbers, text, lists and mappings."""
-    return _converted(arguments, 0)
+    return _convert(arguments, 0)
 
 
 def from_plain(values: dict[str, Any]) -> dict[str, Any]:
@@ -42,11 +42,11 @@ def from_plain(values: dict[str, Any]) -> dict[str, Any]:
 
     Raises SceneError for a scene or an engine that another version made.
     """
-    return _converted(values, 1)
+    return _convert(values, 1)
 
 
-def _converted(given: dict[str, Any], direction: int) -> dict[str, Any]:
+def _convert(arguments: dict[str, Any], direction: int) -> dict[str, Any]:
     return {
         name: _FORMS[name][direction](value) if name in _FORMS and value is not None else value
-        for name, value in given.items()
+        for name, value in arguments.items()
     }

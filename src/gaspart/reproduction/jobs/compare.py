@@ -49,7 +49,7 @@ def engines(point: Point) -> list[Engine]:
 def arguments(point: Point) -> dict:
     """Return the arguments of `compare`; raise SceneError."""
     if point.engine.name != "step":
-        raise point.refused("engine", "must be step with job: compare")
+        raise point.make_error("engine", "must be step with job: compare")
     return {"scene": point.scene, "engines": point.engines, "seed": point.seed(), **intervals(point)}
 
 

@@ -43,7 +43,7 @@ class Strip(ast.NodeTransformer):
     Every test of such a feature for None is resolved, and code after a return is removed.
     """
 
-    def _known(self, test: ast.expr) -> bool | None:
+    def _evaluate(self, test: ast.expr) -> bool | None:
         match test:
             case ast.Compare(ast.Name(name), [ast.Is() | ast.IsNot() as is_or_not], [ast.Constant(None)]):
                 return isinstance(is_or_not, ast.Is) if name in FEATURES else None
@@ -52,10 +52,10 @@ class Strip(ast.NodeTransformer):
     def visit_If(self, node: ast.If) -> ast.stmt | list[ast.stmt]:
         """Keep the branch that is taken."""
         self.generic_visit(node)
-        known = self._known(node.test)
-        if known is None:
+        value = self._evaluate(node.test)
+        if value is None:
             return node
-        return (node.body if known else node.orelse) or ast.Pass()
+        return (node.body if value else node.orelse) or ast.Pass()
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.stmt:
         """Drop the statements after a return that has become unconditional."""
@@ -68,11 +68,11 @@ class Strip(ast.NodeTransformer):
     def visit_IfExp(self, node: ast.IfExp) -> ast.AST:
         """Keep the value that is taken."""
         self.generic_visit(node)
-        known = self._known(node.test)
-        return node if known is None else node.body if known else node.orelse
+        value = self._evaluate(node.test)
+        return node if value is None else node.body if value else node.orelse
 
 
-def stripped(source: str) -> str:
+def strip_features(source: str) -> str:
     """Return a module's source without the branches of absent features."""
     return ast.unparse(ast.fix_missing_locations(Strip().visit(ast.parse(source))))
 
@@ -102,7 +102,7 @@ def count_instructions(scene: Scene) -> PointData:
             shutil.copytree(_PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__"))
             if strip:
                 for module in package.joinpath("kernels").rglob("*.py"):
-                    module.write_text(stripped(module.read_text(encoding="utf-8")), encoding="utf-8")
+                    module.write_text(strip_features(module.read_text(encoding="utf-8")), encoding="utf-8")
             environment = {"PYTHONPATH": str(package.parent), "GASPART_CACHE": str(package.parent / "cache")}
             done = subprocess.run(
                 [sys.executable, "-m", __name__, json.dumps(scene.to_dict())],

@@ -80,15 +80,15 @@ def echo(
         state = equilibrium.state.copy()
         there = engine.start(scene, state)
         start = there.state  # rounded to the engine's precision
-        pair = [EventDriven().start(scene, one) for one in (state, _displaced(state, seed))]
+        pair = [EventDriven().start(scene, initial) for initial in (state, _displace(state, seed))]
         for k in range(samples):
             time = (k + 1) * interval
             there.advance(state.time + time + slack)
             reversed_state = replace(there.state, time=0.0, velocities=-there.state.velocities)
             back = engine.start(scene, reversed_state)
             back.advance(time + slack)
-            for one in pair:
-                one.advance(state.time + time)
+            for run in pair:
+                run.advance(state.time + time)
             columns["collisions"][n, k] = 2.0 * there.tally.collisions / state.count
             columns["echo"][n, k] = _distance(start, back.state)
             columns["divergence"][n, k] = _distance(pair[0].state, pair[1].state)
@@ -127,7 +127,7 @@ def _exponent(equilibrium: Simulation, interval: float) -> float:
     return float(lyapunov_exponent(equilibrium).estimate) * count * tally.time / (2.0 * tally.collisions)
 
 
-def _displaced(state: State, seed: tuple[int, ...]) -> State:
+def _displace(state: State, seed: tuple[int, ...]) -> State:
     """Return all particles displaced at random, by so little that only touching ones can overlap."""
     import numpy as np
 
@@ -137,9 +137,9 @@ def _displaced(state: State, seed: tuple[int, ...]) -> State:
     return replace(state, positions=inside)
 
 
-def _distance(one: State, other: State) -> float:
+def _distance(state: State, other: State) -> float:
     """Compute the root-mean-square distance of all particles between walls, in diameters."""
     import numpy as np
 
-    apart = ((one.positions - other.positions) ** 2).sum(axis=1)
-    return float(np.sqrt(apart.mean()) / (2.0 * one.radii.max()))
+    apart = ((state.positions - other.positions) ** 2).sum(axis=1)
+    return float(np.sqrt(apart.mean()) / (2.0 * state.radii.max()))

@@ -31,7 +31,7 @@ def engines(point: Point) -> list[Engine]:
 def arguments(point: Point) -> dict:
     """Return the arguments of `fill`; raise SceneError."""
     if "attempts" not in point.settings:
-        raise point.refused("attempts", "is required with job: fill")
+        raise point.make_error("attempts", "is required with job: fill")
     return {"scene": point.scene, "attempts": point.settings["attempts"], "seeds": point.seeds}
 
 

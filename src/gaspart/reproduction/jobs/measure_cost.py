@@ -80,9 +80,9 @@ def arguments(point: Point) -> dict:
     """Return the arguments of `measure_cost`; raise SceneError."""
     extras = {key: point.settings[key] for key in EXTRAS if point.settings.get(key)}
     if "record_events" in extras and not point.engine.records_events:
-        raise point.refused("record_events", "has a meaning with job: measure_cost and engine: event only")
+        raise point.make_error("record_events", "has a meaning with job: measure_cost and engine: event only")
     if extras.get("copies", 1) > 1 and point.settings.get("threads", 1) > 1:
-        raise point.refused("copies", "are of runs with one thread each")
+        raise point.make_error("copies", "are of runs with one thread each")
     if "stress" in extras:
         from gaspart.state.optional_tallies import StressTally  # which loads numpy
 
@@ -164,9 +164,12 @@ def measure_cost(
     start = _start(scene, careful, seed, equilibration)
     runs = [_Run(scene, start, engine.resolved(scene), extras) for engine in engines]
     if rival:
-        made = rival["scene"]
-        other = start if made == scene else _start(made, careful, seed, equilibration)
-        runs += [_Run(made, other, one.resolved(made), _NONE) for one in rival["engines"]]
+        rival_scene = rival["scene"]
+        other = start if rival_scene == scene else _start(rival_scene, careful, seed, equilibration)
+        runs += [
+            _Run(rival_scene, other, rival_engine.resolved(rival_scene), _NONE)
+            for rival_engine in rival["engines"]
+        ]
     available = config.NUMBA_NUM_THREADS
     possible = max(run.cores for run in runs) <= available
     times, counts = _in_turn(runs, interval, samples if possible else 1)
@@ -198,7 +201,7 @@ def _in_turn(runs: Sequence[_Run], interval: float, repeats: int) -> tuple[np.nd
     for repeat in range(repeats):
         order = range(len(runs))
         for n in order if repeat % 2 == 0 else reversed(order):
-            times[:, n, repeat], counted = _timed(runs[n], interval)
+            times[:, n, repeat], counted = _time(runs[n], interval)
             if not counts[n]:
                 counts[n] = counted
             elif counted != counts[n]:
@@ -238,7 +241,7 @@ def _start(scene: Scene, engine: Engine, seed: tuple[int, ...], equilibration: f
     return simulation.state.copy()
 
 
-def _timed(run: _Run, interval: float) -> tuple[tuple[float, float], dict]:
+def _time(run: _Run, interval: float) -> tuple[tuple[float, float], dict]:
     """Measure CPU time and wall-clock time of one interval, in s, and its counts."""
     from gaspart.engines.event_log import EventLog
     from gaspart.state.optional_tallies import StressTally
@@ -261,14 +264,14 @@ def _timed(run: _Run, interval: float) -> tuple[tuple[float, float], dict]:
         for other in others:
             other.result()
         processor, wall = time.process_time() - processor, time.perf_counter() - wall
-    counted, *beside = (_counted(dynamics) for dynamics, *_ in copies)
+    counted, *beside = (_count(dynamics) for dynamics, *_ in copies)
     for other in beside:
         if other != counted:
             raise SimulationError(f"the same run twice at once: counted {counted}, and {other}")
     return (processor, wall), counted
 
 
-def _counted(dynamics: Dynamics) -> dict:
+def _count(dynamics: Dynamics) -> dict:
     """Return the counts of a tally, and a digest of the particles and of the sums.
 
     The sums are over collisions.
@@ -288,5 +291,5 @@ def _sides(engine: Engine, dimension: int) -> tuple[int, ...]:
     settings = engine_to_dict(engine)
     if settings.get("search", "boxes") not in ("automatic", "boxes"):
         return (1,) * dimension
-    given = settings.get("boxes_per_side") or 0
-    return given if isinstance(given, tuple) else (given,) * dimension
+    sides = settings.get("boxes_per_side") or 0
+    return sides if isinstance(sides, tuple) else (sides,) * dimension

@@ -30,7 +30,7 @@ def engines(point: Point) -> list[Engine]:
 def arguments(point: Point) -> dict:
     """Return the arguments of `pack`; raise SceneError."""
     if ("attempts" in point.settings) == (point.settings.get("arrangement") == "compressed"):
-        raise point.refused("attempts", "is required with job: pack, unless the arrangement is compressed")
+        raise point.make_error("attempts", "is required with job: pack, unless the arrangement is compressed")
     return {"scene": point.scene, "attempts": point.settings.get("attempts"), "seeds": point.seeds}
 
 
@@ -57,10 +57,10 @@ def pack(scene: Scene, attempts: int | None, seeds: list[tuple[int, ...]]) -> Po
             fractions.append(packing.packing_fraction)
             pressures.append(packing.pressure)
         else:
-            _, _, places = insert(scene, attempts * scene.count, seed)
-            row[: len(places)] = places
+            _, _, coordinates = insert(scene, attempts * scene.count, seed)
+            row[: len(coordinates)] = coordinates
             scales.append(1.0)
-            fractions.append(scene.packing_fraction * len(places) / scene.count)
+            fractions.append(scene.packing_fraction * len(coordinates) / scene.count)
             pressures.append(np.nan)
     return PointData(
         {

@@ -65,12 +65,12 @@ def _remainders(folder: Path, paths: list[Path]) -> list[Path]:
     from gaspart.trajectory.opening import TRAJECTORY, UNFINISHED
 
     kinds = {".nc.partial": UNFINISHED, ".checkpoint.npz": CHECKPOINT, ".failed.npz": CHECKPOINT}
-    left = []
+    remainders = []
     for path in sorted({*folder.iterdir()} - {*paths}):
         kind = kinds.get("".join(path.suffixes[-2:]), TRAJECTORY)
         if is_remainder(path) or (may_replace(path, kind, overwrite=True) and kind.recognises(path)):
-            left.append(path)
-    return left
+            remainders.append(path)
+    return remainders
 
 
 def replica_paths(folder: Path, replicas: int) -> list[Path]:

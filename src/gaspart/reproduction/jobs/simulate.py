@@ -76,22 +76,22 @@ def modules(point: Point) -> list[str]:
 def arguments(point: Point) -> dict:
     """Return the arguments of `simulate`; raise SceneError."""
     times, settings = point.schedule, point.settings
-    given = {"scene": point.scene, "engine": point.engine, "seeds": point.seeds}
+    common = {"scene": point.scene, "engine": point.engine, "seeds": point.seeds}
     if "until" in settings:
         for key in _NOT_WITH_UNTIL:
             if settings.get(key):
-                raise point.refused(key, "has no meaning with until")
-        return {**given, **point.ending}
+                raise point.make_error(key, "has no meaning with until")
+        return {**common, **point.ending}
     follow = settings.get("follow")
     if follow is not None and follow > point.extents.particles:
-        raise point.refused("follow", f"there are {point.extents.particles} particles")
+        raise point.make_error("follow", f"there are {point.extents.particles} particles")
     correlations = None
     if "lags" in settings:
         lags = min(settings["lags"], (times.samples + 1) // 2)
         correlations = {"interval": times.sample_interval, "lags": lags, "start": times.equilibration}
         correlations |= {"stress": True} if settings.get("stress") else {}
     return {
-        **given,
+        **common,
         "duration": times.duration,
         "sample_interval": _frame_interval(point),
         "displacements": False,
@@ -106,7 +106,7 @@ def _frame_interval(point: Point) -> float:
     times, settings = point.schedule, point.settings
     if "frames" in settings:
         if "lags" not in settings:
-            raise point.refused("frames", "has a meaning with lags only; without them there are samples")
+            raise point.make_error("frames", "has a meaning with lags only; without them there are samples")
         return times.sample_interval * times.samples_per_frame
     only_ends = "lags" in settings and point.scene.shear_rate is None
     return times.duration if only_ends else times.sample_interval

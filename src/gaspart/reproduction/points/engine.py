@@ -25,7 +25,7 @@ def engine(point: Point) -> Engine:
     return _made(point, point.settings)
 
 
-def scanned(point: Point) -> list[Engine]:
+def scan_engines(point: Point) -> list[Engine]:
     """Return the engine of a point, or an engine for each value of its scan.
 
     Scans are of time steps or partitions; equal partitions are taken once. Parts of a step refer to the step
@@ -39,17 +39,17 @@ def scanned(point: Point) -> list[Engine]:
     if scans == ["scan_time_steps"]:
         single: Any = point.engine
         if single.quantum is None:
-            raise point.refused(scan, f"has no meaning with engine: {single.name}")
+            raise point.make_error(scan, f"has no meaning with engine: {single.name}")
         return [single.with_step(step) for step in values]
     if scans == ["scan_step_parts"]:
-        whole: Any = point.engine.resolved(point.scene)
-        if whole.quantum is None:
-            raise point.refused(scan, f"has no meaning with engine: {whole.name}")
-        return [whole.with_step(part * whole.time_step) for part in values]
+        resolved: Any = point.engine.resolved(point.scene)
+        if resolved.quantum is None:
+            raise point.make_error(scan, f"has no meaning with engine: {resolved.name}")
+        return [resolved.with_step(part * resolved.time_step) for part in values]
     if len(scans) > 1 or "boxes_per_side" in settings or "boxes_per_particle" in settings:
-        raise point.refused(scan, "a scan excludes every other choice of boxes")
+        raise point.make_error(scan, "a scan excludes every other choice of boxes")
     if not values:
-        raise point.refused(scan, "must not be empty")
+        raise point.make_error(scan, "must not be empty")
     if scan == "scan_boxes_per_particle":
         values = [boxes_per_side(per_particle, *point.extents) for per_particle in values]
     single = _made(point, {**settings, "boxes_per_side": 1})
@@ -90,12 +90,12 @@ def _check(point: Point, name: str, settings: dict) -> None:
     """Refuse keys that the engine lacks or does not know."""
     for key in required_settings(engines.ENGINES[name]):
         if key not in settings:
-            raise point.refused(key, f"must be given with engine: {name}")
+            raise point.make_error(key, f"must be given with engine: {name}")
     for key in {key: None for keys in ENGINE_KEYS.values() for key in keys}:
         if key in settings and key not in ENGINE_KEYS[name]:
-            raise point.refused(key, f"has no meaning with engine: {name}")
+            raise point.make_error(key, f"has no meaning with engine: {name}")
     if "boxes_per_side" in settings and "boxes_per_particle" in settings:
-        raise point.refused("boxes_per_particle", "excludes boxes_per_side")
+        raise point.make_error("boxes_per_particle", "excludes boxes_per_side")
 
 
 # The engine that `engine: auto` of a config stands for.
@@ -117,14 +117,14 @@ def chosen(settings: dict, scene: Scene, where: str) -> dict:
         advice = plan_from_table(scene, observable, accuracy)
     except SceneError as error:
         raise error.inside(where) from None
-    made = {key: value for key, value in settings.items() if key not in point_keys.ENGINE_KEYS["auto"]}
+    merged = {key: value for key, value in settings.items() if key not in point_keys.ENGINE_KEYS["auto"]}
     engine = advice.best.engine
-    made |= {"engine": engine.name, **engine.advised_settings()}
+    merged |= {"engine": engine.name, **engine.advised_settings()}
     if not point_keys.LENGTHS.keys() & settings.keys():
-        made["collisions_per_particle"] = math.ceil(advice.collisions_per_particle)
-        made.setdefault("replicas", advice.replicas)
-        made.setdefault("equilibration", EQUILIBRATION)
-    return made
+        merged["collisions_per_particle"] = math.ceil(advice.collisions_per_particle)
+        merged.setdefault("replicas", advice.replicas)
+        merged.setdefault("equilibration", EQUILIBRATION)
+    return merged
 
 
 # Duration and sampling of a point's runs.
@@ -173,17 +173,17 @@ def schedule(point: Point) -> Schedule:
     interval = settings[unit] * scale / samples
     if not SMALLEST <= interval <= LARGEST:
         rule = f"makes a sample interval of {interval:g}, which must be from {SMALLEST:g} to {LARGEST:g}"
-        raise point.refused(unit, rule)
+        raise point.make_error(unit, rule)
     if "time_step" in settings:
         step = settings["time_step"]
         interval = step * max(1, round(interval / step))
     before = settings.get("equilibration", 0) * scale / interval
     if not before < _MOST_INTERVALS:
         rule = f"makes {before:g} sample intervals, which must be less than {_MOST_INTERVALS:g}"
-        raise point.refused("equilibration", rule)
+        raise point.make_error("equilibration", rule)
     each, rest = divmod(samples, settings.get("frames", samples))
     if rest:
-        raise point.refused("frames", f"must be a divisor of samples, {samples}")
+        raise point.make_error("frames", f"must be a divisor of samples, {samples}")
     dropped = each * math.ceil(before / each * (1.0 - 1e-12))
     return Schedule(interval * (dropped + samples), interval, dropped, samples, each)
 
@@ -197,23 +197,23 @@ def _unit_of_time(point: Point, unit: str) -> float:
         return 1.0
     if unit == "steps":
         if "time_step" not in point.settings:
-            raise point.refused(unit, f"has no meaning with engine: {point.engine.name}")
+            raise point.make_error(unit, f"has no meaning with engine: {point.engine.name}")
         return point.settings["time_step"]
     from gaspart import theory
 
-    key, given = f"experiments.{point.experiment}.collisions_per_particle", point.settings[unit]
+    key, value = f"experiments.{point.experiment}.collisions_per_particle", point.settings[unit]
     gas, mixture = point.scene.gas, point.scene.mixture
     if mixture is None:
         rule = "is known only for smooth particles without gravity or obstacles; give duration"
-        raise SceneError(key, given, rule)
+        raise SceneError(key, value, rule)
     if not mixture.temperature > 0.0:
-        raise SceneError(key, given, "needs a temperature or a speed above zero")
+        raise SceneError(key, value, "needs a temperature or a speed above zero")
     try:
         rate = theory.collision_rate(**gas.parameters) if gas else _mean_rate(mixture)
     except ValueError as error:
-        raise SceneError(key, given, f"cannot be turned into a time: {error}") from None
+        raise SceneError(key, value, f"cannot be turned into a time: {error}") from None
     if not 0.0 < rate < math.inf:
-        raise SceneError(key, given, f"cannot be turned into a time: the collision rate is {rate:g}")
+        raise SceneError(key, value, f"cannot be turned into a time: the collision rate is {rate:g}")
     return 1.0 / float(rate)
 
 

@@ -59,5 +59,5 @@ def validate(point: Point) -> None:
     for key in others & point.settings.keys():
         if point.settings[key]:
             names = [name for name, job in JOBS.items() if key in job.KEYS]
-            raise point.refused(key, f"has a meaning with job: {' or '.join(names)} only")
+            raise point.make_error(key, f"has a meaning with job: {' or '.join(names)} only")
     _ = point.arguments

@@ -21,42 +21,42 @@ _OF_SEEDS = ("echo", "fill", "pack")
 """Jobs whose work is the same for each replica, whatever the length."""
 
 
-def scaled(job: str, settings: Mapping[str, Any], multiple: float) -> dict[str, Any]:
+def scale_length(job: str, settings: Mapping[str, Any], multiple: float) -> dict[str, Any]:
     """Return the settings with `multiple` times as many replicas, and for the rest with longer runs.
 
     Runs keep the interval between samples as long as there are enough of these. The length of a run that does
     not begin with an equilibration is not changed: it describes how something proceeds.
     """
-    made = dict(settings)
-    replicas = made.get("replicas", 1)
+    result = dict(settings)
+    replicas = result.get("replicas", 1)
     if replicas > 1 and job in ("simulate", *_OF_SEEDS):
-        made["replicas"] = max(math.ceil(replicas * multiple - 1e-9), min(replicas, _LEAST_REPLICAS))
-        multiple *= replicas / made["replicas"]
-    if job in _OF_SEEDS or (job == "simulate" and not made.get("equilibration")) or "until" in made:
-        return made
-    if job == "simulate" and "lags" not in made:
-        return made | _resampled(made, multiple, _LEAST_SAMPLES, even=False)
-    return made | _resampled(made, multiple, 1 if job == "simulate" else _LEAST_TIMINGS, even=True)
+        result["replicas"] = max(math.ceil(replicas * multiple - 1e-9), min(replicas, _LEAST_REPLICAS))
+        multiple *= replicas / result["replicas"]
+    if job in _OF_SEEDS or (job == "simulate" and not result.get("equilibration")) or "until" in result:
+        return result
+    if job == "simulate" and "lags" not in result:
+        return result | _resample(result, multiple, _LEAST_SAMPLES, even=False)
+    return result | _resample(result, multiple, 1 if job == "simulate" else _LEAST_TIMINGS, even=True)
 
 
-def _resampled(settings: Mapping[str, Any], multiple: float, least: int, even: bool) -> dict[str, Any]:
+def _resample(settings: Mapping[str, Any], multiple: float, least: int, even: bool) -> dict[str, Any]:
     """Return the length and the samples of a run that is `multiple` times as long.
 
     If `even`, all intervals between samples stay as they are, for example between lags and in timings.
     """
-    found: dict[str, Any] = {}
+    changes: dict[str, Any] = {}
     samples = settings.get("samples", 1)
     each = samples // settings["frames"] if "frames" in settings else 1  # samples of a frame
     frames = math.ceil(samples / each * multiple - 1e-9)
     frames = max(frames, min(samples // each, least))
     if "samples" in settings:
-        found["samples"] = frames * each
+        changes["samples"] = frames * each
     if "frames" in settings:
-        found["frames"] = frames
+        changes["frames"] = frames
     if even:
         multiple = frames * each / samples
     for unit in LENGTHS.keys() & settings.keys():
-        found[unit] = settings[unit] * multiple
-    if "steps" in found:
-        found["steps"] = max(1, round(found["steps"]))
-    return found
+        changes[unit] = settings[unit] * multiple
+    if "steps" in changes:
+        changes["steps"] = max(1, round(changes["steps"]))
+    return changes

@@ -18,7 +18,7 @@ def require_observable(name: str, point: Point) -> None:
     """Raise SceneError for an observable that no trajectory of a point has, however long it is."""
     arguments, scene = point.arguments, point.scene
     if "keep" in arguments:
-        raise point.refused("keep", "observables need all that frames may hold")
+        raise point.make_error("keep", "observables need all that frames may hold")
     stated = arguments.get("correlations")
     kept = {"fluxes": stated and stated.get("stress"), "pairs": arguments.get("pairs")}
     require_run(name, scene, [key for key, value in kept.items() if value], arguments.get("follow"))

@@ -35,7 +35,7 @@ def closure(*roots: str | Path) -> frozenset[Path]:
     queue = [path for path in queue if path is not None]
     files |= {path for path in queue if path.is_relative_to(PACKAGE)}
     while queue:
-        for path in imported(queue.pop()) - files:
+        for path in find_imports(queue.pop()) - files:
             files.add(path)
             queue.append(path)
     folders = {path.parent for path in files}
@@ -48,7 +48,7 @@ def _tables(folder: Path) -> frozenset[Path]:
 
 
 @cache
-def imported(path: Path) -> frozenset[Path]:
+def find_imports(path: Path) -> frozenset[Path]:
     """Return files of the package that a file imports itself, and the packages that hold them."""
     text = _TYPES.sub("", path.read_text(encoding="utf-8"))
     names = set(_PLAIN.findall(text))
@@ -97,8 +97,8 @@ def kernel_digest(*roots: str | Path) -> str:
 
     Jobs that need equal modules share their stamps.
     """
-    needed = closure(*roots) & closure("gaspart.reproduction.points.point")
-    return _digest_of([path for path in _in_order(needed) if path.is_relative_to(PACKAGE / "kernels")])
+    modules = closure(*roots) & closure("gaspart.reproduction.points.point")
+    return _digest_of([path for path in _in_order(modules) if path.is_relative_to(PACKAGE / "kernels")])
 
 
 def _in_order(paths: frozenset[Path]) -> list[Path]:

@@ -101,7 +101,7 @@ class Point:
     @cached_property
     def engines(self) -> list[Engine]:
         """Engines that the job runs: ``engine``, or one for each value of the scan."""
-        return engine.scanned(self)
+        return engine.scan_engines(self)
 
     @cached_property
     def schedule(self) -> Schedule:
@@ -138,7 +138,7 @@ class Point:
         """The arguments of the job in plain values."""
         return import_module(f"{_JOBS}.arguments").to_plain(self.arguments)
 
-    def refused(self, key: str, rule: str) -> SceneError:
+    def make_error(self, key: str, rule: str) -> SceneError:
         """Return the error that a setting breaks a rule."""
         return SceneError(f"experiments.{self.experiment}.{key}", self.settings.get(key), rule)
 
@@ -248,8 +248,8 @@ def compile_task(point: Point) -> str:
         scene = full.to_dict()
     if engines := point.kind_of_job.engines(point):
         engine = engine_to_dict(engines[0].for_small_scene(full))
-    asked = {"stress": "stress", "events": "pairs"}  # of the task, by a key of the point
-    extra = {name: True for name, key in asked.items() if point.settings.get(key)}
+    options = {"stress": "stress", "events": "pairs"}  # of the task, by a key of the point
+    extra = {name: True for name, key in options.items() if point.settings.get(key)}
     return json.dumps({"scene": scene, "engine": engine, **extra})
 
 
@@ -259,14 +259,14 @@ def compile_kernels(job: str) -> None:
     from gaspart.simulation import Simulation
     from gaspart.state.initial import initial_state
 
-    given = json.loads(job)
-    scene = Scene.from_dict(given["scene"])
-    if given["engine"] is None:
+    task = json.loads(job)
+    scene = Scene.from_dict(task["scene"])
+    if task["engine"] is None:
         initial_state(scene, seed=1)
         return
-    engine = engine_from_dict(given["engine"]).resolved(scene)
-    simulation = Simulation(scene, engine, 1, given.get("stress", False))
-    if given.get("events"):
+    engine = engine_from_dict(task["engine"]).resolved(scene)
+    simulation = Simulation(scene, engine, 1, task.get("stress", False))
+    if task.get("events"):
         simulation.record_events = True
     step = engine.quantum
     limits: dict = {"duration": 4 * step} if step else {"duration": 1.0, "max_work": 1000}

@@ -112,10 +112,10 @@ def _settings(engine: Any) -> dict[str, Kind]:
     A point with another engine does not require them.
     """
     declared = schema_of(engine)
-    made = {name: Kind({"default": None, **kind}) for name, kind in declared["properties"].items()}
+    kinds = {name: Kind({"default": None, **kind}) for name, kind in declared["properties"].items()}
     for name in declared.get("required", ()):
-        made[name]["description"] += "; required"
-    return {**made, **({"boxes_per_particle": _BOXES_PER_PARTICLE} if "boxes_per_side" in made else {})}
+        kinds[name]["description"] += "; required"
+    return {**kinds, **({"boxes_per_particle": _BOXES_PER_PARTICLE} if "boxes_per_side" in kinds else {})}
 
 
 ENGINE_KEYS: dict[str, dict[str, Kind]] = {
@@ -161,13 +161,13 @@ def ending(point: Point) -> dict[str, Any]:
     settings, times = point.settings, point.schedule
     start = times.equilibration if "equilibration" in settings else None
     accuracies = tuple(Accuracy.named(name, value, start) for name, value in settings["until"].items())
-    for asked in accuracies:
-        require_measurable(asked, point.scene, point.engine)
-        require_end(asked, point.scene, times.duration, from_state=False)
+    for accuracy in accuracies:
+        require_measurable(accuracy, point.scene, point.engine)
+        require_end(accuracy, point.scene, times.duration, from_state=False)
     interval = times.sample_interval
     if "samples" not in settings:
         interval = default_sample_interval(point.scene, point.engine, None)
-    paths = any(OBSERVABLES[asked.observable].needs == "paths" for asked in accuracies)
+    paths = any(OBSERVABLES[accuracy.observable].needs == "paths" for accuracy in accuracies)
     return {
         "duration": None,
         "sample_interval": interval,

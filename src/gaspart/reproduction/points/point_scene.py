@@ -50,7 +50,7 @@ def extents(point: Point) -> Extents:
     if "scene" in settings:
         read = point.scene
         if read.count == 0:
-            raise point.refused("scene", "a point needs at least one particle")
+            raise point.make_error("scene", "a point needs at least one particle")
         return Extents(read.count, read.largest_radius, read.container.lengths)
     _check_gas(point)
     dimension = settings["dimension"]
@@ -62,13 +62,13 @@ def extents(point: Point) -> Extents:
         return Extents(int(count), float(radius), (edge,) * dimension)
     lengths = tuple(map(float, side)) if isinstance(side, (list, tuple)) else (float(side),) * dimension
     if len(lengths) != dimension:
-        raise point.refused("side", f"must have {dimension} lengths")
+        raise point.make_error("side", f"must have {dimension} lengths")
     volume = math.prod(lengths)
     if count is None:
         number = fraction * volume / (unit * radius**dimension)
         if not 0.5 < number <= MOST_PARTICLES:
             rule = f"makes {number:g} particles, which must be from 1 to {MOST_PARTICLES}"
-            raise point.refused("packing_fraction", rule)
+            raise point.make_error("packing_fraction", rule)
         count = round(number)
     elif radius is None:
         radius = (fraction * volume / (unit * count)) ** (1.0 / dimension)
@@ -80,9 +80,9 @@ def _check_gas(point: Point) -> None:
     settings = point.settings
     replaced = next((key for key in settings if key.startswith(PREFIX)), None)
     if replaced:
-        raise point.refused(replaced, "replaces a value of a scene file, but there is no scene")
+        raise point.make_error(replaced, "replaces a value of a scene file, but there is no scene")
     if "dimension" not in settings:
-        raise point.refused("dimension", "is required, unless there is a scene file")
+        raise point.make_error("dimension", "is required, unless there is a scene file")
     extents = [key for key in EXTENTS if key in settings]
     if len(extents) != 3:
         rule = f"exactly three of {', '.join(EXTENTS)} must be given"
@@ -105,15 +105,15 @@ def _mean_volume(point: Point) -> float:
     if not mixed and not sized:
         return 1.0
     if settings.get("count", 1) < 2 or "count" not in settings:
-        raise point.refused((mixed + sized)[0], "needs a count of two or more")
+        raise point.make_error((mixed + sized)[0], "needs a count of two or more")
     count, dimension = int(settings["count"]), settings["dimension"]
     if mixed:
         if len(mixed) == 1 or sized:
-            raise point.refused(mixed[0], "needs size_ratio and small_fraction, and no polydispersity")
+            raise point.make_error(mixed[0], "needs size_ratio and small_fraction, and no polydispersity")
         small = _small_count(point)
         return (count - small + small * settings["size_ratio"] ** dimension) / count
     if "polydispersity" not in settings:
-        raise point.refused("radius_distribution", "needs a polydispersity")
+        raise point.make_error("radius_distribution", "needs a polydispersity")
     distribution = settings.get("radius_distribution", DISTRIBUTIONS[0])
     radii = relative_radii(count, float(settings["polydispersity"]), distribution)
     return math.fsum(radius**dimension for radius in radii.tolist()) / count
@@ -161,7 +161,7 @@ def _read(point: Point) -> Scene:
     for key in (*GAS, *EXTENTS):
         if key in settings:
             rule = f"has no meaning beside a scene file, of which {PREFIX}... replaces single values"
-            raise point.refused(key, rule)
+            raise point.make_error(key, rule)
     replaced = [key for key in settings if key.startswith(PREFIX)]
     stated = settings["scene"]
     content, unchanged = (stated, None) if isinstance(stated, dict) else _of_file(point, stated)
@@ -178,9 +178,9 @@ def _of_file(point: Point, path: str) -> tuple[Any, Scene]:
     try:
         changed = Path(path).stat().st_mtime_ns
     except OSError as error:
-        raise point.refused("scene", f"cannot be read: {error.strerror}") from None
+        raise point.make_error("scene", f"cannot be read: {error.strerror}") from None
     except ValueError:  # a NUL, or a character that no file name can hold
-        raise point.refused("scene", "is not a file name") from None
+        raise point.make_error("scene", "is not a file name") from None
     return _file(path, changed)
 
 
@@ -220,8 +220,8 @@ def _place(block: object, part: str, key: str, point: Point) -> str | int:
         block.setdefault(part, None)
         return part
     if not isinstance(block, list):
-        raise point.refused(key, f"the scene file has {short_repr(block)} where this looks for {part}")
+        raise point.make_error(key, f"the scene file has {short_repr(block)} where this looks for {part}")
     if not part.isdecimal() or len(part) > 9 or int(part) >= len(block):
         rule = f"{part} must be the number of an item, of which the scene file has {len(block)}, from 0"
-        raise point.refused(key, rule)
+        raise point.make_error(key, rule)
     return int(part)

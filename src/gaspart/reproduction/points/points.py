@@ -19,7 +19,7 @@ from gaspart.errors import SceneError
 from gaspart.keys import TEXT, Kind, choice, count, described, flag, listed, nullable, positive, record
 from gaspart.reproduction.points import point_keys
 from gaspart.reproduction.points.jobs import JOBS
-from gaspart.reproduction.points.lengths import scaled
+from gaspart.reproduction.points.lengths import scale_length
 from gaspart.reproduction.points.point import Point, name_of
 from gaspart.reproduction.points.point_keys import (
     ENGINE,
@@ -55,9 +55,9 @@ def _of_any_engine() -> dict[str, Kind]:
     for engine, keys in ENGINE_KEYS.items():
         for name, kind in keys.items():
             meaning = kind["description"]
-            known = merged.setdefault(name, kind.stating(default=None))["description"]
-            if meaning not in known:
-                merged[name] = described(merged[name], f"{known}; {engine}: {meaning}")
+            text = merged.setdefault(name, kind.stating(default=None))["description"]
+            if meaning not in text:
+                merged[name] = described(merged[name], f"{text}; {engine}: {meaning}")
     return merged
 
 
@@ -187,14 +187,14 @@ def points(config: dict, experiment: str) -> list[Point]:
     block = config["experiments"][experiment]
     where = f"experiments.{experiment}"
     multiples = (config.get("lengths") or {}).get(experiment) or {}
-    made: dict[str, Point] = {}
+    by_name: dict[str, Point] = {}
     varied = block.get("grid")
     for varying in _combinations({} if varied is None else varied, f"{where}.grid"):
-        given = {**block.get("point", {}), **varying}
+        combined = {**block.get("point", {}), **varying}
         name, job = name_of(varying, f"{where}.grid"), block.get("job", "simulate")
-        settings = {key: _plain(key, value) for key, value in given.items() if value is not None}
+        settings = {key: _plain(key, value) for key, value in combined.items() if value is not None}
         if name in multiples:
-            settings = scaled(job, settings, multiples[name])
+            settings = scale_length(job, settings, multiples[name])
         point = _chosen(
             Point(
                 experiment=experiment,
@@ -205,15 +205,15 @@ def points(config: dict, experiment: str) -> list[Point]:
                 config_seed=config["seed"],
             )
         )
-        if point.name in made:
+        if point.name in by_name:
             raise SceneError(f"{where}.grid", point.name, "every point of a grid must be different")
-        made[point.name] = point
-    return list(made.values())
+        by_name[point.name] = point
+    return list(by_name.values())
 
 
 def _plain(key: str, value: Any) -> Any:
-    whole = key in WHOLE and isinstance(value, float) and value.is_integer()
-    return int(value) if whole else value
+    is_integer = key in WHOLE and isinstance(value, float) and value.is_integer()
+    return int(value) if is_integer else value
 
 
 def _chosen(point: Point) -> Point:

@@ -32,7 +32,7 @@ def states(paths: Mapping[str, str]) -> list[dict[str, Any]]:
     """Return `series` of the measurements of figures, {figure: path}, that are equations of state."""
     import xarray as xr
 
-    stated = {figure: one for figure, one in registry.series().items() if figure in paths}
+    stated = {figure: declaration for figure, declaration in registry.series().items() if figure in paths}
     return series({figure: xr.load_dataset(paths[figure]) for figure in stated}, stated)
 
 
@@ -43,8 +43,8 @@ def choice_of_engine(paths: Mapping[str, str]) -> dict[str, Any] | None:
     """
     import xarray as xr
 
-    found = [figure for figure in registry.costs() if figure in paths]
-    return {"figure": found[0], **engines(xr.load_dataset(paths[found[0]]))} if found else None
+    figures = [figure for figure in registry.costs() if figure in paths]
+    return {"figure": figures[0], **engines(xr.load_dataset(paths[figures[0]]))} if figures else None
 
 
 def series(
@@ -88,19 +88,19 @@ def engines(dataset: xr.Dataset) -> dict[str, Any]:
 
     from gaspart.reproduction.families.tradeoff import panels
 
-    found = []
+    observables = []
     for quantity in dataset["quantity"].values:
         of = dataset.sel(quantity=quantity)
         of = of.isel(fraction=(of["cost"] < np.inf).any(("accuracy", "solver")).values)
         if of.sizes["fraction"]:
             cost = of["cost"].transpose("fraction", "accuracy", "solver")
-            found.append(
+            observables.append(
                 {
                     "key": str(quantity),
                     "name": panels.TITLES[str(quantity)].replace("$", ""),
                     "fractions": _numbers(of["fraction"].values),
-                    "cost": _nested(np.where(np.isposinf(cost), -1.0, cost)),
-                    "error": _nested(of["error"].transpose(*cost.dims, "part").values),
+                    "cost": _nest(np.where(np.isposinf(cost), -1.0, cost)),
+                    "error": _nest(of["error"].transpose(*cost.dims, "part").values),
                 }
             )
     return {
@@ -111,14 +111,14 @@ def engines(dataset: xr.Dataset) -> dict[str, Any]:
             for engine in map(str, dataset["solver"].values)
         ],
         "parts": list(panels.PART_NAMES),
-        "observables": found,
+        "observables": observables,
     }
 
 
-def _nested(values: np.ndarray) -> list:
+def _nest(values: np.ndarray) -> list:
     """Convert an array to nested lists of numbers for JSON, with three digits."""
     if values.ndim > 1:
-        return [_nested(part) for part in values]
+        return [_nest(part) for part in values]
     return [float(f"{value:.3g}") if math.isfinite(value) else None for value in values.tolist()]
 
 
@@ -189,25 +189,25 @@ def read_references(path: str | Path) -> dict[str, Reference]:
     }
 
 
-def cited(citation: re.Match[str], references: Mapping[str, Reference]) -> Reference | None:
+def find_reference(citation: re.Match[str], references: Mapping[str, Reference]) -> Reference | None:
     """Return the reference that a match of `CITATION` cites; None for other texts in square brackets."""
     key = " ".join(citation[1].split())
     return references.get(key) or references.get(key[0].lower() + key[1:])
 
 
-def used(texts: Iterable[str], references: Mapping[str, Reference]) -> dict[str, Reference]:
+def cited_references(texts: Iterable[str], references: Mapping[str, Reference]) -> dict[str, Reference]:
     """Return the references that some texts cite, by key, in the same order, numbered from 1."""
-    found = (cited(citation, references) for text in texts for citation in CITATION.finditer(text))
-    keys = {reference.key for reference in found if reference is not None}
+    matches = (find_reference(citation, references) for text in texts for citation in CITATION.finditer(text))
+    keys = {reference.key for reference in matches if reference is not None}
     kept = (reference for key, reference in references.items() if key in keys)
-    return {one.key: replace(one, number=number) for number, one in enumerate(kept, 1)}
+    return {item.key: replace(item, number=number) for number, item in enumerate(kept, 1)}
 
 
-def linked(text: str, references: Mapping[str, Reference]) -> str:
+def link_citations(text: str, references: Mapping[str, Reference]) -> str:
     """Return HTML in which each citation has become names and a numbered link into the list."""
 
     def link(citation: re.Match[str]) -> str:
-        reference = cited(citation, references)
+        reference = find_reference(citation, references)
         if reference is None:
             return citation[0]
         name = citation[1] if reference.is_source else html.escape(reference.short)

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gaspart.reproduction.claims import counts
-from gaspart.reproduction.claims.table import filled
+from gaspart.reproduction.claims.table import fill_caption
 from gaspart.reproduction.families.registry import chapter
 
 if TYPE_CHECKING:
@@ -37,12 +37,12 @@ class Dot:
     """Claim on the axis of deviations.
 
     row : row of the claims table.
-    place : position in percent of the axis.
+    position : position in percent of the axis.
     level : 0, 1, ... from below, so that dots do not hide one another.
     """
 
     row: dict[str, Any]
-    place: float
+    position: float
     level: int
 
 
@@ -108,7 +108,7 @@ class Caption:
     details: str
 
 
-def divided(text: str) -> Caption:
+def split_caption(text: str) -> Caption:
     """Return the parts of a caption.
 
     Raises ValueError if it does not begin with words in bold, and as `html_of`.
@@ -246,7 +246,7 @@ def findings(chosen: Iterable[Mapping[str, str]], rows: list[dict[str, Any]]) ->
         {
             "figure": finding["figure"],
             "text": html_of(
-                filled(finding["text"], [row for row in rows if row["figure"] == finding["figure"]])
+                fill_caption(finding["text"], [row for row in rows if row["figure"] == finding["figure"]])
             ),
         }
         for finding in chosen
@@ -341,6 +341,6 @@ def _webp(path: Path, width: int) -> str:
     return _data("image/webp", content.getvalue())
 
 
-def captioned(text: str, rows: list[dict[str, Any]]) -> Caption:
+def make_caption(text: str, rows: list[dict[str, Any]]) -> Caption:
     """Return the caption of a figure with its measured numbers."""
-    return divided(filled(text, rows))
+    return split_caption(fill_caption(text, rows))

@@ -55,7 +55,7 @@ def made_up(monkeypatch):
     """Let the measurement read made-up paths."""
 
     def use(chosen, found):
-        monkeypatch.setattr(brownian, "_followed", lambda given: found)
+        monkeypatch.setattr(brownian, "_read_paths", lambda given: found)
         return chosen
 
     return use

@@ -44,7 +44,7 @@ def test_in_a_dilute_gas_the_radius_that_counts_is_r_more(points, runs):
         stretch(dilute_fluid(rng, 1500, COUNT, place), displaced * factor)
         for factor in rng.normal(1.0, 0.02, 8)
     ]
-    row = buoyancy._fixed(points[0], SETTINGS)
+    row = buoyancy._measure_fixed(points[0], SETTINGS)
     missing = row["missing"]
     assert row["force"].value == pytest.approx(displaced, rel=0.03)
     assert missing.value == pytest.approx(displaced, abs=4.0 * missing.error + 0.03 * displaced)

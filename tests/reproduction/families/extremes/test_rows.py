@@ -10,7 +10,7 @@ import pytest
 
 import gaspart as gp
 from gaspart.reproduction.families.extremes import exact, scenes
-from gaspart.reproduction.families.extremes.guard import guarded
+from gaspart.reproduction.families.extremes.guard import run_guarded
 from gaspart.reproduction.families.extremes.measure import run_row
 from gaspart.reproduction.families.extremes.rows import ROWS, Row
 from gaspart.reproduction.families.extremes.trial import (
@@ -91,7 +91,7 @@ def waits(seconds):
 
 
 def test_what_hangs_or_dies_is_ended_and_the_rest_goes_on():
-    assert guarded(waits, [0.0, 60.0, -1.0, 0.01], limit=3.0) == [0.0, None, None, 0.01]
+    assert run_guarded(waits, [0.0, 60.0, -1.0, 0.01], limit=3.0) == [0.0, None, None, 0.01]
 
 
 def test_steps_that_come_too_late_are_refused_even_if_energy_is_kept():

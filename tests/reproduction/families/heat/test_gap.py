@@ -13,7 +13,7 @@ def test_what_the_walls_give_is_what_the_particles_gain(tmp_path):
     point = run(tmp_path, gas(20, 0.1), duration=200.0, equilibration=20.0, samples=40)
     found = averages(point, Gap.of(gas(20, 0.1)), blocks=8, bins=4)
     blocks = np.diff(found.stored[0, :, 0]) / 25.0 / 36.0  # of 5 samples, each 5 long
-    assert found.given - found.taken == pytest.approx(blocks, abs=1e-9)
+    assert found.heat_in - found.heat_out == pytest.approx(blocks, abs=1e-9)
     assert found.imbalance < 1e-9
     assert found.density.mean(axis=1) == pytest.approx(np.full(8, 20 / 360))
     with pytest.raises(ValueError, match="blocks"):

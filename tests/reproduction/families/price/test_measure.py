@@ -13,7 +13,7 @@ from gaspart.errors import SceneError
 from gaspart.reproduction.claims import judge
 from gaspart.reproduction.families.price.claims import price_of_features as claims
 from gaspart.reproduction.families.price.measure import _row, price_of_features
-from gaspart.reproduction.jobs.count_instructions import FEATURES, count_instructions, stripped
+from gaspart.reproduction.jobs.count_instructions import FEATURES, count_instructions, strip_features
 from gaspart.reproduction.jobs.measure_cost import measure_cost
 from gaspart.reproduction.points import jobs
 from gaspart.reproduction.points.point import Point
@@ -93,7 +93,7 @@ def move(particle, gravity):
         particle.look()
     return 1.0 if masses is None else masses[particle], other is None
 """
-    assert stripped(source).split("\n")[1:] == [
+    assert strip_features(source).split("\n")[1:] == [
         "    pass",
         "    particle.go()",
         "    return (1.0, other is None)",
@@ -107,7 +107,7 @@ def is_full(record):
         return False
     return record.filled == record.room
 """
-    assert stripped(source).split("\n")[1:] == ["    return False"]
+    assert strip_features(source).split("\n")[1:] == ["    return False"]
 
 
 def test_all_optional_arguments_of_the_kernels_are_features_or_choices_of_a_method():

@@ -83,7 +83,7 @@ def _layer(layers: Table) -> list[Claim]:
     """
     if not layers:
         return []
-    what = "coverage over that of hard discs at the gas' pressure"
+    subject = "coverage over that of hard discs at the gas' pressure"
     source = (
         "spheres in a layer thinner than their diameter, as hard discs (virial series to B10), at the "
         "density P/kT that a hard wall has at contact (exact where the coverage is low), and to first order "
@@ -94,7 +94,7 @@ def _layer(layers: Table) -> list[Claim]:
     return [
         *each(
             layers,
-            f"{what}, depth {{depth:g}}",
+            f"{subject}, depth {{depth:g}}",
             measured=layers.filling,
             expected=1.0,
             required=0.04,
@@ -104,7 +104,7 @@ def _layer(layers: Table) -> list[Claim]:
             "gas' activity takes the place of its pressure",
         ),
         Claim(
-            claim=f"{what}, mean of all depths",
+            claim=f"{subject}, mean of all depths",
             measured=combine_estimates(layers.filling),
             expected=1.0,
             required=0.005,
@@ -112,7 +112,7 @@ def _layer(layers: Table) -> list[Claim]:
             fails_if="adsorbed spheres close as much of the gas' room as single ones, or a part of it twice",
         ),
         Claim.joint(
-            claim=f"{what}, all depths",
+            claim=f"{subject}, all depths",
             deviations=(layers.filling - 1.0).deviation,
             source=source,
             fails_if="uncertainties too small, as from time blocks that are not independent",

@@ -40,11 +40,13 @@ def _ratios(top: Axes, bottom: Axes, wells: Table) -> None:
     inverse = np.linspace(0.0, 1.05 / wells.temperature.min(), 50)
     for kind, (depth, width, well) in enumerate(wells.by("depth", "width")):
         label = f"$\\epsilon$ = {depth:g}, $w$ = {width:g}"
-        place, outside = 1.0 / well.temperature, well.outside[0]
-        style.points(top, place, well.ratio, kind=kind, hollow=True, label=label)
+        inverse_temperature, outside = 1.0 / well.temperature, well.outside[0]
+        style.points(top, inverse_temperature, well.ratio, kind=kind, hollow=True, label=label)
         top.plot(inverse, well_ratio(depth * inverse, width, outside), color=style.COLOURS[kind], lw=0.8)
-        deviation = well.log_ratio - np.log(well_ratio(depth * place, width, outside))
-        style.points(bottom, place + 0.02 * (kind - 1), 100.0 * deviation, kind=kind, hollow=True)
+        deviation = well.log_ratio - np.log(well_ratio(depth * inverse_temperature, width, outside))
+        style.points(
+            bottom, inverse_temperature + 0.02 * (kind - 1), 100.0 * deviation, kind=kind, hollow=True
+        )
     top.set_yscale("log")
     style.label_axes(top, y=r"$N_\mathrm{ads}/N_\mathrm{gas}$", legend="upper left")
     labels = r"inverse temperature $1/kT$", "deviation from\nexact (%)"

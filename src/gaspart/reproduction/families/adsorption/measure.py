@@ -81,7 +81,7 @@ class Holder:
             outside=high - low - width,
         )
 
-    def held(self, height: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+    def holds(self, height: np.ndarray, velocity: np.ndarray) -> np.ndarray:
         """Return True for particles in the well, or stuck.
 
         Only stuck particles have no velocity along x. The heights are of centres above the lowest position,
@@ -155,7 +155,7 @@ def adsorption(points: list[Point], settings: dict) -> xr.Dataset:
     (see `theory.adsorption.layer_activity`); filling_by_activity, the same with the gas's activity alone in
     the place of its pressure. `_freedom` are the degrees of freedom of the errors.
     """
-    dataset = table("point", points, _measured, settings, inner=("bin",))
+    dataset = table("point", points, _measure_point, settings, inner=("bin",))
     return dataset.assign_coords(speed=("bin", _speeds(settings).middles[0])).set_coords("experiment")
 
 
@@ -163,7 +163,7 @@ def _speeds(settings: dict) -> Grid:
     return Grid.line(0.0, _REACH, settings["bins"])
 
 
-def _measured(point: Point, settings: dict) -> dict[str, Any]:
+def _measure_point(point: Point, settings: dict) -> dict[str, Any]:
     """Return the values of one point."""
     holder = Holder.of(point)
     slow = holder.momentum / np.sqrt(holder.mass * holder.temperature) or 1.0
@@ -258,7 +258,7 @@ def counts_of(holder: Holder, height: np.ndarray, velocity: np.ndarray, settings
     from the well); the fluxes are of particles that leave near the wall, below the speed `slow`, and (bins,)
     by speed. `height` (T, N) are heights of centres above the lowest position, `velocity` (T, N) is along x.
     """
-    held = holder.held(height, velocity)
+    held = holder.holds(height, velocity)
     above = height - holder.width
     far = (above > 2.0 * holder.radius) & (above < holder.outside - 2.0 * holder.radius)
     leaving = ~held & (above < settings["near"]) & (velocity > 0.0)

@@ -107,6 +107,6 @@ def light_paths(point: Point, motion: BrownianMotion) -> Iterator[tuple[np.ndarr
     time = times.sample_interval * np.arange(frames + 1)
     size = min(point.replicas, MOST)
     ratio = motion.mass / motion.gas_mass
-    made = tagged_paths(speeds, times.sample_interval, hits, ratio, GROUPS * size)
+    paths = tagged_paths(speeds, times.sample_interval, hits, ratio, GROUPS * size)
     for group in np.split(np.arange(GROUPS * size), GROUPS):
-        yield time, made.displacements[:, group], made.velocities[:, group]
+        yield time, paths.displacements[:, group], paths.velocities[:, group]

@@ -81,10 +81,10 @@ def _langevin(time: np.ndarray) -> np.ndarray:
 def _displacement(axis: Axes, residual: Axes, sphere: Row, label: str, look: dict) -> None:
     """Draw the mean-squared displacement of one sphere, and its ratio to the Langevin equation."""
     time = sphere.time[np.isfinite(sphere.time)]
-    shown = np.unique(np.round(np.geomspace(1, time.size - 1, 16)).astype(int))
-    msd = sphere.msd[shown]
-    style.points(axis, time[shown], msd, label=label, **look)
-    style.points(residual, time[shown], msd / _langevin(time[shown]) - 1.0, **look)
+    frames = np.unique(np.round(np.geomspace(1, time.size - 1, 16)).astype(int))
+    msd = sphere.msd[frames]
+    style.points(axis, time[frames], msd, label=label, **look)
+    style.points(residual, time[frames], msd / _langevin(time[frames]) - 1.0, **look)
     if sphere.is_light:
         expected = sphere.expected_msd[1 : time.size] / _langevin(time[1:]) - 1.0
         residual.plot(time[1:], expected, color=style.COLOURS[look["kind"]], lw=0.8, zorder=2)
@@ -97,7 +97,7 @@ def _memory(axis: Axes, residual: Axes, sphere: Row, label: str, look: dict) -> 
         expected = sphere.expected_vacf[early] - np.exp(-sphere.time[early])
         line: dict[str, Any] = {"color": style.COLOURS[look["kind"]], "lw": 0.8, "zorder": 2}
         residual.plot(sphere.time[early], expected, **line)
-    shown = early[:: max(1, round(early.size / MOST))]
-    time, vacf = sphere.time[shown], sphere.vacf[shown]
+    frames = early[:: max(1, round(early.size / MOST))]
+    time, vacf = sphere.time[frames], sphere.vacf[frames]
     style.points(axis, time, vacf, label=label, **look)
     style.points(residual, time, vacf - np.exp(-time), **look)

@@ -39,7 +39,7 @@ NAMES = {
 """Columns of the numbers that are derived from measured paths; `friction` and `diffusion` are theory's."""
 
 
-def _followed(point: Point) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+def _read_paths(point: Point) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """Yield times (T,) of each replica, displacements and velocities of its first particle (T, 1, 3)."""
     if not point.settings.get("displacements", False):
         raise SceneError(f"experiments.{point.experiment}.displacements", False, "must be true")
@@ -60,13 +60,13 @@ def brownian_paths(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _ends(point: Point, paths: int) -> dict[str, Any]:
-    motion, found = motion_of(point), list(_followed(point))
-    ends = np.array([moved[-1, 0] for _, moved, _ in found])
-    duration = float(found[0][0][-1])
+    motion, trajectories = motion_of(point), list(_read_paths(point))
+    ends = np.array([moved[-1, 0] for _, moved, _ in trajectories])
+    duration = float(trajectories[0][0][-1])
     variance = _end_variance(point, motion, duration)
     return _facts(point, motion) | {
         "duration": duration,
-        "way": np.array([moved[:, 0] for _, moved, _ in found[:paths]]),
+        "way": np.array([moved[:, 0] for _, moved, _ in trajectories[:paths]]),
         "end_variance": variance,
         "end_chi_square": float((ends**2).sum() / variance),
         "end_freedom": ends.size,
@@ -106,21 +106,21 @@ def brownian_msd(points: list[Point], settings: dict) -> xr.Dataset:
 
 def _statistics(point: Point) -> dict[str, Any]:
     motion = motion_of(point)
-    curves, found = _reduced(point, motion, _followed(point))
+    curves, estimates = _reduce_curves(point, motion, _read_paths(point))
     time, row = curves["time"], _facts(point, motion) | curves
-    row |= {NAMES[name]: one for name, one in found.items()}
+    row |= {NAMES[name]: estimate for name, estimate in estimates.items()}
     if motion.is_light:
         infinite = replace(motion, share=0.0)
-        predicted, expected = _reduced(point, infinite, light_paths(point, motion))
+        predicted, expected = _reduce_curves(point, infinite, light_paths(point, motion))
         row |= {f"expected_{name}": predicted[name][0][: len(time)] for name in ("vacf", "msd")}
     else:
         row |= {"expected_vacf": np.exp(-time), "expected_msd": theory.langevin_msd(time, 1.0 / 6.0, 1.0)}
         exact = {"equipartition": 1.0, "friction": motion.friction, "diffusion": motion.diffusion}
         expected = {name: Estimate(value) for name, value in exact.items()}
-    return row | {f"expected_{name}": one for name, one in expected.items()}
+    return row | {f"expected_{name}": estimate for name, estimate in expected.items()}
 
 
-def _reduced(
+def _reduce_curves(
     point: Point, motion: BrownianMotion, paths: Iterable[tuple[np.ndarray, np.ndarray, np.ndarray]]
 ) -> tuple[dict[str, Any], dict[str, Estimate]]:
     """Compute the correlations of paths in reduced units, their errors, and derived quantities."""
@@ -133,8 +133,8 @@ def _reduced(
         raise SceneError(where, point.settings.get("duration"), f"must be {longer} or more")
     equilibrium = motion.temperature / motion.mass
     drift = rest * motion.share * equilibrium
-    vacf = np.array([one.correlation for one in curves]) - drift
-    msd = np.array([one.msd for one in curves]) - 3.0 * drift * curves[0].time ** 2
+    vacf = np.array([curve.correlation for curve in curves]) - drift
+    msd = np.array([curve.msd for curve in curves]) - 3.0 * drift * curves[0].time ** 2
     late = int(np.argmin(np.abs(time - DIFFUSION_AT)))
     early = time[1 : max(2, np.searchsorted(time, FRICTION_TO) + 1)]
     langevin = float(theory.langevin_msd(time[late], motion.diffusion, 1.0)) * rest**2 / rate

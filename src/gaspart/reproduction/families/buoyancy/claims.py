@@ -26,10 +26,14 @@ def buoyancy(ds: xr.Dataset) -> list[Claim]:
     """
     fixed, free, source = (Table.prefixed(ds, kind) for kind in ("fixed", "free", "source"))
     largest = Table(ds, "height").displaced.max()
-    return [*_fixed(fixed), *(_free(disc, largest) for disc in free), *(_source(source) if source else [])]
+    return [
+        *_claims_on_fixed(fixed),
+        *(_free(disc, largest) for disc in free),
+        *(_source(source) if source else []),
+    ]
 
 
-def _fixed(discs: Table) -> list[Claim]:
+def _claims_on_fixed(discs: Table) -> list[Claim]:
     """Return the claims on the force on fixed discs."""
     of_all = discs.force_radius.weights @ discs.radius_expected
     return [

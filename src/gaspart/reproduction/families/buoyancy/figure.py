@@ -17,7 +17,7 @@ def buoyancy(ds: xr.Dataset) -> Figure:
     fixed, free, source = (Table.prefixed(ds, kind) for kind in ("fixed", "free", "source"))
     figure, axes = style.new((2.1, 2.1), (2.1,), *([(2.1,)] if source else []))
     top, middle, bottom = axes[:3]
-    _displaced(top, middle, fixed, ds.attrs["size_ratio"])
+    _draw_displacement(top, middle, fixed, ds.attrs["size_ratio"])
     _heights(bottom, free, Table(ds, "height"))
     if source:
         _source(axes[3], source)
@@ -25,7 +25,7 @@ def buoyancy(ds: xr.Dataset) -> Figure:
     return figure
 
 
-def _displaced(top: Axes, middle: Axes, discs: Table, ratio: float) -> None:
+def _draw_displacement(top: Axes, middle: Axes, discs: Table, ratio: float) -> None:
     """Draw the mass that fixed discs displace, and the displaced radius, with theory.
 
     The radius follows from the force and from the small discs that are missing.

@@ -51,26 +51,26 @@ def buoyancy(points: list[Point], settings: dict) -> xr.Dataset:
     own = [point for point in points if point not in of_source]
     held = [point for point in own if point.scene.particles[0].fixed]
     moving = [point for point in own if point not in held]
-    fixed = table("fixed", held, _fixed, settings, inner=("place",))
-    place, ratio = field(held[0]), float(fixed["size_ratio"][0])
-    made = prefixed(
+    fixed = table("fixed", held, _measure_fixed, settings, inner=("place",))
+    column, ratio = field(held[0]), float(fixed["size_ratio"][0])
+    dataset = prefixed(
         fixed=fixed.drop_vars("fluid"),
         free=table("free", moving, _free, settings),
         source=table("source", sorted(of_source, key=_mass), _free, settings),
     )
     eta = fixed["fluid"].values.mean(axis=0)
-    made = made.assign(displaced=("height", eta * displaced_area(eta, ratio)), height=_heights(place))
-    return made.assign_attrs(
+    dataset = dataset.assign(displaced=("height", eta * displaced_area(eta, ratio)), height=_heights(column))
+    return dataset.assign_attrs(
         size_ratio=ratio,
-        strength=place.strength,
-        top=place.height,
+        strength=column.strength,
+        top=column.height,
         source_density=settings["source_density"],
     )
 
 
-def _heights(place: Field) -> np.ndarray:
+def _heights(column: Field) -> np.ndarray:
     """Return the heights of the curve of the displaced mass."""
-    return np.linspace(0.0, place.height, 201)
+    return np.linspace(0.0, column.height, 201)
 
 
 def _mass(point: Point) -> float:
@@ -83,68 +83,68 @@ def _of_blocks(function: Callable[..., Any], *samples: np.ndarray) -> Estimate:
     return Estimate(*jackknife(function, *samples), len(samples[0]) - 1)
 
 
-def _grid(place: Field, settings: dict) -> Grid:
-    return Grid.line(0.0, place.height, settings["bins"])
+def _grid(column: Field, settings: dict) -> Grid:
+    return Grid.line(0.0, column.height, settings["bins"])
 
 
-def _far(place: Field, stretch: Stretch, radius: float, settings: dict) -> np.ndarray:
+def _far(column: Field, stretch: Stretch, radius: float, settings: dict) -> np.ndarray:
     """Compute the density (B,) of small discs far from the large one, in bins of height.
 
     `radius` is the radius of the large disc.
     """
     across = np.abs(stretch.positions[..., 0] - stretch.positions[:, :1, 0])
-    distance = radius + settings["far"] * place.diameter
-    far = np.minimum(across, place.width - across) > distance
-    grid = _grid(place, settings)
+    distance = radius + settings["far"] * column.diameter
+    far = np.minimum(across, column.width - across) > distance
+    grid = _grid(column, settings)
     counts = grid.sums(grid.cells(stretch.heights[far][:, None]))
-    return counts / (len(stretch.heights) * (place.width - 2.0 * distance) * grid.volume)
+    return counts / (len(stretch.heights) * (column.width - 2.0 * distance) * grid.volume)
 
 
 def _fluid(
-    place: Field, density: np.ndarray, temperature: float, settings: dict
+    column: Field, density: np.ndarray, temperature: float, settings: dict
 ) -> Callable[[np.ndarray], float | np.ndarray]:
     """Return a function of height: the packing fraction by hydrostatics, without layers.
 
     The number of discs is the actual one.
     """
-    width = place.height / len(density)
-    skip = int(np.ceil(settings["clear"] * place.diameter / width))
+    width = column.height / len(density)
+    skip = int(np.ceil(settings["clear"] * column.diameter / width))
     z = np.linspace(skip * width, (len(density) - skip) * width, 1001)
-    weight = place.masses[-1] * place.strength / temperature
+    weight = column.masses[-1] * column.strength / temperature
     number = density[skip : len(density) - skip].sum() * width
-    lowest = hydrostatic_profiles(z, [number], [weight], 2, place.diameter)[0, 0]
-    eta = lowest * particle_volume(2, place.diameter)
+    lowest = hydrostatic_profiles(z, [number], [weight], 2, column.diameter)[0, 0]
+    eta = lowest * particle_volume(2, column.diameter)
     logarithm = np.log(eta) + excess_chemical_potential(eta, 2) + weight * z[0]
     return lambda height: packing_fraction_at(np.exp(logarithm - weight * height), 2)
 
 
-def _fixed(point: Point, settings: dict) -> dict:
+def _measure_fixed(point: Point, settings: dict) -> dict:
     """Measure force and effective radius of a fixed disc, and the fluid at its height.
 
     `fluid` is the packing fraction of the undisturbed fluid at `_heights`.
     """
-    place, found = field(point), stretches(point, settings["blocks"])
-    radius, height = _large(point, place)
-    ratio, volume = 2.0 * radius / place.diameter, particle_volume(2, place.diameter)
-    force = np.array([s.floor - s.ceiling - place.weight - s.gain for s in found])
-    displaced = force / (place.masses[-1] * place.strength)
-    density = np.array([_far(place, stretch, radius, settings) for stretch in found])
+    column, blocks = field(point), stretches(point, settings["blocks"])
+    radius, height = _large(point, column)
+    ratio, volume = 2.0 * radius / column.diameter, particle_volume(2, column.diameter)
+    force = np.array([s.floor - s.ceiling - column.weight - s.gain for s in blocks])
+    displaced = force / (column.masses[-1] * column.strength)
+    density = np.array([_far(column, stretch, radius, settings) for stretch in blocks])
     # One smooth profile for all blocks, scaled to each one's number: missing discs are counted relative to
     # it.
-    warm = float(np.mean([stretch.temperature for stretch in found]))
-    fluid = _fluid(place, density.mean(axis=0), warm, settings)
-    reach = radius + settings["near"] * place.diameter
+    warm = float(np.mean([stretch.temperature for stretch in blocks]))
+    fluid = _fluid(column, density.mean(axis=0), warm, settings)
+    reach = radius + settings["near"] * column.diameter
     across, up = _disc(reach)
     undisturbed = float((fluid(height + up) * across).sum() / volume)
-    inside = np.array([_inside(place, stretch, height, reach) for stretch in found])
+    inside = np.array([_inside(column, stretch, height, reach) for stretch in blocks])
     missing = undisturbed * density.sum(axis=1) / density.mean(axis=0).sum() - inside
     # The undisturbed density where the disc is: its mean over the disc's area.
-    [z] = _grid(place, settings).middles
+    [z] = _grid(column, settings).middles
     chord = np.sqrt(np.maximum(radius**2 - (z - height) ** 2, 0.0))
     there = density @ (chord / chord.sum())
 
     def radius_of(number: float, density: float) -> float:
-        return float(np.sqrt(number / (np.pi * density))) / (0.5 * place.diameter) - ratio
+        return float(np.sqrt(number / (np.pi * density))) / (0.5 * column.diameter) - ratio
 
     packing_fraction = mean_of(there * volume)
     return {
@@ -156,7 +156,7 @@ def _fixed(point: Point, settings: dict) -> dict:
         "radius_expected": float(np.sqrt(displaced_area(packing_fraction.value, ratio)) - ratio),
         "height": height,
         "size_ratio": ratio,
-        "fluid": fluid(_heights(place)),
+        "fluid": fluid(_heights(column)),
     }
 
 
@@ -166,10 +166,10 @@ def _disc(radius: float, points: int = 400) -> tuple[np.ndarray, np.ndarray]:
     return 2.0 * np.sqrt(radius**2 - up**2) * 2.0 * radius / points, up
 
 
-def _inside(place: Field, stretch: Stretch, height: float, radius: float) -> float:
+def _inside(column: Field, stretch: Stretch, height: float, radius: float) -> float:
     """Compute the mean number of small discs within `radius` of the large one's centre."""
     across = np.abs(stretch.positions[:, 1:, 0] - stretch.positions[:, :1, 0])
-    across = np.minimum(across, place.width - across)
+    across = np.minimum(across, column.width - across)
     square = across**2 + (stretch.heights[:, 1:] - height) ** 2
     return float((square < radius**2).sum(axis=1).mean())
 
@@ -179,36 +179,38 @@ def _free(point: Point, settings: dict) -> dict:
 
     The factor is of its weight and the displaced weight.
     """
-    place, found = field(point), stretches(point, settings["blocks"])
-    radius, _ = _large(point, place)
-    ratio, mass = 2.0 * radius / place.diameter, _mass(point)
-    warm = float(np.mean([stretch.temperature for stretch in found]))
-    fluid = _fluid(place, np.mean([_far(place, s, radius, settings) for s in found], axis=0), warm, settings)
-    margin = radius - 0.5 * place.diameter
-    z = np.linspace(margin, place.height - margin, 2001)
+    column, blocks = field(point), stretches(point, settings["blocks"])
+    radius, _ = _large(point, column)
+    ratio, mass = 2.0 * radius / column.diameter, _mass(point)
+    warm = float(np.mean([stretch.temperature for stretch in blocks]))
+    fluid = _fluid(
+        column, np.mean([_far(column, s, radius, settings) for s in blocks], axis=0), warm, settings
+    )
+    margin = radius - 0.5 * column.diameter
+    z = np.linspace(margin, column.height - margin, 2001)
     # The forces are integrated, not the work's differences taken: that of the fluid's pressure, by far the
     # largest, is then exact, and only the edge's relies on scaled-particle theory.
     eta = fluid(z)
-    force = place.masses[-1] * eta * displaced_area(eta, ratio) - mass
-    exponent = np.cumsum(force) * (z[1] - z[0]) * place.strength / warm
+    force = column.masses[-1] * eta * displaced_area(eta, ratio) - mass
+    exponent = np.cumsum(force) * (z[1] - z[0]) * column.strength / warm
     chance = np.exp(exponent - exponent.max())
     chance /= chance.sum()
     expected = chance @ z
-    height, square = np.array([[s.heights[:, 0].mean(), (s.heights[:, 0] ** 2).mean()] for s in found]).T
+    height, square = np.array([[s.heights[:, 0].mean(), (s.heights[:, 0] ** 2).mean()] for s in blocks]).T
     spread = _of_blocks(lambda mean, square: math.sqrt(max(square - mean**2, 0.0)), height, square)
     return {
-        "mass": mass / place.masses[-1],
+        "mass": mass / column.masses[-1],
         "height": mean_of(height),
         "spread": (spread.value, spread.error),
         "expected": expected,
         "expected_spread": np.sqrt(chance @ (z - expected) ** 2),
         "lowest": margin,
-        "highest": place.height - margin,
+        "highest": column.height - margin,
         "density": mass / (np.pi * radius**2),
     }
 
 
-def _large(point: Point, place: Field) -> tuple[float, float]:
+def _large(point: Point, column: Field) -> tuple[float, float]:
     """Return the radius of the large disc, and its height in the scene file."""
     particle = point.scene.particles[0]
-    return particle.radius, particle.position[1] - 0.5 * place.diameter
+    return particle.radius, particle.position[1] - 0.5 * column.diameter

@@ -49,7 +49,7 @@ def _by_count(axis: Axes, runs: Table, models: Table, fractions: list[float]) ->
         style.points(axis, gas.count, gas.speed, kind=kind, hollow=copies > 1, label=_once(label, named))
         if copies == 1:
             count = np.geomspace(max(gas.count.min(), SLABS.get(engine, 0)), gas.count.max(), 100)
-            speed = _modelled(models, gas[0], 2.0, count)
+            speed = _model_speed(models, gas[0], 2.0, count)
             if np.isfinite(speed).all():
                 axis.plot(count, speed, color=style.COLOURS[kind], linewidth=0.8, label=_once("model", named))
     style.level(axis, 1.0)
@@ -74,11 +74,11 @@ def _by_cores(axis: Axes, runs: Table, models: Table, available: int) -> None:
         style.points(axis, gas.cores, gas.speed, kind=kind, hollow=at_once, label=label)
         if not at_once and widest.engine not in SLABS:
             for part, dashes in ((fine <= available, "-"), (fine >= available, ":")):
-                speed = _modelled(models, widest, fine[part], widest.count)
+                speed = _model_speed(models, widest, fine[part], widest.count)
                 axis.plot(fine[part], speed, dashes, color=style.COLOURS[kind], linewidth=0.8)
-    place = f"cores (dotted: beyond the {available} of this machine)"
+    cores = f"cores (dotted: beyond the {available} of this machine)"
     style.label_axes(
-        axis, place, _LABEL, legend="upper left", xlim=(0.8, _MOST + 0.2), ylim=(0.0, _MOST + 0.5)
+        axis, cores, _LABEL, legend="upper left", xlim=(0.8, _MOST + 0.2), ylim=(0.0, _MOST + 0.5)
     )
 
 
@@ -89,7 +89,7 @@ def _once(label: str, named: set[str]) -> str:
     return label if new else ""
 
 
-def _modelled(models: Table, run: Row, cores: float | np.ndarray, count: float | np.ndarray) -> np.ndarray:
+def _model_speed(models: Table, run: Row, cores: float | np.ndarray, count: float | np.ndarray) -> np.ndarray:
     """Compute the speed of a run's gas and engine by the model.
 
     The numbers of cores and particles are given.

@@ -30,7 +30,7 @@ def cores(points: list[Point], settings: dict) -> xr.Dataset:
 
     Over run: engine, packing_fraction, count of particles; copies, the number of runs at once, 1 for threads;
     cores used; speed, the work in a time divided by the work of one run on one core, NaN where the machine
-    has too few; same, 1 if all bits are those of one core. Over model, each gas and engine with threads:
+    has too few; same, 1 if all bits equal the bits on one core. Over model, each gas and engine with threads:
     engine, packing_fraction, and serial and overhead of `speed_up`. The attribute cores is the number of the
     machine, for kernels; waiting is the fraction of their time for which runs at once waited for a core, NaN
     if no such runs were timed.
@@ -38,7 +38,7 @@ def cores(points: list[Point], settings: dict) -> xr.Dataset:
     jobs = [_job(point) for point in points]
     waits = [job.pop("waiting") for job in jobs]
     available = max(job.pop("available") for job in jobs)
-    waiting = float(np.mean([one for one in waits if math.isfinite(one)] or [math.nan]))
+    waiting = float(np.mean([wait for wait in waits if math.isfinite(wait)] or [math.nan]))
     for job in jobs:
         own = job["speed"]
         job["speed"] = Estimate(own.value, math.hypot(own.error, job["cores"] * waiting))
@@ -86,14 +86,14 @@ def _model(gas: Table) -> dict:
     if engine in SLABS:
         used &= (gas.count >= SLABS[engine]) & (gas.cores == 2)
     timed = gas[used]
-    found = {"serial": Estimate(math.nan, math.nan), "overhead": Estimate(math.nan, math.nan)}
+    coefficients = {"serial": Estimate(math.nan, math.nan), "overhead": Estimate(math.nan, math.nan)}
     if len(timed) > 1:
         parts = np.stack([1.0 - 1.0 / timed.cores, 1.0 / timed.count], axis=1)
         lost = 1.0 / timed.speed - 1.0 / timed.cores
         costly = nnls(parts / lost.error[:, None], lost.value / lost.error)[0] > 0.0
-        found = dict.fromkeys(found, Estimate(0.0))
+        coefficients = dict.fromkeys(coefficients, Estimate(0.0))
         if costly.any():
             fit = weights(lost, *parts[:, costly].T)
             values = map(Estimate, fit.values, fit.errors)
-            found |= dict(zip(compress(found, costly), values, strict=True))
-    return {"engine": engine, "packing_fraction": gas.packing_fraction[0], **found}
+            coefficients |= dict(zip(compress(coefficients, costly), values, strict=True))
+    return {"engine": engine, "packing_fraction": gas.packing_fraction[0], **coefficients}

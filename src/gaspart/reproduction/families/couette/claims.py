@@ -42,7 +42,7 @@ def couette(ds: xr.Dataset) -> list[Claim]:
     The viscosity follows from the response.
     """
     gases = Table(ds, "point")
-    gases = gases.assign(gas=[_named(gas) for gas in gases])
+    gases = gases.assign(gas=[_name_gas(gas) for gas in gases])
     flows, sheared, still = (gases[gases.part == name] for name in ("flows", "sheared", "equilibrium"))
     narrow, wide = flows[flows.knudsen > FREE], flows[flows.knudsen < SLIP_FLOW]
     slow, fast = wide[wide.speed < FAST], wide[wide.speed > FAST]
@@ -58,7 +58,7 @@ def couette(ds: xr.Dataset) -> list[Claim]:
     ]
 
 
-def _named(gas: Row) -> str:
+def _name_gas(gas: Row) -> str:
     """Return the name of a gas: its engine and gap, or its density."""
     if gas.packing_fraction < DILUTE_SLIP:
         return f"dilute spheres, mean free path {gas.knudsen:.2g} of the gap, {gas.engine} engine"

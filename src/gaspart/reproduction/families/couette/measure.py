@@ -80,7 +80,7 @@ class FlowBetweenPlates:
     diameter : diameter of the spheres.
     dilute : True if they take no volume, as in DSMC.
     coarse : viscosity by the engine's cells and steps divided by the exact one.
-    place : (B,), positions of the bins.
+    position : (B,), positions of the bins.
     middle : (B,), bins that are clear of the walls.
     """
 
@@ -89,7 +89,7 @@ class FlowBetweenPlates:
     diameter: float
     dilute: bool
     coarse: float
-    place: np.ndarray
+    position: np.ndarray
     middle: np.ndarray
 
     @classmethod
@@ -98,11 +98,11 @@ class FlowBetweenPlates:
         scene = point.scene
         gap, diameter, dilute = Gap.of(scene), 2.0 * scene.smallest_radius, point.engine.equation != "exact"
         path = float(_path(scene.count / (gap.length * gap.area), diameter, dilute))
-        place = gap.grid(settings["bins"]).middles[0] - 0.5 * gap.length
+        position = gap.grid(settings["bins"]).middles[0] - 0.5 * gap.length
         clear = min(settings["clear"] * max(path, 0.0 if dilute else diameter), gap.length / 3.0)
         coarse = _coarseness(point, gap, path) if dilute else 1.0
-        middle = np.abs(place) < 0.5 * gap.length - clear
-        return cls(gap, _speed(scene), diameter, dilute, coarse, place, middle)
+        middle = np.abs(position) < 0.5 * gap.length - clear
+        return cls(gap, _speed(scene), diameter, dilute, coarse, position, middle)
 
     def packing_fraction(self, density: float) -> float:
         """Return the packing fraction that theory uses at a number density."""
@@ -161,17 +161,19 @@ class Averages:
 
 def _blocks(point: Point, gap: Gap, blocks: int, bins: int) -> Averages:
     """Return averages over the measured part of all replicas, each cut into `blocks`."""
-    found = [_blocks_of(run, gap, blocks, bins) for run in runs(point)]
-    return Averages(*(np.concatenate([getattr(one, key) for one in found]) for key in vars(found[0])))
+    replicas = [_blocks_of(run, gap, blocks, bins) for run in runs(point)]
+    return Averages(
+        *(np.concatenate([getattr(replica, key) for replica in replicas]) for key in vars(replicas[0]))
+    )
 
 
 def _blocks_of(run: Run, gap: Gap, blocks: int, bins: int) -> Averages:
     parts, grid, walls = Blocks(run, blocks), gap.grid(bins), slice(0, 2)
     volume, radius = parts.length * gap.area * grid.volume, run.scene.smallest_radius
-    places, velocities = run.positions[:, :, 0] - radius, run.velocities
+    positions, velocities = run.positions[:, :, 0] - radius, run.velocities
     along = velocities[parts.ends, :, 1]
-    moment = (along * (places[parts.ends] - 0.5 * gap.length)).sum(axis=1)
-    cells = grid.cells(places[..., None], inside=True)
+    moment = (along * (positions[parts.ends] - 0.5 * gap.length)).sum(axis=1)
+    cells = grid.cells(positions[..., None], inside=True)
     shear = parts.growth("wall_shear")[:, walls, 1]
 
     def total(weights: np.ndarray | None) -> np.ndarray:
@@ -197,7 +199,9 @@ def _flow(point: Point, settings: dict) -> dict[str, Any]:
     def numbers(*means: Any) -> np.ndarray:
         return _numbers(setting, *means)
 
-    found = Estimate(*jackknife(numbers, blocks.steady, blocks.pressure, *profiles), len(blocks.stress) - 1)
+    estimates = Estimate(
+        *jackknife(numbers, blocks.steady, blocks.pressure, *profiles), len(blocks.stress) - 1
+    )
     (flow, temperature), (flow_error, temperature_error) = jackknife(
         lambda *means: np.stack(_profile(*means)[:2]), *profiles
     )
@@ -206,9 +210,9 @@ def _flow(point: Point, settings: dict) -> dict[str, Any]:
         "packing_fraction": setting.packing_fraction(blocks.density[:, setting.middle].mean()),
         "knudsen": _path(density, setting.diameter, setting.dilute) / gap.length,
         "speed": speed,
-        "stress": found[0] / float(theory.free_molecular_stress(density, speed, gap.hot)),
-        **dict(zip(NUMBERS, found[1:], strict=True)),
-        "place": setting.place / gap.length,
+        "stress": estimates[0] / float(theory.free_molecular_stress(density, speed, gap.hot)),
+        **dict(zip(NUMBERS, estimates[1:], strict=True)),
+        "place": setting.position / gap.length,
         "flow": (flow / speed, flow_error / speed),
         "temperature": (temperature / gap.hot, temperature_error / gap.hot),
     }
@@ -232,7 +236,7 @@ def _numbers(setting: FlowBetweenPlates, stress: float, pressure: float, *averag
     """
     density, middle = averages[0], setting.middle
     velocity, temperature, energies = _profile(*averages)
-    weight, x = density[middle], setting.place[middle]
+    weight, x = density[middle], setting.position[middle]
     weight = weight / weight.sum()
     u, warmth, mean = velocity[middle], temperature[middle], float(density[middle].mean())
     within, gradient = float(weight @ temperature[middle]), _slope(x, u, weight)

@@ -33,9 +33,9 @@ def uniform(point: Point, blocks: int) -> dict[str, Any]:
     series = [
         np.concatenate(parts) for parts in zip(*(_blocks(run, blocks) for run in runs(point)), strict=True)
     ]
-    found = Estimate(*jackknife(_numbers, *series), len(series[0]) - 1)
+    estimates = Estimate(*jackknife(_numbers, *series), len(series[0]) - 1)
     names = ("viscosity", "reduced_rate", *(f"normal_{name}" for name in _AXES))
-    return {"packing_fraction": scene.packing_fraction, **dict(zip(names, found, strict=True))}
+    return {"packing_fraction": scene.packing_fraction, **dict(zip(names, estimates, strict=True))}
 
 
 def _blocks(run: Run, blocks: int) -> tuple[np.ndarray, np.ndarray]:

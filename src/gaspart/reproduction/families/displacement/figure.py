@@ -23,8 +23,8 @@ def msd_spheres(ds: xr.Dataset) -> Figure:
     points = Table(ds, "point")
     _displacement(axes[0], points)
     fine = np.isfinite(points.integral_difference.value)
-    shown = np.isin(points.packing_fraction.round(6), _fractions(points)) & (points.largest | fine)
-    _running(axes[1], points[shown])
+    mask = np.isin(points.packing_fraction.round(6), _fractions(points)) & (points.largest | fine)
+    _running(axes[1], points[mask])
     _density(axes[2], points[points.largest].sorted_by("packing_fraction"))
     _size(axes[3], points[points.in_series])
     style.letters(*axes)
@@ -104,7 +104,7 @@ def _running(axis: Axes, points: Table) -> None:
                 until = run.time[1 : integral.size]
                 axis.plot(rate * until, integral[1:] / enskog, color=style.COLOURS[kind], lw=0.8)
             elif dimension == 2:
-                _predicted(axis, run, eta, kind)
+                _draw_prediction(axis, run, eta, kind)
     x = np.geomspace(*axis.get_xlim(), 200)
     enskog, rate = _enskog(fractions[0], dimension)
     decay = 1.0 / (enskog * rate)  # per collision: the same at every packing fraction
@@ -122,12 +122,12 @@ def _enskog(eta: float, dimension: int) -> tuple[float, float]:
     return float(theory.enskog_diffusion(eta, dimension)), float(theory.collision_rate(eta, dimension))
 
 
-def _predicted(axis: Axes, run: Row, eta: float, kind: int) -> None:
+def _draw_prediction(axis: Axes, run: Row, eta: float, kind: int) -> None:
     """Draw the logarithm's predicted slope over the fitted interval, through D(t) in its middle."""
     enskog, rate = _enskog(eta, 2)
-    ends, known = np.array([run.fit_from, run.fit_to]), np.isfinite(run.time)
+    ends, finite = np.array([run.fit_from, run.fit_to]), np.isfinite(run.time)
     middle = np.sqrt(ends.prod())
-    height = np.interp(middle, run.time[known], run.running.value[known])
+    height = np.interp(middle, run.time[finite], run.running.value[finite])
     values = height + float(theory.logarithmic_slope(eta)) * np.log(ends / middle)
     axis.plot(rate * ends, values / enskog, color=style.COLOURS[kind], lw=1.6, alpha=0.5, zorder=2)
 
@@ -161,31 +161,35 @@ def _size(axis: Axes, sizes: Table) -> None:
     axis.plot(x, fit, color=style.DATA, lw=0.8, label="fit")
     hydrodynamic = sizes.size_limit - first.correction * first.side * x
     axis.plot(x, hydrodynamic, color=style.REFERENCE, ls="--", label="Yeh & Hummer's slope")
-    known = float(theory.erpenbeck_wood_diffusion(eta)) * Estimate([1.0], theory.ERPENBECK_WOOD_UNCERTAINTY)
+    literature = float(theory.erpenbeck_wood_diffusion(eta)) * Estimate(
+        [1.0], theory.ERPENBECK_WOOD_UNCERTAINTY
+    )
     look: dict[str, Any] = {
         "color": style.REFERENCE,
         "marker": "s",
         "clip_on": False,
         "label": "Erpenbeck & Wood",
     }
-    style.points(axis, [0.0], known, **look)
+    style.points(axis, [0.0], literature, **look)
     style.points(axis, inverse, sizes.diffusion, color=style.DATA, label=rf"$\eta={eta:g}$")
-    for place, size in zip(inverse, sizes, strict=True):
-        at = (place, size.diffusion.value)
+    for abscissa, size in zip(inverse, sizes, strict=True):
+        at = (abscissa, size.diffusion.value)
         axis.annotate(f"{size.count:.0f}", at, (3, 5), textcoords="offset points")
     axis.set_xlim(0.0, x[-1])
     style.label_axes(axis, r"$\sigma/L$", r"$D_L\ (\sigma\sqrt{k_\mathrm{B}T/m})$", "upper right")
 
 
 def _slopes(axis: Axes, long: Table) -> None:
-    """Slope of D(t) against ln t over packing fraction, with mode coupling's: of an infinite system, and of
-    the modes that fit into the container."""
+    """Draw the slope of D(t) against ln t over the packing fraction, and mode coupling's predictions.
+
+    They are for an infinite system, and for the modes that fit into the container.
+    """
     eta = long.packing_fraction
     curve = np.linspace(0.5 * eta.min(), 1.1 * eta.max(), 100)
     axis.plot(curve, theory.logarithmic_slope(curve), color=style.REFERENCE, label="infinite system")
-    known = long[np.isfinite(long.slope_expected)]
+    predicted = long[np.isfinite(long.slope_expected)]
     look: dict[str, Any] = {"color": style.REFERENCE, "label": "this container", "zorder": 4}
-    axis.plot(known.packing_fraction, known.slope_expected, "x", **look)
+    axis.plot(predicted.packing_fraction, predicted.slope_expected, "x", **look)
     style.points(axis, eta, long.logarithmic_slope, color=style.DATA, label="measured")
     axis.set_ylim(0.0)
     slope = r"$\mathrm{d}D/\mathrm{d}\ln t\ (\sigma\sqrt{k_\mathrm{B}T/m})$"

@@ -66,10 +66,10 @@ def replicas(point: Point, longest: float) -> list[Curves]:
         raise SceneError(f"{where}.displacements", False, "must be true")
     if point.replicas < 2:
         raise SceneError(f"{where}.replicas", point.replicas, "must be at least 2")
-    found = [reduced_curves(point, path, longest) for path in point.replica_paths]
+    curves = [reduced_curves(point, path, longest) for path in point.replica_paths]
     # Temperatures differ a little, so the last lag may.
-    shortest = min(len(one.time) for one in found)
-    return [Curves(*(array[:shortest] for array in vars(one).values())) for one in found]
+    shortest = min(len(curve.time) for curve in curves)
+    return [Curves(*(array[:shortest] for array in vars(curve).values())) for curve in curves]
 
 
 def msd_spheres(points: list[Point], settings: dict) -> xr.Dataset:
@@ -87,8 +87,8 @@ def msd_spheres(points: list[Point], settings: dict) -> xr.Dataset:
     eta, long = runs.packing_fraction.round(6), np.isfinite(runs.diffusion.value)
     same = long & long[:, None] & (eta == eta[:, None])
     most = np.where(same, runs.count, 0).max(axis=1) == runs.count
-    made = runs.assign(largest=long & most, in_series=long & (same.sum(axis=1) >= 3))
-    return size_series(made.dataset)
+    runs = runs.assign(largest=long & most, in_series=long & (same.sum(axis=1) >= 3))
+    return size_series(runs.dataset)
 
 
 def size_series(dataset: xr.Dataset) -> xr.Dataset:
@@ -103,8 +103,8 @@ def size_series(dataset: xr.Dataset) -> xr.Dataset:
     inverse, predicted = 1.0 / sizes.side, -sizes.correction[0] * sizes.side[0]
     fit = fit_polynomial(inverse, sizes.diffusion)
     limit = fit_polynomial(inverse, sizes.diffusion, powers=(0,), fixed={1: predicted}).values[0]
-    found = {"size_intercept": fit.estimate(0), "size_slope": fit.estimate(1)}
-    return dataset.assign(entries(found) | {"size_limit": float(limit)})
+    coefficients = {"size_intercept": fit.estimate(0), "size_slope": fit.estimate(1)}
+    return dataset.assign(entries(coefficients) | {"size_limit": float(limit)})
 
 
 def msd_discs(points: list[Point], settings: dict) -> xr.Dataset:
@@ -136,15 +136,15 @@ def _state(point: Point) -> dict[str, Any]:
 
 def _common(point: Point, state: dict, curves: list[Curves]) -> dict[str, Any]:
     """Return the columns of every point: state, sampling in collisions per particle, curves."""
-    time = np.mean([one.time for one in curves], axis=0)
+    time = np.mean([curve.time for curve in curves], axis=0)
     rate = state["collision_rate"]
     row = state | {
         "experiment": point.experiment,
         "replicas": len(curves),
         "interval": time[1] * rate,
         "time": time,
-        "msd": _mean([one.msd for one in curves]),
-        "running": _mean([one.running for one in curves]),
+        "msd": _mean([curve.msd for curve in curves]),
+        "running": _mean([curve.running for curve in curves]),
     }
     if row["interval"] <= SHORT_INTERVAL:
         return row | _green_kubo(curves, rate, point.settings["dimension"])
@@ -168,8 +168,8 @@ def spheres(point: Point) -> dict[str, Any]:
     start = max(LINEAR_FROM / state["collision_rate"], SETTLE_SHEAR_TIMES * state["shear_time"])
     factor = state["count"] / (state["count"] - 1.0)
     curves = [
-        Curves(one.time, factor * one.msd, factor * one.correlation, factor * one.running)
-        for one in replicas(point, 2.0 * start)
+        Curves(curve.time, factor * curve.msd, factor * curve.correlation, factor * curve.running)
+        for curve in replicas(point, 2.0 * start)
     ]
     row = _common(point, state, curves)
     if row["interval"] <= SHORT_INTERVAL:
@@ -177,13 +177,13 @@ def spheres(point: Point) -> dict[str, Any]:
     time = row["time"]
     if time[-1] + time[1] < 2.0 * start:
         where = f"experiments.{point.experiment}[{point.name}]: collisions per particle"
-        needed = math.ceil(4.0 * start * state["collision_rate"])
-        rule = f"must be {needed} or more, and `lags` reach half of it, for a straight stretch of the msd"
+        collisions = math.ceil(4.0 * start * state["collision_rate"])
+        rule = f"must be {collisions} or more, and `lags` reach half of it, for a straight stretch of the msd"
         raise SceneError(where, round(point.schedule.samples * row["interval"]), rule)
     slopes = []
-    for one in curves:
-        inside = between(one.time, start, 2.0 * start)
-        slopes.append(line(one.time[inside], one.msd[inside]) / 6.0)
+    for curve in curves:
+        inside = between(curve.time, start, 2.0 * start)
+        slopes.append(line(curve.time[inside], curve.msd[inside]) / 6.0)
     diffusion = _mean(slopes)
     carried = float(theory.number_density(state["packing_fraction"], 3)) * diffusion.value
     correction = float(theory.yeh_hummer(state["side"], state["viscosity"] + carried))
@@ -214,20 +214,20 @@ def _discs(point: Point) -> dict[str, Any]:
     share = 1.0 / state["count"]
     curves = [
         Curves(
-            one.time,
-            one.msd + 2.0 * share * one.time**2,
-            one.correlation + share,
-            one.running + share * one.time,
+            curve.time,
+            curve.msd + 2.0 * share * curve.time**2,
+            curve.correlation + share,
+            curve.running + share * curve.time,
         )
-        for one in replicas(point, stop)
+        for curve in replicas(point, stop)
     ]
     row = _common(point, state, curves)
     if row["interval"] <= SHORT_INTERVAL:
         return row | {"logarithmic_slope": ABSENT, "slope_expected": math.nan}
     slopes = []
-    for one in curves:
-        inside = between(one.time, start, stop)
-        slopes.append(line(np.log(one.time[inside]), one.running[inside]))
+    for curve in curves:
+        inside = between(curve.time, start, stop)
+        slopes.append(line(np.log(curve.time[inside]), curve.running[inside]))
     time = row["time"][between(row["time"], start, stop)]
     running = theory.diffusion_modes(time, state["packing_fraction"], 2, state["count"])
     expected = line(np.log(time), running)
@@ -242,15 +242,15 @@ def _green_kubo(curves: list[Curves], rate: float, dimension: int) -> dict[str, 
     by a line from GREEN_KUBO_FROM to GREEN_KUBO_TO collisions per particle; the first from velocities alone,
     the second from displacements alone.
     """
-    integrals = [cumulative_simpson(one.correlation, x=one.time, initial=0.0) for one in curves]
+    integrals = [cumulative_simpson(curve.correlation, x=curve.time, initial=0.0) for curve in curves]
     differences = []
-    for one, integral in zip(curves, integrals, strict=True):
-        inside = between(one.time * rate, GREEN_KUBO_FROM, GREEN_KUBO_TO)
-        twice = cumulative_simpson(integral, x=one.time, initial=0.0)
-        einstein = line(one.time[inside], one.msd[inside]) / (2.0 * dimension)
-        differences.append(line(one.time[inside], twice[inside]) / einstein - 1.0)
+    for curve, integral in zip(curves, integrals, strict=True):
+        inside = between(curve.time * rate, GREEN_KUBO_FROM, GREEN_KUBO_TO)
+        twice = cumulative_simpson(integral, x=curve.time, initial=0.0)
+        einstein = line(curve.time[inside], curve.msd[inside]) / (2.0 * dimension)
+        differences.append(line(curve.time[inside], twice[inside]) / einstein - 1.0)
     return {
-        "correlation": _mean([one.correlation for one in curves]),
+        "correlation": _mean([curve.correlation for curve in curves]),
         "integral": _mean(integrals),
         "integral_difference": _mean(differences),
     }

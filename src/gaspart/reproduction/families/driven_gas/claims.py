@@ -26,7 +26,7 @@ def driven_gas(ds: xr.Dataset) -> list[Claim]:
     """
     gases = Table(ds, "gas")
     claims = [claim for gas in gases for claim in _of_gas(gas)]
-    return claims + [_heated(own, dimension) for dimension, own in gases.by("dimension")]
+    return claims + [_claim_cumulants(own, dimension) for dimension, own in gases.by("dimension")]
 
 
 def _of_gas(gas: Row) -> list[Claim]:
@@ -64,7 +64,7 @@ def _of_gas(gas: Row) -> list[Claim]:
     ]
 
 
-def _heated(gases: Table, dimension: int) -> Claim:
+def _claim_cumulants(gases: Table, dimension: int) -> Claim:
     """Return the claim on the cumulants of all gases of a dimension, by least squares.
 
     A single gas does not decide.

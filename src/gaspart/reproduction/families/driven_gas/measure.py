@@ -52,4 +52,4 @@ def _gas(point: Point) -> dict[str, Any]:
         "count": scene.count,
         "power": scene.thermostat.power,
     }
-    return row | {name: mean_of([one[name] for one in replicas]) for name in replicas[0]}
+    return row | {name: mean_of([replica[name] for replica in replicas]) for name in replicas[0]}

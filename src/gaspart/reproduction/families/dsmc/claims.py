@@ -38,24 +38,27 @@ def dsmc_convergence(dataset: xr.Dataset) -> list[Claim]:
     return [
         *(_limit(quantity, own) for quantity, own in of.items()),
         _narrow_cells(gases),
-        *(_of_steps(quantity, of[quantity], known) for quantity, known in STEP_COEFFICIENTS.items()),
+        *(
+            _of_steps(quantity, of[quantity], coefficient)
+            for quantity, coefficient in STEP_COEFFICIENTS.items()
+        ),
         _wide_cells(parts["paths"]),
         *_dense(parts["dense"]),
         *_plates(parts["plates"], parts["event_plates"]),
     ]
 
 
-def _predicted(gases: Table, quantity: str) -> np.ndarray:
+def _predict(gases: Table, quantity: str) -> np.ndarray:
     """Compute a transport coefficient over the exact one, by cells and steps, shape (points,)."""
     return np.asarray(cell_factor(quantity, gases.width) * step_factor(quantity, gases.step))
 
 
 def _limit(quantity: str, gases: Table) -> Claim:
     """Return the claim on the coefficient of narrow cells and short steps."""
-    fine = gases[_predicted(gases, quantity) < 1.0 + SEEN]
+    fine = gases[_predict(gases, quantity) < 1.0 + SEEN]
     return Claim(
         claim=f"{quantity} over Chapman and Enskog's, with narrow cells and short steps",
-        measured=combine_estimates(getattr(fine, quantity) / _predicted(fine, quantity)),
+        measured=combine_estimates(getattr(fine, quantity) / _predict(fine, quantity)),
         expected=1.0,
         required=0.02,
         source="[Chapman 1970], with the Sonine polynomials that matter",
@@ -99,7 +102,7 @@ def _wide_cells(paths: Table) -> Claim:
     wide = paths[paths.width > WIDE]
     return Claim(
         claim=f"diffusion over Chapman and Enskog's, with cells wider than {WIDE:g} mean free paths",
-        measured=combine_estimates(wide.diffusion / _predicted(wide, "diffusion")),
+        measured=combine_estimates(wide.diffusion / _predict(wide, "diffusion")),
         expected=1.0,
         required=0.01,
         source="a particle's own displacement passes nothing on",
@@ -114,14 +117,14 @@ def _dense(gases: Table) -> list[Claim]:
     The model is compared with its own equation.
     """
     where = "in the Enskog model at packing fraction {packing_fraction:g}"
-    given: dict[str, Any] = {
+    common: dict[str, Any] = {
         "expected": 1.0,
         "required": 0.003,
         "source": "the contact value of Carnahan and Starling, which the model is given",
         "fails_if": "a wrong chance to collide, or a loss of pairs that approach",
     }
-    excess = each(gases, f"Z - 1 over Carnahan and Starling's {where}", measured=gases.excess, **given)
-    rate = each(gases, f"collision rate over Enskog's {where}", measured=gases.rate, **given)
+    excess = each(gases, f"Z - 1 over Carnahan and Starling's {where}", measured=gases.excess, **common)
+    rate = each(gases, f"collision rate over Enskog's {where}", measured=gases.rate, **common)
     diffusion = each(
         gases,
         f"diffusion over Enskog's {where}",

@@ -129,11 +129,11 @@ def _fluxes(point: Point, settings: dict) -> dict[str, Any]:
         "transfer": (("collisional", "rotational"), share * theory.enskog_viscosity(NONE, 3, **gas.particle)),
         "conductivity": (("heat",), heat * theory.enskog_conductivity(NONE, 3, **gas.particle)),
     }
-    found: dict[str, list[float]] = {name: [] for name in exact}
+    ratios: dict[str, list[float]] = {name: [] for name in exact}
     for run in _runs(point):
         for name, (fluxes, value) in exact.items():
-            found[name] += list(np.sum([green_kubo(run, flux)[:, -1] for flux in fluxes], axis=0) / value)
-    return {**_resolution(point), **{name: mean_of(values) for name, values in found.items()}}
+            ratios[name] += list(np.sum([green_kubo(run, flux)[:, -1] for flux in fluxes], axis=0) / value)
+    return {**_resolution(point), **{name: mean_of(values) for name, values in ratios.items()}}
 
 
 def _running_diffusion(point: Point) -> np.ndarray:
@@ -166,11 +166,11 @@ def _dense(point: Point, settings: dict) -> dict[str, Any]:
     excess = float(theory.carnahan_starling(eta)) - 1.0
     contact = excess / (4.0 * eta)
     rate = float(theory.collision_rate(eta, 3) / theory.contact_value(eta, 3)) * contact
-    found = [series_of(run) for run in _runs(point)]
+    series = [series_of(run) for run in _runs(point)]
     return {
         "packing_fraction": eta,
-        "excess": mean_of([(one.z.mean() - 1.0) / (partners * excess) for one in found]),
-        "rate": mean_of([one.rate.mean() / (partners * approach * rate) for one in found]),
+        "excess": mean_of([(replica.z.mean() - 1.0) / (partners * excess) for replica in series]),
+        "rate": mean_of([replica.rate.mean() / (partners * approach * rate) for replica in series]),
         "diffusion": mean_of(_running_diffusion(point) * contact),
     }
 

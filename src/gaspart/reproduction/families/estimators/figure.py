@@ -20,8 +20,8 @@ def estimators(dataset: xr.Dataset) -> Figure:
     for kind, (width, rows) in enumerate(cases.by("width")):
         rows = rows.sorted_by("packing_fraction")
         name = f"bins of {width:g} diameters"
-        for axis, found in ((everywhere, rows.mixture), (at_walls, rows.at_walls)):
-            style.points(axis, rows.packing_fraction, found, kind=kind, label=name)
+        for axis, ratio in ((everywhere, rows.mixture), (at_walls, rows.at_walls)):
+            style.points(axis, rows.packing_fraction, ratio, kind=kind, label=name)
     once = cases[cases.width == cases.width.min()].sorted_by("packing_fraction")
     style.points(pressure, once.packing_fraction, once.pressure, kind=0, label="both walls")
     for axis, where in zip(axes, ("all bins", "bins at the walls", "pressure"), strict=True):

@@ -46,19 +46,19 @@ def estimators(points: list[Point], settings: dict) -> xr.Dataset:
 def _row(case: tuple[Point, float]) -> dict[str, Any]:
     point, width = case
     diameter = 2.0 * point.scene.largest_radius
-    found = [_compared(run, width * diameter) | pressures_of(run) for run in runs(point)]
-    rows = {name: mean_of([one[name] for one in found]) for name in found[0]}
+    replicas = [_compare(run, width * diameter) | pressures_of(run) for run in runs(point)]
+    rows = {name: mean_of([replica[name] for replica in replicas]) for name in replicas[0]}
     return {"packing_fraction": point.scene.packing_fraction, "width": width, **rows}
 
 
-def _compared(run: Run, width: float) -> dict[str, float]:
+def _compare(run: Run, width: float) -> dict[str, float]:
     """Compare the estimators of one run, in bins of this width."""
     counted, impulses = blocks_of(run, width)
     filled = np.flatnonzero(counted.mean(axis=0) > _FILLED * counted.mean())
     counted, impulses = counted[:, filled], impulses[:, filled]
     apart = counted - impulses
     mixed = counted - mixture(counted, impulses, periodic=False) * apart
-    own, other, both = (one.var(axis=0, ddof=1) for one in (counted, impulses, mixed))
+    own, other, both = (estimator.var(axis=0, ddof=1) for estimator in (counted, impulses, mixed))
     square = apart.mean(axis=0) ** 2 / apart.var(axis=0, ddof=1) * _BLOCKS
     tally = {name: run.increments(name).sum(axis=0) for name in ("collisions", "wall_hits", "pair_tests")}
     return {
@@ -77,11 +77,11 @@ def pressures_of(run: Run) -> dict[str, float]:
     """
     start = float(run.time[0])
     both = (components(data, "pressure", start) for data in (run.data.assign_attrs(tallies="[]"), run.data))
-    plain, better = ([one.estimate for one in found.values()] for found in both)
+    plain, better = ([component.estimate for component in entries.values()] for entries in both)
     pairs = list(zip(plain, better, strict=True))
     return {
-        "pressure": float(np.mean([(one.error / other.error) ** 2 for one, other in pairs])),
-        "pressures_apart": float(np.mean([one.value / other.value - 1.0 for one, other in pairs])),
+        "pressure": float(np.mean([(first.error / second.error) ** 2 for first, second in pairs])),
+        "pressures_apart": float(np.mean([first.value / second.value - 1.0 for first, second in pairs])),
     }
 
 
@@ -93,15 +93,15 @@ def blocks_of(run: Run, width: float) -> tuple[np.ndarray, np.ndarray]:
     axis, has = run.dimension - 1, read_impulses(run.data)
     length = float(run.scene.container.lengths[axis])
     bins = round(length / width)
-    found = numbers_by_impulses(run, axis, bins, None)
-    if found is None or not math.isclose(bins * width, length):
+    numbers = numbers_by_impulses(run, axis, bins, None)
+    if numbers is None or not math.isclose(bins * width, length):
         rule = f"its bins, {has and has.to_text()}, do not divide a width of {width:g}"
         raise SceneError("impulses", has and has.to_text(), rule)
-    size = len(found) // _BLOCKS
+    size = len(numbers) // _BLOCKS
     used = size * _BLOCKS
     blocks = np.arange(used) // size
     grid = Grid.line(0.0, length, bins)
     cells = grid.cells(run.positions[1 : used + 1, :, axis, None], inside=True)
     counted = grid.sums(cells, None, blocks) / size
     time = np.diff(run.time)[:used].reshape(_BLOCKS, size).sum(axis=1)[:, None]
-    return counted, found[:used].reshape(_BLOCKS, size, bins).sum(axis=1) / time
+    return counted, numbers[:used].reshape(_BLOCKS, size, bins).sum(axis=1) / time

@@ -43,11 +43,11 @@ def contacts_on_line(starts: Sequence[float], velocities: Sequence[float], room:
     """
     phases = [(x if v > 0.0 else 2.0 * room - x, abs(v)) for x, v in zip(starts, velocities, strict=True)]
     count = 0
-    for n, (one, fast) in enumerate(phases):
-        count += math.floor((one + fast * time) / room) - math.floor(one / room)
+    for n, (phase, fast) in enumerate(phases):
+        count += math.floor((phase + fast * time) / room) - math.floor(phase / room)
         for other, slow in phases[:n]:
             for sign in (1.0, -1.0):
-                first, rate = one + sign * other, fast + sign * slow
+                first, rate = phase + sign * other, fast + sign * slow
                 turns = math.floor((first + rate * time) / (2.0 * room)) - math.floor(first / (2.0 * room))
                 count += abs(turns)
     return count

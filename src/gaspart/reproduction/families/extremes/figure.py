@@ -59,20 +59,22 @@ def stability_extremes(dataset: xr.Dataset) -> Figure:
     letters = (6.0, 7.0, 8.0) if wide else (4.5, 5.5, 6.0)  # in cells, of rows and keys, of heads
     figure, (axis,) = style.new((2.1 + (0.165 if wide else 0.11) * rows,))
     starts = {name: n * (engines + GAP) for n, name in enumerate(BLOCKS)}
-    for name, left in starts.items():
+    for name, start in starts.items():
         for n, scene in enumerate(scenes):
             for k, outcome in enumerate(Table(scene.dataset, "engine")):
-                _draw_cell(axis, left + k, n, _cell(outcome, name, wide), letters[0])
+                _draw_cell(axis, start + k, n, _cell(outcome, name, wide), letters[0])
     for n in np.flatnonzero(scenes.group[1:] != scenes.group[:-1]) + 1:
         axis.axhline(float(n), color="black", linewidth=0.6)
     axis.set(xlim=(0, starts["missed"] + engines), ylim=(rows, 0))
     heads = [HEADS[name] for name in scenes.engine] * len(BLOCKS)
-    ticks = [left + k + 0.5 for left in starts.values() for k in range(engines)]
+    ticks = [start + k + 0.5 for start in starts.values() for k in range(engines)]
     axis.set_xticks(ticks, heads, rotation=90, size=letters[1])
     axis.set_yticks(np.arange(rows) + 0.5, scenes.row, size=letters[1])
     axis.tick_params(length=0, labeltop=True, labelbottom=False, pad=2)
     above = axis.secondary_xaxis(1.0)
-    above.set_xticks([left + 0.5 * engines for left in starts.values()], [*BLOCKS.values()], size=letters[2])
+    above.set_xticks(
+        [start + 0.5 * engines for start in starts.values()], [*BLOCKS.values()], size=letters[2]
+    )
     above.tick_params(length=0, pad=34 if wide else 28)
     for part in (*axis.spines.values(), *above.spines.values()):
         part.set_visible(False)
@@ -90,12 +92,12 @@ def _size(outcome: Row, name: str) -> float:
     return abs(getattr(outcome, name))
 
 
-def _draw_cell(axis: Axes, left: float, top: int, cell: tuple[str, Any, str], letters: float) -> None:
+def _draw_cell(axis: Axes, x: float, top: int, cell: tuple[str, Any, str], letters: float) -> None:
     """Draw a cell, (text, background, ink), with its upper left corner at a position."""
     text, colour, ink = cell
-    axis.add_patch(Rectangle((left, top), 1, 1, facecolor=colour, edgecolor="white", linewidth=0.4))
+    axis.add_patch(Rectangle((x, top), 1, 1, facecolor=colour, edgecolor="white", linewidth=0.4))
     if text:
-        axis.text(left + 0.5, top + 0.53, text, ha="center", va="center", color=ink, size=letters)
+        axis.text(x + 0.5, top + 0.53, text, ha="center", va="center", color=ink, size=letters)
 
 
 def _cell(outcome: Row, name: str, wide: bool) -> tuple[str, Any, str]:
@@ -125,7 +127,7 @@ def _reason(message: str) -> tuple[str, str]:
 
 def _key(scenes: Table, columns: int) -> str:
     """Return the reasons that occur, with their letters, a few in a line."""
-    found = sorted({_reason(message) for message in scenes.message[scenes.verdict == "refused"]})
-    texts = [f"{letter}: {text}" for letter, text in found]
+    reasons = sorted({_reason(message) for message in scenes.message[scenes.verdict == "refused"]})
+    texts = [f"{letter}: {text}" for letter, text in reasons]
     lines = ["; ".join(texts[n : n + columns]) for n in range(0, len(texts), columns)]
     return "\n".join(["Refused" if texts else "None refused", *lines])

@@ -10,7 +10,7 @@ from multiprocessing.connection import Connection
 from gaspart.errors import SceneError
 
 
-def guarded(work: Callable, items: Sequence, limit: float) -> list:
+def run_guarded(work: Callable, items: Sequence, limit: float) -> list:
     """Return `work(item)` for each item, in order, or None.
 
     An item that takes more than `limit` seconds, or ends its process, has the result None. Compiled code

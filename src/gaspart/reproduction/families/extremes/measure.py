@@ -7,7 +7,7 @@ from typing import Any
 
 import xarray as xr
 
-from gaspart.reproduction.families.extremes.guard import guarded
+from gaspart.reproduction.families.extremes.guard import run_guarded
 from gaspart.reproduction.families.extremes.rows import ROWS, Row
 from gaspart.reproduction.families.extremes.trial import TRIAL_ENGINES, Outcome, attempt
 from gaspart.reproduction.points.point import Point
@@ -37,7 +37,7 @@ def stability_extremes(points: list[Point], settings: dict) -> xr.Dataset:
     rows = [row for row in ROWS if groups is None or row.group in groups]
     limit = LIMIT * len(TRIAL_ENGINES)
     lost = [Outcome(HANGS, f"not done within {limit:g} s")] * len(TRIAL_ENGINES)
-    outcomes = [found or lost for found in guarded(run_row, rows, limit)]
+    outcomes = [outcome or lost for outcome in run_guarded(run_row, rows, limit)]
     dataset = table("row", list(zip(rows, outcomes, strict=True)), _columns, inner=("engine",), units=UNITS)
     return dataset.assign_coords(row=[row.name for row in rows], engine=list(TRIAL_ENGINES))
 

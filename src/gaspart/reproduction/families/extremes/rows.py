@@ -127,8 +127,8 @@ ROWS = (
     Row("discs at 0.90", "density", partial(scenes.crystal, 0.90, 2), 0.15, 2e-4, chaotic=True),
     Row("spheres at 0.72", "density", partial(scenes.crystal, 0.72, 3), 0.15, 2e-4, chaotic=True),
     Row("no gap at all", "density", scenes.touching, 2.0, 1e-3, refused=""),
-    Row("a gap of 1e-6", "density", scenes.jammed, 0.2, 1e-3, refused="step"),
-    Row("no room between walls", "density", scenes.wedged, 2.0, 1e-3, refused=""),
+    Row("a gap of 1e-6", "density", scenes.jam_of_four, 0.2, 1e-3, refused="step"),
+    Row("no room between walls", "density", scenes.tight_disc, 2.0, 1e-3, refused=""),
     Row("clock to 1e9", "clocks", scenes.line, 1e9, 1e3, _ON_LINE, refused="step"),
     Row("restitution 0", "restitution", scenes.sticking, 5.0, 0.01, 1),
     Row(

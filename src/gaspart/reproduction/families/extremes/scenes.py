@@ -99,31 +99,33 @@ def crystal(packing_fraction: float, dimension: int) -> Scene:
     return Scene(Container(tuple(stretch * length for length in shape), "periodic"), [kind])
 
 
-def jammed() -> Scene:
+def jam_of_four() -> Scene:
     """Return four discs that touch each other and all walls."""
     moves = {(0.5, 0.5): (1.0, 0.5), (1.5, 0.5): (-1.0, 0.5), (0.5, 1.5): (1.0, 0.5), (1.5, 1.5): (1.0, 0.5)}
-    return between_walls((2.0, 2.0), *(Particle(place, move, 0.5 - 1e-6) for place, move in moves.items()))
+    return between_walls(
+        (2.0, 2.0), *(Particle(position, move, 0.5 - 1e-6) for position, move in moves.items())
+    )
 
 
 def touching() -> Scene:
     """Return four discs that touch each other through periodic faces too, without any gap."""
     moves = {(0.5, 0.5): (1.0, 0.5), (1.5, 0.5): (-1.0, 0.5), (0.5, 1.5): (1.0, 0.5), (1.5, 1.5): (1.0, 0.5)}
-    particles = tuple(Particle(place, move, 0.5) for place, move in moves.items())
+    particles = tuple(Particle(position, move, 0.5) for position, move in moves.items())
     return Scene(Container((2.0, 2.0), "periodic"), particles=particles)
 
 
-def wedged() -> Scene:
+def tight_disc() -> Scene:
     """Return a disc exactly as wide as its container."""
     return between_walls((1.0, 4.0), Particle((0.5, 2.0), (1.0, 0.5), 0.5))
 
 
 def pair_in(side: float) -> Scene:
     """Return two discs of diameter 1 in a container of any size."""
-    place = side / 8.0
+    offset = side / 8.0
     return between_walls(
         (side, side),
-        Particle((place,) * 2, (1.0, 0.0), 0.5),
-        Particle((place + 10.0, place + 0.3), (0.0, 0.0), 0.5),
+        Particle((offset,) * 2, (1.0, 0.0), 0.5),
+        Particle((offset + 10.0, offset + 0.3), (0.0, 0.0), 0.5),
     )
 
 
@@ -132,10 +134,10 @@ LINE_STARTS, LINE_VELOCITIES = (123456.7, 401234.5, 812345.6), (0.7, -0.9, 0.45)
 
 def line() -> Scene:
     """Return three discs on a line, far apart between two walls."""
-    places = ((x + 5.0 + 10.0 * n, 10.0) for n, x in enumerate(LINE_STARTS))
+    positions = ((x + 5.0 + 10.0 * n, 10.0) for n, x in enumerate(LINE_STARTS))
     moves = ((v, 0.0) for v in LINE_VELOCITIES)
     return between_walls(
-        (1e6 + 30.0, 20.0), *(Particle(x, v, 5.0) for x, v in zip(places, moves, strict=True))
+        (1e6 + 30.0, 20.0), *(Particle(x, v, 5.0) for x, v in zip(positions, moves, strict=True))
     )
 
 

@@ -87,7 +87,7 @@ def _run(row: Row, engine: str, referee: Outcome | None) -> dict:
     tally, state = simulation.tally, simulation.state
     contacts = int(tally.collisions + tally.wall_hits.sum())
     before = simulation.initial_state
-    found = {
+    numbers = {
         "energy": energy_drift(before, state, tally.dissipated_energy),
         "momentum": momentum_drift(before, state) if simulation.scene.is_periodic else math.nan,
         "overlap": overlap,
@@ -97,10 +97,10 @@ def _run(row: Row, engine: str, referee: Outcome | None) -> dict:
     expected = row.contacts
     if expected is None and referee is not None and referee.verdict == PASSES:
         expected = referee.contacts
-    found["missed"] = 0 if expected is None else expected - contacts
+    numbers["missed"] = 0 if expected is None else expected - contacts
     if engine == "event" and row.contacts is None and referee is not None and referee.bits:
-        found["missed"] = found["missed"] or int(found["bits"] != referee.bits)
-    return {"verdict": PASSES, **found} | _faults(row, simulation.engine, found, expected)
+        numbers["missed"] = numbers["missed"] or int(numbers["bits"] != referee.bits)
+    return {"verdict": PASSES, **numbers} | _faults(row, simulation.engine, numbers, expected)
 
 
 def _advance(simulation: Simulation, until: float) -> bool:
@@ -114,20 +114,20 @@ def _advance(simulation: Simulation, until: float) -> bool:
     return simulation.time >= until * (1.0 - 1e-12)
 
 
-def _faults(row: Row, engine: Engine, found: dict, expected: int | None) -> dict:
+def _faults(row: Row, engine: Engine, numbers: dict, expected: int | None) -> dict:
     """Return the verdict, if any of the numbers shows that the run is incorrect."""
     drift = ENERGY_DRIFT[engine.precision]
     allowed = 0.0
     if row.chaotic and engine.name == "step" and expected:
         allowed = 4.0 * math.sqrt(expected) + MISCOUNTED * expected
-    for what, measured, most in (
-        ("energy", found["energy"], drift),
-        ("momentum", found["momentum"], drift),
-        ("overlap", found["overlap"], OVERLAP[engine.name]),
-        ("missed", abs(found["missed"]), allowed),
+    for quantity, measured, most in (
+        ("energy", numbers["energy"], drift),
+        ("momentum", numbers["momentum"], drift),
+        ("overlap", numbers["overlap"], OVERLAP[engine.name]),
+        ("missed", abs(numbers["missed"]), allowed),
     ):
-        if measured > most or (what != "momentum" and math.isnan(measured)):
-            return {"verdict": FAILS, "message": f"{what} = {measured:g}: more than {most:g}"}
+        if measured > most or (quantity != "momentum" and math.isnan(measured)):
+            return {"verdict": FAILS, "message": f"{quantity} = {measured:g}: more than {most:g}"}
     return {}
 
 

@@ -36,10 +36,10 @@ def contact_ratio(slits: Table) -> Estimate:
 
 def _contact(slits: Table) -> list[Claim]:
     ratio = contact_ratio(slits)
-    what = "density at the wall times k_B T over the pressure on it"
+    subject = "density at the wall times k_B T over the pressure on it"
     return [
         Claim(
-            claim=f"{what}, width {slits.width[-1]:g}",
+            claim=f"{subject}, width {slits.width[-1]:g}",
             measured=ratio[-1],
             expected=1.0,
             required=0.01,
@@ -47,7 +47,7 @@ def _contact(slits: Table) -> list[Claim]:
             fails_if="missed or spurious collisions with walls, or spheres that accumulate at walls",
         ),
         Claim.joint(
-            claim=f"{what}, all widths",
+            claim=f"{subject}, all widths",
             deviations=(ratio - 1.0).deviation,
             source=CONTACT,
             fails_if="a bias too small for one width, or error bars that are wrong",

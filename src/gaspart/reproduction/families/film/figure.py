@@ -31,14 +31,14 @@ def _profile(axis: Axes, widest: Row) -> None:
     style.points(axis, 0.0, widest.pressure, kind=1, label=label)
     style.level(axis, widest.bulk_density)
     labels = r"distance of centres from contact $z/\sigma$", r"density $\rho\sigma^3$"
-    shown = -0.3, min(4.0, widest.place.max())
-    style.label_axes(axis, *labels, legend="upper right", xlim=shown, ylim=(0.0, None))
+    limits = -0.3, min(4.0, widest.place.max())
+    style.label_axes(axis, *labels, legend="upper right", xlim=limits, ylim=(0.0, None))
 
 
 def _contact(axis: Axes, slits: Table) -> None:
     style.band(axis, -1.0, 1.0)
     style.level(axis, 0.0)
-    style.points(axis, _shown(slits), 100.0 * (contact_ratio(slits) - 1.0), color=style.DATA)
+    style.points(axis, _positions(slits), 100.0 * (contact_ratio(slits) - 1.0), color=style.DATA)
     style.label_axes(axis, y=r"$\rho(0)k_\mathrm{B}T/P-1$  (%)")
 
 
@@ -46,17 +46,17 @@ def _solvation(axis: Axes, slits: Table) -> None:
     style.level(axis, 0.0)
     curve = slits.curve - slits.functional_bulk_pressure
     axis.plot(slits.theory_width, curve, color=style.REFERENCE, label="White Bear")
-    places, excess = _shown(slits), slits.at_bulk - slits.bulk_pressure
-    style.points(axis, places, excess, color=style.DATA, label="measured")
+    widths, excess = _positions(slits), slits.at_bulk - slits.bulk_pressure
+    style.points(axis, widths, excess, color=style.DATA, label="measured")
     axis.annotate(
-        f"{slits.width[-1]:g}", (places[-1], excess.value[-1]), (-6, 0),
+        f"{slits.width[-1]:g}", (widths[-1], excess.value[-1]), (-6, 0),
         textcoords="offset points", ha="right", va="center",
     )  # fmt: skip
     labels = r"width of the slit $H/\sigma$", r"$(P-P_\mathrm{bulk})\sigma^3/k_\mathrm{B}T$"
     style.label_axes(axis, *labels, legend="upper right")
 
 
-def _shown(slits: Table) -> np.ndarray:
+def _positions(slits: Table) -> np.ndarray:
     """Return the positions (width,) on the axis.
 
     The widest slit is drawn at its end, and labelled with its width.

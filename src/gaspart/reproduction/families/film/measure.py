@@ -85,11 +85,11 @@ def thin_film(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _row(
-    point: Point, slits: list[Slit], insertions: int, place: np.ndarray, functional: np.ndarray
+    point: Point, slits: list[Slit], insertions: int, distance: np.ndarray, functional: np.ndarray
 ) -> dict[str, Any]:
     """Return pressure, density at contact and chemical potential: means over the replicas.
 
-    `functional` (B,) is the density by the functional at `place`.
+    `functional` (B,) is the density by the functional at `distance`.
     """
     contact = average([_contact(slit) for slit in slits])
     potentials = [_widom(slit, insertions, point.seed(k)) for k, slit in enumerate(slits)]
@@ -98,7 +98,7 @@ def _row(
         "count": point.extents[0],
         "pressure": average([correlated_mean(slit.pressure).estimate for slit in slits]),
         "contact": contact,
-        "truncation": _truncation(place, functional) * contact.value,
+        "truncation": _truncation(distance, functional) * contact.value,
         "chemical_potential": average(potentials),
         "functional_pressure": functional[0],
     }
@@ -132,13 +132,13 @@ def _responses(bulk: float, widths: np.ndarray) -> np.ndarray:
     return np.diff(pressures, axis=1)[:, 0] / np.diff(potentials)
 
 
-def _truncation(place: np.ndarray, density: np.ndarray) -> float:
+def _truncation(distance: np.ndarray, density: np.ndarray) -> float:
     """Compute the relative error of the extrapolation of a profile (B,) by a cubic.
 
     The profile follows from the density functional.
     """
-    near = place <= NEAR
-    cubic = fit_polynomial(place[near], density[near], powers=range(4)).values[0]
+    near = distance <= NEAR
+    cubic = fit_polynomial(distance[near], density[near], powers=range(4)).values[0]
     return abs(cubic / density[0] - 1.0)
 
 
@@ -198,7 +198,7 @@ def _widom(slit: Slit, insertions: int, seed: int | tuple[int, ...]) -> Estimate
     return Estimate(potential, chance.error / chance.value, chance.freedom)
 
 
-def _profile(slits: list[Slit], place: np.ndarray, functional: np.ndarray) -> xr.Dataset:
+def _profile(slits: list[Slit], distance: np.ndarray, functional: np.ndarray) -> xr.Dataset:
     """Compute the density above the nearer wall of the widest slit, to its middle.
 
     The mean around the middle is a number.
@@ -209,7 +209,7 @@ def _profile(slits: list[Slit], place: np.ndarray, functional: np.ndarray) -> xr
     inner = Grid.line(top - 1.0, top, 1)
     middle = np.concatenate([_densities(slit, inner)[:, 0] for slit in slits])
     (centre,) = grid.middles
-    functional = np.interp(centre, place, functional)
+    functional = np.interp(centre, distance, functional)
     profile = entries({"density": density}) | {"place": centre, "functional": functional}
     profile = {name: ("bin", values) for name, values in profile.items()}
     return xr.Dataset(profile | entries({"middle": mean_of(middle)}))

@@ -148,12 +148,12 @@ def _liquid_of_discs(states: Table) -> list[Claim]:
     """
     claims = []
     published = theory.literature("pressure", 2)
-    known = {row.packing_fraction: row for row in published[published.container == "29 x 30"]}
+    references = {row.packing_fraction: row for row in published[published.container == "29 x 30"]}
     for state in states:
         eta = round(state.compared_packing_fraction, 9)
-        if eta not in known:
+        if eta not in references:
             continue
-        expected = Estimate(float(known[eta].value), float(known[eta].error))
+        expected = Estimate(float(references[eta].value), float(references[eta].error))
         starts = zip(state.compared_pressure, state.compared_pressure_drift, strict=True)
         claims.append(
             Claim(
@@ -199,13 +199,13 @@ def _equilibrium(states: Table) -> Claim:
     melting = theory.coexistence_packing_fractions(2)[1]
     differences = states[states.packing_fraction <= melting].disagreement
     number = differences.size
-    found = int((differences > EQUILIBRIUM_LIMIT).sum())
+    outliers = int((differences > EQUILIBRIUM_LIMIT).sum())
     chance = 1.0 - (1.0 - math.erfc(EQUILIBRIUM_LIMIT / math.sqrt(2.0))) ** COMPARED
-    deviation = float(-ndtri(bdtrc(found - 1, number, chance)))
+    deviation = float(-ndtri(bdtrc(outliers - 1, number, chance)))
     return Claim(
         claim=f"packing fractions of {number} up to {melting:.3g} whose starts or halves differ by more "
         f"than {EQUILIBRIUM_LIMIT:g} standard errors",
-        measured=Estimate(found),
+        measured=Estimate(outliers),
         expected=number * chance,
         required=0.0,
         exact_deviation=max(deviation, 0.0),
@@ -220,8 +220,8 @@ def _branch(state: Row) -> Claim:
     A superheated crystal may be melting, and has no verdict.
     """
     eta, reference, solid = state.packing_fraction, state.reference, bool(state.crystalline)
-    known = not solid and math.isfinite(reference)
-    allowance = float(theory.compressibility_uncertainty(eta, 3)) if known else 0.0
+    has_reference = not solid and math.isfinite(reference)
+    allowance = float(theory.compressibility_uncertainty(eta, 3)) if has_reference else 0.0
     if solid:
         next_order = (theory.CLOSE_PACKING[3] / eta - 1.0) * state.finite_size
         allowance = math.hypot(theory.ETOMICA_CRYSTAL_UNCERTAINTY * reference, next_order)
@@ -244,10 +244,10 @@ def _branch(state: Row) -> Claim:
 def _slab(slab: Row) -> list[Claim]:
     expected, drift = theory.COEXISTENCE_PRESSURE[3], slab.slab_drift
     early, late = slab.crystal_fraction
-    what = "pressure of crystal beside fluid"
+    subject = "pressure of crystal beside fluid"
     return [
         Claim.within(
-            claim=f"{what}, k_B T / sigma^3",
+            claim=f"{subject}, k_B T / sigma^3",
             measured=Estimate(slab.slab_pressure, math.hypot(slab.slab_error, 0.5 * drift.value)),
             expected=expected,
             half_width=TOLERANCE * expected,
@@ -255,7 +255,7 @@ def _slab(slab: Row) -> list[Claim]:
             fails_if="one phase has vanished, the crystal is strained, or contacts are missed",
         ),
         Claim(
-            claim=f"{what}: second half of the run minus the first, k_B T / sigma^3",
+            claim=f"{subject}: second half of the run minus the first, k_B T / sigma^3",
             measured=drift,
             expected=0.0,
             required=TOLERANCE * expected,

@@ -26,21 +26,21 @@ EQUILIBRATED = 3.0
 
 def freezing_discs(dataset: xr.Dataset) -> Figure:
     """Draw pressure with the plateau, psi_6, g(r), and three snapshots with structure factors."""
-    shown = Table(dataset, "shown")
-    figure, (loop, order, shells, below) = style.new((2.4, 1.5), (2.0,), (1.65 * len(shown),))
+    pictures = Table(dataset, "shown")
+    figure, (loop, order, shells, below) = style.new((2.4, 1.5), (2.0,), (1.65 * len(pictures),))
     starts = _starts(dataset)
     _loop(loop, Table(dataset, "packing_fraction"), starts)
     _order(order, starts, 2)
     style.label_axes(order, y=r"$|\langle\psi_6\rangle|$", ylim=(0.0, 1.0))
-    pairs = style.split(below, len(shown), 2)
-    for k, (picture, (left, right)) in enumerate(zip(shown, pairs, strict=True)):
+    pairs = style.split(below, len(pictures), 2)
+    for k, (picture, (snapshot, scattering)) in enumerate(zip(pictures, pairs, strict=True)):
         label = f"{picture.shown:.3g}"
         shells.plot(picture.distance, picture.g + 2.0 * k, color=style.COLOURS[k], label=label)
-        _snapshot(left, picture, label)
-        _scattering(right, picture)
-    end = shown.distance.max()
+        _snapshot(snapshot, picture, label)
+        _scattering(scattering, picture)
+    end = pictures.distance.max()
     style.label_axes(shells, r"distance $r/\sigma$", "$g(r)$, shifted by 2", xlim=(0.0, end))
-    shells.legend(ncols=len(shown), loc="upper right", title=r"$\eta$")
+    shells.legend(ncols=len(pictures), loc="upper right", title=r"$\eta$")
     style.letters(loop, order, shells, pairs[0, 0])
     return figure
 
@@ -98,18 +98,20 @@ def _loop(axis: Axes, states: Table, starts: dict[str, Table]) -> None:
         if np.isfinite(side.plateau.value):
             ends, level = [side.plateau_low, side.plateau_high], [side.plateau.value] * 2
             axis.plot(ends, level, color=style.COLOURS[LOOKS[start]], linewidth=0.8)
-    _published(axis)
+    _draw_published(axis)
     low, high = np.nanmin(states.pressure.value), np.nanmax(states.pressure.value)
     axis.set_ylim(low - 0.1 * (high - low), high + 0.25 * (high - low))
     style.label_axes(axis, y="pressure $P\\sigma^2/k_\\mathrm{B}T$", legend="lower right")
 
 
-def _published(axis: Axes) -> None:
+def _draw_published(axis: Axes) -> None:
     """Draw the published pressures of more discs, and of as many as are compared."""
-    known = theory.literature("pressure", 2)
+    published = theory.literature("pressure", 2)
     for count, source, container, dashes in PUBLISHED:
-        same = (known.source == source) & (known.container == container) & (known["count"] == count)
-        rows, label = known[same], f"{count:,} discs".replace(",", " ")
+        same = (
+            (published.source == source) & (published.container == container) & (published["count"] == count)
+        )
+        rows, label = published[same], f"{count:,} discs".replace(",", " ")
         axis.plot(rows.packing_fraction, rows.value, color="black", lw=0.8, linestyle=dashes, label=label)
 
 
@@ -172,8 +174,8 @@ def _coexistence(axis: Axes, slab: Row) -> None:
 def _residuals(axis: Axes, starts: dict[str, Table]) -> None:
     style.level(axis, 0.0)
     for start, side in starts.items():
-        known = side[np.isfinite(side.reference)]
-        _points(axis, known, 100.0 * (known.Z / known.reference - 1.0), LOOKS[start])
+        finite = side[np.isfinite(side.reference)]
+        _points(axis, finite, 100.0 * (finite.Z / finite.reference - 1.0), LOOKS[start])
     labels = r"packing fraction $\eta$", "$Z/Z_\\mathrm{branch}-1$  (%)"
     style.label_axes(axis, *labels, ylim=(-0.5, 0.5))
 

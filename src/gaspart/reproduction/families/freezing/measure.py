@@ -56,7 +56,7 @@ def freezing_discs(points: list[Point], settings: dict) -> xr.Dataset:
     sides = list(Table(dataset.assign(unlike=unlike), "start"))
     parts = [table("start", sides, _plateau), _pictures(_of_start(points, sides[-1].start), settings)]
     if compared:
-        parts.append(_compared(compared))
+        parts.append(_compare(compared))
     return xr.merge([dataset, *parts], join="outer", compat="no_conflicts")
 
 
@@ -78,12 +78,12 @@ def freezing_spheres(points: list[Point], settings: dict) -> xr.Dataset:
 
 def _of_start(points: list[Point], start: str) -> dict[float, Point]:
     """Compute points of one start by packing fraction, ascending."""
-    found = {
+    by_fraction = {
         round(point.scene.packing_fraction, 9): point
         for point in points
         if STARTS[point.settings["arrangement"]] == start
     }
-    return dict(sorted(found.items()))
+    return dict(sorted(by_fraction.items()))
 
 
 def _disc(point: Point) -> dict[str, Any]:
@@ -160,23 +160,26 @@ def _states(points: list[Point], row: Callable[[Point], dict[str, Any]]) -> xr.D
     order. More than 3 shows that the runs are not in equilibrium.
     """
     chosen = [point for start in STARTS.values() for point in _of_start(points, start).values()]
-    found = table("point", chosen, row).set_index(point=["start", "packing_fraction"]).unstack("point")
-    found["count"], found["density"] = found["count"].max("start").astype(int), found["density"].max("start")
-    found["pressure"].attrs["units"] = "k_B T / sigma^d"
-    return found.assign(disagreement=_disagreement(found))
+    dataset = table("point", chosen, row).set_index(point=["start", "packing_fraction"]).unstack("point")
+    dataset["count"], dataset["density"] = (
+        dataset["count"].max("start").astype(int),
+        dataset["density"].max("start"),
+    )
+    dataset["pressure"].attrs["units"] = "k_B T / sigma^d"
+    return dataset.assign(disagreement=_disagreement(dataset))
 
 
 def _disagreement(dataset: xr.Dataset) -> xr.DataArray:
     worst = []
-    for what in ("pressure", "order"):
-        value, error = dataset[what], dataset[f"{what}_error"]
-        worst.append((abs(dataset[f"{what}_drift"]) / dataset[f"{what}_drift_error"]).max("start"))
+    for quantity in ("pressure", "order"):
+        value, error = dataset[quantity], dataset[f"{quantity}_error"]
+        worst.append((abs(dataset[f"{quantity}_drift"]) / dataset[f"{quantity}_drift_error"]).max("start"))
         if dataset.sizes["start"] == 2:
             worst.append(abs(value.diff("start")).isel(start=0) / np.sqrt((error**2).sum("start")))
     return xr.concat(worst, "what", join="outer", compat="equals").max("what")
 
 
-def _compared(points: list[Point]) -> xr.Dataset:
+def _compare(points: list[Point]) -> xr.Dataset:
     """Return the pressures of points that are compared with published ones."""
     names = [f"pressure{name}" for name in ("", "_error", "_drift", "_drift_error")]
     new = {name: f"compared_{name}" for name in (*names, "packing_fraction")}
@@ -204,8 +207,8 @@ def _plateau(side: Row) -> dict[str, Any]:
 
 def _pictures(chosen: dict[float, Point], settings: dict) -> xr.Dataset:
     """Return structure at some packing fractions; lengths in diameters."""
-    shown = [x for x in chosen if any(abs(x - y) < 1e-6 for y in settings["shown"])]
-    rows = [_picture(chosen[x], settings) for x in shown]
+    fractions = [x for x in chosen if any(abs(x - y) < 1e-6 for y in settings["shown"])]
+    rows = [_picture(chosen[x], settings) for x in fractions]
     # Wave vectors are those of each container, which shrinks with the packing fraction: kept by number.
     most_x, most_y = (min(row[name].size for row in rows) // 2 for name in ("wave_x", "wave_y"))
     for row in rows:
@@ -219,7 +222,7 @@ def _pictures(chosen: dict[float, Point], settings: dict) -> xr.Dataset:
         "structure_factor": ("mode_x", "mode_y"),
     }
     distances = [row.pop("distance") for row in rows]
-    return table("shown", rows, dict, inner=inner).assign_coords(shown=shown, distance=distances[0])
+    return table("shown", rows, dict, inner=inner).assign_coords(shown=fractions, distance=distances[0])
 
 
 def _picture(point: Point, settings: dict) -> dict[str, Any]:
@@ -266,7 +269,7 @@ def _slab(points: list[Point]) -> xr.Dataset:
     mean, drift = _mean_and_drift(pressures)
     error = mean.error
     if len(pressures) > 2:  # slow interfaces: the scatter of replicas shows what blocks of one run cannot
-        error = max(error, mean_of([correlated_mean(one).estimate.value for one in pressures]).error)
+        error = max(error, mean_of([correlated_mean(series).estimate.value for series in pressures]).error)
     both = "half", "position"
     return xr.Dataset(
         {
@@ -294,10 +297,10 @@ def _profiles(run: Run, grid: Grid, axis: int) -> tuple[np.ndarray, np.ndarray, 
     local = np.array([structure.local_steinhardt(frame, scene.container.lengths) for frame in frames])
     half = np.arange(2).repeat([(len(frames) + 1) // 2, len(frames) // 2])
     cells = grid.cells(frames[..., axis, None], inside=True)
-    found = grid.sums(cells, blocks=half)
+    numbers = grid.sums(cells, blocks=half)
     volume = scene.container.volume / grid.size / (2.0 * scene.largest_radius) ** 3
     return (
-        grid.sums(cells, local, half) / found,
-        found / np.bincount(half)[:, None] / volume,
+        grid.sums(cells, local, half) / numbers,
+        numbers / np.bincount(half)[:, None] / volume,
         np.array([(local[half == k] > LOCAL_CRYSTAL).mean() for k in (0, 1)]),
     )

@@ -50,8 +50,8 @@ def equipartition(dataset: xr.Dataset) -> list[Claim]:
 def _steady(gas: Row) -> Claim:
     """Return the claim on the ratio of the temperatures of discs that cool."""
     q, tangential = gas.cooling_inertia, gas.tangential
-    known = [line for line in theory.rough_cooling() if np.allclose(line[:3], (q, tangential, 1.0))]
-    ratio, error = known[0][3:] if known else (theory.rough_ratio(q, tangential), 0.0)
+    matches = [line for line in theory.rough_cooling() if np.allclose(line[:3], (q, tangential, 1.0))]
+    ratio, error = matches[0][3:] if matches else (theory.rough_ratio(q, tangential), 0.0)
     maxwell = theory.rough_ratio(q, tangential) / ratio
     return Claim(
         claim=f"T_rot / T_tr of cooling discs over theory's, tangential {tangential:g}, q = {q:g}",
@@ -60,8 +60,8 @@ def _steady(gas: Row) -> Claim:
         required=0.03,
         source="homogeneous Boltzmann equation, direct simulation (gaspart.theory.boltzmann); Maxwellian "
         f"velocities and spins ([Huthmann 1997]) would give {maxwell:.3f}",
-        allowance_source="statistical, of the direct simulation" if known else "",
-        no_verdict="" if known else "the reference was not computed for these coefficients",
+        allowance_source="statistical, of the direct simulation" if matches else "",
+        no_verdict="" if matches else "the reference was not computed for these coefficients",
         fails_if="a ratio that is not steady, or dissipation in the wrong place",
     )
 
@@ -74,7 +74,7 @@ def _decay(gas: Row) -> list[Claim]:
     frames = frames[np.isfinite(frames.collisions)]  # without those that only other points have
     beyond = np.asarray(theory.rough_start_excess(q, frames.collisions))
     most = np.abs(np.nan_to_num(beyond)).argmax()  # where Maxwellian velocities err most
-    at, known = frames[most], np.isfinite(beyond[most])
+    at, is_computed = frames[most], np.isfinite(beyond[most])
     s, rotation = at.collisions, at.rotation
     excess = at.translation.value - rotation.value - np.exp(-expected * s)
     return [
@@ -89,12 +89,12 @@ def _decay(gas: Row) -> list[Claim]:
         Claim(
             claim=f"T_tr - T_rot minus exp(-3q s/(1+q)^2) after {s:.2g} collisions of a particle, q = {q:g}",
             measured=Estimate(excess, DIFFERENCE * rotation.error, rotation.freedom),
-            expected=Estimate(beyond[most], ROUGH_START_UNCERTAINTY) if known else 0.0,
+            expected=Estimate(beyond[most], ROUGH_START_UNCERTAINTY) if is_computed else 0.0,
             required=0.005,
             source="homogeneous Boltzmann equation, direct simulation (gaspart.theory.boltzmann); "
             "Maxwellian velocities and spins ([Huthmann 1997]) would give 0",
             allowance_source="statistical, of the direct simulation",
-            no_verdict="" if known else "the reference was not computed for this inertia",
+            no_verdict="" if is_computed else "the reference was not computed for this inertia",
             fails_if="a gas that is not dilute, or energies that tend to other shares",
         ),
     ]
@@ -174,14 +174,14 @@ def _clusters(gases: Table) -> list[Claim]:
     for gas in gases[gases.cluster_restitution != 1.0]:
         end = f"in the end, restitution {gas.cluster_restitution:g}"
         claims += [
-            _grown(
+            _claim_growth(
                 f"variance of the number in a cell over the elastic gas's, {end}",
                 gas.variance[-1] / usual,
                 least=3.0,
                 source="[Goldhirsch 1993]: a large inelastic gas forms clusters",
                 fails_if="a gas that stays homogeneous",
             ),
-            _grown(
+            _claim_growth(
                 f"T over Haff's law, {end}",
                 gas.cluster_excess[-1],
                 least=2.0,
@@ -192,14 +192,14 @@ def _clusters(gases: Table) -> list[Claim]:
     return claims
 
 
-def _grown(what: str, ratio: Estimate, least: float, **others: Any) -> Claim:
+def _claim_growth(subject: str, ratio: Estimate, least: float, **others: Any) -> Claim:
     """Return the claim that a ratio is `least` or more, by its logarithm.
 
     The logarithm is 0 for an unchanged gas.
     """
     bound = np.log(least)
     return Claim.at_least(
-        claim=f"ln of {what}",
+        claim=f"ln of {subject}",
         measured=Estimate(np.log(ratio.value), ratio.error / ratio.value),
         bound=bound,
         required=bound / 3.0,  # distinguishes an unchanged gas by 3 sigma

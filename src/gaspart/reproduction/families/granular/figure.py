@@ -63,9 +63,9 @@ def _ratios(axis: Axes, cooling: Table, equilibrium: Table) -> None:
         style.points(axis, cooled.tangential, cooled.steady_ratio, kind=kind)
         elastic = np.ones(len(still))
         style.points(axis, elastic, still.equilibrium_ratio, kind=kind, hollow=True, clip_on=False)
-    known = theory.rough_cooling()
-    known = known[np.isin(known[:, 0], cooling.cooling_inertia)]
-    axis.plot(known[:, 1], known[:, 3], "x", color=style.DATA, zorder=5, label="Boltzmann equation")
+    computed = theory.rough_cooling()
+    computed = computed[np.isin(computed[:, 0], cooling.cooling_inertia)]
+    axis.plot(computed[:, 1], computed[:, 3], "x", color=style.DATA, zorder=5, label="Boltzmann equation")
     axis.set(xlim=(-1.0, 1.0), xticks=np.linspace(-1.0, 1.0, 5), ylim=(0.0, 1.08))
     x, y = r"tangential restitution $\epsilon_\mathrm{t}$", r"steady $T_\mathrm{rot}/T_\mathrm{tr}$"
     style.label_axes(axis, x, y, legend="upper left")

@@ -180,9 +180,9 @@ def cooling(points: list[Point], settings: dict) -> xr.Dataset:
     dilute = [point for point in points if point not in apart]
     gases = table("gas", dilute, _gas, inner=("frame",), units={})
     clusters = table("clusters", apart, _clusters, settings["cells_per_side"], inner=("step",), units={})
-    shown = min(apart, key=lambda point: law(point).normal)
+    most_inelastic = min(apart, key=lambda point: law(point).normal)
     return xr.merge(
-        [gases, clusters, _picture(shown)],
+        [gases, clusters, _picture(most_inelastic)],
         join="outer",
         compat="no_conflicts",
         combine_attrs="drop_conflicts",

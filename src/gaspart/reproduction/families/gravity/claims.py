@@ -74,8 +74,8 @@ def _of_two_kinds(row: Row) -> list[Claim]:
     if not _dilute(row):
         return claims + _pressures(row, at)
     species = list(zip(Table(row.dataset, "species"), ("light", "heavy"), strict=True))
-    claims += [_slope(one, name, at, 0.005) for one, name in species]
-    return claims + [_mean_height(one, name, at) for one, name in species]
+    claims += [_slope(kind, name, at, 0.005) for kind, name in species]
+    return claims + [_mean_height(kind, name, at) for kind, name in species]
 
 
 def _source_column(row: Row) -> list[Claim]:
@@ -174,11 +174,11 @@ def _at(row: Row) -> str:
     return f"{whose}{density} column of {row.count:g} discs"
 
 
-def _slope(one: Row, name: str, at: str, required: float) -> Claim:
+def _slope(species: Row, name: str, at: str, required: float) -> Claim:
     """Return the claim on the slope of the chemical potential of one species."""
     return Claim(
         claim=f"slope of the chemical potential of the {name} over -m g / kT, {at}",
-        measured=one.slope_ratio,
+        measured=species.slope_ratio,
         expected=1.0,
         required=required,
         source="ln rho + mu_excess(rho) + m g z / kT is uniform in equilibrium; in a dilute gas ln rho alone",
@@ -186,12 +186,12 @@ def _slope(one: Row, name: str, at: str, required: float) -> Claim:
     )
 
 
-def _mean_height(one: Row, name: str, at: str) -> Claim:
+def _mean_height(species: Row, name: str, at: str) -> Claim:
     """Return the claim on the mean height of one species."""
     return Claim(
         claim=f"mean height of the {name} over the ideal gas's, {at}",
-        measured=one.mean_height_ratio,
-        expected=1.0 + one.packing_fraction.value.max(),
+        measured=species.mean_height_ratio,
+        expected=1.0 + species.packing_fraction.value.max(),
         required=0.01,
         source="<z> = kT/mg - H/(exp(mgH/kT) - 1); B2 raises it by the packing fraction at the floor (first "
         "order, high column)",

@@ -23,17 +23,17 @@ def barometric(ds: xr.Dataset) -> Figure:
 
     The equation of state follows from the weight.
     """
-    of_source = _named(ds, "later", "source")
+    of_source = _select_columns(ds, "later", "source")
     figure, axes = style.new((2.4, 1.1, 1.1), (1.7, 1.0), *([(1.5, 1.1)] if of_source else []))
     top, ratio, warm, state, off = axes[:5]
-    for kind, row in enumerate(_named(ds, "dilute", "dense")):
-        expected = _expected(row, 0)
+    for kind, row in enumerate(_select_columns(ds, "dilute", "dense")):
+        expected = _expected_density(row, 0)
         _density(top, row, kind, f"{row.column}, {'hydrostatics' if kind else 'ideal gas'}", row.column)
         density = row.density[0]
-        seen = _known(density) & row.used
+        seen = _enough_particles(density) & row.used
         _percent(ratio, row.height[seen], (density / expected)[seen], kind)
         _temperature(warm, row, kind)
-    [dense] = _named(ds, "dense")
+    [dense] = _select_columns(ds, "dense")
     eta = dense.packing_fraction.value[dense.used]
     line = np.linspace(0.0, 1.05 * eta.max(), 200)
     state.plot(line, compressibility_factor(line, 2), color=style.DATA, label="virial series to $B_{10}$")
@@ -61,8 +61,8 @@ def _source_columns(top: Axes, bottom: Axes, columns: list[Row]) -> None:
         _temperature(bottom, row, kind)
     top.set_ylim(0.0)
     style.label_axes(top, y=r"density $\rho/\bar\rho$", legend="upper right")
-    place = "height $z$ (length) in the source's column"
-    style.label_axes(bottom, place, r"$T(z)/T - 1$ (%)", ylim=(-6.0, 12.0))
+    label = "height $z$ (length) in the source's column"
+    style.label_axes(bottom, label, r"$T(z)/T - 1$ (%)", ylim=(-6.0, 12.0))
 
 
 def separation(ds: xr.Dataset) -> Figure:
@@ -70,10 +70,10 @@ def separation(ds: xr.Dataset) -> Figure:
 
     The densities are of a dilute and a dense gas.
     """
-    of_source = _named(ds, "source")
+    of_source = _select_columns(ds, "source")
     figure, axes = style.new((2.2,), (2.2,), (2.0, 1.0), *[(1.6,) for _ in of_source])
     names = ("light", "heavy")
-    columns = _named(ds, "dilute", "dense")
+    columns = _select_columns(ds, "dilute", "dense")
     for n, (axis, row) in enumerate(zip(axes[:2], columns, strict=True)):
         for kind, name in enumerate(names):
             _density(axis, row, kind, None, name)
@@ -120,11 +120,11 @@ def _shares(axis: Axes, row: Row) -> None:
     style.points(axis, 0.5 * (edges[1:] + edges[:-1]), row.share, kind=1, label="the same, here")
     light, heavy = row.hydrostatic
     axis.plot(row.height, light / (light + heavy), color=style.REFERENCE, label="equilibrium at its $T$")
-    place = "height $z$ (length) in the source's mixture"
-    style.label_axes(axis, place, "share of light discs", "upper left", ylim=(0.0, 1.0))
+    label = "height $z$ (length) in the source's mixture"
+    style.label_axes(axis, label, "share of light discs", "upper left", ylim=(0.0, 1.0))
 
 
-def _named(ds: xr.Dataset, *names: str) -> list[Row]:
+def _select_columns(ds: xr.Dataset, *names: str) -> list[Row]:
     """Return the columns of these names, in this order; those that there are."""
     columns = {row.column: row for row in Table(ds, "point")}
     return [columns[name] for name in names if name in columns]
@@ -137,19 +137,21 @@ def _density(axis: Axes, row: Row, kind: int, theory: str | None, label: str) ->
     """
     species = kind if len(row.density) > 1 else 0
     density, mean = row.density[species], row.mean_density
-    seen = _known(density)
+    seen = _enough_particles(density)
     style.points(axis, row.height[seen], density[seen] / mean, kind=kind, hollow=True, label=label)
-    axis.plot(row.height, _expected(row, species) / mean, color=style.COLOURS[kind], label=theory, zorder=4)
+    axis.plot(
+        row.height, _expected_density(row, species) / mean, color=style.COLOURS[kind], label=theory, zorder=4
+    )
 
 
-def _known(density: Estimate) -> np.ndarray:
+def _enough_particles(density: Estimate) -> np.ndarray:
     """Return True for the bins (B,) with enough particles."""
     return np.asarray(density.error < KNOWN * density.value)
 
 
 def _temperature(axis: Axes, row: Row, kind: int) -> None:
     """Draw the temperature at each height relative to the whole, where particles suffice."""
-    seen = _known(row.density[0])
+    seen = _enough_particles(row.density[0])
     _percent(axis, row.height[seen], row.temperature_ratio[seen], kind)
 
 
@@ -172,13 +174,13 @@ def heat_capacity(ds: xr.Dataset) -> Figure:
         style.points(top, at, capacity, **look, label=label)
         style.points(bottom, at, 100.0 * (capacity / expected - 1.0), **look)
     style.label_axes(top, y=r"heat capacity $C_V/Nk$", legend="lower right", ylim=(0.9, 2.1))
-    place, deviation = r"height of the box $x = mgH/kT$", "deviation from\nexact (%)"
-    style.label_axes(bottom, place, deviation, xlim=(-0.03 * end, end), ylim=(-4.5, 4.5))
+    height, deviation = r"height of the box $x = mgH/kT$", "deviation from\nexact (%)"
+    style.label_axes(bottom, height, deviation, xlim=(-0.03 * end, end), ylim=(-4.5, 4.5))
     style.letters(top, bottom)
     return figure
 
 
-def _expected(row: Row, kind: int) -> np.ndarray:
+def _expected_density(row: Row, kind: int) -> np.ndarray:
     """Return the expected density (B,): an ideal gas's in a dilute column, else hydrostatics."""
     dilute = row.packing_fraction.value.max() < IDEAL
     return _ideal(row, kind) if dilute else np.asarray(row.hydrostatic[kind])

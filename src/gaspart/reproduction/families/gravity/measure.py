@@ -57,8 +57,8 @@ def barometric(points: list[Point], settings: dict) -> xr.Dataset:
     See `profiles`. The settings also have `source_collisions` and `source_temperature`, of the source's
     sample.
     """
-    made = profiles(points, settings, source.ringing)
-    return made.assign_attrs(
+    dataset = profiles(points, settings, source.ringing)
+    return dataset.assign_attrs(
         source_collisions=settings["source_collisions"], source_temperature=settings["source_temperature"]
     )
 
@@ -70,8 +70,8 @@ def separation(points: list[Point], settings: dict) -> xr.Dataset:
     in it, of the light discs in equal layers of the container.
     """
     shares = settings["source_shares"]
-    made = profiles(points, settings, lambda point: source.shares(point, len(shares)))
-    return made.assign_attrs(source_collisions=settings["source_collisions"], source_shares=shares)
+    dataset = profiles(points, settings, lambda point: source.shares(point, len(shares)))
+    return dataset.assign_attrs(source_collisions=settings["source_collisions"], source_shares=shares)
 
 
 def profiles(points: list[Point], settings: dict, of_source: Callable[[Point], dict]) -> xr.Dataset:
@@ -96,16 +96,16 @@ def profiles(points: list[Point], settings: dict, of_source: Callable[[Point], d
         return {"column": name, **_column(point, settings), **own}
 
     low, high = np.array(settings["ranges"], dtype=float).T
-    made = table("point", points, column, inner=INNER).set_coords("column")
-    made = made.assign_coords(range_low=("range", low), range_high=("range", high))
-    return made.assign_attrs(clear=settings["clear"])
+    dataset = table("point", points, column, inner=INNER).set_coords("column")
+    dataset = dataset.assign_coords(range_low=("range", low), range_high=("range", high))
+    return dataset.assign_attrs(clear=settings["clear"])
 
 
 @dataclass(frozen=True)
 class Bins:
     """Bins of height of one column, and quantities that follow from averages in them.
 
-    place : the column.
+    column : the column and its particles.
     masses : (S,), masses of its species.
     height, width : (B,) heights of the middles, width of each.
     used : (B,), bins that are clear of floor and ceiling.
@@ -114,25 +114,25 @@ class Bins:
     pressure (B,); temperature, of the entire column.
     """
 
-    place: Field
+    column: Field
     masses: np.ndarray
     height: np.ndarray
     width: float
     used: np.ndarray
 
     @classmethod
-    def of(cls, place: Field, number: int, clear: float) -> Bins:
+    def of(cls, column: Field, number: int, clear: float) -> Bins:
         """Return `number` bins; those within `clear` diameters of floor and ceiling are not used."""
-        grid = Grid.line(0.0, place.height, number)
+        grid = Grid.line(0.0, column.height, number)
         height, width = grid.middles[0], grid.volume
-        margin = clear * place.diameter + 0.5 * width
-        masses = [place.masses[place.species == n][0] for n in range(int(place.species.max()) + 1)]
-        used = (height > margin) & (height < place.height - margin)
-        return cls(place, np.array(masses), height, width, used)
+        margin = clear * column.diameter + 0.5 * width
+        masses = [column.masses[column.species == n][0] for n in range(int(column.species.max()) + 1)]
+        used = (height > margin) & (height < column.height - margin)
+        return cls(column, np.array(masses), height, width, used)
 
     def packing_fraction(self, density: np.ndarray) -> np.ndarray:
         """Compute the packing fraction (B,) of all species."""
-        return density.sum(axis=0) * particle_volume(2, self.place.diameter)
+        return density.sum(axis=0) * particle_volume(2, self.column.diameter)
 
     def pressure_ratio(self, density: np.ndarray, pressure: np.ndarray, energy: np.ndarray) -> np.ndarray:
         """Compute pressure (B,) over the reference at this density and temperature."""
@@ -140,11 +140,11 @@ class Bins:
 
     def slope_ratio(self, density: np.ndarray, temperature: float) -> np.ndarray:
         """Compute slopes of ln eta_i + mu_excess(eta) over -m_i g / T, shape (S,)."""
-        volume = particle_volume(2, self.place.diameter)
+        volume = particle_volume(2, self.column.diameter)
         excess = excess_chemical_potential(self.packing_fraction(density), 2)
         with np.errstate(divide="ignore"):
             slopes = [self._slope(np.log(row * volume) + excess, row) for row in density]
-        return -np.array(slopes) * temperature / (self.masses * self.place.strength)
+        return -np.array(slopes) * temperature / (self.masses * self.column.strength)
 
     def log_ratio(self, density: np.ndarray) -> np.ndarray:
         """Compute ln of the last over the first species' density, shape (B,)."""
@@ -156,7 +156,7 @@ class Bins:
         if self.masses.size < 2:
             return np.nan
         slope = self._slope(self.log_ratio(density), density[0] * density[-1] / density.sum(axis=0))
-        return -slope * temperature / ((self.masses[-1] - self.masses[0]) * self.place.strength)
+        return -slope * temperature / ((self.masses[-1] - self.masses[0]) * self.column.strength)
 
     def temperature_gradient(self, energy: np.ndarray, density: np.ndarray) -> float:
         """Compute dT/dz over the mean weight of a particle.
@@ -164,19 +164,21 @@ class Bins:
         It is d ln T / dz in scale heights.
         """
         total = density.sum(axis=0)
-        return self._slope(energy / total, total) / (self.place.weight / len(self.place.masses))
+        return self._slope(energy / total, total) / (self.column.weight / len(self.column.masses))
 
     def mean_height_ratio(self, height: np.ndarray, temperature: float) -> np.ndarray:
         """Compute mean heights (S,) relative to ideal gases."""
-        return height / ideal_mean_height(self.place.height, self.masses * self.place.strength / temperature)
+        return height / ideal_mean_height(
+            self.column.height, self.masses * self.column.strength / temperature
+        )
 
     def exchange_line(self, value: np.ndarray, error: np.ndarray, temperature: float) -> np.ndarray:
         """Compute `log_ratio` (B,) for the exact slope, through its weighted mean over used bins."""
-        line = -(self.masses[-1] - self.masses[0]) * self.place.strength / temperature * self.height
-        known = self.used & np.isfinite(error) & (error > 0.0)
-        if self.masses.size < 2 or not known.any():
+        line = -(self.masses[-1] - self.masses[0]) * self.column.strength / temperature * self.height
+        usable = self.used & np.isfinite(error) & (error > 0.0)
+        if self.masses.size < 2 or not usable.any():
             return line
-        return line + np.average((value - line)[known], weights=1.0 / error[known] ** 2)
+        return line + np.average((value - line)[usable], weights=1.0 / error[usable] ** 2)
 
     def hydrostatics(self, density: np.ndarray, temperature: float) -> np.ndarray:
         """Compute hydrostatic densities (S, B) with the actual numbers in the used bins.
@@ -186,11 +188,11 @@ class Bins:
         first, last = np.flatnonzero(self.used)[[0, -1]]
         z = np.linspace(first, last + 1, 8 * (last - first + 1) + 1) * self.width
         numbers = density[:, self.used].sum(axis=1) * self.width
-        weights = self.masses * self.place.strength / temperature
-        curves = hydrostatic_profiles(z, numbers, weights, 2, self.place.diameter)
-        shown = np.full(density.shape, np.nan)
-        shown[:, self.used] = [np.interp(self.height[self.used], z, curve) for curve in curves]
-        return shown
+        weights = self.masses * self.column.strength / temperature
+        curves = hydrostatic_profiles(z, numbers, weights, 2, self.column.diameter)
+        densities = np.full(density.shape, np.nan)
+        densities[:, self.used] = [np.interp(self.height[self.used], z, curve) for curve in curves]
+        return densities
 
     def _slope(self, y: np.ndarray, weight: np.ndarray) -> float:
         """Fit the slope of the line through the used bins that have particles.
@@ -203,17 +205,17 @@ class Bins:
 
 def _column(point: Point, settings: dict) -> dict[str, Any]:
     """Return the numbers of one point."""
-    place, found = field(point), stretches(point, settings["blocks"])
-    bins = Bins.of(place, settings["bins"], settings["clear"])
-    parts = [profile(place, stretch, settings["bins"]) for stretch in found]
+    column, blocks = field(point), stretches(point, settings["blocks"])
+    bins = Bins.of(column, settings["bins"], settings["clear"])
+    parts = [profile(column, stretch, settings["bins"]) for stretch in blocks]
     density = np.array([part.density for part in parts])
     pressure = np.array([part.pressure for part in parts])
     # A block without particles in a bin has no temperature there, and weight 0.
     energy = np.array([np.nan_to_num(part.temperature) * part.density.sum(axis=0) for part in parts])
-    warm = np.array([stretch.temperature for stretch in found])
-    own = [place.species == n for n in range(bins.masses.size)]
-    heights = np.array([[stretch.heights[:, kind].mean() for kind in own] for stretch in found])
-    kinetic = np.array([[stretch.energies[:, kind].mean() for kind in own] for stretch in found])
+    warm = np.array([stretch.temperature for stretch in blocks])
+    own = [column.species == n for n in range(bins.masses.size)]
+    heights = np.array([[stretch.heights[:, kind].mean() for kind in own] for stretch in blocks])
+    kinetic = np.array([[stretch.energies[:, kind].mean() for kind in own] for stretch in blocks])
     eta = bins.packing_fraction(density.mean(axis=0))
     ranges = [bins.used & (eta >= low) & (eta < high) for low, high in settings["ranges"]]
 
@@ -222,7 +224,7 @@ def _column(point: Point, settings: dict) -> dict[str, Any]:
         return np.array([ratio[mask].mean() if mask.any() else np.nan for mask in ranges])
 
     with np.errstate(invalid="ignore", divide="ignore"):  # empty bins
-        made = {
+        averages = {
             "density": jackknife(lambda rho: rho, density),
             "packing_fraction": jackknife(bins.packing_fraction, density),
             "temperature": jackknife(lambda t: t, warm),
@@ -237,19 +239,19 @@ def _column(point: Point, settings: dict) -> dict[str, Any]:
             "mean_height_ratio": jackknife(bins.mean_height_ratio, heights, warm),
             "species_temperature_ratio": jackknife(lambda k: k / k[0], kinetic),
         }
-    numbers = {name: Estimate(*one, len(found) - 1) for name, one in made.items()}
+    numbers = {name: Estimate(*pair, len(blocks) - 1) for name, pair in averages.items()}
     temperature = numbers["temperature"].value
     return numbers | {
         "height": bins.height,
         "used": bins.used,
         "mass": bins.masses,
-        "strength": place.strength,
-        "top": place.height,
-        "count": len(place.masses),
-        "mean_density": len(place.masses) / (place.width * place.height),
+        "strength": column.strength,
+        "top": column.height,
+        "count": len(column.masses),
+        "mean_density": len(column.masses) / (column.width * column.height),
         "hydrostatic": bins.hydrostatics(numbers["density"].value, temperature),
-        "log_ratio_expected": bins.exchange_line(*made["log_ratio"], temperature),
-        "imbalance": max(abs(s.floor - s.ceiling - place.weight - s.gain) / place.weight for s in found),
+        "log_ratio_expected": bins.exchange_line(*averages["log_ratio"], temperature),
+        "imbalance": max(abs(s.floor - s.ceiling - column.weight - s.gain) / column.weight for s in blocks),
     }
 
 
@@ -296,13 +298,13 @@ def _pair(ends: tuple[dict, dict]) -> dict[str, Any]:
 
 def _energies(point: Point, blocks: int) -> dict[str, Any]:
     """Measure temperature and fluctuations of one point of a single replica, and expect them."""
-    place, scene = field(point), point.scene
-    if point.replicas != 1 or place.across:
+    column, scene = field(point), point.scene
+    if point.replicas != 1 or column.across:
         raise ValueError(f"{point.path}: must be one run between walls, whose energy is known")
     start = initial_state(scene, point.seed(0))
-    potential = place.masses @ (start.positions[:, 1] - 0.5 * place.diameter) * place.strength
-    energy, count = start.kinetic_energy + potential, len(place.masses)
-    force = place.weight / count
+    potential = column.masses @ (start.positions[:, 1] - 0.5 * column.diameter) * column.strength
+    energy, count = start.kinetic_energy + potential, len(column.masses)
+    force = column.weight / count
     [kinetic] = [run.data["kinetic_energy"].values[1:] for run in runs(point)]
     parts = kinetic[: len(kinetic) // blocks * blocks].reshape(blocks, -1) / count
 
@@ -315,14 +317,14 @@ def _energies(point: Point, blocks: int) -> dict[str, Any]:
         ((parts - shift) ** 2).mean(axis=1),
     )
     temperature = Estimate(*jackknife(lambda mean: mean, parts.mean(axis=1)), blocks - 1)
-    mean, variance = ideal_energy_moments(float(energy), count, place.height, force, 2)
+    mean, variance = ideal_energy_moments(float(energy), count, column.height, force, 2)
     return {
         "count": count,
-        "gravity": place.strength,
+        "gravity": column.strength,
         "energy": energy,
         "temperature": temperature,
         "fluctuation": Estimate(*fluctuation, blocks - 1),
         "temperature_expected": mean / count,
-        "run_x": force * place.height / temperature.value,
+        "run_x": force * column.height / temperature.value,
         "fluctuation_expected": lebowitz_percus_verlet(mean, variance, count, 2),
     }

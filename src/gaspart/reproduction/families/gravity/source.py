@@ -58,9 +58,9 @@ def shares(point: Point, layers: int) -> dict[str, tuple[np.ndarray, np.ndarray]
     Its error is the binomial one of a single frame: the frames of one sample are close to each other, and so
     are their compositions of a layer. The source has one frame.
     """
-    place, [sample] = field(point), stretches(point, 1)
-    grid = Grid.line(-0.5 * place.diameter, place.height + 0.5 * place.diameter, layers)
+    column, [sample] = field(point), stretches(point, 1)
+    grid = Grid.line(-0.5 * column.diameter, column.height + 0.5 * column.diameter, layers)
     cells = grid.cells(sample.heights[..., None])
-    first, second = (grid.sums(cells[:, place.species == kind]) / len(cells) for kind in (0, 1))
+    first, second = (grid.sums(cells[:, column.species == kind]) / len(cells) for kind in (0, 1))
     share = first / (first + second)
     return {"share": (share, np.sqrt(share * (1.0 - share) / (first + second)))}

@@ -46,16 +46,18 @@ def approach(point: Point, slab: Slab) -> dict[str, np.ndarray]:
         halves = [np.mean(squares, axis=1, where=side) for side in (hot, ~hot)]
         numbers = [side.sum(axis=1) for side in (hot, ~hot)]
         differences.append(halves[0] - halves[1])
-        variances.append(sum(2.0 / 3.0 * one**2 / n for one, n in zip(halves, numbers, strict=True)))
+        variances.append(sum(2.0 / 3.0 * half**2 / n for half, n in zip(halves, numbers, strict=True)))
     density = scene.species[0].count / (slab.position[-1] * np.prod(scene.container.lengths[1:]))
-    found = {
+    columns = {
         "approach_time": time,
         "approach": np.mean(differences, axis=0),
         "approach_error": np.sqrt(np.sum(variances, axis=0)) / len(variances),
         "expected_approach": expected_approach(time, slab, float(density), 2.0 * scene.smallest_radius),
     }
     rest = (0, FRAMES - len(time))
-    return {name: np.pad(one.astype(float), rest, constant_values=np.nan) for name, one in found.items()}
+    return {
+        name: np.pad(values.astype(float), rest, constant_values=np.nan) for name, values in columns.items()
+    }
 
 
 def expected_approach(time: np.ndarray, slab: Slab, density: float, diameter: float) -> np.ndarray:
@@ -75,5 +77,5 @@ def expected_approach(time: np.ndarray, slab: Slab, density: float, diameter: fl
 
 def _average(slab: Slab, side: np.ndarray) -> float:
     """Compute the mean temperature of the particles of one half."""
-    place, number = slab.position[side], slab.density[side]
-    return float(np.trapezoid(number * slab.temperature[side], place) / np.trapezoid(number, place))
+    position, number = slab.position[side], slab.density[side]
+    return float(np.trapezoid(number * slab.temperature[side], position) / np.trapezoid(number, position))

@@ -169,9 +169,9 @@ def _channels(regular: Row, random: Row) -> Claim:
 
 
 def _local(row: Row) -> Claim:
-    places = "on a grid" if row.regular else "at random places"
+    arrangement = "on a grid" if row.regular else "at random places"
     return Claim.within(
-        claim=f"energy of a mode over the temperature of the electrons around it, scatterers {places}",
+        claim=f"energy of a mode over the temperature of the electrons around it, scatterers {arrangement}",
         measured=row.share,
         expected=1.0,
         half_width=0.05,

@@ -55,7 +55,7 @@ def _fluxes(axis: Axes, gases: Table) -> None:
     fluid = gases.number[np.isfinite(gases.slab_flux)]
     if fluid.size:
         line = np.geomspace(fluid.min(), fluid.max(), 5)
-        theory = [1e3 * _conducted(first.length, n, first.hot, first.cold) for n in line.tolist()]
+        theory = [1e3 * _conducted_flux(first.length, n, first.hot, first.cold) for n in line.tolist()]
         axis.plot(line, theory, color=style.DATA, label="with jumps", zorder=4)
     for kind, name in enumerate(("all components", "normal only")):
         own = gases[gases.normal == kind]
@@ -68,7 +68,7 @@ def _fluxes(axis: Axes, gases: Table) -> None:
 
 
 @cache
-def _conducted(length: float, number: float, hot: float, cold: float) -> float:
+def _conducted_flux(length: float, number: float, hot: float, cold: float) -> float:
     """Compute the flux of `conducting_slab`, which takes a second."""
     return conducting_slab(length, number, hot, cold).flux
 

@@ -54,7 +54,7 @@ class Gap:
 class Averages:
     """Averages over K time blocks.
 
-    given, taken : (K,), fluxes out of the hot and into the cold wall.
+    heat_in, heat_out : (K,), heat fluxes out of the hot and into the cold wall.
     density : (K, B), particles in bins, per volume.
     energy : (K, B), their energy per volume, as a temperature.
     imbalance : largest difference between the energy given by the walls and the energy gained by the
@@ -64,8 +64,8 @@ class Averages:
     heat : heat conducted in all.
     """
 
-    given: np.ndarray
-    taken: np.ndarray
+    heat_in: np.ndarray
+    heat_out: np.ndarray
     density: np.ndarray
     energy: np.ndarray
     imbalance: float
@@ -78,7 +78,7 @@ class Averages:
         Changes and motions of the energy of the particles, which are bounded, are removed.
         """
         changes = np.diff(self.stored, axis=1).reshape(-1, 2)[blocks]
-        return steady_mean(0.5 * (self.given + self.taken)[blocks], *changes.T)
+        return steady_mean(0.5 * (self.heat_in + self.heat_out)[blocks], *changes.T)
 
     def wall_ratio(self) -> Estimate:
         """Compute the heat into the cold wall over the heat out of the hot wall.
@@ -89,7 +89,7 @@ class Averages:
         replicas, ends, _ = self.stored.shape
         spread = self.stored[:, :, 0].std(axis=1, ddof=1)
         error = np.sqrt(2.0 * np.sum(spread**2)) / self.heat
-        return Estimate(self.taken.sum() / self.given.sum(), error, replicas * (ends - 1))
+        return Estimate(self.heat_out.sum() / self.heat_in.sum(), error, replicas * (ends - 1))
 
 
 def averages(point: Point, gap: Gap, blocks: int, bins: int) -> Averages:
@@ -104,17 +104,17 @@ def averages(point: Point, gap: Gap, blocks: int, bins: int) -> Averages:
     grid = gap.grid(bins)
     for run in runs(point):
         parts, kinetic = Blocks(run, blocks), run.data["kinetic_energy"].values
-        places = run.positions[:, :, 0] - radius
+        positions = run.positions[:, :, 0] - radius
         squares = (run.velocities**2).sum(axis=2)
         heats.append(parts.growth("wall_energy")[:, :2] / gap.area)
         through = run.data["wall_energy"].values - run.data["wall_energy"].values[0]
         missing.append(abs(through.sum(axis=1) + kinetic - kinetic[0]).max() / abs(through[-1]).max())
-        moment = 0.5 * (squares * (places - 0.5 * gap.length)).sum(axis=1)
+        moment = 0.5 * (squares * (positions - 0.5 * gap.length)).sum(axis=1)
         stored.append(np.stack([kinetic, moment], axis=1)[parts.ends])
         conducted += abs(np.ptp(through[parts.ends, :2][[0, -1]], axis=0)).mean()
-        cells, volume = grid.cells(places[..., None], inside=True), parts.length * gap.area * grid.volume
+        cells, volume = grid.cells(positions[..., None], inside=True), parts.length * gap.area * grid.volume
         densities.append(parts.sums(grid, cells) / volume)
         energies.append(parts.sums(grid, cells, squares / gap.dimension) / volume)
-    given, taken = np.concatenate(heats).T
+    into_hot, into_cold = np.concatenate(heats).T
     profiles = np.concatenate(densities), np.concatenate(energies)
-    return Averages(-given, taken, *profiles, float(max(missing)), np.array(stored), float(conducted))
+    return Averages(-into_hot, into_cold, *profiles, float(max(missing)), np.array(stored), float(conducted))

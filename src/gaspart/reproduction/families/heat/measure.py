@@ -55,12 +55,12 @@ def _gas(point: Point, settings: dict) -> dict[str, Any]:
     """Return the numbers of one point."""
     scene = point.scene
     gap, diameter = Gap.of(scene), 2.0 * scene.smallest_radius
-    found = averages(point, gap, settings["blocks"], settings["bins"])
-    position, half = gap.grid(settings["bins"]).middles[0], len(found.given) // 2
+    means = averages(point, gap, settings["blocks"], settings["bins"])
+    position, half = gap.grid(settings["bins"]).middles[0], len(means.heat_in) // 2
     number = scene.species[0].count / (gap.area * gap.length)
     path = float(mean_free_path(packing_fraction(number, gap.dimension, diameter), gap.dimension, diameter))
     clear, components = settings["clear"] * path, thermal_face(scene, "x_low").components
-    unknown = Estimate(np.nan, np.nan, len(found.given) - 1)
+    unknown = Estimate(np.nan, np.nan, len(means.heat_in) - 1)
     spheres = gap.dimension == 3
     row = {
         "dimension": gap.dimension,
@@ -70,12 +70,12 @@ def _gas(point: Point, settings: dict) -> dict[str, Any]:
         "length": gap.length,
         "hot": gap.hot,
         "cold": gap.cold,
-        "imbalance": found.imbalance,
-        "flux": found.flux(),
-        "wall_ratio": found.wall_ratio(),
-        "half_ratio": found.flux(slice(half, None)) / found.flux(slice(half)),
-        "density": jackknife(lambda n: n, found.density),
-        "temperature": jackknife(lambda e, n: e / n, found.energy, found.density),
+        "imbalance": means.imbalance,
+        "flux": means.flux(),
+        "wall_ratio": means.wall_ratio(),
+        "half_ratio": means.flux(slice(half, None)) / means.flux(slice(half)),
+        "density": jackknife(lambda n: n, means.density),
+        "temperature": jackknife(lambda e, n: e / n, means.energy, means.density),
         "free": free_molecular_flux(number, gap.hot, gap.cold, gap.dimension, components=components),
         "full": free_molecular_flux(number, gap.hot, gap.cold, gap.dimension),
         "fourier": dilute_fourier_flux(gap.length, gap.hot, gap.cold, diameter) if spheres else np.nan,
@@ -88,13 +88,13 @@ def _gas(point: Point, settings: dict) -> dict[str, Any]:
     }
     if path / gap.length < FLUID and spheres and components == "all":
         slab = conducting_slab(gap.length, number, gap.hot, gap.cold, diameter)
-        return row | _against(slab, gap, found, row["used"], diameter) | approach(point, slab)
+        return row | _against(slab, gap, means, row["used"], diameter) | approach(point, slab)
     return row
 
 
-def _against(slab: Slab, gap: Gap, found: Averages, used: np.ndarray, diameter: float) -> dict[str, Any]:
+def _against(slab: Slab, gap: Gap, means: Averages, used: np.ndarray, diameter: float) -> dict[str, Any]:
     """Compare with Fourier's law with jumps, in the bins that are `used`."""
-    position, freedom = gap.grid(used.size).middles[0], len(found.given) - 1
+    position, freedom = gap.grid(used.size).middles[0], len(means.heat_in) - 1
     temperature = np.interp(position, slab.position, slab.temperature)
 
     def ratio(energy: np.ndarray, density: np.ndarray) -> float:
@@ -107,8 +107,8 @@ def _against(slab: Slab, gap: Gap, found: Averages, used: np.ndarray, diameter: 
         "slab_flux": slab.flux,
         "slab_temperature": temperature,
         "slab_density": np.interp(position, slab.position, slab.density),
-        "profile_ratio": Estimate(*jackknife(ratio, found.energy, found.density), freedom),
-        "jump": Estimate(*jackknife(jump, found.energy, found.density), freedom),
+        "profile_ratio": Estimate(*jackknife(ratio, means.energy, means.density), freedom),
+        "jump": Estimate(*jackknife(jump, means.energy, means.density), freedom),
     }
 
 
@@ -183,22 +183,22 @@ def _metal(point: Point, settings: dict) -> dict[str, Any]:
         modes.append(parts.means_of_frames(vibrations.mean(axis=1)))
         heats.append(parts.growth("wall_energy")[:, :2] / gap.area)
     particles, kinetic, scatterers, vibrating = np.moveaxis(np.concatenate(tables), 1, 0)
-    given, taken = np.concatenate(heats).T
+    into_hot, into_cold = np.concatenate(heats).T
     total, square, mode = (np.concatenate(values) for values in (totals, squares, modes))
     warm = gap.hot if gap.hot == gap.cold else np.nan
-    made = {
+    numbers = {
         "electrons": jackknife(lambda k, n: k / n, kinetic, particles),
         "modes": jackknife(lambda v, s: v / s, vibrating, scatterers),
         "share": jackknife(
             lambda k, n, v, s: (v / s * n / k).mean(), kinetic, particles, vibrating, scatterers
         ),
-        "flux": jackknife(lambda out, into: 0.5 * (into - out), given, taken),
+        "flux": jackknife(lambda out, into: 0.5 * (into - out), into_hot, into_cold),
         "bend": jackknife(_bend, kinetic, particles),
         "energy_ratio": jackknife(lambda e: e / (capacity * warm), total),
         "mode_ratio": jackknife(lambda e: e / warm, mode),
         "log_fluctuation": jackknife(lambda q: np.log(q / (capacity * warm**2)), square),
     }
-    return {name: Estimate(*one, len(total) - 1) for name, one in made.items()} | {
+    return {name: Estimate(*pair, len(total) - 1) for name, pair in numbers.items()} | {
         "electrons_part": 1.0 - np.sum(fixed) / capacity,
         "expected": capacity,
         "gap_over_path": gap.length / _path(scene, gap, fixed),

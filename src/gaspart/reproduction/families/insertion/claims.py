@@ -30,35 +30,35 @@ def fill_failures(dataset: xr.Dataset) -> list[Claim]:
 
     They are on the approach to saturation, and on failures at low density.
     """
-    return [claim for one in Table(dataset, "container") for claim in _of_container(one)]
+    return [claim for fill in Table(dataset, "container") for claim in _of_container(fill)]
 
 
-def _of_container(one: Row) -> list[Claim]:
-    claims, saturates = [], np.isfinite(one.saturation.value[0])
+def _of_container(fill: Row) -> list[Claim]:
+    claims, saturates = [], np.isfinite(fill.saturation.value[0])
     if saturates:
-        claims.append(_saturation(one))
-        if one.rule == "centres_to_walls":
-            claims.append(_source(one))
-    if np.isfinite(one.approach.value):
-        claims.append(_approach(one))
+        claims.append(_saturation(fill))
+        if fill.rule == "centres_to_walls":
+            claims.append(_source(fill))
+    if np.isfinite(fill.approach.value):
+        claims.append(_approach(fill))
     # Of a fill that continues to saturation, the first few particles carry little information.
-    if np.isfinite(one.dilute_failures.value) and not saturates:
-        claims.append(_dilute(one))
+    if np.isfinite(fill.dilute_failures.value) and not saturates:
+        claims.append(_dilute(fill))
     return claims
 
 
-def _particles(one: Row) -> str:
-    return f"{PARTICLES[one.dimension]} {NAMES[one.rule]} (L/σ = {one.side_over_diameter:.3g})"
+def _particles(fill: Row) -> str:
+    return f"{PARTICLES[fill.dimension]} {NAMES[fill.rule]} (L/σ = {fill.side_over_diameter:.3g})"
 
 
-def _saturation(one: Row) -> Claim:
-    container = one.dimension, one.side_over_diameter, one.rule
-    periodic = one.rule == "periodic"
+def _saturation(fill: Row) -> Claim:
+    container = fill.dimension, fill.side_over_diameter, fill.rule
+    periodic = fill.rule == "periodic"
     wall = "" if periodic else ", times the wall excess (1 + 0.64 σ/L')^3 of saturated fills"
     return Claim(
-        claim=f"saturation of random insertion, {_particles(one)}, extrapolated in "
-        f"attempts^(-1/{one.dimension})",
-        measured=one.saturation[0],
+        claim=f"saturation of random insertion, {_particles(fill)}, extrapolated in "
+        f"attempts^(-1/{fill.dimension})",
+        measured=fill.saturation[0],
         expected=Estimate(
             theory.insertion_saturation(*container), insertion_saturation_uncertainty(*container)
         ),
@@ -70,28 +70,28 @@ def _saturation(one: Row) -> Claim:
     )
 
 
-def _approach(one: Row) -> Claim:
+def _approach(fill: Row) -> Claim:
     return Claim.within(
-        claim=f"exponent p of (saturation - packing fraction) ~ attempts^-p, {_particles(one)}",
-        measured=one.approach,
-        expected=1.0 / one.dimension,
-        half_width=0.15 / one.dimension,
+        claim=f"exponent p of (saturation - packing fraction) ~ attempts^-p, {_particles(fill)}",
+        measured=fill.approach,
+        expected=1.0 / fill.dimension,
+        half_width=0.15 / fill.dimension,
         source="[Feder 1980], [Swendsen 1981]: 1/d, once only single holes remain",
         fails_if="the window is too early, or attempts are counted wrongly",
     )
 
 
-def _source(one: Row) -> Claim:
+def _source(fill: Row) -> Claim:
     """Return the claim on source A's one fill compared with many of ours.
 
     It is a draw from their distribution, if its attempts sufficed.
     """
     return Claim(
-        claim=f"packing fraction at which insertion ends, {_particles(one)}, whole spheres counted: "
+        claim=f"packing fraction at which insertion ends, {_particles(fill)}, whole spheres counted: "
         "source A's 52 %",
         kind="reproduction",
-        measured=one.saturation[0],
-        expected=Estimate(SOURCE_FRACTION, one.final_spread) + Estimate(0.0, SOURCE_ROUNDING),
+        measured=fill.saturation[0],
+        expected=Estimate(SOURCE_FRACTION, fill.final_spread) + Estimate(0.0, SOURCE_ROUNDING),
         required=4e-3,
         source="[source A], section 3.2: a single fill",
         allowance_source="the scatter of our fills, as that of its one fill, and its rounding to a percent",
@@ -100,11 +100,11 @@ def _source(one: Row) -> Claim:
     )
 
 
-def _dilute(one: Row) -> Claim:
+def _dilute(fill: Row) -> Claim:
     return Claim(
-        claim=f"failed attempts up to packing fraction {one.dilute_up_to:g} over those expected, "
-        f"{_particles(one)}",
-        measured=one.dilute_failures,
+        claim=f"failed attempts up to packing fraction {fill.dilute_up_to:g} over those expected, "
+        f"{_particles(fill)}",
+        measured=fill.dilute_failures,
         expected=1.0,
         required=0.02,
         source="available fraction 1 - 2^d η + c η^2, exact to that order",

@@ -30,12 +30,12 @@ def fill_failures(dataset: xr.Dataset) -> Figure:
     figure, (upper, middle, lower) = style.new((3.4,), (1.6,), (2.2,))
     containers = Table(dataset, "container")
     for kind, ((dimension, rule), label) in enumerate(SERIES.items()):
-        for one in containers[(containers.dimension == dimension) & (containers.rule == rule)]:
-            if np.isfinite(one.saturation.value[0]):
-                _failures(upper, one, kind, label)
-                _saturation(lower, one, kind)
+        for fill in containers[(containers.dimension == dimension) & (containers.rule == rule)]:
+            if np.isfinite(fill.saturation.value[0]):
+                _failures(upper, fill, kind, label)
+                _saturation(lower, fill, kind)
             else:
-                _failures(middle, one, kind, label)
+                _failures(middle, fill, kind, label)
     _limits(upper)
     _low_density(middle)
     columns = 2 if style.width() > style.COLUMN else 1
@@ -48,10 +48,10 @@ def fill_failures(dataset: xr.Dataset) -> Figure:
     return figure
 
 
-def _failures(axis: Axes, one: Row, kind: int, label: str) -> None:
-    failures = one.failures_per_particle
+def _failures(axis: Axes, fill: Row, kind: int, label: str) -> None:
+    failures = fill.failures_per_particle
     some = np.where(failures.value > 0.0, failures.value, np.nan)  # the scale is logarithmic
-    style.points(axis, one.packing_fraction, some, failures.error, kind, markersize=2.5, label=label)
+    style.points(axis, fill.packing_fraction, some, failures.error, kind, markersize=2.5, label=label)
 
 
 def _limits(axis: Axes) -> None:
@@ -61,9 +61,9 @@ def _limits(axis: Axes) -> None:
         (SOURCE, "source A: 52 %", style.COLOURS[0], -0.006, "right"),
         (theory.RSA_SATURATION[2], "2D: 0.547", style.COLOURS[3], 0.006, "left"),
     ]
-    for place, text, colour, shift, side in marks:
-        axis.axvline(place, color=colour, linestyle="--", linewidth=0.8, zorder=1)
-        axis.text(place + shift, 0.013, text, color=colour, rotation=90, ha=side, va="bottom")
+    for fraction, text, colour, shift, side in marks:
+        axis.axvline(fraction, color=colour, linestyle="--", linewidth=0.8, zorder=1)
+        axis.text(fraction + shift, 0.013, text, color=colour, rotation=90, ha=side, va="bottom")
     axis.set_yscale("log")
     labels = "packing fraction $\\eta$", "failed attempts per particle"
     style.label_axes(axis, *labels, xlim=(0.0, 0.59), ylim=(0.01, 6e6))
@@ -80,13 +80,13 @@ def _low_density(axis: Axes) -> None:
     style.label_axes(axis, *labels, xlim=(0.0, 0.06), ylim=(0.0, 0.85))
 
 
-def _saturation(axis: Axes, one: Row, kind: int) -> None:
+def _saturation(axis: Axes, fill: Row, kind: int) -> None:
     """Draw the growing packing fraction, its fitted line, and the predicted saturation."""
     colour, marker = style.COLOURS[kind], style.MARKERS[kind]
-    x = one.time ** (-1.0 / one.dimension)
-    axis.plot(x, one.filled, color=colour, linestyle="none", marker=marker, markersize=2.5, zorder=3)
+    x = fill.time ** (-1.0 / fill.dimension)
+    axis.plot(x, fill.filled, color=colour, linestyle="none", marker=marker, markersize=2.5, zorder=3)
     x = np.linspace(0.0, 0.45, 2)
-    line = one.saturation.value[0] + one.saturation_slope[0] * x
+    line = fill.saturation.value[0] + fill.saturation_slope[0] * x
     axis.plot(x, line, color=colour, linewidth=0.8)
-    expected = theory.insertion_saturation(one.dimension, one.side_over_diameter, one.rule)
+    expected = theory.insertion_saturation(fill.dimension, fill.side_over_diameter, fill.rule)
     axis.plot([0.0], [expected], marker="_", markersize=12, color="black", clip_on=False, zorder=5)

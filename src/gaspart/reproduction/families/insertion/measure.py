@@ -54,8 +54,10 @@ class Fill:
     def packing_fraction(self, times: np.ndarray) -> np.ndarray:
         """Compute (replica, times): packing fraction at the times t."""
         attempts = times / self.particle
-        placed_at = [np.cumsum(one[one >= 0] + 1) for one in self.failures]
-        return self.particle * np.array([np.searchsorted(one, attempts, side="right") for one in placed_at])
+        placed_at = [np.cumsum(series[series >= 0] + 1) for series in self.failures]
+        return self.particle * np.array(
+            [np.searchsorted(series, attempts, side="right") for series in placed_at]
+        )
 
     def trials(self) -> tuple[np.ndarray, np.ndarray]:
         """Return failures and successes (replica, particle) at each number of particles; zero beyond."""
@@ -82,7 +84,7 @@ def fill_failures(points: list[Point], settings: dict) -> xr.Dataset:
     saturation with its error (container, window) and the degrees of freedom of that (container), NaN for
     others than `saturated` ones, and slope of its line in t^(-1/d); approach and its error: exponent p of
     eta_s - eta ~ t^-p with the literature's eta_s (saturated periodic containers only); dilute_failures with
-    error: failures over the expected ones at low density (periodic containers only). Attribute dilute_up_to.
+    error, failures over the expected ones at low density (periodic containers only). Attribute dilute_up_to.
     """
     inner = {
         **dict.fromkeys(("packing_fraction", "failures_per_particle"), ("bin",)),

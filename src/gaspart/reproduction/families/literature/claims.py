@@ -47,16 +47,18 @@ def literature(dataset: xr.Dataset) -> list[Claim]:
             measured=own.ours,
             expected=own.theirs,
             required=required,
-            source=[_cited(source) for source in own.source],
+            source=[_cite(source) for source in own.source],
             allowance_source="their statement",
             fails_if="contacts are missed, correlations cut too early, or finite numbers act otherwise",
         ),
         *_together(values[static], "Z and pressures beside those of others"),
-        *_together(values[[not one for one in static]], "transport coefficients beside those of others"),
+        *_together(
+            values[[not is_static for is_static in static]], "transport coefficients beside those of others"
+        ),
     ]
 
 
-def _cited(source: str) -> str:
+def _cite(source: str) -> str:
     return SOURCES.get(source, f"[{source}]")
 
 
@@ -68,7 +70,7 @@ def _together(values: Table, claim: str) -> list[Claim]:
         Claim.joint(
             claim=claim,
             deviations=(values.ours - values.theirs).deviation,
-            source=f"programs of others: {', '.join(map(_cited, dict.fromkeys(values.source)))}",
+            source=f"programs of others: {', '.join(map(_cite, dict.fromkeys(values.source)))}",
             fails_if="a bias too small for one value is common to many, or error bars are wrong",
         )
     ]

@@ -24,8 +24,8 @@ def literature(dataset: xr.Dataset) -> Figure:
     """Draw ratios to the values of others, less 1: pressures, and transport coefficients."""
     figure, (static, transport) = style.new((2.4,), (2.4,))
     values = Table(dataset, "value")
-    for axis, wanted in ((static, True), (transport, False)):
-        _ratios(axis, values[[(quantity in EQUILIBRIUM) == wanted for quantity in values.quantity]])
+    for axis, is_static in ((static, True), (transport, False)):
+        _ratios(axis, values[[(quantity in EQUILIBRIUM) == is_static for quantity in values.quantity]])
     style.letters(static, transport)
     return figure
 
@@ -38,11 +38,11 @@ def _ratios(axis: Axes, values: Table) -> None:
         if not part:
             continue
         eta, theirs = part.packing_fraction, part.theirs.value
-        known = 100.0 * part.theirs.error / theirs
+        error = 100.0 * part.theirs.error / theirs
         axis.errorbar(
             eta,
             0.0 * eta,
-            known,
+            error,
             linestyle="none",
             color=style.COLOURS[kind],
             elinewidth=4.0,

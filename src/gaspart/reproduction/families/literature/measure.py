@@ -44,9 +44,9 @@ def literature(points: list[Point], settings: dict) -> xr.Dataset:
     quantities both hold for `count` particles; D holds for particles whose total momentum is zero, and
     viscosity and conductivity are means of the integral over `STRETCH`.
     """
-    found = [(point, row) for point in points for row in _values(point)]
-    rows = [row | {"judged": int(point.experiment in settings["judged"])} for point, row in found]
-    return table("value", rows, dict, units={}, of=[point for point, _ in found])
+    values = [(point, row) for point in points for row in _values(point)]
+    rows = [row | {"judged": int(point.experiment in settings["judged"])} for point, row in values]
+    return table("value", rows, dict, units={}, of=[point for point, _ in values])
 
 
 def _values(point: Point) -> Iterator[dict[str, Any]]:
@@ -56,9 +56,9 @@ def _values(point: Point) -> Iterator[dict[str, Any]]:
         yield from _of_infinite_system(point, gas)
         return
     for quantity, ours in _of_as_many(point, gas).items():
-        known = _known(gas, quantity)
-        for one in known[known.count == gas.count]:
-            yield _row(gas, quantity, ours, Estimate(float(one.value), float(one.error)), str(one.source))
+        published = _literature_values(gas, quantity)
+        for row in published[published.count == gas.count]:
+            yield _row(gas, quantity, ours, Estimate(float(row.value), float(row.error)), str(row.source))
 
 
 def _row(gas: Gas, quantity: str, ours: Estimate, theirs: Estimate, source: str) -> dict[str, Any]:
@@ -73,7 +73,7 @@ def _row(gas: Gas, quantity: str, ours: Estimate, theirs: Estimate, source: str)
     }
 
 
-def _known(gas: Gas, quantity: str) -> np.recarray:
+def _literature_values(gas: Gas, quantity: str) -> np.recarray:
     """Return the values of others at this packing fraction in such a container."""
     rows = theory.literature(quantity, gas.dimension)
     same = np.abs(rows.packing_fraction - gas.packing_fraction) < SAME
@@ -90,19 +90,19 @@ def _of_infinite_system(point: Point, gas: Gas) -> Iterator[dict[str, Any]]:
     eta = gas.packing_fraction
     fluid = eta <= theory.HIGHEST_PACKING_FRACTION[3]
     quantity = "Z" if fluid else "Z_crystal"
-    known = _known(gas, quantity)
-    if not len(known):
+    published = _literature_values(gas, quantity)
+    if not len(published):
         return
     z = pressure(point).z
     if fluid:
         shift = Estimate(float(theory.finite_size_correction(eta, 3, gas.count, ensemble="canonical")))
-        shifts = np.array([theory.finite_size_correction(eta, 3, int(count)) for count in known["count"]])
+        shifts = np.array([theory.finite_size_correction(eta, 3, int(count)) for count in published["count"]])
     else:
         first = float(theory.crystal_finite_size_correction(z.value, gas.count))
         shift = Estimate(first, abs(first) * (theory.CLOSE_PACKING[3] / eta - 1.0))
-        shifts = np.zeros(len(known))
-    theirs = combine_estimates(Estimate(known.value - shifts, known.error))
-    yield _row(gas, quantity, z - shift, theirs, str(known.source[0]))
+        shifts = np.zeros(len(published))
+    theirs = combine_estimates(Estimate(published.value - shifts, published.error))
+    yield _row(gas, quantity, z - shift, theirs, str(published.source[0]))
 
 
 def _of_as_many(point: Point, gas: Gas) -> dict[str, Estimate]:

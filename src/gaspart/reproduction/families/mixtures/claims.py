@@ -52,7 +52,7 @@ def mixture_state(dataset: xr.Dataset) -> list[Claim]:
     spheres = gases[gases.dimension == 3]
     if spheres:
         claims.append(_better(spheres))
-    return [*claims, *_reported(gases)]
+    return [*claims, *_report_theories(gases)]
 
 
 def _where(gas: Row) -> str:
@@ -82,12 +82,12 @@ def _compressibility(gas: Row) -> Claim:
     This equation must be excluded unless they are dilute.
     """
     allowance = math.hypot(gas.reference_error, gas.santos - gas.linear, gas.correction * _UNSURE)
-    over, what, required, alternative = gas.santos, "Z over that of [Santos 2002]", REQUIRED, None
+    over, subject, required, alternative = gas.santos, "Z over that of [Santos 2002]", REQUIRED, None
     if gas.dimension == 3 and not _dilute(gas):
-        over, what, alternative = gas.boublik, "Z over Boublik's and Mansoori's", 1.0
+        over, subject, alternative = gas.boublik, "Z over Boublik's and Mansoori's", 1.0
         required = abs(gas.santos / over - 1.0) / 5.0
     return Claim(
-        claim=f"{what}, {_where(gas)}",
+        claim=f"{subject}, {_where(gas)}",
         measured=gas.Z / over,
         expected=Estimate(gas.santos, allowance) / over,
         required=required,
@@ -154,7 +154,7 @@ def _better(spheres: Table) -> Claim:
     )
 
 
-def _reported(gases: Table) -> list[Claim]:
+def _report_theories(gases: Table) -> list[Claim]:
     """Return the claims on the largest deviation of each theory."""
     claims = []
     for dimension, names in ((3, tuple(_NAMES)), (2, ("santos",))):

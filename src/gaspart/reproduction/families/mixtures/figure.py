@@ -98,7 +98,7 @@ def _by_density(axis: Axes, two: Table) -> None:
         _points(axis, gases.packing_fraction, gases, dimension, kind, label)
         if dimension == 3:
             eta = np.linspace(0.01, 0.46, 60)
-            _theories(axis, eta, [(one, (1.0, 0.5), (0.5, 0.5)) for one in eta], kind)
+            _theories(axis, eta, [(fraction, (1.0, 0.5), (0.5, 0.5)) for fraction in eta], kind)
     axis.axhline(0.0, color=style.GREY, lw=0.8)
     x = r"packing fraction $\eta$, size ratio 0.5"
     style.label_axes(axis, x, "$Z$ over theory $-1$ (%)", legend="best", xlim=(0.0, None))
@@ -114,7 +114,9 @@ def _by_polydispersity(axis: Axes, many: Table) -> None:
         _points(axis, gases.polydispersity, gases, dimension, kind, label)
         if dimension == 3:
             spread, eta = np.linspace(0.0, 0.32, 33), gases.packing_fraction[0]
-            spheres = [(eta, relative_radii(_MANY, one, "lognormal"), None) for one in spread]
+            spheres = [
+                (eta, relative_radii(_MANY, polydispersity, "lognormal"), None) for polydispersity in spread
+            ]
             _theories(axis, spread, spheres, kind)
     axis.axhline(0.0, color=style.GREY, lw=0.8)
     style.label_axes(axis, "polydispersity of the radii", "$Z$ over theory $-1$ (%)", legend="best")

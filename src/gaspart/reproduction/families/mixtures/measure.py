@@ -57,8 +57,8 @@ def _row(point: Point) -> dict[str, Any]:
     eta, d = gas.packing_fraction, gas.dimension
     correction = float(theory.finite_size_correction(eta, d, scene.count, "canonical"))
     two = "size_ratio" in settings
-    found = [_of_two_sizes(run) if two else _of_any(run) for run in runs(point)]
-    means = {name: average([one[name] for one in found]) for name in found[0]}
+    replicas = [_of_two_sizes(run) if two else _of_any(run) for run in runs(point)]
+    means = {name: average([replica[name] for replica in replicas]) for name in replicas[0]}
     if two:
         means["rate"] /= _unit_of_rate(gas)
     return {
@@ -93,23 +93,25 @@ def _of_two_sizes(run: Run) -> dict[str, Estimate]:
 
 def theories(gas: Mixture) -> dict[str, Any]:
     """Compute Z by each theory, for two sizes also contact value and rate of each pair."""
-    found: dict[str, Any] = {}
+    predictions: dict[str, Any] = {}
     eta, d, diameters, _ = gas.sizes
     for name, dimensions in theory.MIXTURE_THEORIES.items():
         if d not in dimensions:
             continue
-        found[name] = theory.mixture_compressibility_factor(*gas.sizes, theory=name)
+        predictions[name] = theory.mixture_compressibility_factor(*gas.sizes, theory=name)
         if len(diameters) == 2:
             contact = theory.mixture_contact_values(*gas.sizes, theory=name)
             rate = theory.mixture_collision_rates(
                 *gas.sizes, theory=name, temperature=gas.temperature, masses=gas.masses
             ) / _unit_of_rate(gas)
-            found[f"contact_{name}"] = [contact[pair] for pair in _PAIRS.values()]
-            found[f"rate_{name}"] = [rate[pair] for pair in _PAIRS.values()]
+            predictions[f"contact_{name}"] = [contact[pair] for pair in _PAIRS.values()]
+            predictions[f"rate_{name}"] = [rate[pair] for pair in _PAIRS.values()]
     if d == 3:
         pure = (float(theory.carnahan_starling(eta)) - 1.0) / (4.0 * eta)
-        found["starling"] = theory.mixture_compressibility_factor(*gas.sizes, theory="linear", pure=pure)
-    return found
+        predictions["starling"] = theory.mixture_compressibility_factor(
+            *gas.sizes, theory="linear", pure=pure
+        )
+    return predictions
 
 
 def _unit_of_rate(gas: Mixture) -> float:
@@ -124,9 +126,9 @@ def _virial(run: Run) -> Estimate:
     """
     weights = []
     for i, j in pairs_of(run.scene):
-        one, other = run.scene.species[i], run.scene.species[j]
-        reduced = one.mass * other.mass / (one.mass + other.mass)
+        first, second = run.scene.species[i], run.scene.species[j]
+        reduced = first.mass * second.mass / (first.mass + second.mass)
         impulse = math.sqrt(2.0 * math.pi * reduced * run.temperature) / mean_speed_factor(run.freedom)
-        weights.append((one.radius + other.radius) * impulse)
+        weights.append((first.radius + second.radius) * impulse)
     predicted = run.increments("pair_collisions") @ np.array(weights)
     return correlated_mean(run.increments("virial_sum") / predicted - 1.0).estimate

@@ -21,7 +21,7 @@ def observable(dataset: xr.Dataset, stated: list[dict]) -> list[Claim]:
     There is one for each point, or each series.
     """
     points = Table(dataset, "point")
-    return [claim for one in stated for claim in _claims(points, one)]
+    return [claim for statement in stated for claim in _claims(points, statement)]
 
 
 def _claims(points: Table, stated: dict) -> list[Claim]:
@@ -39,9 +39,9 @@ def _axis(points: Table | Row) -> str:
     return str(points.dataset.attrs["against"])
 
 
-def _text(what: str, point: Row) -> str:
+def _text(subject: str, point: Row) -> str:
     """Return the subject of a claim: the observable, the point and its series."""
-    return f"{what} at {_axis(point)} {point.against:g}" + (f", {point.series}" if point.series else "")
+    return f"{subject} at {_axis(point)} {point.against:g}" + (f", {point.series}" if point.series else "")
 
 
 def _claim(point: Row, stated: dict) -> Claim | None:

@@ -12,7 +12,7 @@ from gaspart.analysis.observable import Observable
 from gaspart.analysis.observables import OBSERVABLES
 from gaspart.analysis.statistics import average
 from gaspart.reproduction.points.point import Point
-from gaspart.reproduction.sweep_table import mean_of, measured
+from gaspart.reproduction.sweep_table import mean_of, measure_point
 from gaspart.reproduction.table import from_rows
 
 _PARTS = {"value": "", "value_error": "_error", "theory": "_theory", "theory_error": "_theory_error"}
@@ -32,13 +32,13 @@ def observable(points: list[Point], settings: dict) -> xr.Dataset:
     name = settings["observable"]
     rows, source = [], ""
     for point in points:
-        found, refused = measured(point, [name], part=False)
+        result, refused = measure_point(point, [name], part=False)
         if refused:
             raise refused[name]
-        replicas = found.observables[name]
+        replicas = result.observables[name]
         if settings.get("place") is not None:
             (dim,) = replicas[0].estimate.dims
-            replicas = [one.sel({dim: settings["place"]}, method="nearest") for one in replicas]
+            replicas = [replica.sel({dim: settings["place"]}, method="nearest") for replica in replicas]
         source = source or replicas[0].attrs.get("source", "")
         shared = {"against": float(point.settings[settings["against"]])}
         for label, parts in _by_name(replicas).items():
@@ -64,7 +64,7 @@ def _by_name(replicas: list[Observable]) -> dict[str, list[Observable]]:
     if not first.dims or first[first.dims[0]].dtype.kind not in "UO":
         return {"": replicas}
     (dim,) = first.dims
-    return {str(text): [one.sel({dim: text}) for one in replicas] for text in first[dim].values}
+    return {str(text): [replica.sel({dim: text}) for replica in replicas] for text in first[dim].values}
 
 
 def _other(point: Point, points: list[Point], against: str) -> str:
@@ -72,7 +72,7 @@ def _other(point: Point, points: list[Point], against: str) -> str:
 
     It is the experiment, if there are several, and the other values of its grid.
     """
-    several = len({one.experiment for one in points}) > 1
+    several = len({other.experiment for other in points}) > 1
     varied = [part for part in point.name.split(",") if not part.startswith(f"{against}=")]
     return ", ".join([point.experiment] * several + [part for part in varied if part != "single"])
 
@@ -85,7 +85,10 @@ def _numbers(replicas: list[Observable]) -> dict[str, Any]:
         row[name] = np.full_like(row["value"], np.nan) if values is None else values
     if row["value"].ndim:
         (dim,) = replicas[0].estimate.dims
-        shortest = min((one[dim].values for one in replicas), key=len)
+        shortest = min((replica[dim].values for replica in replicas), key=len)
         return {**row, "along_places": shortest, "value_freedom": np.inf}
-    estimates = [Estimate(one.estimate, one.error, one.attrs.get("freedom", np.inf)) for one in replicas]
+    estimates = [
+        Estimate(replica.estimate, replica.error, replica.attrs.get("freedom", np.inf))
+        for replica in replicas
+    ]
     return {**row, "value_freedom": average(estimates).freedom}

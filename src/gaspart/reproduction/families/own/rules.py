@@ -47,9 +47,9 @@ def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) 
             raise SceneError(f"{where}.against", against, rule)
         _require_measurable(where, settings["observable"], point)
     curve = OBSERVABLES[settings["observable"]].form == "curve"
-    place = settings.get("place")
-    if place is not None and not curve:
-        raise SceneError(f"{where}.place", place, "has a meaning for a curve only")
+    position = settings.get("place")
+    if position is not None and not curve:
+        raise SceneError(f"{where}.place", position, "has a meaning for a curve only")
     for point in distinct(points):
         try:
             require_observable(settings["observable"], point)
@@ -58,7 +58,7 @@ def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) 
             raise SceneError(f"{where}.observable", settings["observable"], rule) from None
     at = sorted({float(point.settings[against]) for point in points})
     for number, claim in enumerate(settings.get("claims", ())):
-        _claim(f"{where}.claims.{number}", claim, curve and place is None)
+        _claim(f"{where}.claims.{number}", claim, curve and position is None)
         _check_between(f"{where}.claims.{number}", claim, at)
 
 
@@ -69,7 +69,7 @@ def _check_between(where: str, claim: Mapping[str, Any], at: Sequence[float]) ->
     """
     between = claim.get("between")
     low, high = (at[0], at[-1]) if between is None else between
-    chosen = [one for one in at if low <= one <= high]
+    chosen = [value for value in at if low <= value <= high]
     stated = f"there is none of the points, which are from {at[0]:g} to {at[-1]:g}"
     if not chosen:
         raise SceneError(f"{where}.between", between, stated)

@@ -16,20 +16,22 @@ def densest_fill(dataset: xr.Dataset) -> list[Claim]:
     saturation.
     """
     claims = []
-    for one in Table(dataset, "packing"):
-        claims += _compressed(one) if one.rule == "compressed" else [_inserted(one)]
+    for packing in Table(dataset, "packing"):
+        claims += (
+            _claims_on_jammed(packing) if packing.rule == "compressed" else [_claim_on_insertion(packing)]
+        )
     return claims
 
 
-def _packing_fraction(one: Row) -> Estimate:
-    return Estimate(one.packing_fraction, one.error, one.freedom)
+def _packing_fraction(packing: Row) -> Estimate:
+    return Estimate(packing.packing_fraction, packing.error, packing.freedom)
 
 
-def _compressed(one: Row) -> list[Claim]:
+def _claims_on_jammed(packing: Row) -> list[Claim]:
     return [
         Claim.at_least(
             claim="packing fraction of spheres grown until they jam",
-            measured=_packing_fraction(one),
+            measured=_packing_fraction(packing),
             bound=0.60,
             required=5e-3,
             source="[Lubachevsky 1990]: random packings end at 0.60 to 0.65",
@@ -37,7 +39,7 @@ def _compressed(one: Row) -> list[Claim]:
         ),
         Claim.within(
             claim="contacts per sphere that does not rattle, in a jammed packing",
-            measured=Estimate(one.contacts.value, one.contacts.error, one.freedom),
+            measured=Estimate(packing.contacts.value, packing.contacts.error, packing.freedom),
             expected=6.0,
             half_width=0.5,
             source="[Donev 2005]: isostatic, 2d contacts",
@@ -48,13 +50,13 @@ def _compressed(one: Row) -> list[Claim]:
     ]
 
 
-def _inserted(one: Row) -> Claim:
-    side = one.length[0] / (2.0 * one.radius)
-    saturation = theory.insertion_saturation(3, side, one.rule)
+def _claim_on_insertion(packing: Row) -> Claim:
+    side = packing.length[0] / (2.0 * packing.radius)
+    saturation = theory.insertion_saturation(3, side, packing.rule)
     return Claim.at_most(
-        claim=f"packing fraction of random insertion, {one.rule.replace('_', ' ')} (L/σ = {side:.3g}), "
+        claim=f"packing fraction of random insertion, {packing.rule.replace('_', ' ')} (L/σ = {side:.3g}), "
         "over saturation",
-        measured=_packing_fraction(one) / saturation,
+        measured=_packing_fraction(packing) / saturation,
         bound=1.0,
         required=0.02,
         source="[Zhang 2013], with the wall excess of fill_failures",

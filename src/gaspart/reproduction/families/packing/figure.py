@@ -26,20 +26,20 @@ def densest_fill(ds: xr.Dataset) -> Figure:
     """Draw the source's fill (first packing) and the compressed one (last), with densities."""
     figure, axes = style.new((3.4,), (3.4,))
     packings = Table(ds, "packing")
-    for letter, axis, one in zip("ab", axes, (packings[0], packings[-1]), strict=True):
-        places = one.position[np.isfinite(one.position).all(axis=1)]
-        count = len(places)
+    for letter, axis, packing in zip("ab", axes, (packings[0], packings[-1]), strict=True):
+        positions = packing.position[np.isfinite(packing.position).all(axis=1)]
+        count = len(positions)
         particles = DrawnParticles(
-            positions=places,
-            radii=np.full(count, one.radius),
+            positions=positions,
+            radii=np.full(count, packing.radius),
             species=np.zeros(count, dtype=int),
             speeds=np.zeros(count),
-            lengths=one.length,
+            lengths=packing.length,
             walls=np.zeros((0, 2, 2)),
         )
         side = round(DOTS * style.PAGE / 3)
         axis.imshow(picture(particles, (side, side), colours_of(particles, "species")))
         axis.set_axis_off()
         style.letter(axis, f"({letter})")
-        axis.set_title(f"{NAMES[one.rule]}\nη = {concise(one.packing_fraction, one.error)}")
+        axis.set_title(f"{NAMES[packing.rule]}\nη = {concise(packing.packing_fraction, packing.error)}")
     return figure

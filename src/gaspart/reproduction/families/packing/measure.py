@@ -32,13 +32,15 @@ def densest_fill(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _packing(point: Point) -> dict[str, Any]:
-    made = xr.load_dataset(point.path)
-    fractions, positions, radii = (made[name].values for name in ("packing_fraction", "position", "radius"))
-    length, compressed = made["length"].values, point.settings.get("arrangement") == "compressed"
+    dataset = xr.load_dataset(point.path)
+    fractions, positions, radii = (
+        dataset[name].values for name in ("packing_fraction", "position", "radius")
+    )
+    length, compressed = dataset["length"].values, point.settings.get("arrangement") == "compressed"
     rule = "centres_to_walls" if point.settings.get("centres_to_walls") else point.settings["boundary"]
     touching = [np.nan]
     if compressed:
-        touching = [contacts(*one, length) for one in zip(positions, radii, strict=True)]
+        touching = [contacts(*packing, length) for packing in zip(positions, radii, strict=True)]
     fraction, error = _mean(fractions)
     return {
         "rule": "compressed" if compressed else rule,

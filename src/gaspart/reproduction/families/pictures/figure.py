@@ -26,7 +26,7 @@ def gas_render(dataset: xr.Dataset) -> Figure:
     from matplotlib.colors import Normalize
 
     spheres = Table(dataset, "particle")
-    figure, axis = _shown(spheres, "speed", bar=0.5)
+    figure, axis = _draw_picture(spheres, "speed", bar=0.5)
     fastest = FASTEST * float(np.sqrt((spheres.speed**2).mean()))
     scale = ScalarMappable(Normalize(0.0, fastest), cmap="viridis")
     bar = figure.colorbar(
@@ -38,10 +38,10 @@ def gas_render(dataset: xr.Dataset) -> Figure:
 
 def brownian_render(dataset: xr.Dataset) -> Figure:
     """Draw the large sphere and its gas, coloured by species."""
-    return _shown(Table(dataset, "particle"), "species")[0]
+    return _draw_picture(Table(dataset, "particle"), "species")[0]
 
 
-def _shown(spheres: Table, colour: str, bar: float = 0.0) -> tuple[Figure, Axes]:
+def _draw_picture(spheres: Table, colour: str, bar: float = 0.0) -> tuple[Figure, Axes]:
     """Return a figure filled by a picture of the spheres.
 
     `bar` is the height in inches of the space below.

@@ -41,13 +41,13 @@ def _scene(point: Point) -> xr.Dataset:
     frames, overlaps, collisions = [], 0, 0.0
     for run in runs(point):
         last = run.data[["coordinates", "velocities", "radius", "type"]].isel(frame=-1).load().astype(float)
-        places, radii = last["coordinates"].values, last["radius"].values
-        overlaps += overlapping(places, radii, lengths, scene.container.periodic)
+        positions, radii = last["coordinates"].values, last["radius"].values
+        overlaps += overlapping(positions, radii, lengths, scene.container.periodic)
         collisions += run.increments("collisions")[-1] / np.diff(run.time)[-1]
         frames.append(last)
     speeds = [np.sqrt((last["velocities"].values ** 2).sum(axis=1)) for last in frames]
     first, kind = frames[0], frames[0]["type"].values.astype(int)
-    of_gas = np.concatenate([one[kind == len(scene.species) - 1] for one in speeds])
+    of_gas = np.concatenate([frame[kind == len(scene.species) - 1] for frame in speeds])
     step = point.settings["time_step"] if point.settings.get("engine") == "step" else 0.0
     return xr.Dataset(
         {
@@ -65,7 +65,9 @@ def _scene(point: Point) -> xr.Dataset:
     )
 
 
-def overlapping(places: np.ndarray, radii: np.ndarray, lengths: np.ndarray, periodic: Sequence[bool]) -> int:
+def overlapping(
+    positions: np.ndarray, radii: np.ndarray, lengths: np.ndarray, periodic: Sequence[bool]
+) -> int:
     """Count the pairs of particles (N, d) that overlap by more than rounding.
 
     The few particles that are larger than twice the median radius are compared with all others.
@@ -73,7 +75,7 @@ def overlapping(places: np.ndarray, radii: np.ndarray, lengths: np.ndarray, peri
     box = np.where(periodic, lengths, 0.0)
 
     def deep(i: int | np.ndarray, j: np.ndarray) -> int:
-        gap = np.abs(places[i] - places[j])
+        gap = np.abs(positions[i] - positions[j])
         gap = np.where(box > 0.0, np.minimum(gap, np.abs(box - gap)), gap)
         touch = radii[i] + radii[j]
         return int(
@@ -82,11 +84,11 @@ def overlapping(places: np.ndarray, radii: np.ndarray, lengths: np.ndarray, peri
 
     is_large = radii > 2.0 * np.median(radii)
     small, large = np.flatnonzero(~is_large), np.flatnonzero(is_large)
-    wrapped = np.where(box > 0.0, places % np.where(box > 0.0, box, 1.0), places)
+    wrapped = np.where(box > 0.0, positions % np.where(box > 0.0, box, 1.0), positions)
     tree = cKDTree(wrapped[small], boxsize=np.where(box > 0.0, box, 0.0))
     pairs = tree.query_pairs(2.0 * radii[small].max(), output_type="ndarray")
-    found = deep(small[pairs[:, 0]], small[pairs[:, 1]])
+    number = deep(small[pairs[:, 0]], small[pairs[:, 1]])
     for n, i in enumerate(large):
         others = np.concatenate([small, large[n + 1 :]])
-        found += deep(np.full(len(others), i), others)
-    return found
+        number += deep(np.full(len(others), i), others)
+    return number

@@ -40,11 +40,11 @@ def piston(ds: xr.Dataset) -> list[Claim]:
 
 
 def _of_path(path: Row) -> list[Claim]:
-    found, least = exponents(path), path.volume.mean(axis=0).argmin()
+    estimates, least = exponents(path), path.volume.mean(axis=0).argmin()
     return [
         Claim(
             claim=f"adiabatic exponent of {PARTICLES[path.dimension]}, {how}",
-            measured=mean_of(found[:, frame]),
+            measured=mean_of(estimates[:, frame]),
             expected=1.0 + 2.0 / path.dimension,
             required=0.01,
             source="d/2 N k_B dT = -P dV, P that of the equation of state (exact for slow changes), and the "

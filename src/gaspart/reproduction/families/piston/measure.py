@@ -57,7 +57,7 @@ def _kind(point: Point) -> str:
 def _row(point: Point, read: Callable[[Run], dict], facts: tuple[str, ...]) -> dict:
     """Return the results of `read` for each replica, and facts of the scene."""
     replicas = [read(run) for run in runs(point)]
-    row = {name: np.stack([one[name] for one in replicas]) for name in replicas[0]}
+    row = {name: np.stack([replica[name] for replica in replicas]) for name in replicas[0]}
     return row | {name: getattr(point.scene, name) for name in facts}
 
 
@@ -88,17 +88,17 @@ def _heating(
 def _length(run: Run) -> np.ndarray:
     """Compute the distance of the piston from the wall opposite, shape (frame,)."""
     ((number, _),) = run.scene.pistons
-    place = run.data["piston_position"].values
-    return place if number % 2 else run.scene.container.lengths[number // 2] - place
+    position = run.data["piston_position"].values
+    return position if number % 2 else run.scene.container.lengths[number // 2] - position
 
 
 def _state(run: Run) -> dict[str, np.ndarray]:
     scene, length = run.scene, _length(run)
     ((_, face),) = scene.pistons
     area = scene.container.volume / scene.container.lengths[0]
-    places = run.data["coordinates"].values[:, :, 0] / length[:, None]
+    positions = run.data["coordinates"].values[:, :, 0] / length[:, None]
     temperature = 2.0 * run.data["kinetic_energy"].values.mean() / (scene.dimension * scene.count)
-    middle = ((places > 0.25) & (places < 0.75)).sum() / (0.5 * area * length.sum())
+    middle = ((positions > 0.25) & (positions < 0.75)).sum() / (0.5 * area * length.sum())
     bulk = scene.count / (middle * area)  # the length without what the walls deplete, which does not vary
     return {
         "density": middle * scene.packing_fraction * scene.container.volume / scene.count,

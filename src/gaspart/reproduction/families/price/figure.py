@@ -18,27 +18,27 @@ def price_of_features(ds: xr.Dataset) -> Figure:
 
     Times are relative to the scene without the feature.
     """
-    figure, (left, right) = style.new((2.9,), (2.9,))
+    figure, (times, counts) = style.new((2.9,), (2.9,))
     timed = Table(ds, "point")
-    place = {name: -k for k, name in enumerate(dict.fromkeys(timed.feature))}
-    left.axvline(1.0, color=style.GREY, linewidth=0.6, zorder=1)
-    left.axvspan(0.0, LARGEST_RATIO, color=style.GREY, alpha=0.18, linewidth=0, zorder=0)
+    positions = {name: -k for k, name in enumerate(dict.fromkeys(timed.feature))}
+    times.axvline(1.0, color=style.GREY, linewidth=0.6, zorder=1)
+    times.axvspan(0.0, LARGEST_RATIO, color=style.GREY, alpha=0.18, linewidth=0, zorder=0)
     for kind, (engine, costs) in enumerate(timed.by("engine")):
-        rows = np.array([place[name] for name in costs.feature]) + 0.12 * (0.5 - kind)
+        rows = np.array([positions[name] for name in costs.feature]) + 0.12 * (0.5 - kind)
         plain = costs[costs.feature == "plain"].seconds[0]
-        style.points(left, costs.ratio, rows, kind=kind, label=f"{engine}: plain {1e6 * plain:.3g} µs")
+        style.points(times, costs.ratio, rows, kind=kind, label=f"{engine}: plain {1e6 * plain:.3g} µs")
         for hollow, (name, label) in enumerate(WORK.items()):
             work = getattr(costs, name)
             if work.any():
-                style.points(right, work, rows, kind=kind, hollow=bool(hollow), label=f"{engine}: {label}")
-    for axis in (left, right):
-        axis.set_yticks(list(place.values()), place)
-        axis.set_ylim(-len(place) + 0.4, 1.6)
+                style.points(counts, work, rows, kind=kind, hollow=bool(hollow), label=f"{engine}: {label}")
+    for axis in (times, counts):
+        axis.set_yticks(list(positions.values()), positions)
+        axis.set_ylim(-len(positions) + 0.4, 1.6)
         axis.tick_params(axis="y", which="both", length=0)
-        axis.legend(loc="upper right", ncols=2 if axis is right else 1)
+        axis.legend(loc="upper right", ncols=2 if axis is counts else 1)
     most = (timed.ratio.value + timed.ratio.error).max()
     labels = "time per event over that without the feature", "counted work per event"
-    style.label_axes(left, labels[0], xlim=(0.0, max(1.6, 1.1 * most)))
-    style.label_axes(right, labels[1], xscale="log")
-    style.letters(left, right)
+    style.label_axes(times, labels[0], xlim=(0.0, max(1.6, 1.1 * most)))
+    style.label_axes(counts, labels[1], xscale="log")
+    style.letters(times, counts)
     return figure

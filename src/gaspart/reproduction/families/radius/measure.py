@@ -99,7 +99,9 @@ def _crossings(replicas: list[Series], scene: Scene, per_side: int) -> Estimate:
     """Compute crossings per particle and time over the kinetic theory's."""
     between = scene.dimension * (per_side - 1) / scene.container.lengths[0] * math.sqrt(2.0 / math.pi)
     between *= scene.count
-    ratios = [one.counters["crossings"] / (one.interval * between * one.speed) for one in replicas]
+    ratios = [
+        series.counters["crossings"] / (series.interval * between * series.speed) for series in replicas
+    ]
     return average([correlated_mean(ratio).estimate for ratio in ratios])
 
 

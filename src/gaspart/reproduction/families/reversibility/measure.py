@@ -62,8 +62,8 @@ def _row(point: Point) -> dict:
 
 def _mean(values: Iterable[float]) -> Estimate:
     """Average over the seeds with a known value; NaN for fewer than two."""
-    known = [value for value in values if np.isfinite(value)]
-    return mean_of(known) if len(known) > 1 else Estimate(math.nan, math.nan, math.nan)
+    finite = [value for value in values if np.isfinite(value)]
+    return mean_of(finite) if len(finite) > 1 else Estimate(math.nan, math.nan, math.nan)
 
 
 def _slope(window: tuple[float, float], s: np.ndarray, distance: np.ndarray) -> float:

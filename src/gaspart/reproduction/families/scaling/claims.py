@@ -24,10 +24,10 @@ _LAWS = {"pairs": (2.0, "4.2: all pairs"), "direct": (1.0, "4.3: a queue"), "box
 """Exponent of an event's cost in N, and the section of source C that states it, by search."""
 
 
-def _all_pairs(what: str, excess: float) -> Claim:
+def _all_pairs(subject: str, excess: float) -> Claim:
     """Return the claim that counted pair tests are N(N-1)/2."""
     return Claim(
-        claim=f"{what}: largest relative difference of the pair tests from N(N-1)/2",
+        claim=f"{subject}: largest relative difference of the pair tests from N(N-1)/2",
         kind="identity",
         measured=Estimate(excess),
         expected=0.0,
@@ -90,13 +90,13 @@ def box_count(ds: xr.Dataset) -> list[Claim]:
 def _counts(scan: Table) -> list[Claim]:
     """Pair tests (where there is about one a particle) and box visits (everywhere) are those expected."""
     source = "uniform density, gaspart.theory.dsmc"
-    one = scan[int(np.abs(scan.expected_tests - 1.0).argmin())]
+    nearest = scan[int(np.abs(scan.expected_tests - 1.0).argmin())]
     visits = scan.box_visits / scan.expected_visits
     return [
         Claim(
-            claim=f"pair tests per particle and step, {one.boxes_per_side} boxes per side",
-            measured=Estimate(one.pair_tests, one.tests_spread),
-            expected=one.expected_tests,
+            claim=f"pair tests per particle and step, {nearest.boxes_per_side} boxes per side",
+            measured=Estimate(nearest.pair_tests, nearest.tests_spread),
+            expected=nearest.expected_tests,
             required=0.05,
             source=source,
             fails_if="pairs are missed or tested twice, or the gas is not uniform",

@@ -82,28 +82,28 @@ def _scan_work(axis: Axes, scan: Table, near: Table) -> None:
         "boxes searched": scan.box_visits,
         "boxes emptied": scan.boxes_emptied,
     }
-    shown: list[Any] = [
+    handles: list[Any] = [
         style.points(axis, boxes, work, kind=kind, label=label)
         for kind, (label, work) in enumerate(counted.items())
     ]
     look: dict[str, Any] = {"kind": 1, "hollow": True, "label": "searched, within reach"}
-    shown.append(style.points(axis, reached, near.near_box_visits, **look))
+    handles.append(style.points(axis, reached, near.near_box_visits, **look))
     colour = style.COLOURS[1]
-    shown += axis.plot(boxes, scan.in_reach, color=colour, linestyle="--", label="boxes within reach")
-    shown += axis.plot(boxes, scan.touched, color=colour, linestyle=":", label="boxes touched (F & M)")
+    handles += axis.plot(boxes, scan.in_reach, color=colour, linestyle="--", label="boxes within reach")
+    handles += axis.plot(boxes, scan.touched, color=colour, linestyle=":", label="boxes touched (F & M)")
     axis.set(yscale="log", ylabel="per particle and step", ylim=(0.01, 1e8))
-    axis.legend(handles=shown, loc="upper right")
+    axis.legend(handles=handles, loc="upper right")
 
 
 def _round_widths(axis: Axes, containers: Table) -> None:
     per_side, (first, second) = containers.fine_boxes_per_side[0], containers.container_side
     ratio = containers.fine_seconds[0] / containers.fine_seconds[1]
-    places, is_round = np.arange(per_side.size), np.isin(per_side, containers.round_per_side)
+    positions, is_round = np.arange(per_side.size), np.isin(per_side, containers.round_per_side)
     style.level(axis, 1.0)
-    style.points(axis, places[~is_round], ratio[~is_round], color=style.DATA)
+    style.points(axis, positions[~is_round], ratio[~is_round], color=style.DATA)
     widths = ", ".join(f"{first / n:g}" for n in containers.round_per_side)
-    style.points(axis, places[is_round], ratio[is_round], kind=1, label=f"boxes of width {widths}")
-    axis.set_xticks(places, [str(int(n)) for n in per_side])
+    style.points(axis, positions[is_round], ratio[is_round], kind=1, label=f"boxes of width {widths}")
+    axis.set_xticks(positions, [str(int(n)) for n in per_side])
     axis.tick_params(axis="x", top=False)
     style.label_axes(axis, "boxes per side", f"time, side {first:g} / {second:g}", "upper left")
 
@@ -159,10 +159,10 @@ def _ideal(axis: Axes, gases: Table, kind: int, label: str) -> None:
     """
     count, interior = gases.count, gases.ideal_interior.astype(bool)
     ideal, low, high = gases.ideal * count, gases.ideal_low * count, gases.ideal_high * count
-    found = interior & np.isfinite(high) & (low > 0.0)
-    bars = np.where(found, [ideal - low, high - ideal], 0.0)
-    style.points(axis, count[found], ideal[found], bars[:, found], kind=kind, label=label)
-    vague = interior & ~found
+    bounded = interior & np.isfinite(high) & (low > 0.0)
+    bars = np.where(bounded, [ideal - low, high - ideal], 0.0)
+    style.points(axis, count[bounded], ideal[bounded], bars[:, bounded], kind=kind, label=label)
+    vague = interior & ~bounded
     style.points(axis, count[vague], ideal[vague], kind=kind, hollow=True)
     rest = ~interior
     style.points(axis, count[rest], ideal[rest], 0.6 * ideal[rest], kind=kind, hollow=True, lolims=True)
@@ -175,7 +175,7 @@ def linear_scaling(ds: xr.Dataset) -> Figure:
     """
     figure, (top, middle, bottom) = style.new((3.0,), (1.9, 1.7))
     gases, naive, lists = Table(ds, "gas"), Table(ds, "naive"), Table(ds, "listed")
-    _extrapolated(top, naive)
+    _extrapolate(top, naive)
     style.points(top, naive.naive_count, naive.naive_seconds, kind=1, label="one box")
     for kind, (radius, own) in enumerate(reversed(list(gases.by("radius")))):
         n, label = own.count, f"cheapest partition, $r = {radius:g}$"
@@ -203,7 +203,7 @@ def linear_scaling(ds: xr.Dataset) -> Figure:
     return figure
 
 
-def _extrapolated(axis: Axes, naive: Table) -> None:
+def _extrapolate(axis: Axes, naive: Table) -> None:
     """Draw the time of one box with many more particles; nothing if noise makes it negative."""
     far, carried = float(naive.extrapolated_count), naive.extrapolated_seconds.value
     line = np.array([naive.naive_count.min(), far])

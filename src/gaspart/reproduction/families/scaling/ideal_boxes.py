@@ -31,16 +31,16 @@ def ideal_boxes(points: list[Point], settings: dict) -> xr.Dataset:
     )
     costs = [per_particle(run) for run in runs]
     gases = table("gas", list(zip(runs, costs, strict=True)), _gas, settings["rule"])
-    found = Table(gases, "gas")
-    radii = sorted(set(found.radius.tolist()), reverse=True)
+    rows = Table(gases, "gas")
+    radii = sorted(set(rows.radius.tolist()), reverse=True)
     numbered = [cost.assign_coords(partition=np.arange(cost.sizes["partition"])) for cost in costs]
     return xr.merge(
         [
             xr.concat(numbered, "gas", join="outer", compat="equals"),
             gases,
-            table("source", settings["source_numbers"], _source, costs, found),
+            table("source", settings["source_numbers"], _source, costs, rows),
             table("plateau", settings["source_plateaus"], _plateau, runs, costs),
-            table("series", radii, _series, found),
+            table("series", radii, _series, rows),
         ],
         join="outer",
         compat="no_conflicts",
@@ -72,9 +72,9 @@ def _gas(timed: tuple[xr.Dataset, xr.Dataset], rule: float) -> dict[str, Any]:
     }
 
 
-def _source(given: dict, costs: list[xr.Dataset], gases: Table) -> dict[str, Any]:
+def _source(entry: dict, costs: list[xr.Dataset], gases: Table) -> dict[str, Any]:
     """Return the results for the gas of one of source A's numbers, for `ideal_boxes`."""
-    same = (gases.count == given["count"]) & (gases.radius == given["radius"])
+    same = (gases.count == entry["count"]) & (gases.radius == entry["radius"])
     at = int(np.flatnonzero(same)[0])
     gas = gases[at]
     return {
@@ -83,30 +83,30 @@ def _source(given: dict, costs: list[xr.Dataset], gases: Table) -> dict[str, Any
         "source_ideal_high": gas.ideal_high,
         "source_interior": gas.ideal_interior,
         "source_gas": at,
-        "source_number": given["boxes_per_particle"],
-        "source_count": given["count"],
-        "source_radius": given["radius"],
-        "source_penalty": penalty(costs[at], given["boxes_per_particle"]),
+        "source_number": entry["boxes_per_particle"],
+        "source_count": entry["count"],
+        "source_radius": entry["radius"],
+        "source_penalty": penalty(costs[at], entry["boxes_per_particle"]),
     }
 
 
-def _plateau(given: dict, runs: list[xr.Dataset], costs: list[xr.Dataset]) -> dict[str, Any]:
+def _plateau(entry: dict, runs: list[xr.Dataset], costs: list[xr.Dataset]) -> dict[str, Any]:
     """Return the cost of one of source A's constant numbers of boxes, for `ideal_boxes`.
 
     It has ``plateau_radius``, ``plateau_low`` and ``_high`` N, ``plateau_boxes``; of the gases between these
     the worst, its ``plateau_count``, and ``plateau_penalty``, the time with this number of boxes over the
     least, with error.
     """
-    low, high = given["counts"]
-    boxes = given["boxes_per_side"] ** 3
+    low, high = entry["counts"]
+    boxes = entry["boxes_per_side"] ** 3
     within = [
         (*penalty(cost, boxes / run.attrs["count"]), run.attrs["count"])
         for run, cost in zip(runs, costs, strict=True)
-        if run.radius == given["radius"] and low <= run.attrs["count"] <= high
+        if run.radius == entry["radius"] and low <= run.attrs["count"] <= high
     ]
     ratio, error, count = max(within)
     return {
-        "plateau_radius": given["radius"],
+        "plateau_radius": entry["radius"],
         "plateau_low": low,
         "plateau_high": high,
         "plateau_boxes": boxes,

@@ -17,7 +17,7 @@ from gaspart.reproduction.families.scaling.remarks import huge_sphere, near_boxe
 from gaspart.reproduction.families.shared.timings import (
     extrapolate,
     ideal,
-    listed,
+    list_costs,
     one_box,
     penalty,
     per_event,
@@ -38,11 +38,11 @@ def naive_scaling(points: list[Point], settings: dict) -> xr.Dataset:
     relative difference of the pair tests from N(N-1)/2; ``test_seconds``, the cost of a pair test, from time
     = a N + b tests.
     """
-    made = one_box([xr.load_dataset(point.path) for point in points])
-    gases = Table(made, "count")
+    dataset = one_box([xr.load_dataset(point.path) for point in points])
+    gases = Table(dataset, "count")
     count, tests = gases.count.astype(float), gases.pair_tests
     parts = weights(gases.seconds, count, tests)
-    return made.assign(
+    return dataset.assign(
         **entries({
             "exponent": trend(count, gases.seconds.value),
             "test_seconds": (parts.values[1], parts.errors[1]),
@@ -86,7 +86,7 @@ def box_count(points: list[Point], settings: dict) -> xr.Dataset:
     ]
     return xr.merge(
         [
-            costs.assign(_expected(main)).rename(partition="scan"),
+            costs.assign(_expected_counts(main)).rename(partition="scan"),
             pair.rename(partition="fine"),
             events.rename(partition="sector", **_names("sector", events)),
             near_boxes(near),
@@ -129,8 +129,8 @@ def linear_scaling(points: list[Point], settings: dict) -> xr.Dataset:
     `per_particle`, and ``work``, pair tests and box visits together. Over ``naive`` (points with one box):
     ``naive_count``, ``naive_seconds`` per step, with error. Over ``part`` (A's figures): ``part_low``,
     ``part_high``, ``part_radius``, and ``exponent`` of the time per step in N, with error. Over ``listed``
-    (points without partition): see `listed`. Scalars: ``work_exponent`` of the work per step over all gases,
-    with error; ``extrapolated_count``, ``extrapolated_seconds`` of one naive step there (with error),
+    (points without partition): see `list_costs`. Scalars: ``work_exponent`` of the work per step over all
+    gases, with error; ``extrapolated_count``, ``extrapolated_seconds`` of one naive step there (with error),
     ``extrapolated_ratio``, its time over the partitioned step's (with error); ``source_years``.
     """
     runs = sorted(
@@ -155,7 +155,7 @@ def linear_scaling(points: list[Point], settings: dict) -> xr.Dataset:
     ratio = carried / (gases.seconds[-1] * settings["naive_count"])
     naive = naive.rename(count="naive_count", **_names("naive", naive))
     parts = table("part", settings["source_figures"], _regime, gases)
-    merged = [cheapest, naive, listed(lists, cheapest), parts]
+    merged = [cheapest, naive, list_costs(lists, cheapest), parts]
     return xr.merge(merged, join="outer", compat="no_conflicts").assign(
         **entries({
             "work_exponent": trend(gases.count, gases.count * gases.work),
@@ -224,7 +224,7 @@ def _names(prefix: str, costs: xr.Dataset) -> dict[str, Any]:
     return {str(name): f"{prefix}_{name}" for name in costs.data_vars}
 
 
-def _expected(run: xr.Dataset) -> dict:
+def _expected_counts(run: xr.Dataset) -> dict:
     """Return the expected counts per particle of a scan, for `box_count`."""
     gas = {"dimension": run.dimension, "side": run.side, "radius": run.radius}
     count, sides = run.attrs["count"], run.boxes_per_side.values
@@ -250,10 +250,10 @@ def _advantages(fine: xr.Dataset, round_per_side: list[int]) -> list[Estimate]:
     """
     n = fine.fine_boxes_per_side.values[0]
     difference = np.log(fine.fine_seconds.values[1]) - np.log(fine.fine_seconds.values[0])
-    others = [difference[(n != one) & (np.abs(n / one - 1.0) <= 0.125)] for one in round_per_side]
+    others = [difference[(n != boxes) & (np.abs(n / boxes - 1.0) <= 0.125)] for boxes in round_per_side]
     freedom = sum(near.size - 1 for near in others)
     scatter = math.sqrt(sum(near.size * near.var() for near in others) / freedom)
     return [
-        Estimate(difference[n == one][0] - near.mean(), scatter * math.sqrt(1.0 + 1.0 / near.size), freedom)
-        for one, near in zip(round_per_side, others, strict=True)
+        Estimate(difference[n == boxes][0] - near.mean(), scatter * math.sqrt(1.0 + 1.0 / near.size), freedom)
+        for boxes, near in zip(round_per_side, others, strict=True)
     ]

@@ -20,10 +20,10 @@ FURTHEST = 5.0
 def claims_scatter(ds: xr.Dataset) -> Figure:
     """Draw the distribution of the deviations, with the Gaussian, and deviations by figure."""
     claims, names = Table(ds, "claim"), Table(ds, "name")
-    shown = np.unique(claims.figure)
-    figure, (upper, lower) = style.new((2.2,), (0.5 + 0.155 * max(1, shown.size),))
+    indices = np.unique(claims.figure)
+    figure, (upper, lower) = style.new((2.2,), (0.5 + 0.155 * max(1, indices.size),))
     _distribution(upper, claims.deviation[claims.scattered], mean_deviation(names))
-    _figures(lower, claims, names.assign(figure=np.arange(len(names)))[shown])
+    _figures(lower, claims, names.assign(figure=np.arange(len(names)))[indices])
     style.letters(upper, lower)
     return figure
 
@@ -52,15 +52,15 @@ def _figures(axis: Axes, claims: Table, figures: Table) -> None:
     Deviations with an allowance are hollow.
     """
     axis.axvspan(-3.0, 3.0, color=style.GREY, alpha=0.18, linewidth=0, zorder=0)
-    for place, figure in enumerate(figures):
+    for position, figure in enumerate(figures):
         own = claims[claims.figure == figure.figure]
         for hollow in (True, False):
             z = np.clip(own.deviation[own.scattered != hollow], -FURTHEST, FURTHEST)
-            style.points(axis, z, np.full(z.size, place), hollow=hollow, kind=0, markersize=2.5, alpha=0.8)
+            style.points(axis, z, np.full(z.size, position), hollow=hollow, kind=0, markersize=2.5, alpha=0.8)
         if figure.number:
             chance = stats.chi2.cdf(figure.chi_square, figure.number)
             axis.annotate(
-                f"{chance:.3f}", (1.0, place), xycoords=("axes fraction", "data"), xytext=(3, 0),
+                f"{chance:.3f}", (1.0, position), xycoords=("axes fraction", "data"), xytext=(3, 0),
                 textcoords="offset points", va="center",
             )  # fmt: skip
     axis.set_yticks(range(len(figures)), figures.name)

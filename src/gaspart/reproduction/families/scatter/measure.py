@@ -27,17 +27,17 @@ def claims_scatter(tables: Sequence[str | Path], settings: dict) -> xr.Dataset:
     chi_square, and the signed total of their deviations. Over `class`: counts of the scattered claims in
     classes of equal probability.
     """
-    found = {Path(path).stem: [row for row in read(path) if _is_deviation(row)] for path in tables}
+    by_figure = {Path(path).stem: [row for row in read(path) if _is_deviation(row)] for path in tables}
     rows = [
         (n, row["deviation_sigma"], row["scattered"] == 1.0)
-        for n, one in enumerate(found.values())
-        for row in one
+        for n, group in enumerate(by_figure.values())
+        for row in group
     ]
     figure, deviation, scattered = (
         (np.array(column) for column in zip(*rows, strict=True)) if rows else (np.empty(0),) * 3
     )
     scattered = scattered.astype(bool)
-    own = [deviation[scattered & (figure == n)] for n in range(len(found))]
+    own = [deviation[scattered & (figure == n)] for n in range(len(by_figure))]
     grid = Grid.line(0.0, 1.0, BINS)
     counts = grid.sums(grid.cells(ndtr(deviation[scattered])[:, None]))
     units = {"units": "1"}
@@ -51,7 +51,7 @@ def claims_scatter(tables: Sequence[str | Path], settings: dict) -> xr.Dataset:
             "total": ("name", np.array([np.sum(values) for values in own], dtype=float), units),
             "counts": ("class", counts, units),
         },
-        coords={"name": list(found)},
+        coords={"name": list(by_figure)},
     )
 
 

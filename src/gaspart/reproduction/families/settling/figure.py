@@ -37,9 +37,9 @@ def _piles(energies: Axes, contacts: Axes, piles: Table) -> None:
             energies.plot(time[-1:], kinetic[-1:], color=colour, marker="x")
         contacts.plot(pile.time, pile.contacts, color=colour)
     energies.set_yscale("log")
-    shown = 0.0, np.nanmax(piles.time)
-    style.label_axes(energies, TIME, "kinetic energy of a disc", "upper right", xlim=shown)
-    style.label_axes(contacts, TIME, "contacts per disc", xlim=shown, ylim=(0.0, 2.4))
+    limits = 0.0, np.nanmax(piles.time)
+    style.label_axes(energies, TIME, "kinetic energy of a disc", "upper right", xlim=limits)
+    style.label_axes(contacts, TIME, "contacts per disc", xlim=limits, ylim=(0.0, 2.4))
 
 
 def _discs_left(axis: Axes, flows: Table) -> None:

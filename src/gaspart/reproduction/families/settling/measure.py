@@ -106,7 +106,7 @@ class Flow:
     rates : (R,), rates of flow.
     ratios : (R,), rate in the first half of the discs divided by the rate in the second half.
     liquid : this ratio for a liquid, sqrt of the head.
-    time, left : (frames,), of the first replica, discs above the orifice.
+    time, remaining : (frames,), times and discs above the orifice, of the first replica.
     """
 
     width: float
@@ -115,7 +115,7 @@ class Flow:
     ratios: np.ndarray
     liquid: float
     time: np.ndarray
-    left: np.ndarray
+    remaining: np.ndarray
 
 
 def _flow(point: Point, settings: dict) -> Flow:
@@ -130,17 +130,17 @@ def _flow(point: Point, settings: dict) -> Flow:
     intervals, seen = [], []
     for run in runs(point, first=0):
         time, radii = run.time, run.data["radius"].values.astype(float)
-        left = (run.data["coordinates"].values[..., 1] > height).sum(axis=1)
+        remaining = (run.data["coordinates"].values[..., 1] > height).sum(axis=1)
         first = settings["start"] * len(radii)
         last = settings["head"] * width * filled / (math.pi * (radii**2).mean())
         levels = np.array([first, 0.5 * (first + last), last])
-        if not left[-1] < last < first:
+        if not remaining[-1] < last < first:
             raise ValueError(
-                f"duration: {left[-1]} discs are left in the hopper of {point.path} (must be below "
+                f"duration: {remaining[-1]} discs are left in the hopper of {point.path} (must be below "
                 f"{last:.0f}, and that below {first:.0f})"
             )
-        intervals.append(np.diff(np.interp(-levels, -left, time)))
-        seen.append((time, left))
+        intervals.append(np.diff(np.interp(-levels, -remaining, time)))
+        seen.append((time, remaining))
     diameter, strength = _diameter(radii), math.hypot(*(scene.gravity or ()))
     unit = math.sqrt(diameter / strength)
     early, late = np.array(intervals).T
@@ -152,7 +152,7 @@ def _flow(point: Point, settings: dict) -> Flow:
         ratios=late / early,
         liquid=math.sqrt(heads[0] / heads[1]),
         time=seen[0][0] / unit,
-        left=seen[0][1],
+        remaining=seen[0][1],
     )
 
 
@@ -168,7 +168,7 @@ def _flows(flows: list[Flow]) -> xr.Dataset:
             "head_ratio": _exponential(ratio),
             "liquid_ratio": flow.liquid,
             "flow_time": flow.time,
-            "left": flow.left.astype(float),
+            "left": flow.remaining.astype(float),
         }
         for flow, rate, ratio in zip(flows, rates, ratios, strict=True)
     ]
@@ -222,11 +222,11 @@ def _fit(width: np.ndarray, rate: Estimate) -> dict[str, tuple]:
     free, covariance = fit_curve(law, width, rate, start, bounds)
     deviations = (rate.value - law(width, *fixed)) / rate.error
     fitted = zip(free, np.sqrt(np.diag(covariance)), strict=True)
-    found = entries(dict(zip(("amplitude", "offset", "exponent"), fitted, strict=True)))
-    found |= {
+    variables = entries(dict(zip(("amplitude", "offset", "exponent"), fitted, strict=True)))
+    variables |= {
         "exponent_freedom": rate.freedom[0],
         "beverloo_amplitude": fixed[0],
         "beverloo_offset": fixed[1],
         "chi_square": (deviations**2).sum(),
     }
-    return {name: ((), value) for name, value in found.items()}
+    return {name: ((), value) for name, value in variables.items()}

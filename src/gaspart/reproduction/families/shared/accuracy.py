@@ -95,8 +95,8 @@ def add_costs(row: dict, timed: list[dict]) -> None:
 
     The latter are in the same gas.
     """
-    same = [one for one in timed if one["gas"] == (row["dimension"], row["packing_fraction"])]
-    event = next(one for one in same if one["setting"] == "event")
+    same = [timing for timing in timed if timing["gas"] == (row["dimension"], row["packing_fraction"])]
+    event = next(timing for timing in same if timing["setting"] == "event")
     rate = float(event["collisions"][0])
     row["event_seconds"], row["event_error"] = (
         float(event["seconds"][0]) / rate,
@@ -104,11 +104,11 @@ def add_costs(row: dict, timed: list[dict]) -> None:
     )
     row["seconds"], row["seconds_error"] = (np.full(len(row["time_step"]), np.nan) for _ in range(2))
     row["pair_tests"] = row["seconds"].copy()
-    for one in same:
-        if one["setting"] == row["setting"]:
+    for timing in same:
+        if timing["setting"] == row["setting"]:
             for n, step in enumerate(row["time_step"]):
-                at = np.flatnonzero(np.isclose(one["time_step"], step))
+                at = np.flatnonzero(np.isclose(timing["time_step"], step))
                 if at.size:
-                    row["seconds"][n] = one["seconds"][at[0]] / rate
-                    row["seconds_error"][n] = one["error"][at[0]] / rate
-                    row["pair_tests"][n] = one["pair_tests"][at[0]] / rate
+                    row["seconds"][n] = timing["seconds"][at[0]] / rate
+                    row["seconds_error"][n] = timing["error"][at[0]] / rate
+                    row["pair_tests"][n] = timing["pair_tests"][at[0]] / rate

@@ -94,12 +94,12 @@ def stretches(point: Point, number: int) -> list[Stretch]:
     A remainder is omitted. Neighbours share a frame at which momenta are read, and no other. Raises
     ValueError for too few frames.
     """
-    place, found = field(point), []
+    column, result = field(point), []
     for run in runs(point):
         blocks = Blocks(run, number)
         energies = np.zeros(run.positions.shape[:2])
         energies[:, run.moving] = 0.5 * run.motion.energies(run.masses[run.moving])
-        positions = run.positions - [0.0, 0.5 * place.diameter]
+        positions = run.positions - [0.0, 0.5 * column.diameter]
         momentum = run.velocities[blocks.ends, run.moving, 1] @ run.masses[run.moving]
         columns = (
             blocks.growth("wall_impulse")[:, 2],
@@ -108,9 +108,9 @@ def stretches(point: Point, number: int) -> list[Stretch]:
             blocks.means_of_frames(run.temperatures),
         )
         frames = (np.split(values[blocks.frames], number) for values in (positions, energies))
-        parts = zip(*frames, *(column.tolist() for column in columns), strict=True)
-        found += [Stretch(*part) for part in parts]
-    return found
+        parts = zip(*frames, *(series.tolist() for series in columns), strict=True)
+        result += [Stretch(*part) for part in parts]
+    return result
 
 
 @dataclass(frozen=True)
@@ -128,29 +128,29 @@ class Profile:
     pressure: np.ndarray
 
 
-def profile(place: Field, stretch: Stretch, bins: int) -> Profile:
+def profile(column: Field, stretch: Stretch, bins: int) -> Profile:
     """Average a block without fixed particles over each of `bins` equal bins of height.
 
     In a steady state the momentum below any height is constant, so the pressure at z is (F_ceiling + sum of m
     g over particles above z) / width (exact; no equation of state is used).
     """
     frames, count = stretch.heights.shape
-    grid = Grid.line(0.0, place.height, bins)
+    grid = Grid.line(0.0, column.height, bins)
     cells = grid.cells(stretch.heights[..., None], inside=True)
     counts = np.array([
-        grid.sums(cells[:, place.species == kind]) for kind in range(int(place.species.max()) + 1)
+        grid.sums(cells[:, column.species == kind]) for kind in range(int(column.species.max()) + 1)
     ])  # fmt: skip
     total = counts.sum(axis=0)
     # In a bin's average over z, a particle within it counts for the part of the bin that lies below it.
-    below = np.clip(stretch.heights * (bins / place.height) - cells, 0.0, 1.0)
-    mass, within = grid.sums(cells, place.masses), grid.sums(cells, place.masses * below)
+    below = np.clip(stretch.heights * (bins / column.height) - cells, 0.0, 1.0)
+    mass, within = grid.sums(cells, column.masses), grid.sums(cells, column.masses * below)
     above = np.cumsum(mass[::-1])[::-1] - mass + within
-    lost = 2.0 * count / (2.0 * count - place.across)  # the momentum that is conserved
+    lost = 2.0 * count / (2.0 * count - column.across)  # the momentum that is conserved
     with np.errstate(invalid="ignore"):
         energies = lost * grid.sums(cells, stretch.energies)
         temperature = np.where(total > 0, energies / np.maximum(total, 1), np.nan)
     return Profile(
-        density=counts / (frames * place.width * grid.volume),
+        density=counts / (frames * column.width * grid.volume),
         temperature=temperature,
-        pressure=(stretch.ceiling + place.strength * above / frames) / place.width,
+        pressure=(stretch.ceiling + column.strength * above / frames) / column.width,
     )

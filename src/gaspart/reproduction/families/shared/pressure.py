@@ -82,7 +82,7 @@ def pressure(point: Point) -> Pressure:
 
 def combine(replicas: list[Series]) -> Pressure:
     """Average over replicas of equal length; errors of correlated series add in quadrature."""
-    means = [correlated_mean(one.z) for one in replicas]
+    means = [correlated_mean(series.z) for series in replicas]
     z = average([mean.estimate for mean in means])
     deviations = [(mean.estimate - z.value).deviation for mean in means]
     return Pressure(
@@ -90,12 +90,14 @@ def combine(replicas: list[Series]) -> Pressure:
         chi_square=float(np.sum(np.square(deviations))),
         degrees_of_freedom=len(replicas) - 1,
         flat=all(mean.flat for mean in means),
-        correlation=max(autocorrelation_time(one.z) for one in replicas),
-        collision_rate=average([correlated_mean(one.rate).estimate for one in replicas]),
+        correlation=max(autocorrelation_time(series.z) for series in replicas),
+        collision_rate=average([correlated_mean(series.rate).estimate for series in replicas]),
         counters=totals(replicas),
     )
 
 
 def totals(replicas: list[Series]) -> dict[str, float]:
     """Compute the sums of the counters over all replicas, by name."""
-    return {name: float(sum(one.counters[name].sum() for one in replicas)) for name in replicas[0].counters}
+    return {
+        name: float(sum(series.counters[name].sum() for series in replicas)) for name in replicas[0].counters
+    }

@@ -165,9 +165,9 @@ def penalty(costs: xr.Dataset, boxes_per_particle: float) -> tuple[float, float]
     spread = _spread(near.seconds)
     costly = nnls(at / spread[:, None], near.seconds.value / spread)[0] > 0.0
     fit, curve = weights(near.seconds, *at[:, costly].T), curve[:, costly]
-    given, least = curve[0], curve[np.argmin(curve @ fit.values)]
-    ratio = given @ fit.values / (least @ fit.values)
-    gradient = given / (given @ fit.values) - least / (least @ fit.values)  # of ln ratio
+    requested, least = curve[0], curve[np.argmin(curve @ fit.values)]
+    ratio = requested @ fit.values / (least @ fit.values)
+    gradient = requested / (requested @ fit.values) - least / (least @ fit.values)  # of ln ratio
     return ratio, ratio * math.sqrt(gradient @ fit.covariance @ gradient)
 
 
@@ -224,7 +224,7 @@ def one_box(runs: list[xr.Dataset]) -> xr.Dataset:
     )
 
 
-def listed(runs: list[xr.Dataset], gases: xr.Dataset) -> xr.Dataset:
+def list_costs(runs: list[xr.Dataset], gases: xr.Dataset) -> xr.Dataset:
     """Return the costs per particle of neighbour lists, over ``listed``.
 
     They are ``list_seconds`` ... as in `per_particle`; ``list_count``, ``list_radius``; and ``list_share``,

@@ -76,10 +76,10 @@ def _compare(
     style.band(bottom, -3.0, 3.0)
     style.level(bottom, 0.0)
     for kind, gas in enumerate(engines):
-        s, found = gas.collisions.value[1:], getattr(gas, name)[1:]
+        s, values = gas.collisions.value[1:], getattr(gas, name)[1:]
         label = ENGINE_TITLES[gas.engine] if name == "never_hit" else None
-        style.points(top, s, found, kind=kind, hollow=kind > 0, label=label)
-        style.points(bottom, s, (found.value - curve(s)) / found.error, kind=kind, hollow=kind > 0)
+        style.points(top, s, values, kind=kind, hollow=kind > 0, label=label)
+        style.points(bottom, s, (values.value - curve(s)) / values.error, kind=kind, hollow=kind > 0)
     x = r"collisions per particle $s = 2N_\mathrm{coll}/N$"
     style.label_axes(bottom, x, SIGMA, ylim=(-4.5, 4.5), yticks=[-3, 0, 3])
 
@@ -115,13 +115,13 @@ def _distribution(gases: Table) -> Figure:
         style.points(tail, beside[seen], gas.density[seen], kind=kind, hollow=True)
         style.points(residual, beside, gas.residual, kind=kind, markersize=2.5)
         difference.plot(gas.speed, gas.samples**0.5 * gas.difference, color=style.COLOURS[kind])
-    found = gases.density.value
+    values = gases.density.value
     for axis in (residual, difference):
         axis.set(xlim=(0.0, end))
-    top = (0.0, 1.5 * found.max())
+    top = (0.0, 1.5 * values.max())
     style.label_axes(density, y="probability density", legend="upper right", ylim=top)
     style.label_axes(residual, SPEED, SIGMA, ylim=(-4.5, 4.5), yticks=[-3, 0, 3])
-    decades = (0.2 * found[found > 0.0].min(), 3.0 * found.max())
+    decades = (0.2 * values[values > 0.0].min(), 3.0 * values.max())
     style.label_axes(tail, y="probability density", yscale="log", ylim=decades)
     style.label_axes(difference, SPEED, r"$\sqrt{n}\times$ difference", ylim=(-2.0, 2.0), yticks=[-1, 0, 1])
     style.letters(density, tail, difference)

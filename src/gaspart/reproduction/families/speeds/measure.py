@@ -105,12 +105,12 @@ def speed_relaxation(points: list[Point], settings: dict) -> xr.Dataset:
     groups = [read(point, first=0) for point in points]
     scene, time = points[0].scene, groups[0][0].time
     _require_alike(points, groups)
-    shown = np.array([_frame_at(time, chosen) for chosen in settings["times"]])
+    frames = np.array([_frame_at(time, chosen) for chosen in settings["times"]])
     grid = Grid.line(0.0, settings["highest"], settings["bins"])
-    found = [[_relaxing(run, grid, shown) for run in group] for group in groups]
+    numbers = [[_relaxing(run, grid, frames) for run in group] for group in groups]
     means = {
-        name: shared_means([np.stack([one[name] for one in group]) for group in found])
-        for name in found[0][0]
+        name: shared_means([np.stack([replica[name] for replica in group]) for group in numbers])
+        for name in numbers[0][0]
     }
 
     def row(engine: int) -> dict[str, Any]:
@@ -125,7 +125,7 @@ def speed_relaxation(points: list[Point], settings: dict) -> xr.Dataset:
         .assign_coords(
             engine=[point.settings.get("engine", "event") for point in points],
             time=("frame", time, {"units": "scene time"}),
-            shown=("snapshot", shown, {"units": "1", "long_name": "frame of each histogram"}),
+            shown=("snapshot", frames, {"units": "1", "long_name": "frame of each histogram"}),
             **_bins(grid),
         )
         .assign_attrs(
@@ -137,7 +137,7 @@ def speed_relaxation(points: list[Point], settings: dict) -> xr.Dataset:
     )
 
 
-def _relaxing(run: Velocities, grid: Grid, shown: np.ndarray) -> dict[str, Any]:
+def _relaxing(run: Velocities, grid: Grid, frames: np.ndarray) -> dict[str, Any]:
     """Return the numbers of a run, by the names of `speed_relaxation`."""
     speeds = run.speeds
     fourth = kurtosis(speeds)
@@ -145,7 +145,7 @@ def _relaxing(run: Velocities, grid: Grid, shown: np.ndarray) -> dict[str, Any]:
         "collisions": run.collisions,
         "kurtosis": fourth,
         "never_hit": never_hit(run.velocities),
-        "density": np.stack([_density(frame, grid) for frame in speeds[shown]]),
+        "density": np.stack([_density(frame, grid) for frame in speeds[frames]]),
         "temperature_drift": np.abs(run.temperature / run.temperature[0] - 1.0),
         "initial_slope": _initial_slope(run.collisions, fourth),
     }
@@ -248,9 +248,9 @@ def distribution(points: list[Point], settings: dict) -> xr.Dataset:
     dimension = points[0].settings["dimension"]
     grid = Grid.line(0.0, settings["highest"], settings["bins"])
     steps = np.linspace(0.0, settings["highest"], 201)
-    given = dimension, grid, steps, settings["classes"]
+    common = dimension, grid, steps, settings["classes"]
     inner = {**dict.fromkeys(("density", "expected", "residual"), ("bin",)), "difference": ("step",)}
-    dataset = table("point", points, _distribution, *given, inner=inner, units={}).assign_coords(
+    dataset = table("point", points, _distribution, *common, inner=inner, units={}).assign_coords(
         **_bins(grid), speed=("step", steps, {"units": "root-mean-square speed"})
     )
     return dataset.assign_attrs(dimension=dimension)
@@ -264,8 +264,8 @@ def _distribution(
     Speeds are over the root-mean-square speed: Maxwell's temperature is 1/d.
     """
     temperature = 1.0 / dimension
-    found = read(point)
-    speeds = np.concatenate([run.speeds.ravel() for run in found])
+    replicas = read(point)
+    speeds = np.concatenate([run.speeds.ravel() for run in replicas])
     cumulative = lambda u: theory.maxwell_cdf(u, dimension, temperature)  # noqa: E731
     chance = np.diff(cumulative(grid.edges[0]))
     width = grid.volume
@@ -273,10 +273,10 @@ def _distribution(
     deviation = np.sqrt(chance * (1.0 - chance) / speeds.size)
     test = histogram_chi_square(speeds, cumulative, classes)
     ordered = np.sort(speeds)
-    fourth = mean_of(np.concatenate([kurtosis(run.speeds) for run in found]))
-    between = min(float(np.diff(run.collisions).min()) for run in found)
+    fourth = mean_of(np.concatenate([kurtosis(run.speeds) for run in replicas]))
+    between = min(float(np.diff(run.collisions).min()) for run in replicas)
     memory = np.exp(-theory.KURTOSIS_RELAXATION_RATE[dimension] * between)
-    energy = np.concatenate([run.temperature for run in found])
+    energy = np.concatenate([run.temperature for run in replicas])
     scene = point.scene
     return {
         "density": (share / width, deviation / width),
@@ -288,14 +288,14 @@ def _distribution(
         "degrees_of_freedom": test.degrees_of_freedom - 1,
         "kurtosis": (fourth.value, fourth.error * np.sqrt((1.0 + memory) / (1.0 - memory))),
         "samples": speeds.size,
-        "snapshots": sum(len(run.time) for run in found),
-        "replicas": len(found),
+        "snapshots": sum(len(run.time) for run in replicas),
+        "replicas": len(replicas),
         "temperature": float(energy.mean()),
         "temperature_spread": float(np.ptp(energy)),
         "given_temperature": _given_temperature(point),
-        "collisions_before": min(float(run.collisions[0]) for run in found),
+        "collisions_before": min(float(run.collisions[0]) for run in replicas),
         "collisions_between": between,
-        "collisions_in_all": float(np.mean([run.collisions[-1] for run in found])),
+        "collisions_in_all": float(np.mean([run.collisions[-1] for run in replicas])),
         "engine": point.settings.get("engine", "event"),
         "count": scene.count,
         "packing_fraction": scene.packing_fraction,

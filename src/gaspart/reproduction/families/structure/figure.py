@@ -52,11 +52,11 @@ def _spheres_and_discs(ds: xr.Dataset) -> list[Table]:
 def _curves(g: Axes, s: Axes, fluid: Row, kind: int) -> None:
     """Draw the measured curves of one fluid, for spheres with theory's."""
     eta, distance, wave_number = fluid.packing_fraction, fluid.distance, fluid.wave_number
-    beyond, known = distance >= 1.0, np.isfinite(fluid.s.value)
+    beyond, finite = distance >= 1.0, np.isfinite(fluid.s.value)
     small: dict[str, Any] = {"kind": kind, "hollow": True, "markersize": 2.0}
     small["label"] = rf"{PARTICLES[fluid.dimension]}, $\eta={eta:.2g}$"
     style.points(g, distance[beyond], fluid.g[beyond], **small)
-    style.points(s, wave_number[known], fluid.s[known], **small)
+    style.points(s, wave_number[finite], fluid.s[finite], **small)
     if fluid.dimension == 3:
         r = np.linspace(1.0, distance.max(), 300)
         k = np.linspace(0.0, np.nanmax(wave_number), 300)

@@ -91,22 +91,24 @@ def _row(point: Point, states: dict[int, MeasuredState], settings: dict) -> dict
     furthest = min(settings["furthest"], 0.499 * float(lengths.min()))
     curves = waves, shell, furthest
     parts = [_blocks(run, gas, low, curves, settings["frames"]) for run in runs(point)]
-    one = Averages(*(np.concatenate([getattr(part, key.name) for part in parts]) for key in fields(Averages)))
+    averages = Averages(
+        *(np.concatenate([getattr(part, key.name) for part in parts]) for key in fields(Averages))
+    )
     distance = furthest * (np.arange(BINS) + 0.5) / BINS
-    row = _numbers(one, gas, size)
+    row = _numbers(averages, gas, size)
     row["state_s0"] = 1.0 / states[dimension].inverse_compressibility(eta)
     row["s0_ratio"] = row["s0"] / row["state_s0"]
     if dimension == 3:
-        row["g_gain"] = _gain(one.g, theory.verlet_weis_rdf, theory.percus_yevick_rdf, distance, eta)
+        row["g_gain"] = _gain(averages.g, theory.verlet_weis_rdf, theory.percus_yevick_rdf, distance, eta)
         laws = theory.verlet_weis_structure_factor, theory.percus_yevick_structure_factor
-        row["s_gain"] = _gain(one.s, *laws, k, eta)
+        row["s_gain"] = _gain(averages.s, *laws, k, eta)
     return {
         "dimension": dimension,
         "packing_fraction": eta,
         "count": gas.count,
         **row,
-        "g": means_of(one.g),
-        "s": means_of(one.s),
+        "g": means_of(averages.g),
+        "s": means_of(averages.s),
         "distance": distance,
         "wave_number": k,
     }
@@ -144,23 +146,23 @@ def _blocks(run: Run, gas: Gas, low: np.ndarray, curves: tuple, most: int) -> Av
     )
 
 
-def _numbers(one: Averages, gas: Gas, size: np.ndarray) -> dict[str, Estimate]:
+def _numbers(averages: Averages, gas: Gas, size: np.ndarray) -> dict[str, Estimate]:
     """Compute the compressibility, from S at wave numbers (M,), and the contact values.
 
     The wave numbers are `size`.
     """
     unit = 1.0 / (2.0 ** (gas.dimension - 1) * gas.packing_fraction)
     per_rate = _contact_per_rate(gas)
-    contact = (one.z.mean() - 1.0) * unit
+    contact = (averages.z.mean() - 1.0) * unit
     first = max(len(ORDERS) + 2, round(WINDOW / contact / WIDTH))
-    place = WIDTH * (np.arange(first) + 0.5)
-    pairs = np.sqrt(one.near[:, :first].mean(axis=0)) / (1.0 + place) ** (0.5 * (gas.dimension - 1))
+    distance = WIDTH * (np.arange(first) + 0.5)
+    pairs = np.sqrt(averages.near[:, :first].mean(axis=0)) / (1.0 + distance) ** (0.5 * (gas.dimension - 1))
     k, equal, number = np.unique(size.round(9), return_inverse=True, return_counts=True)
-    low = np.array([in_shells(values, equal) for values in one.low])
+    low = np.array([in_shells(values, equal) for values in averages.low])
     spread = 1.0 / (low.mean(axis=0) * np.sqrt(number))  # of 1 / S, up to a factor
 
     def at_contact(near: np.ndarray) -> float:
-        fit = fit_polynomial(place, near[:first], pairs, powers=(0, 1, 2, 3))
+        fit = fit_polynomial(distance, near[:first], pairs, powers=(0, 1, 2, 3))
         return float(fit.values[0]) * (1.0 - 1.0 / gas.count)
 
     def at_zero(low: np.ndarray) -> float:
@@ -168,13 +170,17 @@ def _numbers(one: Averages, gas: Gas, size: np.ndarray) -> dict[str, Estimate]:
 
     routes = {
         "s0": jackknife(at_zero, low),
-        "contact_g": jackknife(at_contact, one.near),
-        "contact_z": jackknife(lambda z: (z - 1.0) * unit, one.z),
-        "contact_rate": jackknife(lambda rate: rate * per_rate, one.rate),
-        "g_ratio": jackknife(lambda near, z: at_contact(near) / ((z - 1.0) * unit), one.near, one.z),
-        "rate_ratio": jackknife(lambda rate, z: rate * per_rate / ((z - 1.0) * unit), one.rate, one.z),
+        "contact_g": jackknife(at_contact, averages.near),
+        "contact_z": jackknife(lambda z: (z - 1.0) * unit, averages.z),
+        "contact_rate": jackknife(lambda rate: rate * per_rate, averages.rate),
+        "g_ratio": jackknife(
+            lambda near, z: at_contact(near) / ((z - 1.0) * unit), averages.near, averages.z
+        ),
+        "rate_ratio": jackknife(
+            lambda rate, z: rate * per_rate / ((z - 1.0) * unit), averages.rate, averages.z
+        ),
     }
-    return {name: Estimate(*found, len(one.z) - 1) for name, found in routes.items()}
+    return {name: Estimate(*result, len(averages.z) - 1) for name, result in routes.items()}
 
 
 def _contact_per_rate(gas: Gas) -> float:
@@ -190,12 +196,12 @@ def _contact_per_rate(gas: Gas) -> float:
     return float(excess / (2.0 ** (dimension - 1) * eta * rate))
 
 
-def _gain(samples: np.ndarray, better: Law, worse: Law, place: np.ndarray, eta: float) -> Estimate:
+def _gain(samples: np.ndarray, better: Law, worse: Law, x: np.ndarray, eta: float) -> Estimate:
     """Compute the distance of the mean of samples (B, n) from one law, relative to another.
 
     Distances are root mean squares.
     """
-    laws = [law(place, eta) for law in (better, worse)]
+    laws = [law(x, eta) for law in (better, worse)]
 
     def gain(mean: np.ndarray) -> float:
         near, far = (float(((mean - law) ** 2).sum()) for law in laws)

@@ -58,15 +58,17 @@ def chemical_potential(points: list[Point], settings: dict) -> xr.Dataset:
 def _row(point: Point, state: MeasuredState, settings: dict) -> dict[str, Any]:
     gas = plain_gas(point.scene)
     eta, dimension = gas.packing_fraction, gas.dimension
-    found = [_insertions(run, gas.diameter, settings, point.seed(k)) for k, run in enumerate(runs(point))]
-    hits = sum(int(np.count_nonzero(one.successes)) for one in found)
-    frames = sum(len(one.share) for one in found)
-    chance = average([_chance(one) for one in found])
+    insertions = [
+        _insertions(run, gas.diameter, settings, point.seed(k)) for k, run in enumerate(runs(point))
+    ]
+    hits = sum(int(np.count_nonzero(replica.successes)) for replica in insertions)
+    frames = sum(len(replica.share) for replica in insertions)
+    chance = average([_chance(replica) for replica in insertions])
     finite = float(theory.insertion_finite_size_correction(eta, dimension, gas.count))
     integrated = state.chemical_potential(eta)
     inserted = _minus_log(chance) - finite
     expected = math.exp(-integrated.value - finite)
-    resolution = sum(one.resolution * len(one.share) ** 2 for one in found) / frames**2
+    resolution = sum(replica.resolution * len(replica.share) ** 2 for replica in insertions) / frames**2
     return {
         "dimension": dimension,
         "packing_fraction": eta,
@@ -80,7 +82,7 @@ def _row(point: Point, state: MeasuredState, settings: dict) -> dict[str, Any]:
             float(theory.excess_chemical_potential(eta, dimension)),
             float(theory.chemical_potential_uncertainty(eta, dimension)),
         ),
-        "successes": sum(int(one.successes.sum()) for one in found),
+        "successes": sum(int(replica.successes.sum()) for replica in insertions),
         "hit_frames": hits,
         "frames": frames,
         "places": 1.0 / resolution,
@@ -104,11 +106,11 @@ def _insertions(run: Run, diameter: float, settings: dict, seed: tuple[int, ...]
     return insertions(positions[::stride], lengths, [(slice(None), diameter)], settings["places"], seed)
 
 
-def _chance(found: Insertions) -> Estimate:
+def _chance(insertions: Insertions) -> Estimate:
     """Average over frames; without a success the error is the resolution."""
-    if not found.successes.any():
-        return Estimate(0.0, found.resolution)
-    return correlated_mean(found.probability).estimate
+    if not insertions.successes.any():
+        return Estimate(0.0, insertions.resolution)
+    return correlated_mean(insertions.probability).estimate
 
 
 def _add_partition(rows: list[dict[str, Any]], state: MeasuredState) -> None:
@@ -117,8 +119,8 @@ def _add_partition(rows: list[dict[str, Any]], state: MeasuredState) -> None:
     The rows are of one dimension.
     """
     eta = np.array([row["packing_fraction"] for row in rows])
-    found = ln_q(eta, Estimate.stack([row["inserted"] for row in rows]), state.dimension)
-    for row, inserted in zip(rows, found, strict=True):
+    logarithms = ln_q(eta, Estimate.stack([row["inserted"] for row in rows]), state.dimension)
+    for row, inserted in zip(rows, logarithms, strict=True):
         integrated = state.free_energy(row["packing_fraction"])
         row |= {"ln_q": inserted, "ln_q_integrated": integrated, "ln_q_ratio": inserted / integrated}
 

@@ -71,8 +71,8 @@ class MeasuredState:
 def measured_states(points: list[Point]) -> dict[int, MeasuredState]:
     """Return the equation of state of each dimension, from all its points in the fluid's range."""
     highest = theory.HIGHEST_PACKING_FRACTION
-    known = [point for point in points if point.scene.packing_fraction <= highest[point.scene.dimension]]
-    gases = Table(table("point", known, _excess), "point")
+    fluids = [point for point in points if point.scene.packing_fraction <= highest[point.scene.dimension]]
+    gases = Table(table("point", fluids, _excess), "point")
     return {
         dimension: MeasuredState(dimension, fit_polynomial(own.packing_fraction, own.excess, powers=POWERS))
         for dimension, own in gases.by("dimension")

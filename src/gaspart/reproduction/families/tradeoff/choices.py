@@ -47,17 +47,17 @@ class Choice:
         """The systematic error that a longer run does not reduce."""
         return self.model + self.discretisation
 
-    def measured(self, accuracy: float) -> float:
+    def measuring_time(self, accuracy: float) -> float:
         """Compute the CPU time in s of the measurement alone, for an accuracy.
 
         95 % of all runs have the accuracy. The time is infinite if the systematic error leaves nothing for
         noise.
         """
-        return required(self.unit, accuracy, self.bias, self.least)
+        return required_length(self.unit, accuracy, self.bias, self.least)
 
     def cost(self, accuracy: float) -> float:
         """Compute the CPU time in s, with the equilibration."""
-        return self.measured(accuracy) + self.equilibration
+        return self.measuring_time(accuracy) + self.equilibration
 
     def parts(self, accuracy: float) -> dict[str, float]:
         """Compute the relative error by `PARTS` of a run for an accuracy.
@@ -67,24 +67,26 @@ class Choice:
         The mean of the initial state's trace over the measurement is the part of the decay in that, times the
         remainder after equilibration.
         """
-        length = self.measured(accuracy)
-        left = 0.0
+        length = self.measuring_time(accuracy)
+        remainder = 0.0
         if self.decay and math.isfinite(length):
-            left = self.trace * math.exp(-self.equilibration / self.decay) * self.decay / length
+            remainder = self.trace * math.exp(-self.equilibration / self.decay) * self.decay / length
         noise = QUANTILE * math.sqrt(self.unit / length)
-        return dict(zip(PARTS, (self.model, self.discretisation, noise, left, self.finite_size), strict=True))
+        return dict(
+            zip(PARTS, (self.model, self.discretisation, noise, remainder, self.finite_size), strict=True)
+        )
 
 
-def required(variance: float, accuracy: float, bias: float, least: float = 0.0) -> float:
+def required_length(variance: float, accuracy: float, bias: float, least: float = 0.0) -> float:
     """Return the length of the measurement for an accuracy that 95 % of all runs have.
 
     It is at least `least`. The unit is that in which a measurement has this relative variance; inf if the
     bias leaves no noise.
     """
-    left = (accuracy - bias) / QUANTILE
-    return max(variance / left**2, least) if left > 0.0 else math.inf
+    margin = (accuracy - bias) / QUANTILE
+    return max(variance / margin**2, least) if margin > 0.0 else math.inf
 
 
 def cheapest(choices: Sequence[Choice], accuracy: float) -> Choice:
     """Return the choice that costs least, or the least biased one where none reaches the accuracy."""
-    return min(choices, key=lambda one: (one.cost(accuracy), one.bias))
+    return min(choices, key=lambda choice: (choice.cost(accuracy), choice.bias))

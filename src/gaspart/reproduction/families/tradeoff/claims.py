@@ -28,7 +28,7 @@ def speed_accuracy(ds: xr.Dataset) -> list[Claim]:
     """
     errors = Table(ds, "row")
     frontier = [claim for gas in Table(ds, "gas") for claim in _frontier(_of(gas, "Z"))]
-    return [*_orders(errors), *_missed(errors), *frontier, *map(_steady, Table(ds, "steady"))]
+    return [*_orders(errors), *_claims_on_misses(errors), *frontier, *map(_steady, Table(ds, "steady"))]
 
 
 def _of(row: Row, observable: str) -> Row:
@@ -71,7 +71,7 @@ def _orders(errors: Table) -> list[Claim]:
     return claims
 
 
-def _missed(errors: Table) -> list[Claim]:
+def _claims_on_misses(errors: Table) -> list[Claim]:
     """Return the claims on the rate of a dilute gas, at a long step.
 
     It is the longest step that loses 2 % at most.
@@ -107,9 +107,9 @@ def _frontier(z: Row) -> list[Claim]:
     if z.gas_packing_fraction < 0.3 or z.gas_dimension == 2:
         return []
     where = _gas(z.gas_dimension, z.gas_packing_fraction)
-    wanted = Table(z.dataset, "accuracy")
-    wanted = wanted.assign(percent=100 * wanted.accuracy)
-    fine = wanted[wanted.accuracy <= 0.001]
+    accuracies = Table(z.dataset, "accuracy")
+    accuracies = accuracies.assign(percent=100 * accuracies.accuracy)
+    fine = accuracies[accuracies.accuracy <= 0.001]
     claims = each(
         fine,
         f"time of steps over that of events for {{percent:g}} % of Z, {where}",
@@ -121,7 +121,7 @@ def _frontier(z: Row) -> list[Claim]:
         no_verdict="which engine is cheaper depends on the machine and on both programs",
         fails_if="time steps are nevertheless cheaper than events",
     )
-    reached = wanted[np.isfinite(wanted.best_seconds)]  # no step is known to be more accurate
+    reached = accuracies[np.isfinite(accuracies.best_seconds)]  # no step is known to be more accurate
     if len(reached) < 2:
         return claims
     relative = reached.best_ratio.error / reached.best_ratio.value
@@ -146,7 +146,7 @@ def _steady(at: Row) -> Claim:
     One pass leaves pairs that overlap, and there are more of them in the steady state.
     """
     setting = at.steady_setting
-    known = setting.startswith("4 passes")
+    is_converged = setting.startswith("4 passes")
     return Claim(
         claim=f"error of Z in the steady state minus that of paired runs, dt = {at.steady_step:g}, "
         f"{setting}, {_gas(at.steady_dimension, at.steady_packing_fraction)}",
@@ -154,7 +154,7 @@ def _steady(at: Row) -> Claim:
         expected=0.0,
         required=FLOOR,
         source="[Kolafa 2004], first order in 1/N",
-        no_verdict="" if known else "what one pass leaves builds up; the frontier allows for it",
+        no_verdict="" if is_converged else "what one pass leaves builds up; the frontier allows for it",
         fails_if="errors accumulate over many steps",
     )
 

@@ -107,7 +107,7 @@ def time_to_accuracy(ds: xr.Dataset) -> Figure:
     for axis, letter, (quantity, title) in zip(axes, "abcde", panels.TITLES.items(), strict=False):
         panels.map_of(axis, ds.sel(quantity=quantity))
         style.letter(axis, f"({letter}) {title}")
-    panels.breakdown(axes[-1], ds)
+    panels.draw_breakdown(axes[-1], ds)
     style.letter(axes[-1], "(f) what makes the error")
     figure.legend(
         handles=panels.keys(), loc="outside upper center", ncols=4 if style.width() > style.COLUMN else 2,

@@ -102,10 +102,10 @@ def relaxation_of(point: Point) -> Flow:
     for run in runs(point, first=0):
         speeds = np.sqrt((run.data["velocities"].values.astype(float) ** 2).sum(axis=2))
         end = theory.kurtosis(3, run.count)
-        left = (end - kurtosis(speeds)) / (end - 1.0)
+        remainder = (end - kurtosis(speeds)) / (end - 1.0)
         free_times = (run.time - run.time[0]) * rate
         fine = np.linspace(0.0, FREE_TIMES, 1 + round(FREE_TIMES / 0.01))
-        values.append(float(np.trapezoid(np.interp(fine, free_times, left), fine)))
+        values.append(float(np.trapezoid(np.interp(fine, free_times, remainder), fine)))
         contacts += int(run.data["collisions"].values[-1])
     value = mean_of(values)
     length = FREE_TIMES / rate
@@ -150,9 +150,9 @@ def _bounds(point: Point, coefficient: str) -> tuple[float, float]:
     scene, name = point.scene, engine_of(point)
     if name == "event":
         return 0.0, 0.0
-    found = rates(scene, dense=True)
+    kinetics = rates(scene, dense=True)
     if name == "step":
-        speed = found.speed / math.sqrt(8.0 / math.pi)
+        speed = kinetics.speed / math.sqrt(8.0 / math.pi)
         lost = 2.0 / 3.0 * (speed * _step(point) / (2.0 * scene.largest_radius)) ** 2
         return 0.0, lost if scene.packing_fraction <= 0.01 * 1.05 else math.inf
     engine = point.engine.resolved(scene, point.schedule.sample_interval)
@@ -160,8 +160,8 @@ def _bounds(point: Point, coefficient: str) -> tuple[float, float]:
     width = max(
         (length / n for length, n in zip(scene.container.lengths, cells, strict=True) if n > 1), default=0.0
     )
-    step = _step(point) * found.speed / math.sqrt(8.0 / math.pi) * math.sqrt(2.0)
-    grown = cell_factor(coefficient, width / found.path) * step_factor(coefficient, step / found.path)
+    step = _step(point) * kinetics.speed / math.sqrt(8.0 / math.pi) * math.sqrt(2.0)
+    grown = cell_factor(coefficient, width / kinetics.path) * step_factor(coefficient, step / kinetics.path)
     bound = boltzmann_error if name == "boltzmann" else enskog_error
     even = even_conditions(scene, 1.0)
     model = bound(Asked("D", 1.0, even, transported=True, memory=even.memory))
@@ -174,39 +174,39 @@ def choices(flows: Sequence[Flow], count: int, speeds: Mapping[str, Estimate]) -
     count : number of particles that costs are for.
     speeds : CPU time per time of simulation by engine, of the runs' particles.
     """
-    event = next(one for one in flows if one.engine == "event")
+    event = next(flow for flow in flows if flow.engine == "event")
     # One equation governs what fluctuates, so that all runs together tell its variance.
-    pooled = float(np.mean([one.variance for one in flows]))
-    for one in flows:
-        if one.engine not in speeds:
+    pooled = float(np.mean([flow.variance for flow in flows]))
+    for flow in flows:
+        if flow.engine not in speeds:
             continue
-        seconds = speeds[one.engine].value
-        scaled = seconds * count / one.count
-        model, discretisation = errors_of(one, event)
+        seconds = speeds[flow.engine].value
+        scaled = seconds * count / flow.count
+        model, discretisation = errors_of(flow, event)
         yield Choice(
-            engine=one.engine,
+            engine=flow.engine,
             model=model,
             discretisation=discretisation,
             finite_size=0.0,
             unit=pooled * seconds,
-            least=one.shortest * scaled,
-            equilibration=SETTLED * one.decay * scaled,
-            decay=one.decay * scaled,
+            least=flow.shortest * scaled,
+            equilibration=SETTLED * flow.decay * scaled,
+            decay=flow.decay * scaled,
             trace=1.0,
-            uncertainty=speeds[one.engine].error / seconds,
+            uncertainty=speeds[flow.engine].error / seconds,
         )
 
 
-def errors_of(one: Flow, event: Flow) -> tuple[float, float]:
+def errors_of(flow: Flow, event: Flow) -> tuple[float, float]:
     """Return bounds on the errors of model and discretisation.
 
     They are theory's bounds, or less if the runs differ by less in all.
     """
-    if one.engine == "event":
+    if flow.engine == "event":
         return 0.0, 0.0
-    ratio = one.value / event.value
+    ratio = flow.value / event.value
     seen = abs(ratio.value - 1.0) + BOUND * ratio.error
-    if one.engine == "step":
-        return 0.0, min(one.bounds[1], seen)
-    discretisation = min(one.bounds[1], seen)
-    return min(one.bounds[0], seen - discretisation), discretisation
+    if flow.engine == "step":
+        return 0.0, min(flow.bounds[1], seen)
+    discretisation = min(flow.bounds[1], seen)
+    return min(flow.bounds[0], seen - discretisation), discretisation

@@ -25,7 +25,7 @@ def frontier(dataset: xr.Dataset) -> xr.Dataset:
     errors, steady = Table(dataset, "row"), Table(dataset, "steady")
     gases = list(dict.fromkeys(zip(errors.dimension, errors.packing_fraction, strict=True)))
     shape = (len(gases), len(errors.observable), len(errors.accuracy))
-    found = {name: np.full(shape, np.nan) for name in ("seconds", "ratio", "ratio_error", "step")}
+    columns = {name: np.full(shape, np.nan) for name in ("seconds", "ratio", "ratio_error", "step")}
     chosen = np.full(shape, "none", dtype=object)
     for g, (dimension, fraction) in enumerate(gases):
         of = errors[(errors.dimension == dimension) & (errors.packing_fraction == fraction)]
@@ -40,12 +40,12 @@ def frontier(dataset: xr.Dataset) -> xr.Dataset:
             event = Estimate(of.event_seconds[best[0]], of.event_error[best[0]])
             ratio = of.seconds[best] / event
             values = (cost[best], ratio.value, ratio.error, of.time_step[best])
-            for name, value in zip(found, values, strict=True):
-                found[name][g, o, a] = value
+            for name, value in zip(columns, values, strict=True):
+                columns[name][g, o, a] = value
             chosen[g, o, a] = of.setting[best[0]]
     axes = ("gas", "observable", "accuracy")
     return xr.Dataset(
-        {f"best_{name}": (axes, values) for name, values in found.items()}
+        {f"best_{name}": (axes, values) for name, values in columns.items()}
         | {
             "best_setting": (axes, chosen.astype(str)),
             "gas_dimension": ("gas", [int(dimension) for dimension, _ in gases]),

@@ -39,8 +39,8 @@ def _dilute(ds: xr.Dataset) -> list[Claim]:
     gases = Table(ds.sel(quantity="collision_rate"), "fraction")
     for at in gases[gases.fraction <= THIN]:
         accuracies = Table(at.dataset, "accuracy")
-        for wanted in accuracies[np.isclose(accuracies.accuracy, 0.01)]:
-            cost = _by_engine(wanted, "cost")
+        for row in accuracies[np.isclose(accuracies.accuracy, 0.01)]:
+            cost = _by_engine(row, "cost")
             if not np.isfinite(cost["event"].value):
                 continue
             claims.append(
@@ -57,7 +57,8 @@ def _dilute(ds: xr.Dataset) -> list[Claim]:
     thin, other = (gases[np.isclose(gases.fraction, eta)] for eta in (1e-4, 1e-2))
     if thin and other:
         ratio = [
-            one["event"] / one["boltzmann"] for one in (_by_engine(of[0], "each") for of in (thin, other))
+            costs["event"] / costs["boltzmann"]
+            for costs in (_by_engine(of[0], "each") for of in (thin, other))
         ]
         claims.append(
             Claim.at_least(
@@ -163,15 +164,15 @@ def _cells(ds: xr.Dataset) -> list[Claim]:
     """
     gases = Table(ds, "fraction")
     measured = np.isfinite(gases.cells.value) & (gases.cells_bound > 0.0)  # a single cell loses nothing
-    known = gases[measured & (gases.fraction <= KNOWN)]
+    rows = gases[measured & (gases.fraction <= KNOWN)]
     return each(
-        known,
+        rows,
         "collision rate of the Enskog model in default cells over that of its equation, packing fraction "
         "{fraction:g}",
         form=Claim.within,
-        measured=known.cells,
+        measured=rows.cells,
         expected=1.0,
-        half_width=known.cells_bound,
+        half_width=rows.cells_bound,
         source="docs/dsmc.md: at most 0.5 over the particles in a cell",
         fails_if="pairs that approach become rarer in a cell than they are",
     )

@@ -37,28 +37,30 @@ def maps(points: Sequence[Point], settings: dict, timed: list[dict], compared: l
     cheapest step, and its error. Over ``fraction``: ``cells``, the collision rate of the Enskog model in its
     default cells over the rate of its equation, with its error and ``cells_bound`` on the difference.
     """
-    fractions = sorted({one["gas"][1] for one in timed if one["gas"][0] == 3})
+    fractions = sorted({timing["gas"][1] for timing in timed if timing["gas"][0] == 3})
     cells = uniform.cells_by_fraction(points, settings["cells"])
     measured, between = _flows(points, settings), _speeds_between(points, settings["plates_cost"])
     count, accuracies = settings["counts"][0], settings["accuracies"]
     shape = (len(QUANTITIES), len(fractions), len(accuracies), len(ENGINES))
-    found = np.full((*shape, 2), np.nan), np.full((*shape, len(PARTS)), np.nan)
+    results = np.full((*shape, 2), np.nan), np.full((*shape, len(PARTS)), np.nan)
     for q, f in np.ndindex(shape[:2]):
         eta = fractions[f]
         if QUANTITIES[q] in uniform.OBSERVABLES:
             gas = uniform.Uniform(eta, count)
-            made = list(uniform.choices(gas, QUANTITIES[q], timed, compared, cells.get(eta)))
+            choices = list(uniform.choices(gas, QUANTITIES[q], timed, compared, cells.get(eta)))
         else:
-            of = [one for one in measured if (one.observable, one.packing_fraction) == (QUANTITIES[q], eta)]
+            of = [
+                flow for flow in measured if (flow.observable, flow.packing_fraction) == (QUANTITIES[q], eta)
+            ]
             speeds = between.get(eta, {}) if QUANTITIES[q] == "heat_flux" else _speeds_of(timed, of)
-            made = list(flows.choices(of, count, speeds)) if of else []
-        _enter(found[0][q, f], found[1][q, f], made, accuracies)
+            choices = list(flows.choices(of, count, speeds)) if of else []
+        _enter(results[0][q, f], results[1][q, f], choices, accuracies)
     axes = ("quantity", "fraction", "accuracy", "solver")
     dataset = xr.Dataset(
         {
-            "cost": (axes, found[0][..., 0], {"units": "s"}),
-            "cost_error": (axes, found[0][..., 1], {"units": "s"}),
-            "error": ((*axes, "part"), found[1], {"units": "1"}),
+            "cost": (axes, results[0][..., 0], {"units": "s"}),
+            "cost_error": (axes, results[0][..., 1], {"units": "s"}),
+            "error": ((*axes, "part"), results[1], {"units": "1"}),
         },
         coords={
             "quantity": list(QUANTITIES),
@@ -68,17 +70,17 @@ def maps(points: Sequence[Point], settings: dict, timed: list[dict], compared: l
             "part": list(PARTS),
         },
     )
-    parts = dataset, _compared(measured, fractions), _speeds(timed, cells, fractions)
+    parts = dataset, _compare_flows(measured, fractions), _speeds(timed, cells, fractions)
     return xr.merge(parts, join="outer", compat="no_conflicts")
 
 
-def _enter(costs: np.ndarray, parts: np.ndarray, made: list[Choice], accuracies: Sequence[float]) -> None:
+def _enter(costs: np.ndarray, parts: np.ndarray, choices: list[Choice], accuracies: Sequence[float]) -> None:
     """Enter the cheapest choice of each engine into the arrays of one quantity and density.
 
     The arrays are costs (A, E, 2) with errors, and parts (A, E, `PARTS`).
     """
     for e, engine in enumerate(ENGINES):
-        of = [one for one in made if one.engine == engine]
+        of = [choice for choice in choices if choice.engine == engine]
         for a, accuracy in enumerate(accuracies if of else ()):
             best = cheapest(of, accuracy)
             costs[a, e] = best.cost(accuracy) * np.array([1.0, best.uncertainty])
@@ -97,12 +99,12 @@ def _flows(points: Sequence[Point], settings: dict) -> list[flows.Flow]:
 
 def _speeds_between(points: Sequence[Point], experiments: Sequence[str]) -> dict[float, dict[str, Estimate]]:
     """Compute the CPU time per time of simulation between plates, by packing fraction and engine."""
-    found: dict[float, dict[str, Estimate]] = {}
+    speeds: dict[float, dict[str, Estimate]] = {}
     for point in points:
         if point.experiment in experiments:
             (seconds,) = uniform.each_of(costs(point), 1.0)
-            found.setdefault(flows.fraction_of(point), {})[flows.engine_of(point)] = seconds
-    return found
+            speeds.setdefault(flows.fraction_of(point), {})[flows.engine_of(point)] = seconds
+    return speeds
 
 
 def _speeds_of(timed: list[dict], of: list[flows.Flow]) -> dict[str, Estimate]:
@@ -112,16 +114,18 @@ def _speeds_of(timed: list[dict], of: list[flows.Flow]) -> dict[str, Estimate]:
     """
     if not of:
         return {}
-    same = {_solver(one["setting"]): one for one in timed if one["gas"] == (3, of[0].packing_fraction)}
+    same = {
+        _solver(timing["setting"]): timing for timing in timed if timing["gas"] == (3, of[0].packing_fraction)
+    }
     rate = float(same["event"]["collisions"][0])
-    contacts = next(one.contacts for one in of if one.engine == "event")
-    found = {}
-    for one in of:
-        if one.engine in same:
-            steps = same[one.engine]["time_step"]
-            at = int(np.argmin(np.abs(np.log(steps / one.time_step)))) if one.time_step else 0
-            found[one.engine] = uniform.each_of(same[one.engine], rate)[at] * contacts
-    return found
+    contacts = next(flow.contacts for flow in of if flow.engine == "event")
+    speeds = {}
+    for flow in of:
+        if flow.engine in same:
+            steps = same[flow.engine]["time_step"]
+            at = int(np.argmin(np.abs(np.log(steps / flow.time_step)))) if flow.time_step else 0
+            speeds[flow.engine] = uniform.each_of(same[flow.engine], rate)[at] * contacts
+    return speeds
 
 
 def _solver(setting: str) -> str:
@@ -132,26 +136,26 @@ def _solver(setting: str) -> str:
     return "step" if PRECISIONS.get(setting) == "float64" else setting
 
 
-def _compared(measured: list[flows.Flow], fractions: list[float]) -> xr.Dataset:
+def _compare_flows(measured: list[flows.Flow], fractions: list[float]) -> xr.Dataset:
     """Return the measurements of each engine, and theory's bounds on its error."""
     names = ("flow", "flow_error", "flow_freedom", "flow_bound")
-    found = np.full((len(names), len(flows.FLOWS), len(fractions), len(ENGINES)), np.nan)
-    for one in measured:
-        at = flows.FLOWS.index(one.observable), fractions.index(one.packing_fraction)
-        numbers = one.value.value, one.value.error, one.value.freedom, sum(one.bounds)
-        found[:, *at, ENGINES.index(one.engine)] = numbers
+    array = np.full((len(names), len(flows.FLOWS), len(fractions), len(ENGINES)), np.nan)
+    for flow in measured:
+        at = flows.FLOWS.index(flow.observable), fractions.index(flow.packing_fraction)
+        numbers = flow.value.value, flow.value.error, flow.value.freedom, sum(flow.bounds)
+        array[:, *at, ENGINES.index(flow.engine)] = numbers
     axes = ("flow_quantity", "fraction", "solver")
-    columns = {name: (axes, values, {"units": "1"}) for name, values in zip(names, found, strict=True)}
+    columns = {name: (axes, values, {"units": "1"}) for name, values in zip(names, array, strict=True)}
     return xr.Dataset(columns, coords={"flow_quantity": list(flows.FLOWS)})
 
 
 def _speeds(timed: list[dict], cells: dict[float, uniform.Cells], fractions: list[float]) -> xr.Dataset:
     """Return the CPU time per contact, and the collision rate in cells."""
     each = np.full((2, len(fractions), len(ENGINES)), np.nan)
-    found = [cells.get(eta) for eta in fractions]
-    rates = [one.rate if one else Estimate(np.nan, np.nan, np.nan) for one in found]
+    by_fraction = [cells.get(eta) for eta in fractions]
+    rates = [cell.rate if cell else Estimate(np.nan, np.nan, np.nan) for cell in by_fraction]
     for f, eta in enumerate(fractions):
-        same = {_solver(one["setting"]): one for one in timed if one["gas"] == (3, eta)}
+        same = {_solver(timing["setting"]): timing for timing in timed if timing["gas"] == (3, eta)}
         rate = float(same["event"]["collisions"][0])
         for e, engine in enumerate(ENGINES):
             if engine in same:
@@ -159,7 +163,7 @@ def _speeds(timed: list[dict], cells: dict[float, uniform.Cells], fractions: lis
                 best = seconds[np.argmin(seconds.value)]
                 each[:, f, e] = best.value, best.error
     columns = entries({"cells": Estimate.stack(rates)})
-    columns["cells_bound"] = np.array([one.bound if one else np.nan for one in found])
+    columns["cells_bound"] = np.array([cell.bound if cell else np.nan for cell in by_fraction])
     return xr.Dataset(
         {name: ("fraction", values, {"units": "1"}) for name, values in columns.items()}
         | {

@@ -21,14 +21,14 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction import table as tables
 from gaspart.reproduction.families.shared.accuracy import costs, setting_name
 from gaspart.reproduction.families.shared.pressure import pressure
-from gaspart.reproduction.families.tradeoff.choices import required
+from gaspart.reproduction.families.tradeoff.choices import required_length
 from gaspart.reproduction.families.tradeoff.frontier import SEEN, frontier
 from gaspart.reproduction.families.tradeoff.maps import maps
 from gaspart.reproduction.families.tradeoff.uniform import (
     OBSERVABLES,
     Cells,
     cells_by_fraction,
-    compared,
+    compare_steps,
     each_of,
 )
 from gaspart.reproduction.points.point import Point
@@ -61,7 +61,7 @@ def speed_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     the engine's own, and the time with it, ``dsmc_step_seconds`` with its error.
     """
     timed = [costs(point) for point in points if point.job == "measure_cost"]
-    rows = compared(points, timed)
+    rows = compare_steps(points, timed)
     rows = sorted(rows, key=lambda row: (-row["dimension"], row["packing_fraction"]))
     inner = {name: ("observable", "step")[2 - np.ndim(value) :] for name, value in rows[0].items()}
     dataset = tables.from_rows("row", rows, inner).assign_coords(
@@ -76,8 +76,8 @@ def speed_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     dataset = dataset.assign(tables.table("steady", long, _steady, rows)).merge(
         frontier(dataset), join="outer", compat="no_conflicts"
     )
-    events = [one for one in timed if one["setting"] == "event"]
-    dataset = dataset.assign(tables.table("timed", events, _timed))
+    events = [timing for timing in timed if timing["setting"] == "event"]
+    dataset = dataset.assign(tables.table("timed", events, _time_per_collision))
     cells = cells_by_fraction(points, settings["cells"])
     models = _models(events, timed, cells)
     steps = dict.fromkeys(("dsmc_step", "dsmc_step_seconds"), ("part",))
@@ -101,8 +101,8 @@ def time_to_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     """
     uniform = (point for point in points if point.experiment not in settings["plates_cost"])
     timed = [costs(point) for point in uniform if point.job == "measure_cost"]
-    every = compared(points, timed)
-    rows = compared([point for point in points if point.experiment in settings["elsewhere"]], timed)
+    every = compare_steps(points, timed)
+    rows = compare_steps([point for point in points if point.experiment in settings["elsewhere"]], timed)
     speeds = _speeds(timed)
     gases = sorted({(row["dimension"], row["packing_fraction"]) for row in rows})
     shape = (len(gases), len(OBSERVABLES), len(settings["counts"]), len(settings["accuracies"]))
@@ -146,19 +146,21 @@ def time_to_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
 
 def _speeds(timed: list[dict]) -> dict[tuple[str, str], float]:
     """Time of this machine over the table's, for each engine and precision, from the reference gas."""
-    found = {}
-    for one in timed:
-        if one["gas"] != (3, REFERENCE) or one["setting"] not in ("event", *PRECISIONS):
+    speeds = {}
+    for timing in timed:
+        if timing["gas"] != (3, REFERENCE) or timing["setting"] not in ("event", *PRECISIONS):
             continue
-        engine = "event" if one["setting"] == "event" else "step"
-        precision = PRECISIONS.get(one["setting"], "float64")
-        at = 0 if engine == "event" else int(np.argmin(np.abs(one["time_step"] - STEP)))
-        event = next(other for other in timed if other["gas"] == one["gas"] and other["setting"] == "event")
-        here = one["seconds"][at] / event["collisions"][0]
-        found[engine, precision] = here / table.seconds(
+        engine = "event" if timing["setting"] == "event" else "step"
+        precision = PRECISIONS.get(timing["setting"], "float64")
+        at = 0 if engine == "event" else int(np.argmin(np.abs(timing["time_step"] - STEP)))
+        event = next(
+            other for other in timed if other["gas"] == timing["gas"] and other["setting"] == "event"
+        )
+        here = timing["seconds"][at] / event["collisions"][0]
+        speeds[engine, precision] = here / table.seconds(
             3, REFERENCE, engine, precision, STEP * (engine == "step")
         )
-    return found
+    return speeds
 
 
 def _total_costs(rows: list[dict], observable: int, count: int, accuracy: float, speeds: dict) -> np.ndarray:
@@ -172,12 +174,12 @@ def _total_costs(rows: list[dict], observable: int, count: int, accuracy: float,
     noise = table.noise(dimension, fraction, name)
 
     def cost(bias: float, each: float) -> float:
-        contacts = required(noise, accuracy, bias, 0.5 * count * LEAST) + 0.5 * count * EQUILIBRATION
+        contacts = required_length(noise, accuracy, bias, 0.5 * count * LEAST) + 0.5 * count * EQUILIBRATION
         return contacts * each if np.isfinite(each) else np.inf
 
-    known = table.seconds(dimension, fraction, "event") * speeds["event", "float64"]
+    tabulated = table.seconds(dimension, fraction, "event") * speeds["event", "float64"]
     event = rows[0]["event_seconds"]
-    found = [(0, cost(0.0, event), cost(0.0, known), rows[0]["event_error"] / event)]
+    costs = [(0, cost(0.0, event), cost(0.0, tabulated), rows[0]["event_error"] / event)]
     for row in rows:
         precision = PRECISIONS[row["setting"]]
         bounds = np.abs(row["bias"][observable]) + 2.0 * row["bias_error"][observable]
@@ -185,8 +187,8 @@ def _total_costs(rows: list[dict], observable: int, count: int, accuracy: float,
             each = table.seconds(dimension, fraction, "step", precision, step) * speeds["step", precision]
             bias = table.bias(dimension, fraction, precision, step, name)
             spread = row["seconds_error"][n] / row["seconds"][n]
-            found.append((1, cost(bounds[n], row["seconds"][n]), cost(bias, each), spread))
-    return np.array(found)
+            costs.append((1, cost(bounds[n], row["seconds"][n]), cost(bias, each), spread))
+    return np.array(costs)
 
 
 def _orders(row: dict, largest: float) -> list[tuple[float, float]]:
@@ -194,17 +196,17 @@ def _orders(row: dict, largest: float) -> list[tuple[float, float]]:
 
     The error is scaled by the scatter.
     """
-    found = []
+    orders = []
     for bias, error in zip(row["bias"], row["bias_error"], strict=True):
         size = np.abs(bias)
         seen = (size > SEEN * error) & (size < largest)
         if seen.sum() < FITTED or np.unique(np.sign(bias[seen])).size > 1:
-            found.append((np.nan, np.nan))
+            orders.append((np.nan, np.nan))
             continue
         law = statistics.fit_power_law(row["time_step"][seen], size[seen], error[seen])
         scatter = max(1.0, law.chi_square / max(1, law.degrees_of_freedom)) ** 0.5
-        found.append((law.exponent, law.exponent_error * scatter))
-    return found
+        orders.append((law.exponent, law.exponent_error * scatter))
+    return orders
 
 
 def _models(events: list[dict], timed: list[dict], cells: dict[float, Cells]) -> list[tuple[dict, dict]]:
@@ -213,11 +215,11 @@ def _models(events: list[dict], timed: list[dict], cells: dict[float, Cells]) ->
     For the Enskog model the error by cells must have been measured, in spheres.
     """
     return [
-        (event, one)
+        (event, timing)
         for event in events
-        for one in timed
-        if one["gas"] == event["gas"]
-        and (one["setting"] == "boltzmann" or (one["setting"] == "enskog" and _cells(one, cells)))
+        for timing in timed
+        if timing["gas"] == event["gas"]
+        and (timing["setting"] == "boltzmann" or (timing["setting"] == "enskog" and _cells(timing, cells)))
     ]
 
 
@@ -232,23 +234,23 @@ def _model(timings: tuple[dict, dict], cells: dict[float, Cells]) -> dict[str, A
 
     The step is the cheapest one, on which Z does not depend.
     """
-    event, one = timings
-    (dimension, fraction), model, known = one["gas"], one["setting"], _cells(one, cells)
-    seconds = each_of(one, float(event["collisions"][0]))
+    event, timing = timings
+    (dimension, fraction), model, own_cells = timing["gas"], timing["setting"], _cells(timing, cells)
+    seconds = each_of(timing, float(event["collisions"][0]))
     cheapest = seconds[np.argmin(seconds.value)]
-    of_cells = known.error if known and model == "enskog" else 0.0
+    of_cells = own_cells.error if own_cells and model == "enskog" else 0.0
     return {
         "dsmc_model": model,
         "dsmc_dimension": dimension,
         "dsmc_packing_fraction": fraction,
         "dsmc_seconds": (cheapest.value, cheapest.error),
-        "dsmc_step": one["step_parts"],
+        "dsmc_step": timing["step_parts"],
         "dsmc_step_seconds": (seconds.value, seconds.error),
         "dsmc_bias": model_error(fraction, dimension, model, "Z") + of_cells,
     }
 
 
-def _timed(run: dict) -> dict[str, Any]:
+def _time_per_collision(run: dict) -> dict[str, Any]:
     """Return the time of a collision of the event-driven engine, in the gas of a timing."""
     dimension, fraction = run["gas"]
     return {

@@ -54,7 +54,7 @@ def duration(seconds: float) -> str:
     steps = (("ms", 1.0), ("s", 1e3), ("min", 6e4), ("h", 3.6e6), ("d", 8.64e7), ("y", 3.156e10))
     milliseconds = 1e3 * seconds
     unit, size = max(
-        (one for one in steps if one[1] <= max(milliseconds, 1.0) * 1.0001), key=lambda one: one[1]
+        (step for step in steps if step[1] <= max(milliseconds, 1.0) * 1.0001), key=lambda step: step[1]
     )
     value = milliseconds / size
     return f"{float(f'{value:.{1 if value < 9.5 else 2}g}'):g} {unit}"
@@ -103,23 +103,23 @@ def _fraction(value: float) -> str:
 
 def places(ds: xr.Dataset) -> list[Row]:
     """Return the `PLACES`, or the measured ones nearest to them, each once."""
-    found: dict[tuple[str, float, float], Row] = {}
+    rows: dict[tuple[str, float, float], Row] = {}
     for quantity, fraction, accuracy in PLACES:
         of = ds.sel(quantity=quantity)
         of = of.isel(fraction=np.isfinite(of.cost).any(("accuracy", "solver")).values)
         if of.sizes["fraction"]:
             of = of.isel(fraction=_nearest(of.fraction, fraction))
             at = Row(of.isel(accuracy=_nearest(of.accuracy, accuracy)))
-            found.setdefault((quantity, float(at.fraction), float(at.accuracy)), at)
-    return list(found.values())
+            rows.setdefault((quantity, float(at.fraction), float(at.accuracy)), at)
+    return list(rows.values())
 
 
-def _nearest(values: xr.DataArray, wanted: float) -> int:
+def _nearest(values: xr.DataArray, target: float) -> int:
     """Return the position of the value whose ratio to the wanted one is nearest to 1."""
-    return int(np.argmin(np.abs(np.log(values.values / wanted))))
+    return int(np.argmin(np.abs(np.log(values.values / target))))
 
 
-def breakdown(axis: Axes, ds: xr.Dataset) -> None:
+def draw_breakdown(axis: Axes, ds: xr.Dataset) -> None:
     """Draw errors over the required accuracy of every engine at the `PLACES`, by what makes them."""
     rows: list[tuple[float, str]] = []
     for p, at in enumerate(places(ds)):

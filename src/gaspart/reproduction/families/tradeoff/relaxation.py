@@ -18,5 +18,5 @@ def relaxation_time(slower: float) -> float:
     times = np.linspace(0.0, FREE_TIMES / slower, 251)
     curve = theory.relaxation(3)
     end = theory.kurtosis(3)
-    left = (end - curve.kurtosis(curve.collisions(times))) / (end - 1.0)
-    return float(np.trapezoid(left, times) * slower)
+    remainder = (end - curve.kurtosis(curve.collisions(times))) / (end - 1.0)
+    return float(np.trapezoid(remainder, times) * slower)

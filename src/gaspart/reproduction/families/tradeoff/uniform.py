@@ -137,17 +137,17 @@ def cells_of(point: Point) -> Cells:
 
     The rate is relative to its equation.
     """
-    (found,) = (series_of(run) for run in runs(point))
+    (replica,) = (series_of(run) for run in runs(point))
     fraction, count = point.scene.packing_fraction, point.scene.count
     contact = (float(theory.carnahan_starling(fraction)) - 1.0) / (4.0 * fraction)
     expected = float(theory.collision_rate(fraction, 3) / theory.contact_value(fraction, 3)) * contact
     expected *= (1.0 - 1.0 / count) * approach_factor(3, count)
-    contacts = 0.5 * count * expected * found.interval
+    contacts = 0.5 * count * expected * replica.interval
     variances = {
         name: float(series.var(ddof=1) / series.mean() ** 2) * contacts
-        for name, series in (("collision_rate", found.rate), ("Z", found.z))
+        for name, series in (("collision_rate", replica.rate), ("Z", replica.z))
     }
-    return Cells(mean_of(found.rate) / expected, point.engine.bias(point.scene, "rates"), variances)
+    return Cells(mean_of(replica.rate) / expected, point.engine.bias(point.scene, "rates"), variances)
 
 
 def cells_by_fraction(points: Iterable[Point], experiments: Sequence[str]) -> dict[float, Cells]:
@@ -166,8 +166,8 @@ def choices(
 
     `cells` are those for the Enskog model, None if unknown.
     """
-    same = [one for one in timed if one["gas"] == (3, gas.packing_fraction)]
-    event = next(one for one in same if one["setting"] == "event")
+    same = [timing for timing in timed if timing["gas"] == (3, gas.packing_fraction)]
+    event = next(timing for timing in same if timing["setting"] == "event")
     rate = float(event["collisions"][0])
     variance = table.noise(3, gas.packing_fraction, observable)
     yield gas.choice("event", observable, (0.0, 0.0), each_of(event, rate)[0], variance)
@@ -181,11 +181,11 @@ def choices(
         for error, *each in zip(bound, row["seconds"], row["seconds_error"], strict=True):
             if np.isfinite(error) and np.isfinite(each[0]):
                 yield gas.choice("step", observable, (0.0, float(error)), Estimate(*each), variance)
-    for one in same:
-        model = one["setting"]
+    for timing in same:
+        model = timing["setting"]
         if model not in ("boltzmann", "enskog") or (model == "enskog" and cells is None):
             continue
-        for step, each in zip(one["time_step"], each_of(one, rate), strict=True):
+        for step, each in zip(timing["time_step"], each_of(timing, rate), strict=True):
             error = step_error(gas.packing_fraction, step) if observable == "D" else 0.0
             of_cells = cells.error if cells and model == "enskog" else 0.0
             own = cells.noise.get(observable, variance) if cells and model == "enskog" else variance
@@ -203,7 +203,7 @@ def each_of(timed: dict, rate: float) -> Estimate:
     return Estimate(timed["seconds"], timed["error"]) / rate
 
 
-def compared(points: list[Point], timed: list[dict]) -> list[dict]:
+def compare_steps(points: list[Point], timed: list[dict]) -> list[dict]:
     """Return the errors of time steps with their costs, see `shared.accuracy`."""
     rows = [errors(point) for point in points if point.job == "compare"]
     for row in rows:

@@ -88,7 +88,7 @@ def coefficient(point: Point, flux: str, enskog: Callable[..., Any]) -> dict[str
             run = Run(point.scene, trajectory["time"].values, trajectory)
             lags = trajectory["lag"].values
             curves += list(green_kubo(run, flux) / exact)
-            growths += [_growth(lags, one) for one in helfand(run, flux) / exact]
+            growths += [_growth(lags, curve) for curve in helfand(run, flux) / exact]
     samples, freedom = np.array(curves), len(curves) - 1
     value, growth = samples[:, -1], np.array(growths)
     meanwhile = samples[:, _half(lags) : -1].mean(axis=1)  # exactly the growth, but for pairs at the ends

@@ -81,12 +81,12 @@ def _ratios(axis: Axes, gases: Table) -> None:
     style.level(axis, 1.0)
     for kind, gas in enumerate(gases):
         lags, share = _lags(gas), 1.0 / gas.count
-        shown = lags[lags.collisions > 5.0]
+        late = lags[lags.collisions > 5.0]
         state = gas.packing_fraction, gas.dimension, gas.count
-        modes = theory.velocity_autocorrelation_modes(shown.time, *state) - share
+        modes = theory.velocity_autocorrelation_modes(late.time, *state) - share
         axis.axvline(gas.sound, color=style.COLOURS[kind], linestyle=":", linewidth=0.8)
-        ratio = (shown.correlation - share) / modes
-        style.points(axis, shown.collisions, ratio, kind=kind, markersize=2.5)
+        ratio = (late.correlation - share) / modes
+        style.points(axis, late.collisions, ratio, kind=kind, markersize=2.5)
         fitted = np.linspace(gas.tail_from, gas.tail_to, 50)
         curve = gas.tail_ratio.value + gas.tail_correction / fitted
         axis.plot(fitted, curve, color=style.COLOURS[kind])

@@ -51,9 +51,9 @@ def _row(point: Point, settings: dict) -> dict:
     side = min(scene.container.lengths) / (2.0 * scene.largest_radius)
     start, stop = settings["tail"]
     runs = [reduced_curves(point, path, stop / rate) for path in point.replica_paths]
-    shortest = min(len(one.time) for one in runs)
-    time = np.mean([one.time[:shortest] for one in runs], axis=0)
-    samples = np.stack([one.correlation[:shortest] for one in runs]) + 1.0 / count
+    shortest = min(len(run.time) for run in runs)
+    time = np.mean([run.time[:shortest] for run in runs], axis=0)
+    samples = np.stack([run.correlation[:shortest] for run in runs]) + 1.0 / count
     collisions = time * rate
     row = {
         "dimension": dimension,

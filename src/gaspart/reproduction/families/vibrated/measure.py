@@ -33,7 +33,7 @@ def vibrated_bed(points: list[Point], settings: dict) -> xr.Dataset:
     of discs in a bin over its width, in units of T/g, at `place`. All with errors from replicas.
     """
     units = {"temperature": "energy", **dict.fromkeys(("speed", "given", "lost"), "length / time")}
-    beds = table("bed", points, _bed, settings, inner=("bin",), units=units)
+    beds = table("bed", points, _measure_bed, settings, inner=("bin",), units=units)
     return beds.assign_coords(place=("bin", _grid(settings).middles[0]))
 
 
@@ -41,7 +41,7 @@ def _grid(settings: dict) -> Grid:
     return Grid.line(0.0, settings["highest"], settings["bins"])
 
 
-def _bed(point: Point, settings: dict) -> dict[str, Any]:
+def _measure_bed(point: Point, settings: dict) -> dict[str, Any]:
     scene = point.scene
     floor, species, law = scene.faces["y_low"], scene.species[0], scene.restitution
     assert isinstance(floor, Vibrating) and law is not None and scene.gravity is not None
@@ -54,7 +54,7 @@ def _bed(point: Point, settings: dict) -> dict[str, Any]:
     }
     replicas = [means(run, settings) for run in runs(point)]
     for name in replicas[0]:
-        row[name] = Estimate(*means_of([one[name] for one in replicas]), len(replicas) - 1)
+        row[name] = Estimate(*means_of([replica[name] for replica in replicas]), len(replicas) - 1)
     weight = species.count * -scene.gravity[1] / width
     row["packing_fraction"] = math.pi * species.radius**2 * weight / row["temperature"].value
     return row

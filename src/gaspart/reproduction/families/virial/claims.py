@@ -78,7 +78,7 @@ def virial_spheres(dataset: xr.Dataset) -> list[Claim]:
     """
     gases, (low, high) = Table(dataset, "packing_fraction"), KOLAFA_RANGE
     chosen = gases[(gases.packing_fraction >= low) & (gases.packing_fraction <= high)]
-    return virial_discs(dataset) + ([_distinguished(chosen)] if chosen else [])
+    return virial_discs(dataset) + ([_distinguish(chosen)] if chosen else [])
 
 
 def _coefficients(fit: Row, dimension: int) -> list[Claim]:
@@ -112,7 +112,7 @@ def _replicas(gases: Table) -> list[Claim]:
     ]
 
 
-def _distinguished(chosen: Table) -> Claim:
+def _distinguish(chosen: Table) -> Claim:
     """Return the claim on the mean of Z / Z_CS - 1.
 
     It is the value of Kolafa, Labík and Malijevský's equation there, not 0.

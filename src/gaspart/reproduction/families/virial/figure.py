@@ -84,9 +84,9 @@ def _state(axis: Axes, gases: Table, grid: np.ndarray, lines: Lines, sums: dict,
     style.label_axes(axis, y="compressibility factor $Z$", legend="upper left", ylim=(0.8, ceiling))
 
 
-def _name(axis: Axes, order: int, place: tuple, apart: tuple[int, int], **options: object) -> None:
+def _name(axis: Axes, order: int, position: tuple, apart: tuple[int, int], **options: object) -> None:
     look: dict = {"textcoords": "offset points", "color": _shade(order), **options}
-    axis.annotate(f"$B_{{{order}}}$", place, xytext=apart, **look)
+    axis.annotate(f"$B_{{{order}}}$", position, xytext=apart, **look)
 
 
 def _residuals(
@@ -121,20 +121,20 @@ def _coefficients(axis: Axes, fits: Table) -> None:
     """
     style.band(axis, -1.0, 1.0)
     style.level(axis, 0.0)
-    places = np.arange(len(fits))
+    positions = np.arange(len(fits))
     for k, (order, required) in enumerate(REQUIRED.items()):
         of_order = Table(fits.dataset.sel(order=order), "fit")
-        found, exact = of_order.coefficient + Estimate(0.0, of_order.held_error), of_order.exact.value
+        fitted, exact = of_order.coefficient + Estimate(0.0, of_order.held_error), of_order.exact.value
         label = f"$B_{order}$ / {100 * required:g} %"
-        scaled = (found - exact) / (required * exact)
-        style.points(axis, places + 0.22 * (k - 1), scaled, kind=k, label=label)
+        scaled = (fitted - exact) / (required * exact)
+        style.points(axis, positions + 0.22 * (k - 1), scaled, kind=k, label=label)
     # Fits that cut the series deviate widely: linear within the accuracy required, logarithmic beyond.
     axis.set_yscale("symlog", linthresh=1.0, linscale=1.0)
-    axis.set(ylim=(-30.0, 30.0), xlim=(-0.6, max(places.size, 1) - 0.4))
+    axis.set(ylim=(-30.0, 30.0), xlim=(-0.6, max(positions.size, 1) - 0.4))
     axis.set_yticks([-10, -1, 0, 1, 10], ["$-10$", "$-1$", "0", "1", "10"])
     axis.minorticks_off()
     names = [f"$B_2$–$B_{fit.free}$\n$\\leq${fit.up_to:g}\n{'held' if fit.held else 'zero'}" for fit in fits]
-    axis.set_xticks(places, names)
+    axis.set_xticks(positions, names)
     axis.tick_params(axis="x", length=0)
     style.label_axes(axis, "free coefficients, largest $\\eta$, higher coefficients", "deviation / required")
     axis.legend(ncols=3, loc="upper center", columnspacing=1.0, handletextpad=0.1)

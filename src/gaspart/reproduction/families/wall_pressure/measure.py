@@ -49,7 +49,7 @@ def _row(point: Point) -> dict:
     expected = theory.wall_pressure(length, count / touched.prod(), count, dimension, axes)
     replicas = [_replica(run) for run in runs(point)]
     accessible = [pressures * diameter**dimension / temperature for pressures, temperature, _ in replicas]
-    pressure = average([correlated_mean(one).estimate for one in accessible])
+    pressure = average([correlated_mean(series).estimate for series in accessible])
     share = touched.prod() / touched[walled][0] * lengths[walled][0] / lengths.prod()
     density = count / float(lengths.prod())
     eta = float(theory.packing_fraction(density, dimension))
