@@ -246,7 +246,8 @@ def chemical_potential(source: Source, places: int = PLACES, start: float | None
         run.require_all()
         if len(run.time) <= STRETCHES:
             raise SceneError("frames", len(run.time), f"an error needs {STRETCHES + 1} or more")
-        if (run.positions == run.positions[0]).all():
+        start_positions = run.vectors("coordinates")[0].values
+        if all((block == start_positions).all() for block in run.blocks("coordinates", slice(None))):
             raise SceneError("duration", run.time[-1], "nothing moves: all frames are one configuration")
         frames = slice(None, None, -(-len(run.time) // MOST_FRAMES))
         time = run.time[frames]
@@ -273,7 +274,9 @@ def _hosts(run: Run) -> list[Hosts]:
 
 def _inserted(run: Run, frames: slice, hosts: Hosts, places: int) -> tuple[np.ndarray, dict[str, float]]:
     """Compute the series (T,) of the chemical potential, and the counts of insertions."""
-    found = insertions(run.positions[frames], run.scene.container.lengths, hosts, places)
+    found = insertions(
+        run.vectors("coordinates")[frames].values.astype(float), run.scene.container.lengths, hosts, places
+    )
     chance = float(found.probability.mean())
     if chance == 0.0:
         rule = f"of {places} places in each of {len(found.share)} frames none was free: a fluid too dense"
