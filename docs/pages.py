@@ -21,7 +21,7 @@ from gaspart import analysis, theory
 from gaspart.cli import commands
 from gaspart.cli.arguments import WIDTH
 from gaspart.cli.new import templates
-from gaspart.public import stated
+from gaspart.public import read_stub
 from gaspart.reproduction.claims.table import filled
 from gaspart.reproduction.families.registry import families, titles
 from gaspart.reproduction.reference import pages as reference
@@ -59,7 +59,7 @@ def entry(name):
 
 def public_names():
     """Page -> title, and the public names on it by section; the first section has no title."""
-    groups, homes = {}, stated(f"{gaspart.__file__}i")
+    groups, homes = {}, read_stub(f"{gaspart.__file__}i")
     for page, (title, packages) in GROUPS.items():
         names = [name for name, home in homes.items() if f"{home}.".split(".")[1] in packages]
         groups[page] = title, {"": [f"gaspart.{name}" for name in sorted(names)]}

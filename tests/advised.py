@@ -230,15 +230,15 @@ def _advice(gas, observable, accuracy):
     stated = {"stated": made.best.error, "promised": made.affordable}
     longer = float(np.clip(MOST_SECONDS / made.best.seconds, 3.0, LONGER))
     costs = {"ratio": ratio, "predicted": made.best.duration, "replicas": made.replicas, "longer": longer}
-    if observable == "temperature" and made.places[0] < made.places[1]:
-        pilot = max((one for one in made.pilots if one.measured), key=lambda one: one.component.places)
+    if observable == "temperature" and made.points[0] < made.points[1]:
+        pilot = max((one for one in made.pilots if one.measured), key=lambda one: one.component.points)
         costs["places"] = np.isfinite(measure(pilot.path, observable).estimate.values)
     return made.recipe, costs | stated
 
 
 def _cost(gas, engine, observable, duration):
     """Processor seconds of a run, by the faster of two measurements of the speed."""
-    return duration * min(speed_of(Target.named(gas, observable), engine) for _ in range(2))
+    return duration * min(speed_of(Target.from_name(gas, observable), engine) for _ in range(2))
 
 
 def results(folder, numbers, make=scene):

@@ -16,7 +16,7 @@ import pytest
 from scenes import gas
 
 import gaspart as gp
-from gaspart.interruption import SIGNALS, deferred
+from gaspart.interruption import SIGNALS, defer_signals
 from gaspart.trajectory import recording
 from gaspart.trajectory.checkpoint import checkpoint_path
 
@@ -190,7 +190,7 @@ def test_a_program_with_a_handler_of_its_own_decides(tmp_path, interrupted_at, n
 
 
 def test_a_signal_at_the_end_of_the_work_is_not_lost():
-    with pytest.raises(KeyboardInterrupt), deferred() as signals:
+    with pytest.raises(KeyboardInterrupt), defer_signals() as signals:
         signal.raise_signal(signal.SIGINT)
         assert signals.pending == signal.SIGINT
 

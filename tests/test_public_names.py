@@ -11,7 +11,7 @@ import pytest
 
 import gaspart as gp
 from gaspart.analysis.observables import ALIASES, OBSERVABLES, known
-from gaspart.public import entries, stated
+from gaspart.public import entries, read_stub
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ["gaspart", "gaspart.analysis", "gaspart.keys", "gaspart.theory", "gaspart.reproduction.claims"]
@@ -29,7 +29,7 @@ def test_every_stub_belongs_to_a_package_that_loads_what_it_states():
     stubs = {path.parent.relative_to(ROOT / "src") for path in (ROOT / "src/gaspart").rglob("*.pyi")}
     assert {".".join(path.parts) for path in stubs} == set(PACKAGES)
     for package in map(import_module, PACKAGES):
-        homes = stated(f"{package.__file__}i")
+        homes = read_stub(f"{package.__file__}i")
         assert package.__all__ == list(homes) and dir(package) == sorted(homes)
         originals, aliases = entries(f"{package.__file__}i")
         for name, home in originals.items():

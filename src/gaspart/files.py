@@ -78,16 +78,16 @@ def open_regular(path: str | Path, follow: bool = True) -> BinaryIO:
     return file
 
 
-def _require_regular(found: os.stat_result, path: str | Path) -> None:
+def _require_regular(status: os.stat_result, path: str | Path) -> None:
     """Raise OSError for what is no regular file."""
-    if stat.S_ISDIR(found.st_mode):
+    if stat.S_ISDIR(status.st_mode):
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
-    if not stat.S_ISREG(found.st_mode):
-        kind = _SPECIAL_FILES.get(stat.S_IFMT(found.st_mode), "a device")
+    if not stat.S_ISREG(status.st_mode):
+        kind = _SPECIAL_FILES.get(stat.S_IFMT(status.st_mode), "a device")
         raise OSError(errno.EINVAL, f"it is {kind}, not a regular file", str(path))
 
 
-def resolved(path: str | Path) -> Path:
+def resolve_path(path: str | Path) -> Path:
     """Return the absolute path without links, for any path.
 
     `Path.resolve` fails for links in a circle.
@@ -98,13 +98,13 @@ def resolved(path: str | Path) -> Path:
         return Path(path)
 
 
-def is_same_file(one: str | Path, other: str | Path) -> bool:
+def is_same_file(path: str | Path, other: str | Path) -> bool:
     """Return True if two names are names of one file, also through links and other spellings.
 
     The result is False if a file does not exist.
     """
     try:
-        return os.path.samefile(one, other)
+        return os.path.samefile(path, other)
     except (OSError, ValueError):
         return False
 
@@ -116,12 +116,12 @@ def may_replace(path: Path, kind: FileKind | None, overwrite: bool) -> bool:
     (None: any kind), and, without `overwrite`, any file. An empty file is of every kind. May raise OSError.
     """
     try:
-        found = path.lstat()
+        status = path.lstat()
     except FileNotFoundError:
         return False
-    if not stat.S_ISREG(found.st_mode):
+    if not stat.S_ISREG(status.st_mode):
         raise SceneError("path", str(path), "must be a regular file: not a folder, a link or a device")
-    if found.st_size and kind is not None and not kind.recognises(path):
+    if status.st_size and kind is not None and not kind.recognises(path):
         rule = f"exists and is not {kind.name}; move it away, or choose another name"
         raise SceneError("path", str(path), rule)
     if not overwrite:
@@ -173,8 +173,8 @@ def writing(path: str | Path, kind: FileKind | None = None, overwrite: bool = Fa
                 os.fsync(file.fileno())
             place(scratch, path, kind, overwrite)
     except OSError as error:
-        why = error.strerror or "its writer has stopped"
-        raise SceneError("path", str(path), f"cannot be written: {why}") from None
+        reason = error.strerror or "its writer has stopped"
+        raise SceneError("path", str(path), f"cannot be written: {reason}") from None
     except UnicodeEncodeError:  # raised by a library that accepts UTF-8 names only
         rule = "cannot be written: the name of its folder must be UTF-8"
         raise SceneError("path", str(path), rule) from None
@@ -217,8 +217,8 @@ def is_remainder(path: Path) -> bool:
     name = _SCRATCH.fullmatch(path.name)
     if name is None or is_running(int(name[1])):
         return False
-    found = path.lstat()
-    return stat.S_ISREG(found.st_mode) and found.st_nlink == 1 and is_own(found)
+    status = path.lstat()
+    return stat.S_ISREG(status.st_mode) and status.st_nlink == 1 and is_own(status)
 
 
 def _is_lock(path: Path) -> bool:

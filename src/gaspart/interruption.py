@@ -6,7 +6,7 @@ kernel hands its result over, which then fails with a SystemError. So no handler
 `exit_on_signals` is for processes that belong to gaspart: the command line, and the jobs of the workflow. A
 thread waits for the signal, so that imports, compilers and kernels need not return first.
 
-`deferred` is for work with state to save. In a process of gaspart a signal then waits until the work has
+`defer_signals` is for work with state to save. In a process of gaspart a signal then waits until the work has
 saved its state; in any other program, such as a notebook, that program's own handler is called thereafter.
 """
 
@@ -150,7 +150,7 @@ def _exit(signum: int) -> NoReturn:
             path.unlink()
     announce = _process.announce or _announce
     with suppress(OSError, ValueError):
-        announce(interrupted(signum))
+        announce(describe_interruption(signum))
     os._exit(128 + signum)
 
 
@@ -160,7 +160,7 @@ def _announce(text: str) -> None:
     os.write(2, f"{clear}gaspart: {text}\n".encode(errors="surrogateescape"))
 
 
-def interrupted(signum: int = signal.SIGINT) -> str:
+def describe_interruption(signum: int = signal.SIGINT) -> str:
     """Return one line about an interruption, and about the part of the work that is kept."""
     how = "interrupted" if signum == signal.SIGINT else "terminated"
     return f"{how}; {_process.note}" if _process.note else how
@@ -182,7 +182,7 @@ def scratch_file(path: Path) -> Iterator[None]:
 
 
 @contextmanager
-def uninterrupted() -> Iterator[None]:
+def prevent_interruption() -> Iterator[None]:
     """Defer signals to the end of this block where their handlers might raise within it.
 
     This holds in programs other than gaspart, such as a notebook. In a process of gaspart signals end it at
@@ -191,12 +191,12 @@ def uninterrupted() -> Iterator[None]:
     if _process.watched:
         yield
         return
-    with deferred():
+    with defer_signals():
         yield
 
 
 @contextmanager
-def deferred() -> Iterator[Deferral]:
+def defer_signals() -> Iterator[Deferral]:
     """Defer signals until `Deferral.deliver` or the end of the block.
 
     Outside of the main thread, where Python calls no handlers, and for handlers that Python did not install,

@@ -16,7 +16,7 @@ if TYPE_CHECKING:  # it takes longer to import than the rest of this module
     from typing import Any
 
 
-def stated(path: str) -> dict[str, str]:
+def read_stub(path: str) -> dict[str, str]:
     """Return the module of each name that a stub states, aliases included."""
     homes, aliases = entries(path)
     return homes | {alias: homes[name] for alias, name in aliases.items()}
@@ -52,12 +52,12 @@ def attach(
         if home == package:  # a package within
             return import_module(f"{package}.{name}")
         module = import_module(home)
-        found = getattr(module, name)
+        member = getattr(module, name)
         if for_users and name not in namespace:
-            from gaspart.errors.guidance import guided
+            from gaspart.errors.guidance import with_call_checks
 
-            found = guided(found)
-            setattr(module, name, found)  # the same thing under both names, as pickle requires
-        return namespace.setdefault(name, found)
+            member = with_call_checks(member)
+            setattr(module, name, member)  # the same thing under both names, as pickle requires
+        return namespace.setdefault(name, member)
 
     return load, lambda: sorted(names), names

@@ -357,11 +357,11 @@ class Simulation:
             if max_events is None:
                 raise SceneError("duration", None, "give duration, until or max_events")
             until = math.inf
-        place = None if self._initial.piston is None else float(self._initial.piston[0])
+        piston = None if self._initial.piston is None else float(self._initial.piston[0])
         if self.scene.pistons:
             if max_events is None:
-                check_piston_end(self.scene, "until", until, place)
-            until = min(until, piston_end(self.scene, place))
+                check_piston_end(self.scene, "until", until, piston)
+            until = min(until, piston_end(self.scene, piston))
         before, self._advanced = self._advanced, True
         if not before:
             self._warn_at_rest()
@@ -463,7 +463,7 @@ class Simulation:
         >>> gp.Simulation(scene, seed=1, stress=True).sums_of("stress").shape
         (10,)
         """
-        if not any(asked.name == tally for asked in self.tallies):
+        if not any(optional_tally.name == tally for optional_tally in self.tallies):
             raise SceneError(tally, False, "was not asked for when the simulation was made")
         return self._dynamics.sums_of(tally)
 
@@ -497,12 +497,12 @@ class Simulation:
         return self._log is not None
 
     @record_events.setter
-    def record_events(self, wanted: bool) -> None:
-        if wanted and not self.engine.records_events:
-            raise SceneError("record_events", wanted, 'needs the "event" engine')
-        if wanted:
+    def record_events(self, enabled: bool) -> None:
+        if enabled and not self.engine.records_events:
+            raise SceneError("record_events", enabled, 'needs the "event" engine')
+        if enabled:
             refuse_open(self.scene, "changes the particles: events are not recorded")
-        self._log = EventLog(self.scene.dimension, self.scene.rough) if wanted else None
+        self._log = EventLog(self.scene.dimension, self.scene.rough) if enabled else None
 
     @property
     def events(self) -> dict[str, np.ndarray]:
@@ -645,11 +645,11 @@ class Simulation:
         if max(times, default=0.0) > self.time:
             raise SceneError("at", max(times), f"is after the present time {self.time:g}")
         rising = sorted(set(times))
-        found = {
+        values = {
             time: [getattr(state, name) for name in names]
             for time, state in zip(rising, self._states_at(rising), strict=True)
         }
-        arrays = {name: np.array([found[time][n] for time in times]) for n, name in enumerate(names)}
+        arrays = {name: np.array([values[time][n] for time in times]) for n, name in enumerate(names)}
         return {"time": np.array(times), **arrays}
 
     def check_invariants(self, state: State | None = None) -> None:

@@ -55,20 +55,20 @@ def user() -> str:
     return getuser()
 
 
-def is_own(found: os.stat_result) -> bool:
+def is_own(status: os.stat_result) -> bool:
     """Return True if a file belongs to this user, and on Windows.
 
     Files on Windows have no number of a user.
     """
-    return not hasattr(os, "geteuid") or found.st_uid == os.geteuid()
+    return not hasattr(os, "geteuid") or status.st_uid == os.geteuid()
 
 
-def is_private(found: os.stat_result) -> bool:
+def is_private(status: os.stat_result) -> bool:
     """Return True if no other user may write to a file or folder, and on Windows.
 
     The modes of files on Windows do not tell.
     """
-    return is_own(found) and not (POSIX and found.st_mode & 0o022)
+    return is_own(status) and not (POSIX and status.st_mode & 0o022)
 
 
 def is_running(process: int) -> bool:

@@ -21,7 +21,7 @@ from signal import SIGTERM
 from typing import Any
 
 from gaspart.errors import SceneError, SimulationError
-from gaspart.interruption import deferred, exit_on_signals
+from gaspart.interruption import defer_signals, exit_on_signals
 from gaspart.system import POSIX
 
 _LOOK = 0.1  # seconds between two looks at signals while processes run
@@ -90,7 +90,7 @@ def in_processes(
     """
     waiting = list(reversed(range(len(calls))))
     running: list[_Worker] = []
-    with deferred() as signals:
+    with defer_signals() as signals:
         signals.unsaved = True
         try:
             while waiting or running:
@@ -98,7 +98,7 @@ def in_processes(
                     number = waiting.pop()
                     running.append(_Worker(number, function, calls[number]))
                 ready = connection.wait([worker.connection for worker in running], _LOOK)
-                for worker in [one for one in running if one.connection in ready]:
+                for worker in [candidate for candidate in running if candidate.connection in ready]:
                     if worker.receive(received):
                         continue
                     running.remove(worker)

@@ -96,9 +96,9 @@ def _with_exponents(base: Any) -> Any:
 
     They are text in YAML 1.1.
     """
-    made: Any = type("WithExponents", (base,), {})
-    made.add_implicit_resolver(_SCALARS[-1], _NUMBERS, list("-+.0123456789"))
-    return made
+    subclass: Any = type("WithExponents", (base,), {})
+    subclass.add_implicit_resolver(_SCALARS[-1], _NUMBERS, list("-+.0123456789"))
+    return subclass
 
 
 @cache

@@ -9,7 +9,7 @@ import gaspart as gp
 from gaspart import theory
 from gaspart.accuracy import table
 from gaspart.accuracy.option import WORTH
-from gaspart.accuracy.plan import plan, tabulated
+from gaspart.accuracy.plan import plan, plan_from_table
 from gaspart.accuracy.table import EQUILIBRATION
 from gaspart.analysis.measuring import measure
 from gaspart.cli.advise import _lines
@@ -33,7 +33,7 @@ def between_walls(boundary):
 
 
 def advice(fraction, accuracy, observable="Z", budget=None, **more):
-    return tabulated(gas(fraction, **more), observable, accuracy, budget)
+    return plan_from_table(gas(fraction, **more), observable, accuracy, budget)
 
 
 @pytest.fixture
@@ -119,7 +119,7 @@ def test_dilute_discs_take_the_model_that_is_accurate_enough():
 def test_an_advised_run_of_dsmc_is_as_accurate_as_promised(tmp_path, observable, fraction, dimension):
     scene = gas(fraction, count=2000, dimension=dimension)
     scene = replace(scene, species=(replace(scene.species[0], exact_temperature=True),))
-    found = tabulated(scene, observable, 0.02)
+    found = plan_from_table(scene, observable, 0.02)
     recipe = found.recipe
     assert recipe.engine.name == "dsmc"
     path = gp.run(scene, recipe.engine, 1, recipe.duration, recipe.sample_interval, tmp_path / "run.nc")
@@ -154,12 +154,14 @@ def test_a_budget_that_does_not_suffice_gives_the_best_within_it():
 
 
 def test_time_steps_scale_with_the_scene(fast_steps):
-    slow = tabulated(gas(0.3), "Z", 1e-2)
+    slow = plan_from_table(gas(0.3), "Z", 1e-2)
     hot = Scene(
         Container(tuple(2.0 * length for length in gas(0.3).container.lengths), boundary="periodic"),
         species=(Species(1000, 1.0, temperature=16.0, arrangement="lattice"),),
     )
-    assert tabulated(hot, "Z", 1e-2).best.engine.time_step == pytest.approx(0.5 * slow.best.engine.time_step)
+    assert plan_from_table(hot, "Z", 1e-2).best.engine.time_step == pytest.approx(
+        0.5 * slow.best.engine.time_step
+    )
 
 
 def test_equilibration_and_finite_size_are_reported():
@@ -172,7 +174,7 @@ def test_equilibration_and_finite_size_are_reported():
 def test_drawn_velocities_add_a_scatter_that_is_stated(exact, scatter):
     scene = gas(0.2)
     particles = replace(scene.species[0], exact_temperature=exact)
-    found = tabulated(replace(scene, species=(particles,)), "D", 1e-2)
+    found = plan_from_table(replace(scene, species=(particles,)), "D", 1e-2)
     assert found.scatter.value == pytest.approx(scatter)
     assert any("exact_temperature: true" in line for line in _lines(found, "gas.yaml")) != exact
 
@@ -197,4 +199,4 @@ def test_drawn_velocities_add_a_scatter_that_is_stated(exact, scatter):
 )
 def test_unmeasured_cases_are_refused(scene, observable, accuracy, key):
     with pytest.raises(SceneError, match=key):
-        tabulated(scene, observable, accuracy)
+        plan_from_table(scene, observable, accuracy)

@@ -8,9 +8,9 @@ import pytest
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.accuracy.column import pulled
+from gaspart.accuracy.column import gravity_column
 from gaspart.accuracy.conditions import even_conditions, known_conditions, measured_conditions
-from gaspart.accuracy.option import asked_of, candidates
+from gaspart.accuracy.option import candidates, make_request
 from gaspart.accuracy.target import Target
 from gaspart.engines.dsmc.accuracy import boltzmann_error, cell_error, enskog_error, require_resolved
 from gaspart.state.initial import initial_state
@@ -41,7 +41,7 @@ def conditions_of(scene):
 
 
 def asked(conditions, observable):
-    return asked_of(Target(conditions.scene, observable), 0.1, conditions)
+    return make_request(Target(conditions.scene, observable), 0.1, conditions)
 
 
 def averages(scene, engine, collisions, seeds=4):
@@ -132,7 +132,7 @@ def test_the_contact_theorem_is_that_of_the_exact_engine():
 def test_a_column_has_the_temperature_of_its_energy():
     """3/2 N T + N <m g z>, of points by theory's mean height; a real gas lies higher and is colder."""
     scene = gas(400, 0.02, SLIT, lengths=(10.0, 10.0, 104.7), gravity=(0.0, 0.0, -0.1))
-    column, state = pulled(scene), initial_state(scene, 0)
+    column, state = gravity_column(scene), initial_state(scene, 0)
     energy = column.energy_of(state)
     real, ideal = (column.of_energy(energy, points) for points in (False, True))
     mean = theory.ideal_mean_height(103.7, 0.1 / ideal.temperature)

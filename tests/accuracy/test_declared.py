@@ -63,7 +63,7 @@ def test_all_refuse_alike(kind):
             measure(frames(scene), name)
         assert caught.value.rule == reason, name
         with pytest.raises(gp.SceneError) as caught:
-            Target.named(scene, name)
+            Target.from_name(scene, name)
         assert reason in caught.value.rule, name
         if one.ends_runs:
             with pytest.raises(gp.SceneError) as caught:
@@ -95,7 +95,7 @@ def test_mutual_diffusion_has_the_model_error_of_diffusion():
     scene = gp.Scene(gp.Container((side,) * 3, "periodic"), kinds)
     models = {}
     for name in ("D", "mutual_diffusion"):
-        made, _ = candidates(Target.named(scene, name), 0.1, even_conditions(scene, 1.0))
+        made, _ = candidates(Target.from_name(scene, name), 0.1, even_conditions(scene, 1.0))
         models[name] = {one.engine.timed_as: (one.model, one.discretisation) for one in made}
     assert models["D"] == models["mutual_diffusion"]
     assert models["D"]["dsmc enskog"][0] == pytest.approx(0.066, abs=0.003)
@@ -106,11 +106,11 @@ def test_no_advice_is_to_measure_what_a_model_states():
     kinds = [gp.Species(500, 0.5, temperature=1.0, mass=mass) for mass in (1.0, 2.0)]
     scene = gp.Scene(gp.Container((60.0,) * 3, "periodic"), kinds)
     even = even_conditions(scene, 1.0)
-    made, refused = candidates(Target.named(scene, "Z"), 0.1, even)
+    made, refused = candidates(Target.from_name(scene, "Z"), 0.1, even)
     assert (
         "dsmc" not in {one.engine.timed_as for one in made}
         and "is 1 of particles without extent" in refused["dsmc"]
     )
     assert "dsmc" in {
-        one.engine.timed_as for one in candidates(Target.named(scene, "collision_rate"), 0.1, even)[0]
+        one.engine.timed_as for one in candidates(Target.from_name(scene, "collision_rate"), 0.1, even)[0]
     }

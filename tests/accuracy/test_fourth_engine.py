@@ -55,7 +55,7 @@ def fourth(tmp_path, monkeypatch):
 
 
 def test_it_is_advised_by_the_table():
-    rough, fine = (plan.tabulated(GAS, "Z", accuracy) for accuracy in (0.01, 1e-4))
+    rough, fine = (plan.plan_from_table(GAS, "Z", accuracy) for accuracy in (0.01, 1e-4))
     assert isinstance(rough.best.engine, Fourth) and rough.best.bias == 1e-3
     assert isinstance(fine.best.engine, EventDriven) and fine.best.engine.reference
     assert fine.refused["fourth"] == "no setting is known to be as accurate at this density"
@@ -67,7 +67,7 @@ def test_it_is_a_candidate_of_pilots():
     assert "fourth" not in refused
     (own,) = [one for one in made if isinstance(one.engine, Fourth)]
     assert own.bias == 1e-3
-    planned = plan.piloted(GAS, "temperature", 0.2, pilot_seconds=0.1)
+    planned = plan.plan_from_pilots(GAS, "temperature", 0.2, pilot_seconds=0.1)
     assert {"event", "fourth"} <= {one.engine.name for one in (*planned.options, *planned.pilots)}
     assert any("fourth engine" in line for line in _lines(planned, "gas.yaml"))
 

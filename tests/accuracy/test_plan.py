@@ -9,9 +9,9 @@ import pytest
 import gaspart as gp
 from gaspart.accuracy import pilot, plan
 from gaspart.accuracy import target as target_module
-from gaspart.accuracy.column import pulled
+from gaspart.accuracy.column import gravity_column
 from gaspart.accuracy.estimates import Component
-from gaspart.accuracy.option import Option, candidates, suited
+from gaspart.accuracy.option import Option, candidates, suitable_engines
 from gaspart.accuracy.pilot import Pilot, Trials, raised_bias
 from gaspart.accuracy.scatter import start_scatter
 from gaspart.accuracy.tabulated import is_tabulated
@@ -43,7 +43,7 @@ def own_cache(tmp_path, monkeypatch):
 
 
 def test_the_advised_run_reaches_the_accuracy(tmp_path):
-    made = plan.piloted(BOX, "pressure", 0.05, pilot_seconds=0.4)
+    made = plan.plan_from_pilots(BOX, "pressure", 0.05, pilot_seconds=0.4)
     assert made.affordable and made.best.error <= 0.05 * (1.0 + 1e-9)
     path = gp.run(
         BOX, made.recipe.engine, 3, sample_interval=made.recipe.sample_interval,
@@ -51,13 +51,17 @@ def test_the_advised_run_reaches_the_accuracy(tmp_path):
     )  # fmt: skip
     (reached,) = gp.reached_accuracy(path)
     assert reached.met and reached.accuracy <= 0.05
-    assert plan.piloted(BOX, "pressure", 0.05, pilot_seconds=0.4).pilots[0].seconds == 0.0  # kept from before
+    assert (
+        plan.plan_from_pilots(BOX, "pressure", 0.05, pilot_seconds=0.4).pilots[0].seconds == 0.0
+    )  # kept from before
 
 
 @pytest.mark.parametrize("observable", ["msd", "vacf"])
 def test_lags_are_those_of_correlations(tmp_path, observable):
     """Whatever the length of the run, so that a longer one is more accurate."""
-    coarse, fine = (plan.piloted(BOX, observable, x, pilot_seconds=0.4).recipe for x in (0.05, 0.005))
+    coarse, fine = (
+        plan.plan_from_pilots(BOX, observable, x, pilot_seconds=0.4).recipe for x in (0.05, 0.005)
+    )
     assert fine.correlations.lags == coarse.correlations.lags and fine.duration > 8.0 * coarse.duration
     assert fine.displacements == (observable == "msd")
     path = gp.run(
@@ -75,7 +79,7 @@ def test_paths_are_followed_however_far_frames_are_apart(tmp_path, observable):
     """Some of these particles cross the container between frames."""
     kinds = [gp.Species(32, radius, temperature=1.0, exact_temperature=True) for radius in (0.5, 0.4)]
     scene = gp.Scene(gp.Container((20.0, 20.0, 20.0), "periodic"), kinds)
-    recipe = plan.piloted(scene, observable, 0.5, pilot_seconds=0.4).recipe
+    recipe = plan.plan_from_pilots(scene, observable, 0.5, pilot_seconds=0.4).recipe
     paths = [tmp_path / "with.nc", tmp_path / "without.nc"]
     for path, kept in zip(paths, (recipe.displacements, False), strict=True):
         interval = recipe.sample_interval
@@ -118,20 +122,20 @@ def bed(amplitude):
 
 def test_the_pressure_on_one_wall(tmp_path):
     """Of a wall that nothing hits there is no relative accuracy."""
-    made = plan.piloted(bed(0.3), "pressure:y low", 0.05, pilot_seconds=0.4)
+    made = plan.plan_from_pilots(bed(0.3), "pressure:y low", 0.05, pilot_seconds=0.4)
     assert made.target.name == "pressure:y low" and made.affordable
     assert made.value == pytest.approx(30.0 / 12.0, rel=0.05)  # the weight of the discs
     (asked,) = made.recipe.until.accuracies
     assert asked.name == "pressure:y low"
     with pytest.raises(gp.SceneError, match="does not change in the pilot run.* or state a wall"):
-        plan.piloted(bed(0.3), "pressure", 0.05, pilot_seconds=0.4)
+        plan.plan_from_pilots(bed(0.3), "pressure", 0.05, pilot_seconds=0.4)
 
 
 def test_an_engine_that_cannot_start_is_no_candidate():
     """Of a few large particles among many small ones DSMC draws no partners."""
     large = gp.Particle((6.0, 6.0), (0.0, 0.0), radius=2.0, mass=16.0)
     scene = replace(BOX, particles=(large,))
-    made = plan.piloted(scene, "pressure", 0.1, pilot_seconds=0.4)
+    made = plan.plan_from_pilots(scene, "pressure", 0.1, pilot_seconds=0.4)
     assert made.best.candidate.engine.name in ("event", "step")
     assert {"dsmc", "dsmc enskog"} == set(made.refused) and "much larger" in made.refused["dsmc"]
 
@@ -141,7 +145,7 @@ def test_pilots_of_diffusion_and_structure_are_their_own():
     kinds = [gp.Species(32, radius, temperature=1.0, exact_temperature=True) for radius in (0.5, 0.4)]
     scene = gp.Scene(gp.Container((8.0, 8.0, 8.0), "periodic"), kinds)
     for observable in ("Z", "D", "rdf"):
-        (found, *_) = plan.piloted(scene, observable, 0.1, pilot_seconds=0.4).pilots
+        (found, *_) = plan.plan_from_pilots(scene, observable, 0.1, pilot_seconds=0.4).pilots
         assert found.measured > 0.0 and found.seconds > 0.0
 
 
@@ -149,25 +153,25 @@ def test_particles_that_are_compressed_are_made_once(monkeypatch):
     dense = gp.Species(200, 0.5, temperature=1.0, exact_temperature=True, arrangement="compressed")
     scene = gp.Scene(gp.Container((15.0, 15.0), "periodic"), [dense])
     made = []
-    whole = initial.compressed
+    whole = initial.compress_positions
 
     def compressed(*arguments):
         made.append(arguments)
         return whole(*arguments)
 
-    monkeypatch.setattr(initial, "compressed", compressed)
-    plan.piloted(scene, "rdf", 0.2, pilot_seconds=0.4)
+    monkeypatch.setattr(initial, "compress_positions", compressed)
+    plan.plan_from_pilots(scene, "rdf", 0.2, pilot_seconds=0.4)
     assert len(made) == 1
 
 
 def test_a_sheared_gas_has_a_steady_state():
-    made = plan.piloted(SHEARED, "shear_viscosity", 0.1, pilot_seconds=0.4)
+    made = plan.plan_from_pilots(SHEARED, "shear_viscosity", 0.1, pilot_seconds=0.4)
     assert made.affordable and made.recipe.correlations.stress
     assert made.best.candidate.engine.name == "event" and len(made.refused) == 3
 
 
 def test_dilute_gases_are_advised_to_draw_partners():
-    made = plan.piloted(DILUTE, "collision_rate", 0.02, pilot_seconds=0.4)
+    made = plan.plan_from_pilots(DILUTE, "collision_rate", 0.02, pilot_seconds=0.4)
     assert made.best.candidate.engine.name == "dsmc"
     by_name = {option.candidate.engine.name: option for option in made.options}
     assert by_name["event"].seconds > 5.0 * made.best.seconds
@@ -197,7 +201,7 @@ def test_bounds_come_from_theory():
     able, refused = candidates_of(DILUTE, "rdf")
     assert {one.engine.name for one in able} == {"event", "step"} and len(refused) == 2
     walled = gp.Scene(BOX.container, BOX.species, walls=[gp.Wall((4.0, 4.0), (6.0, 6.0))])
-    able, refused = suited(Target(walled, "pressure"))
+    able, refused = suitable_engines(Target(walled, "pressure"))
     assert [one.name for one in able] == ["event"] and len(refused) == 3
 
 
@@ -255,7 +259,7 @@ def test_what_one_run_cannot_reach_is_shared_by_replicas():
     """Of a run the frames that are correlated are limited, here by the collisions of light particles."""
     kinds = [gp.Species(20, 0.5, mass=mass, temperature=1.0, exact_temperature=True) for mass in (1.0, 100.0)]
     mixture = gp.Scene(gp.Container((7.0, 7.0, 7.0), "periodic"), kinds)
-    made = plan.piloted(mixture, "D", 0.004, pilot_seconds=0.5)
+    made = plan.plan_from_pilots(mixture, "D", 0.004, pilot_seconds=0.5)
     assert made.affordable and made.best.duration > made.target.span[1] and made.replicas > 1
     assert made.duration <= made.target.span[1] * (1.0 + 1e-9)
     lines = _lines(made, "gas.yaml")
@@ -309,7 +313,7 @@ def test_what_is_stored_falls_faster_than_noise():
 )
 def test_what_has_no_advice_is_refused_in_one_line(scene, observable, line):
     with pytest.raises(gp.SceneError, match=line):
-        plan.piloted(scene, observable, 0.1, pilot_seconds=0.1)
+        plan.plan_from_pilots(scene, observable, 0.1, pilot_seconds=0.1)
 
 
 def test_the_command_line_prints_the_command(tmp_path, monkeypatch, capsys):
@@ -340,7 +344,7 @@ def test_a_column_with_a_dense_floor():
     kind = gp.Species(200, 0.5, temperature=1.0, exact_temperature=True, region=region)
     box = gp.Container((14.0, 14.0, 300.0), ("periodic", "periodic", "wall"))
     scene = gp.Scene(box, [kind], gravity=(0.0, 0.0, -0.25))
-    made = plan.piloted(scene, "collision_rate", 0.1, pilot_seconds=1.0)
+    made = plan.plan_from_pilots(scene, "collision_rate", 0.1, pilot_seconds=1.0)
     assert {"dsmc", "dsmc enskog"} == set(made.refused)
     assert made.best.candidate.engine in [one.engine for one in made.pilots]
     exact = made.pilots[0].value
@@ -351,7 +355,7 @@ def test_a_column_with_a_dense_floor():
 
 def test_what_is_advised_has_a_pilot():
     for scene, observable in ((BOX, "pressure"), (DILUTE, "collision_rate"), (bed(0.3), "temperature")):
-        made = plan.piloted(scene, observable, 0.2, pilot_seconds=0.4)
+        made = plan.plan_from_pilots(scene, observable, 0.2, pilot_seconds=0.4)
         assert made.best.candidate.engine in [one.engine for one in made.pilots]
 
 
@@ -364,7 +368,7 @@ def test_a_plain_gas_between_walls_has_one_pilot_or_two(monkeypatch):
         return whole(target, engine, seconds, *more)
 
     monkeypatch.setattr("gaspart.accuracy.pilot.run_pilot", counted)
-    plan.piloted(BOX, "pressure", 0.05, pilot_seconds=0.4)
+    plan.plan_from_pilots(BOX, "pressure", 0.05, pilot_seconds=0.4)
     assert len(made) <= 2 and sum(made) <= 0.4
 
 
@@ -393,7 +397,7 @@ def test_the_energy_of_random_places_scatters_as_stated():
         energies.append(state.translational_energy + 0.05 * float(state.positions[:, 2].sum()))
     found = start_scatter(Target(scene, "temperature"))
     assert found.placed and not found.drawn
-    column_of = pulled(scene)
+    column_of = gravity_column(scene)
     hot, cold = (
         column_of.of_energy(np.mean(energies) - 30.0 * 0.05 + k * np.std(energies), False) for k in (1, -1)
     )
@@ -412,7 +416,7 @@ def test_what_cannot_be_measured_is_not_advised():
     many = replace(few, species=[replace(kind, count=100)])
     assert is_tabulated(many, "D") and not is_tabulated(few, "D")
     with pytest.raises(gp.SceneError, match="an error needs 16 moving particles or more"):
-        plan.piloted(few, "D", 0.1, pilot_seconds=0.2)
+        plan.plan_from_pilots(few, "D", 0.1, pilot_seconds=0.2)
 
 
 def test_a_density_is_advised_with_the_impulses_that_an_engine_keeps(tmp_path):
@@ -428,7 +432,7 @@ def test_a_density_is_advised_with_the_impulses_that_an_engine_keeps(tmp_path):
         (Target(uneven, "density"), EventDriven()),
     ):
         assert target.tallies(engine) == ()
-    made = plan.piloted(scene, "density", 0.02, pilot_seconds=0.4)
+    made = plan.plan_from_pilots(scene, "density", 0.02, pilot_seconds=0.4)
     exact = made.pilots[0]
     assert exact.component.length(0.01) < 0.5 * exact.counted.length(0.01)
     for option in made.options:

@@ -9,7 +9,7 @@ import pytest
 
 from gaspart import theory
 from gaspart.accuracy import table
-from gaspart.accuracy.plan import tabulated
+from gaspart.accuracy.plan import plan_from_table
 from gaspart.accuracy.table import EQUILIBRATION
 from gaspart.engines import EventDriven, TimeStepped
 from gaspart.errors import SceneError
@@ -95,7 +95,7 @@ def test_the_advised_accuracy_is_reached():
     missed, expensive = [], []
     for number in range(SCENES):
         gas, observable, accuracy = scene(number)
-        found = tabulated(gas, observable, accuracy)
+        found = plan_from_table(gas, observable, accuracy)
         rate = float(theory.collision_rate(**found.gas.parameters))
         values = [
             run(

@@ -13,7 +13,7 @@ from scenes import gas
 import gaspart as gp
 from gaspart.cli import main
 from gaspart.errors import SceneError, SimulationError, visible
-from gaspart.interruption import interrupted, set_note
+from gaspart.interruption import describe_interruption, set_note
 from gaspart.trajectory.checkpoint import checkpoint_path
 
 NASTY = [
@@ -201,7 +201,7 @@ def test_names_of_files(runs, tmp_path, monkeypatch, capsys, text):
 
 def test_a_failure_and_an_interruption_name_files_as_text(tmp_path, monkeypatch):
     set_note("`gaspart resume \x1b[2J` continues it")
-    assert interrupted().isprintable()
+    assert describe_interruption().isprintable()
     set_note("")
 
     def breaks(*_):

@@ -10,7 +10,7 @@ import gaspart as gp
 from gaspart.inspection.frames import Frames
 from gaspart.inspection.readers import read_frames
 from gaspart.inspection.statistics import (
-    collided,
+    count_collisions,
     decorrelated_frames,
     density_modulation,
     first_relaxed_frame,
@@ -26,7 +26,7 @@ def test_the_clock_counts_the_collisions_of_a_particle(dimension, boundary, tmp_
     file = gp.run(scene, gp.EventDriven(), 1, 5.0, 0.1, tmp_path / "a.nc")
     with gp.open_trajectory(file) as run:
         counted = 2.0 * run["collisions"].values / scene.count
-    found = collided(read_frames(file))
+    found = count_collisions(read_frames(file))
     assert 0.7 * counted[-1] < found[-1] <= 1.05 * counted[-1]
     assert (np.diff(found) >= 0.0).all()
 
@@ -35,9 +35,9 @@ def test_nothing_happens_to_particles_in_flight_or_under_a_weak_thermostat():
     rng = np.random.default_rng(1)
     velocities = np.repeat(rng.standard_normal((1, 100, 3)), 20, axis=0)
     still = Frames(np.zeros((20, 100, 3)), np.ones(3), np.ones(100), (True,) * 3, velocities)
-    assert collided(still)[-1] == 0.0
+    assert count_collisions(still)[-1] == 0.0
     walk = np.cumsum(0.1 * rng.standard_normal(velocities.shape), axis=0)
-    assert collided(replace(still, velocities=velocities + walk))[-1] < 1.0
+    assert count_collisions(replace(still, velocities=velocities + walk))[-1] < 1.0
 
 
 def test_the_number_of_independent_samples():

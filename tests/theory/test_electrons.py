@@ -55,9 +55,9 @@ def test_slow_electrons_are_where_it_is_cold_by_a_power_of_the_temperature():
     metal = MetalSlab(1.0, 300.0, 20_000, seed=5)
     sums = np.zeros(2)
     for _ in range(6):
-        start, velocity = metal.place.copy(), metal.velocity.copy()
+        start, velocity = metal.positions.copy(), metal.velocity.copy()
         metal.profile(9.0, 1)
         far = (start > 50.0) & (start < 250.0)
-        product = ((metal.place - start) * velocity[:, 0])[far]
+        product = ((metal.positions - start) * velocity[:, 0])[far]
         sums += product.sum(), product @ (0.5 * (velocity[far] ** 2).sum(axis=1) - 1.0)
     assert sums[1] / sums[0] == pytest.approx(0.65, abs=0.06)

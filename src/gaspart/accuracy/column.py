@@ -81,7 +81,7 @@ class Column:
 
 
 @dataclass(frozen=True)
-class Pulled:
+class GravityColumn:
     """Scene under gravity along one axis with walls, whose columns are computed.
 
     axis : number of the axis.
@@ -147,11 +147,11 @@ class Pulled:
 
     def energy_of(self, state: State) -> float:
         """Compute the energy of a state, kinetic and potential; the floor is at 0."""
-        place, length = state.positions[:, self.axis], float(state.lengths[self.axis])
-        heights = (place if self.low else length - place) - 0.5 * (length - self.height)
+        position, length = state.positions[:, self.axis], float(state.lengths[self.axis])
+        heights = (position if self.low else length - position) - 0.5 * (length - self.height)
         return float(state.translational_energy + self.pull * (state.masses @ heights))
 
-    def settled(self, energy: float, heat: float | None, ideal: bool) -> Column:
+    def equilibrate(self, energy: float, heat: float | None, ideal: bool) -> Column:
         """Compute the column in equilibrium: at the temperature of its faces, or with its energy.
 
         The temperature of the faces is `heat`, if there is one. Raises ValueError as `of_energy`.
@@ -159,7 +159,7 @@ class Pulled:
         return self.column(heat, ideal) if heat else self.of_energy(energy, ideal)
 
 
-def pulled(scene: Scene) -> Pulled | None:
+def gravity_column(scene: Scene) -> GravityColumn | None:
     """Return the column of a scene under gravity, or None if theory does not know it.
 
     Theory knows particles of one size that lose no energy, between hard walls, or walls at one temperature.
@@ -179,13 +179,13 @@ def pulled(scene: Scene) -> Pulled | None:
     sides = upper - lower
     masses = sorted({kind.mass for kind in kinds})
     counts = [sum(kind.count for kind in kinds if kind.mass == mass) for mass in masses]
-    return Pulled(
+    return GravityColumn(
         scene.dimension, k, g < 0.0, abs(g), float(sides[k]), float(np.delete(sides, k).prod()),
         np.array(masses), np.array(counts, dtype=float), 2.0 * kinds[0].radius,
     )  # fmt: skip
 
 
-def between(real: Column, ideal: Column, observable: str, top: bool | None) -> float:
+def compare_columns(real: Column, ideal: Column, observable: str, top: bool | None) -> float:
     """Compute the relative difference of an observable between columns of points and of particles.
 
     For a pressure, `top` is True at the top, None for any wall.

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from gaspart import theory
-from gaspart.accuracy.column import Column, Pulled, between, pulled
+from gaspart.accuracy.column import Column, GravityColumn, compare_columns, gravity_column
 from gaspart.analysis.run import open_run
 from gaspart.engines.conditions import Layers
 from gaspart.engines.dsmc.defaults import accessible
@@ -65,7 +65,7 @@ class Conditions(Layers):
 
         `face` is the wall of a pressure. None if theory does not know the column.
         """
-        return between(*self.columns, observable, self._top(face)) if self.columns else None
+        return compare_columns(*self.columns, observable, self._top(face)) if self.columns else None
 
     def _top(self, face: str | None) -> bool | None:
         """Return True if a face of the container is at the top of a column.
@@ -83,7 +83,7 @@ def known_conditions(scene: Scene, start: State) -> Conditions | None:
 
     The initial state `start` determines the energy of the scene.
     """
-    if column := pulled(scene):
+    if column := gravity_column(scene):
         try:
             return _of_column(scene, column, start)
         except ValueError:  # as of particles that come to rest as a crystal
@@ -120,10 +120,10 @@ def even_conditions(scene: Scene, temperature: float) -> Conditions:
     return Conditions(scene, np.ones(1), np.ones(1), np.array([temperature]))
 
 
-def _of_column(scene: Scene, pulled_scene: Pulled, start: State) -> Conditions:
+def _of_column(scene: Scene, pulled_scene: GravityColumn, start: State) -> Conditions:
     """Compute the conditions under gravity; raise ValueError where theory knows nothing."""
     energy, heat = pulled_scene.energy_of(start), max(scene.face_temperatures, default=None)
-    real, ideal = (pulled_scene.settled(energy, heat, one) for one in (False, True))
+    real, ideal = (pulled_scene.equilibrate(energy, heat, is_ideal) for is_ideal in (False, True))
     z, numbers = real.heights, real.numbers.sum(axis=0)
     share = numbers * np.gradient(z)
     share /= share.sum()
@@ -148,29 +148,29 @@ def measured_conditions(scene: Scene, path: Path) -> Conditions:
     file without all particles.
     """
     with open_run(path, None, sheared=True) as run:
-        places = run.positions[:, run.moving]
+        positions = run.positions[:, run.moving]
         thermal = (run.masses[run.moving] * (run.peculiar**2).sum(axis=2)) / run.dimension
-    found = [_along(scene, k, places[..., k], thermal) for k in range(scene.dimension)]
-    return min(found, key=lambda one: one.scale)
+    profiles = [_along(scene, k, positions[..., k], thermal) for k in range(scene.dimension)]
+    return min(profiles, key=lambda profile: profile.scale)
 
 
-def _along(scene: Scene, axis: int, places: np.ndarray, thermal: np.ndarray) -> Conditions:
+def _along(scene: Scene, axis: int, positions: np.ndarray, thermal: np.ndarray) -> Conditions:
     """Compute layers that are equally populated in frames (T, M), along an axis."""
-    lower, upper = (float(one[axis]) for one in accessible(scene))
-    order = np.argsort(places, axis=None)
+    lower, upper = (float(corner[axis]) for corner in accessible(scene))
+    order = np.argsort(positions, axis=None)
     layers = np.array_split(order, _LAYERS)
-    sorted_places = places.ravel()[order]
-    ends = np.cumsum([len(one) for one in layers])[:-1]
-    edges = np.concatenate([[lower], 0.5 * (sorted_places[ends - 1] + sorted_places[ends]), [upper]])
+    sorted_positions = positions.ravel()[order]
+    ends = np.cumsum([len(layer) for layer in layers])[:-1]
+    edges = np.concatenate([[lower], 0.5 * (sorted_positions[ends - 1] + sorted_positions[ends]), [upper]])
     width = np.maximum(np.diff(edges), 1e-12 * (upper - lower))
     middle, share = 0.5 * (edges[1:] + edges[:-1]), np.full(_LAYERS, 1.0 / _LAYERS)
     crowding = share * (upper - lower) / width
-    temperature = np.array([float(thermal.ravel()[one].mean()) for one in layers])
+    temperature = np.array([float(thermal.ravel()[layer].mean()) for layer in layers])
     # Particles of one frame are independent, roughly; frames are taken as not.
-    error = math.sqrt(2.0 * _LAYERS / max(1, places.shape[1]) / max(1.0, len(places) / 8.0))
-    logarithms = [np.log(np.maximum(of, 1e-300)) for of in (crowding, temperature)]
-    one, other = np.triu_indices(_LAYERS, 1)
-    change = np.maximum(*(np.abs(of[other] - of[one]) for of in logarithms))
-    certain = np.maximum(change - _CERTAIN * error, 0.0) / (middle[other] - middle[one])
+    error = math.sqrt(2.0 * _LAYERS / max(1, positions.shape[1]) / max(1.0, len(positions) / 8.0))
+    logarithms = [np.log(np.maximum(values, 1e-300)) for values in (crowding, temperature)]
+    first, second = np.triu_indices(_LAYERS, 1)
+    change = np.maximum(*(np.abs(values[second] - values[first]) for values in logarithms))
+    certain = np.maximum(change - _CERTAIN * error, 0.0) / (middle[second] - middle[first])
     scale = 1.0 / float(certain.max()) if certain.max() > 0.0 else math.inf
     return Conditions(scene, share, crowding, temperature, axis, scale)

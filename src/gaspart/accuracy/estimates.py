@@ -57,7 +57,7 @@ class Component:
     spectrum, stored : S and C of its squared error.
     freedom : degrees of freedom of the error.
     scale : reference of the relative error, the value unless that vanishes on average.
-    places : for a curve, the number of known points and the number of points.
+    points : for a curve, the number of known points and the number of points.
     """
 
     value: float
@@ -66,7 +66,7 @@ class Component:
     spectrum: float
     stored: float = 0.0
     freedom: float = LEAST_FREEDOM
-    places: tuple[int, int] = (1, 1)
+    points: tuple[int, int] = (1, 1)
 
     @property
     def estimate(self) -> Estimate:
@@ -89,9 +89,9 @@ class Component:
         """
         if not self.accuracy < math.inf or not accuracy > 0.0:
             return math.inf
-        left = accuracy * self.scale / bound(self.freedom)
-        part = 0.5 * self.spectrum / left**2
-        return part + math.sqrt(part**2 + self.stored / left**2)
+        remaining = accuracy * self.scale / bound(self.freedom)
+        part = 0.5 * self.spectrum / remaining**2
+        return part + math.sqrt(part**2 + self.stored / remaining**2)
 
     def reaches(self, time: float) -> float:
         """Compute the relative bound of the error after a measured time, the inverse of `length`."""
@@ -113,24 +113,26 @@ def components(data: xr.Dataset, observable: str, start: float | None = None) ->
         if OBSERVABLES[observable].of_impulses:
             return _on_walls(run, observable)
         time = float(run.time[-1] - run.time[0])
-    declared, found = OBSERVABLES[observable], measure(data, observable, start)
-    parts = [np.asarray(of, dtype=float) for of in (found.estimate, found.error, _freedom(found))]
+    declared, result = OBSERVABLES[observable], measure(data, observable, start)
+    parts = [np.asarray(of, dtype=float) for of in (result.estimate, result.error, _freedom(result))]
     value, error, freedom = np.broadcast_arrays(*parts)
-    known, names, places = np.isfinite(value) & np.isfinite(error), [""], (1, 1)
+    is_known, names, points = np.isfinite(value) & np.isfinite(error), [""], (1, 1)
     if declared.form == "names":
-        names = [name for name, one in zip(_names(found), np.isfinite(value).flat, strict=True) if one]
+        names = [
+            name for name, is_finite in zip(_names(result), np.isfinite(value).flat, strict=True) if is_finite
+        ]
         value, error, freedom = (of[np.isfinite(value)] for of in (value, error, freedom))
     elif value.ndim:
-        places = int(known.sum()), known.size
-        value, error = np.array(_norm(value[known])), np.array(_norm(error[known]))
+        points = int(is_known.sum()), is_known.size
+        value, error = np.array(_norm(value[is_known])), np.array(_norm(error[is_known]))
         freedom = np.array(LEAST_FREEDOM)
     scales = np.abs(np.ravel(value))
     if declared.relative_to == "norm":  # some components vanish on average
         scales = np.full_like(scales, _norm(value))
     columns = zip(names, np.ravel(value), scales, np.ravel(error) ** 2 * time, np.ravel(freedom), strict=True)
     return {
-        name: Component(float(one), float(scale), time, float(spectrum), freedom=float(free), places=places)
-        for name, one, scale, spectrum, free in columns
+        name: Component(float(mean), float(scale), time, float(spectrum), freedom=float(free), points=points)
+        for name, mean, scale, spectrum, free in columns
     }
 
 
@@ -139,16 +141,17 @@ def of_face(name: str, face: str | None) -> bool:
     return face is None or name == face or name.startswith(f"{face} ")
 
 
-def _freedom(found: Observable) -> np.ndarray | float:
+def _freedom(observable: Observable) -> np.ndarray | float:
     """Return the degrees of freedom of the error, of each value where these are known."""
-    each = found.get(f"{found.attrs['quantity']}_freedom")
-    return float(found.attrs.get("freedom", LEAST_FREEDOM)) if each is None else np.asarray(each)
+    each = observable.get(f"{observable.attrs['quantity']}_freedom")
+    return float(observable.attrs.get("freedom", LEAST_FREEDOM)) if each is None else np.asarray(each)
 
 
-def _names(found: Observable) -> list[str]:
+def _names(observable: Observable) -> list[str]:
     """Return the names of the components of an observable, from the names along each dimension."""
     return [
-        " ".join(words) for words in product(*(found[dim].values.astype(str) for dim in found.estimate.dims))
+        " ".join(words)
+        for words in product(*(observable[dim].values.astype(str) for dim in observable.estimate.dims))
     ]
 
 
@@ -170,26 +173,39 @@ def _on_walls(run: Run, observable: str) -> dict[str, Component]:
         raise SceneError("frames", len(series) + 1, f"an error needs {LEAST_FREEDOM + 2:g} or more")
     improved, stored = controlled_on_walls(run, observable), stores(run)
     interval = float(np.diff(run.time).mean())
-    found = {}
-    for place, (face, one) in enumerate(zip(map(str, faces), series.T, strict=True)):
-        if place in improved:
-            _, controls, one = improved[place]
-            found[face] = without_stores(one, interval, controls)
+    by_face = {}
+    for index, (face, values) in enumerate(zip(map(str, faces), series.T, strict=True)):
+        if index in improved:
+            _, controls, rest = improved[index]
+            by_face[face] = without_stores(values, rest, interval, controls)
         else:
-            found[face] = with_stores(one, stored["xyz".index(face[0])], interval)
-    return found
+            by_face[face] = with_stores(values, stored["xyz".index(face[0])], interval)
+    return by_face
 
 
-def without_stores(series: np.ndarray, interval: float, controls: int) -> Component:
-    """Estimate the mean of a series (K,) from which `controls` controls were subtracted.
+def without_stores(series: np.ndarray, rest: np.ndarray, interval: float, controls: int) -> Component:
+    """Estimate the mean of a series (K,) by the `rest` (K,) after subtraction of `controls` controls.
 
     The intervals have one length. All stored quantities are among the controls.
     """
     from gaspart.analysis.statistics import correlated_mean
 
-    found, time = correlated_mean(series).estimate, len(series) * interval
-    freedom = max(1.0, found.freedom - controls)
-    return Component(found.value, abs(found.value), time, found.error**2 * time, freedom=freedom)
+    mean, time = correlated_mean(rest).estimate, len(rest) * interval
+    freedom = _remaining_freedom(series, mean, controls)
+    return Component(mean.value, abs(mean.value), time, mean.error**2 * time, freedom=freedom)
+
+
+def _remaining_freedom(series: np.ndarray, rest: Estimate, controls: int) -> float:
+    """Return the degrees of freedom of the error of a series (K,) without its controls.
+
+    Controls may explain a series to rounding, as the momentum of a single particle does the impulses on two
+    walls. What remains is the same in all samples, but the series is not: its error is known to be 0, with
+    the degrees of freedom of the changes that were explained.
+    """
+    from gaspart.analysis.statistics import count_changes
+
+    freedom = rest.freedom if rest.error > 0.0 else float(count_changes(series))
+    return max(1.0, freedom - controls)
 
 
 def with_stores(series: np.ndarray, stores: np.ndarray, interval: float) -> Component:
@@ -208,4 +224,5 @@ def with_stores(series: np.ndarray, stores: np.ndarray, interval: float) -> Comp
     slopes = np.linalg.lstsq(centred, series - mean, rcond=None)[0]
     rest = correlated_mean(series - centred @ slopes).estimate
     stored = 2.0 * float(np.var(kept @ slopes)) if slopes.size else 0.0
-    return Component(mean, abs(mean), time, rest.error**2 * time, stored, rest.freedom)
+    freedom = _remaining_freedom(series, rest, controls=0)
+    return Component(mean, abs(mean), time, rest.error**2 * time, stored, freedom)

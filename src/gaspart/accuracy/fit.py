@@ -24,7 +24,7 @@ from gaspart.trajectory import provenance
 def rows(folder: Path) -> list[dict]:
     """Return all rows of the table; their meaning is in `gaspart.accuracy.table`."""
     accuracy = xr.load_dataset(folder / "speed_accuracy.nc")
-    found = [
+    entries = [
         *_events(accuracy),
         *_steps(accuracy),
         *_models(accuracy),
@@ -33,7 +33,7 @@ def rows(folder: Path) -> list[dict]:
         *_diffusion(xr.load_dataset(folder / "msd_spheres.nc")),
         *_prices(xr.load_dataset(folder / "price_of_features.nc")),
     ]
-    return [{**row, "value": f"{row['value']:.4g}", "error": f"{row['error']:.2g}"} for row in found]
+    return [{**row, "value": f"{row['value']:.4g}", "error": f"{row['error']:.2g}"} for row in entries]
 
 
 def _row(

@@ -97,15 +97,15 @@ class Option:
         return max(self.noise.length(accuracy - self.bias), self.part(self.least))
 
 
-def ordered(options: list[Option]) -> list[Option]:
+def sort_by_cost(options: list[Option]) -> list[Option]:
     """Sort options, the best first: the cheapest accurate option, or else the most accurate one.
 
     The exact engine is preferred unless another one is `WORTH` times as cheap.
     """
 
-    def key(one: Option) -> tuple[float, float]:
-        seconds = one.seconds * (1.0 if one.engine.reference else WORTH)
-        return max(one.error, one.accuracy * (1.0 + 1e-9)), seconds
+    def key(option: Option) -> tuple[float, float]:
+        seconds = option.seconds * (1.0 if option.engine.reference else WORTH)
+        return max(option.error, option.accuracy * (1.0 + 1e-9)), seconds
 
     return sorted(options, key=key)
 
@@ -129,43 +129,43 @@ def replicas_of(option: Option, longest: float) -> int:
 # touch) or the discretisation (time step, cells).
 
 
-def suited(target: Target) -> tuple[list[Engine], dict[str, str]]:
+def suitable_engines(target: Target) -> tuple[list[Engine], dict[str, str]]:
     """Return the engines that model a scene and an observable, the reference first.
 
     For every other engine the reason is returned, by its name in the table.
     """
-    made, refused = [], {}
+    suitable, refused = [], {}
     for engine in offered():
         try:
             engine.check_features(target.scene)
             require_modelled(target.observable, target.scene, engine)
-            made.append(engine)
+            suitable.append(engine)
         except SceneError as error:
             refused[engine.timed_as] = f"{error.key}: {error.rule}"
-    return made, refused
+    return suitable, refused
 
 
 def candidates(
     target: Target, accuracy: float, conditions: Conditions
 ) -> tuple[list[Candidate], dict[str, str]]:
-    """Return the `suited` engines with their settings, and the reason for each rejected engine.
+    """Return the `suitable_engines` with their settings, and the reason for each rejected engine.
 
     accuracy : accuracy of the observable for which time steps are chosen.
     conditions : conditions of the steady scene.
     """
-    engines, refused = suited(target)
-    asked, made = asked_of(target, accuracy, conditions), []
+    engines, refused = suitable_engines(target)
+    request, proposals = make_request(target, accuracy, conditions), []
     for engine in engines:
         try:
-            made.append(engine.candidate(asked))
+            proposals.append(engine.candidate(request))
         except SceneError as error:
             refused[engine.timed_as] = f"{error.key}: {error.rule}"
-    return made, refused
+    return proposals, refused
 
 
-def asked_of(target: Target, accuracy: float, conditions: Conditions) -> Asked:
+def make_request(target: Target, accuracy: float, conditions: Conditions) -> Asked:
     """Return the request to engines for a target and an accuracy."""
-    governed = transported(target.scene, target.observable)
+    governed = depends_on_transport(target.scene, target.observable)
     presses = target.declared.of_impulses  # a force has the relative errors of a pressure
     observable = "pressure" if presses else target.observable
     return Asked(
@@ -174,7 +174,7 @@ def asked_of(target: Target, accuracy: float, conditions: Conditions) -> Asked:
     )  # fmt: skip
 
 
-def transported(scene: Scene, observable: str) -> bool:
+def depends_on_transport(scene: Scene, observable: str) -> bool:
     """Return True if transport coefficients govern an observable.
 
     These are observables with lags, and any observable where something drives a flow of heat or of momentum.

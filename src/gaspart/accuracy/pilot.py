@@ -18,7 +18,7 @@ import numpy as np
 
 from gaspart.accuracy.conditions import Conditions, measured_conditions
 from gaspart.accuracy.estimates import Component, components, of_face
-from gaspart.accuracy.option import candidates, suited
+from gaspart.accuracy.option import candidates, suitable_engines
 from gaspart.accuracy.target import SEED, Target
 from gaspart.analysis.observables import KEPT, TOO_SHORT
 from gaspart.analysis.run import EQUILIBRATION, open_run
@@ -171,34 +171,34 @@ def require_defined(target: Target) -> None:
     with TemporaryDirectory() as folder:
         path = _make(f"{folder}/brief.nc", target, reference_engine(), (_TRIED * interval, interval, None))
         with open_trajectory(path) as trajectory:
-            _measured(trajectory, target)
+            _estimate(trajectory, target)
 
 
-def _measured(trajectory: xr.Dataset, target: Target) -> dict[str, Component] | str:
+def _estimate(trajectory: xr.Dataset, target: Target) -> dict[str, Component] | str:
     """Return the components of an observable, or the reason if the run is too short.
 
     Raises SceneError for an observable that the scene does not have.
     """
     try:
-        found = components(trajectory, target.observable)
+        estimates = components(trajectory, target.observable)
     except SceneError as error:
         rule = f"{error.key}: {error.rule}"
         if error.key not in _UNKNOWN_YET:
             raise SceneError("observable", target.name, rule) from None
         return rule
-    return {name: one for name, one in found.items() if of_face(name, target.face)}
+    return {name: component for name, component in estimates.items() if of_face(name, target.face)}
 
 
-def run_pilot(target: Target, engine: Engine, seconds: float, speed: float, left: float = 1.0) -> Pilot:
+def run_pilot(target: Target, engine: Engine, seconds: float, speed: float, fraction: float = 1.0) -> Pilot:
     """Make and measure a run of about a given number of CPU seconds.
 
     speed : result of `speed_of`.
-    left : fraction of the seconds that remains, unless a pilot was stored.
+    fraction : fraction of the seconds that remains, unless a pilot was stored.
 
     A pilot in a transient is continued, to four times its length at most. An observable that needs a longer
     run is not measured. Raises SceneError for an observable that the scene does not have.
     """
-    scheduled = target.schedule(engine, left * seconds / speed)
+    scheduled = target.schedule(engine, fraction * seconds / speed)
     folder = cache_directory() / "pilots" / _digest(target, engine, seconds)
     folder.mkdir(parents=True, exist_ok=True)
     path, start = folder / "run.nc", time.process_time()
@@ -206,29 +206,29 @@ def run_pilot(target: Target, engine: Engine, seconds: float, speed: float, left
     try:
         if not kept:
             _make(path, target, engine, scheduled)
-        settled = _steadied(path)
+        settled = _equilibrate(path)
     except SimulationError as error:
         return Pilot(engine, speed, rule=str(error))
     took = 0.0 if kept else time.process_time() - start
     with open_trajectory(path) as trajectory:
         frames = trajectory["time"].values
-        found = _measured(trajectory, target)
-        counted = _measured(trajectory.assign_attrs(tallies="[]"), target) if target.tallies(engine) else ""
+        result = _estimate(trajectory, target)
+        counted = _estimate(trajectory.assign_attrs(tallies="[]"), target) if target.tallies(engine) else ""
     blank = Pilot(engine, speed, took, None, None, float(frames[1] - frames[0]), settled, path=path)
     if settled > EQUILIBRATION * frames[-1]:
-        found = f"is not steady yet at the time {frames[-1]:.3g}"
-    if isinstance(found, str):
-        return replace(blank, rule=found)
+        result = f"is not steady yet at the time {frames[-1]:.3g}"
+    if isinstance(result, str):
+        return replace(blank, rule=result)
     plain = None if isinstance(counted, str) else _worst(counted)
-    return replace(blank, component=_worst(found), counted=plain)
+    return replace(blank, component=_worst(result), counted=plain)
 
 
-def _worst(found: dict[str, Component]) -> Component:
+def _worst(estimates: dict[str, Component]) -> Component:
     """Return the least accurate component."""
-    return max(found.values(), key=lambda one: one.accuracy)
+    return max(estimates.values(), key=lambda component: component.accuracy)
 
 
-def _steadied(path: Path) -> float:
+def _equilibrate(path: Path) -> float:
     """Return the `settling_time` of a pilot, and continue the pilot until it is steady.
 
     It is steady if the settling time is within the part that is discarded.
@@ -251,9 +251,9 @@ def settling_time(trajectory: xr.Dataset) -> float:
     with open_run(trajectory, 0.0, sheared=True) as run:
         velocities, masses = run.peculiar, run.masses[run.moving]
         series = [np.einsum("tnd,tnd,n->t", velocities, velocities, masses)]
-        places = run.positions[:, run.moving].mean(axis=1)
-        series += [places[:, k] for k in range(run.dimension) if not run.periodic[k]]
-        return max(float(run.time[_settled_at(one)]) for one in series)
+        positions = run.positions[:, run.moving].mean(axis=1)
+        series += [positions[:, k] for k in range(run.dimension) if not run.periodic[k]]
+        return max(float(run.time[_settled_at(values)]) for values in series)
 
 
 def _settled_at(series: np.ndarray) -> int:
@@ -318,7 +318,7 @@ class Trials:
         It takes half the time if another engine may be cheaper. Raises SceneError if no engine runs the
         scene, and for an observable that the scene does not have.
         """
-        engines, self.refused = suited(self.target)
+        engines, self.refused = suitable_engines(self.target)
         if not engines or not engines[0].reference:
             raise self._no_engine()
         exact = Candidate(reference_engine())
@@ -326,8 +326,12 @@ class Trials:
         conditions = self.target.conditions
         if conditions is not None and conditions.axis is None:
             self._time(self._able(conditions))
-            known = self.speeds.get(exact, math.inf)
-            cheaper = any(speed < known for one, speed in self.speeds.items() if one.bias < self.accuracy)
+            exact_speed = self.speeds.get(exact, math.inf)
+            cheaper = any(
+                speed < exact_speed
+                for candidate, speed in self.speeds.items()
+                if candidate.bias < self.accuracy
+            )
             self.make(exact, 0.5 if cheaper else 1.0)
             self._ask_another()
             return
@@ -351,18 +355,22 @@ class Trials:
         if candidate not in self.speeds:
             raise self._no_engine()
         spent = 0.0 if self.pilots else time.process_time() - self._begun
-        left = min(1.0, max(0.5, 1.0 - (spent - _PREPARED) / self.seconds))
+        fraction = min(1.0, max(0.5, 1.0 - (spent - _PREPARED) / self.seconds))
         seconds, engine = part * self.seconds / max(1, len(self.pilots)), candidate.engine
-        self.announce(f"a pilot run, {engine.title} engine, {left * seconds:.2g} s")
-        found = run_pilot(self.target, engine, seconds, self.speeds[candidate], left)
-        self.pilots.append(found)
-        return found
+        self.announce(f"a pilot run, {engine.title} engine, {fraction * seconds:.2g} s")
+        pilot = run_pilot(self.target, engine, seconds, self.speeds[candidate], fraction)
+        self.pilots.append(pilot)
+        return pilot
 
     def _ask_another(self) -> None:
         """Make a pilot of the cheapest accurate engine if the exact engine's has measured nothing."""
-        able = [one for one in self.speeds if one.bias < self.accuracy and not self.has_pilot(one.engine)]
+        able = [
+            candidate
+            for candidate in self.speeds
+            if candidate.bias < self.accuracy and not self.has_pilot(candidate.engine)
+        ]
         if able and not self.known:
-            self.make(min(able, key=lambda one: self.speeds[one]))
+            self.make(min(able, key=lambda candidate: self.speeds[candidate]))
 
     def refuse(self, candidate: Candidate, rule: str) -> None:
         """Reject a candidate for a reason."""
@@ -371,26 +379,28 @@ class Trials:
 
     def has_pilot(self, engine: Engine) -> bool:
         """Return True if an engine has a pilot."""
-        return any(one.engine == engine for one in self.pilots)
+        return any(pilot.engine == engine for pilot in self.pilots)
 
     def bias(self, candidate: Candidate) -> float:
         """Return the bound on a candidate's bias, from theory or from its pilot.
 
         The pilot's bound is its difference from the exact engine's pilot.
         """
-        own = [one for one in self.known if one.engine == candidate.engine]
+        own = [pilot for pilot in self.known if pilot.engine == candidate.engine]
         return raised_bias(candidate, own[0], self.known) if own else candidate.bias
 
     @property
     def known(self) -> list[Pilot]:
         """The pilots that have measured the observable."""
-        return [one for one in self.pilots if 0.0 < one.accuracy < math.inf]
+        return [pilot for pilot in self.pilots if 0.0 < pilot.accuracy < math.inf]
 
     @property
     def differing(self) -> tuple[Pilot, ...]:
         """Pilots that differ from the exact engine's by more than their bounds."""
-        found = ((one, self._candidate(one.engine)) for one in self.known)
-        return tuple(pilot for pilot, one in found if one and self.bias(one) > one.bias)
+        pairs = ((pilot, self._candidate(pilot.engine)) for pilot in self.known)
+        return tuple(
+            pilot for pilot, candidate in pairs if candidate and self.bias(candidate) > candidate.bias
+        )
 
     @property
     def reference(self) -> Pilot:
@@ -398,9 +408,9 @@ class Trials:
 
         Raises SceneError if the observable was not measured.
         """
-        accurate = [one for one in self.known if self._is_accurate(one)] or self.known
+        accurate = [pilot for pilot in self.known if self._is_accurate(pilot)] or self.known
         if accurate:
-            return max(accurate, key=lambda one: one.measured)
+            return max(accurate, key=lambda pilot: pilot.measured)
         target = self.target
         rule = f"{self.pilots[0].rule or 'does not change in the pilot run'}; allow longer pilots"
         if target.declared.of_impulses and not target.face:
@@ -413,20 +423,20 @@ class Trials:
         If the engine stores impulses, it is the noise in a pilot with impulses, otherwise the noise of
         counts. Raises SceneError as `reference`.
         """
-        with_impulses = [one for one in self.known if one.counted]
+        with_impulses = [pilot for pilot in self.known if pilot.counted]
         if with_impulses and self.target.tallies(engine):
-            found = max(with_impulses, key=lambda one: one.measured).component
+            component = max(with_impulses, key=lambda pilot: pilot.measured).component
         else:
-            found = self.reference.counted or self.reference.component
-        assert found is not None
-        return found
+            component = self.reference.counted or self.reference.component
+        assert component is not None
+        return component
 
     def _is_accurate(self, pilot: Pilot) -> bool:
-        one = self._candidate(pilot.engine)
-        return one is not None and self.bias(one) < self.accuracy
+        candidate = self._candidate(pilot.engine)
+        return candidate is not None and self.bias(candidate) < self.accuracy
 
     def _candidate(self, engine: Engine) -> Candidate | None:
-        return next((one for one in self.speeds if one.engine == engine), None)
+        return next((candidate for candidate in self.speeds if candidate.engine == engine), None)
 
     def _able(self, conditions: Conditions) -> list[Candidate]:
         able, refused = candidates(self.target, self.accuracy, conditions)
@@ -435,12 +445,12 @@ class Trials:
 
     def _time(self, able: list[Candidate]) -> None:
         """Measure the speeds of candidates; reject a candidate that cannot start."""
-        for one in able:
-            self.announce(f"timing the {one.engine.title} engine")
+        for candidate in able:
+            self.announce(f"timing the {candidate.engine.title} engine")
             try:
-                self.speeds[one] = speed_of(self.target, one.engine)
+                self.speeds[candidate] = speed_of(self.target, candidate.engine)
             except SceneError as error:  # as of particles from which the engine cannot start
-                self.refused[one.engine.timed_as] = f"{error.key}: {error.rule}"
+                self.refused[candidate.engine.timed_as] = f"{error.key}: {error.rule}"
 
     def _settle(self, pilot: Pilot) -> None:
         """Start what follows from the end of a pilot, if its file holds the state."""
@@ -461,7 +471,7 @@ def raised_bias(candidate: Candidate, own: Pilot, pilots: list[Pilot]) -> float:
     The difference of its pilot from the pilot of the exact engine counts, with its error, if it is
     significant.
     """
-    exact = [one for one in pilots if one.engine.reference]
+    exact = [pilot for pilot in pilots if pilot.engine.reference]
     if candidate.engine.reference or not exact:
         return candidate.bias
     difference = abs(own.value / exact[0].value - 1.0)

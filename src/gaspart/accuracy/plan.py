@@ -1,7 +1,8 @@
 """The cheapest engine and run for an accuracy of any observable of any steady scene.
 
-What is in the table needs no run, `tabulated`; of everything else pilot runs give the noise and the processor
-time of a unit of time, `trials`. Both give an `Option` for each engine, and the best one is planned.
+Scenes in the table need no run (`plan_from_table`). For all other scenes pilot runs give the noise and the
+CPU time of a unit of time (`plan_from_pilots`). Both give an `Option` for each engine, and the best one is
+planned.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from dataclasses import dataclass, replace
 from gaspart import theory
 from gaspart.accuracy import PILOT_SECONDS
 from gaspart.accuracy import tabulated as known
-from gaspart.accuracy.option import Option, ordered, replicas_of, suited
+from gaspart.accuracy.option import Option, replicas_of, sort_by_cost, suitable_engines
 from gaspart.accuracy.pilot import Announce, Pilot, Trials
 from gaspart.accuracy.scatter import Scatter, start_scatter
 from gaspart.accuracy.steady import require_steady
@@ -57,7 +58,7 @@ class Plan:
     replicas : number of runs that share the measured time.
     pilots : their results, none if the table has the answer.
     differing : pilots that differ from the exact engine's by more than their bounds.
-    places : for a curve, the number of points that the pilots know, to which the accuracy refers, and the
+    points : for a curve, the number of points that the pilots know, to which the accuracy refers, and the
         number of points.
     budget : CPU time of the run in s, if it is limited.
     """
@@ -70,7 +71,7 @@ class Plan:
     replicas: int = 1
     pilots: tuple[Pilot, ...] = ()
     differing: tuple[Pilot, ...] = ()
-    places: tuple[int, int] = (1, 1)
+    points: tuple[int, int] = (1, 1)
     budget: float | None = None
 
     @property
@@ -112,8 +113,8 @@ class Plan:
     def runs(self) -> int:
         """Number of runs like the best option whose mean is accurate, if one run is not."""
         best = self.best
-        noise, left = best.error - best.bias, self.accuracy - best.bias
-        return math.ceil((noise / left) ** 2) if left > 0.0 and math.isfinite(noise) else 0
+        noise, remaining = best.error - best.bias, self.accuracy - best.bias
+        return math.ceil((noise / remaining) ** 2) if remaining > 0.0 and math.isfinite(noise) else 0
 
     @property
     def seconds(self) -> float:
@@ -138,7 +139,7 @@ class Plan:
         if declared.samples == "paths":
             return self.target.span[0]
         sampled = declared.form == "curve" and declared.samples != "structure"
-        return min(one.interval for one in self.pilots) if sampled else math.inf
+        return min(pilot.interval for pilot in self.pilots) if sampled else math.inf
 
     @property
     def recipe(self) -> Recipe:
@@ -169,12 +170,12 @@ class Plan:
     def _until(self, duration: float) -> Until:
         """Return the condition that ends a run of about a duration."""
         target = self.target
-        left = self.accuracy - self.best.bias
-        relative = float(f"{0.99 * left if self.best.bias else left:.3g}")
-        longest = max(_LONGEST * duration, *(one.duration for one in self.pilots))
+        remaining = self.accuracy - self.best.bias
+        relative = float(f"{0.99 * remaining if self.best.bias else remaining:.3g}")
+        longest = max(_LONGEST * duration, *(pilot.duration for pilot in self.pilots))
         longest = min(longest, target.span[1])
-        asked = Requirement(target.observable, relative, face=target.face)
-        return Until((asked,), at_most=float(f"{longest:.2g}"))
+        requirement = Requirement(target.observable, relative, face=target.face)
+        return Until((requirement,), at_most=float(f"{longest:.2g}"))
 
 
 def plan(
@@ -203,11 +204,11 @@ def plan(
     which the pilots are too short.
     """
     if known.is_tabulated(scene, observable):
-        return tabulated(scene, observable, accuracy, budget)
-    return piloted(scene, observable, accuracy, budget, pilot_seconds, announce)
+        return plan_from_table(scene, observable, accuracy, budget)
+    return plan_from_pilots(scene, observable, accuracy, budget, pilot_seconds, announce)
 
 
-def tabulated(
+def plan_from_table(
     scene: Scene,
     observable: str,
     accuracy: float,
@@ -218,10 +219,10 @@ def tabulated(
     Raises SceneError for anything that the table does not cover.
     """
     gas, target = known.tabulated_target(scene, observable)
-    accuracy, budget = _checked(accuracy, budget)
-    engines, refused = suited(target)
+    accuracy, budget = _check_arguments(accuracy, budget)
+    engines, refused = suitable_engines(target)
     options = known.options_of(target, engines, accuracy, budget)
-    able = {one.engine.timed_as for one in options}
+    able = {option.engine.timed_as for option in options}
     missing = (engine.timed_as for engine in engines if engine.timed_as not in able)
     refused |= dict.fromkeys(missing, "no setting is known to be as accurate at this density")
     replicas = replicas_of(options[0], target.span[1])
@@ -229,7 +230,7 @@ def tabulated(
     return Plan(target, accuracy, tuple(options), refused, value, replicas, budget=budget)
 
 
-def piloted(
+def plan_from_pilots(
     scene: Scene,
     observable: str,
     accuracy: float,
@@ -238,8 +239,8 @@ def piloted(
     announce: Announce = lambda text: None,
 ) -> Plan:
     """Make a `plan` by pilot runs, even if the table covers the scene."""
-    target = Target.named(scene, observable)
-    accuracy, budget = _checked(accuracy, budget)
+    target = Target.from_name(scene, observable)
+    accuracy, budget = _check_arguments(accuracy, budget)
     pilot_seconds = number("pilot", pilot_seconds, "must be positive", above=0.0)
     require_steady(scene)
     trials = Trials(target, accuracy, pilot_seconds, announce)
@@ -247,24 +248,26 @@ def piloted(
     options = _options(trials, budget)
     while not trials.has_pilot(options[0].engine):  # none is advised without one
         best = options[0].candidate
-        found = trials.make(best)
-        if not found.measured:
-            trials.refuse(best, found.rule)
+        pilot = trials.make(best)
+        if not pilot.measured:
+            trials.refuse(best, pilot.rule)
         options = _options(trials, budget)
     reference = trials.reference
-    places = reference.component.places if reference.component else (1, 1)
-    shown = tuple(trials.pilots), trials.differing, places
-    made = Plan(target, accuracy, tuple(options), trials.refused, reference.value, 1, *shown, budget)
-    if not made.affordable or not _shared(target, made.best.engine):
-        return made
-    replicas = replicas_of(made.best, target.span[1])
-    of_starts = made.scatter.value / math.sqrt(replicas)
-    if made.best.duration <= target.span[1] and of_starts > _OF_STARTS * accuracy:
-        return made  # one run has no scatter of starts
-    return replace(made, replicas=replicas)
+    points = reference.component.points if reference.component else (1, 1)
+    pilot_results = tuple(trials.pilots), trials.differing, points
+    advice = Plan(
+        target, accuracy, tuple(options), trials.refused, reference.value, 1, *pilot_results, budget
+    )
+    if not advice.affordable or not _can_share(target, advice.best.engine):
+        return advice
+    replicas = replicas_of(advice.best, target.span[1])
+    of_starts = advice.scatter.value / math.sqrt(replicas)
+    if advice.best.duration <= target.span[1] and of_starts > _OF_STARTS * accuracy:
+        return advice  # one run has no scatter of starts
+    return replace(advice, replicas=replicas)
 
 
-def _checked(accuracy: float, budget: float | None) -> tuple[float, float | None]:
+def _check_arguments(accuracy: float, budget: float | None) -> tuple[float, float | None]:
     """Return valid arguments; raise SceneError for others."""
     low, high = ACCURACIES
     accuracy = number("accuracy", accuracy, f"must be from {low:g} to {high:g}", least=low, most=high)
@@ -279,18 +282,18 @@ def _options(trials: Trials, budget: float | None) -> list[Option]:
     target, longest = trials.target, trials.reference
     assert longest.component is not None
     options = []
-    for one, cost in trials.speeds.items():
+    for candidate, cost in trials.speeds.items():
         affordable = math.inf if budget is None else budget / cost
-        shared = MOST_REPLICAS if _shared(target, one.engine) else 1
+        shared = MOST_REPLICAS if _can_share(target, candidate.engine) else 1
         most = min(affordable, _longest(target, longest), shared * target.span[1])
-        limits = _least(target, one.engine, longest), most
-        bias = trials.bias(one)
-        noise = trials.noise(one.engine)
-        options.append(Option(one, bias, noise, cost, trials.accuracy, *limits))
-    return ordered(options)
+        limits = _least(target, candidate.engine, longest), most
+        bias = trials.bias(candidate)
+        noise = trials.noise(candidate.engine)
+        options.append(Option(candidate, bias, noise, cost, trials.accuracy, *limits))
+    return sort_by_cost(options)
 
 
-def _shared(target: Target, engine: Engine) -> bool:
+def _can_share(target: Target, engine: Engine) -> bool:
     """Return True if replicas can share the measured time.
 
     These are runs until accurate, which differ by their seeds. Otherwise the scatter of a few runs would be

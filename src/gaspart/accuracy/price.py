@@ -51,9 +51,9 @@ def price_of(scene: Scene, engine: Engine, observable: str) -> Price:
         "two_masses": len({kind.mass for kind in scene.kinds}) > 1,
         "stress": OBSERVABLES[observable].needs == "fluxes",
     }
-    known, present = table.prices(engine.timed_as), scene.features
-    ratios = {_NAMES[name]: known[name] for name in _NAMES if has[name] and name in known}
-    unknown = [_NAMES[name] for name in _NAMES if has[name] and name not in known]
+    prices, present = table.prices(engine.timed_as), scene.features
+    ratios = {_NAMES[name]: prices[name] for name in _NAMES if has[name] and name in prices}
+    unknown = [_NAMES[name] for name in _NAMES if has[name] and name not in prices]
     unknown += [FEATURES[name].meaning for name in FEATURES if name in present and name not in _MEASURED]
     return Price(ratios, tuple(unknown), _single(engine, scene.dimension))
 

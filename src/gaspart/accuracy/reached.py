@@ -132,8 +132,8 @@ class AccuracyStatus:
 
     def _relative(self, error: float) -> float:
         """Return an error divided by the value; inf if the value is not known."""
-        known = math.isfinite(self.value) and self.value != 0.0
-        return error / abs(self.value) if known else math.inf
+        is_defined = math.isfinite(self.value) and self.value != 0.0
+        return error / abs(self.value) if is_defined else math.inf
 
 
 def noise_allowed(accuracy: float, of_starts: float) -> float:
@@ -152,7 +152,7 @@ def _student(freedom: float) -> float:
     return float(ndtri(beyond) if math.isinf(freedom) else stdtrit(freedom, beyond))
 
 
-def confirmed(now: Estimate, before: Estimate | None, ratio: float) -> Estimate:
+def confirm_estimate(now: Estimate, before: Estimate | None, ratio: float) -> Estimate:
     """Return an estimate with the larger error of two examinations.
 
     The measured part at the examination before was shorter by `ratio`.
@@ -164,7 +164,7 @@ def confirmed(now: Estimate, before: Estimate | None, ratio: float) -> Estimate:
     return Estimate(now.value, max(now.error, before.error * math.sqrt(ratio)), now.freedom)
 
 
-def merged(estimates: Sequence[Estimate]) -> Estimate:
+def combine_replicas(estimates: Sequence[Estimate]) -> Estimate:
     """Average independent estimates, with the error that follows from their errors.
 
     `gaspart.analysis.replicas` does the same: the scatter of a few replicas says less.
@@ -231,7 +231,7 @@ class Examiner:
             self._report(reached)
         if until.at_most is None and frames >= IDLE and _is_idle(reached, collisions):
             return 0.0
-        return max(one.excess for one in reached)
+        return max(status.excess for status in reached)
 
     def examine(
         self, runs: Sequence[xr.Dataset], accuracies: tuple[Requirement, ...], frames: int
@@ -241,51 +241,53 @@ class Examiner:
 
         before, results = examined_before(frames), []
         times = runs[0]["time"].values
-        for asked in accuracies:
-            now = self._estimates(runs, asked, frames)
-            earlier = self._estimates(runs, asked, before) if before is not None else {}
+        for requirement in accuracies:
+            now = self._estimates(runs, requirement, frames)
+            earlier = self._estimates(runs, requirement, before) if before is not None else {}
             if isinstance(now, str):
-                results.append(AccuracyStatus(asked, rule=now))
+                results.append(AccuracyStatus(requirement, rule=now))
                 continue
             ratio = 1.0
             if before is not None:
                 first, last = (
-                    time - (EQUILIBRATION * time if asked.start is None else asked.start)
+                    time - (EQUILIBRATION * time if requirement.start is None else requirement.start)
                     for time in (times[before - 1], times[frames - 1])
                 )
                 ratio = max(first, 0.0) / last
-            parts, starts = [], (self._scatter(runs[0], asked), len(runs))
+            parts, starts = [], (self._scatter(runs[0], requirement), len(runs))
             for name, estimate in now.items():
                 if estimate.error == 0.0:
-                    parts.append(AccuracyStatus(asked, name, estimate.value, rule=_UNCHANGED))
+                    parts.append(AccuracyStatus(requirement, name, estimate.value, rule=_UNCHANGED))
                     continue
                 other = None if isinstance(earlier, str) else earlier.get(name)
-                made = confirmed(estimate, other, ratio)
-                known = made.value, made.error, made.freedom, other is not None
-                parts.append(AccuracyStatus(asked, name, *known, "", *starts))
-            results.append(max(parts, key=lambda one: (one.excess, one.accuracy)))
+                confirmation = confirm_estimate(estimate, other, ratio)
+                values = confirmation.value, confirmation.error, confirmation.freedom, other is not None
+                parts.append(AccuracyStatus(requirement, name, *values, "", *starts))
+            results.append(max(parts, key=lambda status: (status.excess, status.accuracy)))
         return results
 
-    def _scatter(self, run: xr.Dataset, asked: Requirement) -> float:
+    def _scatter(self, run: xr.Dataset, requirement: Requirement) -> float:
         """Return the relative scatter of an observable from seed to seed by the initial energy."""
         from gaspart.accuracy.scatter import scatter_of_run  # loads the analysis
 
-        if asked not in self._scatters:
-            self._scatters[asked] = scatter_of_run(run, asked.observable, asked.face).value
-        return self._scatters[asked]
+        if requirement not in self._scatters:
+            self._scatters[requirement] = scatter_of_run(run, requirement.observable, requirement.face).value
+        return self._scatters[requirement]
 
     def _estimates(
-        self, runs: Sequence[xr.Dataset], asked: Requirement, frames: int
+        self, runs: Sequence[xr.Dataset], requirement: Requirement, frames: int
     ) -> dict[str, Estimate] | str:
         """Return the components of an observable, or the rule that the frames break."""
-        key = asked, frames
+        key = requirement, frames
         if key not in self._known:
-            self._known = {known: it for known, it in self._known.items() if 2 * known[1] >= frames}
+            self._known = {
+                cached_key: entry for cached_key, entry in self._known.items() if 2 * cached_key[1] >= frames
+            }
             try:
-                self._known[key] = _measure([data.isel(frame=slice(frames)) for data in runs], asked)
+                self._known[key] = _measure([data.isel(frame=slice(frames)) for data in runs], requirement)
             except SceneError as error:
                 if error.key not in TOO_SHORT:
-                    raise SceneError("until", asked.name, f"{error.key}: {error.rule}") from None
+                    raise SceneError("until", requirement.name, f"{error.key}: {error.rule}") from None
                 self._known[key] = f"{error.key}: {error.rule}"
         return self._known[key]
 
@@ -300,17 +302,23 @@ def _contacts(frame: xr.Dataset) -> float:
 def _is_idle(reached: list[AccuracyStatus], collisions: float) -> bool:
     """Return True if an observable never changed, or counts contacts and there was none."""
     return any(
-        one.rule == _UNCHANGED
-        or (one.value == 0.0 if "face" in OBSERVABLES[one.asked.observable].along else collisions == 0.0)
-        for one in reached
+        status.rule == _UNCHANGED
+        or (
+            status.value == 0.0 if "face" in OBSERVABLES[status.asked.observable].along else collisions == 0.0
+        )
+        for status in reached
     )
 
 
-def _measure(runs: Sequence[xr.Dataset], asked: Requirement) -> dict[str, Estimate]:
+def _measure(runs: Sequence[xr.Dataset], requirement: Requirement) -> dict[str, Estimate]:
     """Measure an observable by component, as the mean over runs.
 
     The component is "" for a scalar. Pressures are restricted to the requested face.
     """
-    found = [components(data, asked.observable, asked.start) for data in runs]
-    known = [name for name in found[0] if of_face(name, asked.face) and all(name in one for one in found)]
-    return {name: merged([one[name].estimate for one in found]) for name in known}
+    results = [components(data, requirement.observable, requirement.start) for data in runs]
+    names = [
+        name
+        for name in results[0]
+        if of_face(name, requirement.face) and all(name in result for result in results)
+    ]
+    return {name: combine_replicas([result[name].estimate for result in results]) for name in names}

@@ -54,8 +54,8 @@ class Scales:
     @property
     def free_molecular(self) -> bool:
         """True if particles meet walls far more often than one another."""
-        known = self.walled and math.isfinite(self.mean_free_path)
-        return known and self.collision_time > _KNUDSEN * self.crossing_time
+        is_comparable = self.walled and math.isfinite(self.mean_free_path)
+        return is_comparable and self.collision_time > _KNUDSEN * self.crossing_time
 
     @property
     def event_time(self) -> float:
@@ -104,13 +104,13 @@ class Scales:
         """The scales and the suggestion, for the command line."""
         if self.interval is None:
             return ["scales: nothing moves at the start, and nothing falls"]
-        known = {
+        quantities = {
             "thermal speed": self.thermal_speed,
             "mean free path": self.mean_free_path,
             "time between collisions": self.collision_time,
             "to cross the container": self.crossing_time,
         }
-        words = [f"{name} {value:.3g}" for name, value in known.items() if 0.0 < value < math.inf]
+        words = [f"{name} {value:.3g}" for name, value in quantities.items() if 0.0 < value < math.inf]
         lines = [f"scales: {', '.join(words)}; packing fraction {self.packing_fraction:.3g}"]
         if self.attempts:
             lines += [f"reservoirs: {self.attempts:.3g} particles try to enter per time"]
@@ -126,15 +126,15 @@ def scales(scene: Scene) -> Scales:
 
     Collisions of a plain gas follow from theory, otherwise from the rates of all kinds.
     """
-    d, found = scene.dimension, rates(scene, True, _few_kinds(scene))
-    thermal = found.speed / math.sqrt(8.0 / math.pi if d == 3 else math.pi / 2.0)
+    d, gas_rates = scene.dimension, rates(scene, True, _few_kinds(scene))
+    thermal = gas_rates.speed / math.sqrt(8.0 / math.pi if d == 3 else math.pi / 2.0)
     side = min(scene.container.lengths)
     fall = math.sqrt(math.hypot(*scene.gravity) * side) if scene.gravity else 0.0
     fastest = max(thermal, fall)
-    frequency = collision_frequency(scene) or found.frequency
+    frequency = collision_frequency(scene) or gas_rates.frequency
     return Scales(
         thermal_speed=thermal,
-        mean_free_path=found.speed / frequency if frequency else math.inf,
+        mean_free_path=gas_rates.speed / frequency if frequency else math.inf,
         collision_time=1.0 / frequency if frequency else math.inf,
         crossing_time=side / fastest if fastest else math.inf,
         packing_fraction=scene.packing_fraction,

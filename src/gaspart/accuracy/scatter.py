@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart import theory
-from gaspart.accuracy.column import Column, pulled
+from gaspart.accuracy.column import Column, gravity_column
 from gaspart.accuracy.conditions import kinetic_temperature
 from gaspart.accuracy.steady import keeps_energy
 from gaspart.accuracy.target import Target
@@ -95,19 +95,19 @@ def _of_places(scene: Scene) -> float:
     for axis, pull in enumerate(scene.gravity or ()):
         for kind in kinds:
             square += kind.count * (kind.mass * pull * _range(scene, kind, axis)) ** 2 / 12.0
-    return math.sqrt(square * _smoothed(scene, kinds)) if square else 0.0
+    return math.sqrt(square * _compressibility(scene, kinds)) if square else 0.0
 
 
 def _range(scene: Scene, kind: Species, axis: int) -> float:
     """Return the length along an axis in which a species is placed."""
-    lower, upper = (one[axis] for one in scene.reach(kind.radius))
+    lower, upper = (bounds[axis] for bounds in scene.reach(kind.radius))
     if kind.region is None:
         return float(upper - lower)
     low, high = (float(corner[axis]) for corner in kind.region)
     return max(0.0, min(upper, high) - max(lower, low))
 
 
-def _smoothed(scene: Scene, kinds: list[Species]) -> float:
+def _compressibility(scene: Scene, kinds: list[Species]) -> float:
     """Return the factor by which excluded volume reduces the scatter of positions.
 
     It is the reduced compressibility of the fluid.
@@ -125,7 +125,7 @@ def _of_observable(target: Target, deviation: float) -> float:
     scene = target.scene
     freedom = 0.5 * scene.dimension * scene.count
     power = target.declared.power
-    kinetic = sum(one.count * one.initial_temperature(scene.dimension) for one in scene.kinds)
+    kinetic = sum(kind.count * kind.initial_temperature(scene.dimension) for kind in scene.kinds)
     mean = 0.5 * scene.dimension * kinetic
     for _, piston in scene.pistons:
         if target.observable == "pressure":
@@ -136,9 +136,9 @@ def _of_observable(target: Target, deviation: float) -> float:
         return power * deviation / mean if mean else 0.0
     temperature = kinetic_temperature(scene, target.initial)
     if target.conditions is not None and target.conditions.columns:
-        found = _of_column(target, deviation)
-        if found is not None:
-            return found
+        scatter = _of_column(target, deviation)
+        if scatter is not None:
+            return scatter
     heat = (freedom + scene.count) * temperature
     return max(power, _STRATIFIED) * deviation / heat if heat else math.inf
 
@@ -148,7 +148,7 @@ def _of_column(target: Target, deviation: float) -> float | None:
 
     None where hydrostatics knows nothing.
     """
-    column = pulled(target.scene)
+    column = gravity_column(target.scene)
     assert column is not None
     energy = column.energy_of(target.initial)
     try:
@@ -166,7 +166,9 @@ def _change(target: Target, low: Column, middle: Column, high: Column) -> float:
         return abs(high.collisions - low.collisions) / middle.collisions
     if target.observable == "density":
         z = middle.heights
-        profiles = [np.interp(z, one.heights, one.numbers.sum(axis=0), right=0.0) for one in (low, high)]
+        profiles = [
+            np.interp(z, column.heights, column.numbers.sum(axis=0), right=0.0) for column in (low, high)
+        ]
         exact = middle.numbers.sum(axis=0)
         return float(np.sqrt(((profiles[1] - profiles[0]) ** 2).sum() / (exact**2).sum()))
     if target.declared.of_impulses:

@@ -29,7 +29,7 @@ def factor(dimension: int, engine: str, precision: str, count: int) -> float:
     """
     growth = max(1.0, count / _MOST) ** _GROWTH
     count = min(max(count, _LEAST), _MOST)
-    timed = _named(engine)
+    timed = _find_engine(engine)
     fraction, step = timed.timed_at
     side = (count * theory.particle_volume(dimension) / fraction) ** (1.0 / dimension)
     particles = Species(count, 0.5, temperature=1.0, arrangement="lattice")
@@ -38,15 +38,15 @@ def factor(dimension: int, engine: str, precision: str, count: int) -> float:
     run = Simulation(gas, timed.at_step(gas, step, precision), seed=1)
     run.advance(duration=1.0 / rate)
     stretch = 2.0 * max(_CONTACTS, 0.5 * count) / (count * rate)
-    taken = []
+    seconds = []
     for _ in range(3):
         before, start = run.time, time.process_time()
         run.advance(duration=stretch)
-        taken.append((time.process_time() - start) / (0.5 * count * rate * (run.time - before)))
-    known = table.seconds(dimension, fraction, engine, precision, step)
-    return growth * statistics.median(taken) / known if math.isfinite(known) else math.inf
+        seconds.append((time.process_time() - start) / (0.5 * count * rate * (run.time - before)))
+    table_seconds = table.seconds(dimension, fraction, engine, precision, step)
+    return growth * statistics.median(seconds) / table_seconds if math.isfinite(table_seconds) else math.inf
 
 
-def _named(name: str) -> Engine:
+def _find_engine(name: str) -> Engine:
     """Return an engine by its name in the table."""
-    return next(one for one in offered() if one.timed_as == name)
+    return next(engine for engine in offered() if engine.timed_as == name)

@@ -57,8 +57,8 @@ def lowest(dimension: int) -> float:
 def steps(dimension: int, engine: str) -> list[tuple[str, float]]:
     """Return precision and time step of all timed settings of an engine."""
     timed = (row for row in read() if row["engine"] == engine and row["quantity"] == "seconds")
-    found = (row for row in timed if row["dimension"] == dimension)
-    return list(dict.fromkeys((row["precision"], row["time_step"]) for row in found))
+    rows = (row for row in timed if row["dimension"] == dimension)
+    return list(dict.fromkeys((row["precision"], row["time_step"]) for row in rows))
 
 
 def has_biases(engine: str) -> bool:
@@ -110,13 +110,13 @@ def noise(dimension: int, fraction: float, observable: str) -> float:
     # A line through the logarithms: single values come from few blocks.
     order = min(2, eta.size - 1)
     fit = np.polyfit(np.log(eta), np.log(value), order)
-    found = float(np.exp(np.polyval(fit, np.log(np.clip(fraction, eta[0], eta[-1])))))
+    variance = float(np.exp(np.polyval(fit, np.log(np.clip(fraction, eta[0], eta[-1])))))
     if observable == "Z" and fraction < eta[0]:
         virial = [
             1.0 - 1.0 / float(theory.compressibility_factor(at, dimension)) for at in (fraction, eta[0])
         ]
-        found *= (virial[0] / virial[1]) ** 2
-    return found
+        variance *= (virial[0] / virial[1]) ** 2
+    return variance
 
 
 def prices(engine: str) -> dict[str, float]:
@@ -133,12 +133,12 @@ def _curve(
     dimension: int, engine: str, precision: str, step: float, quantity: str
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return packing fractions, values and errors of one quantity."""
-    wanted = (dimension, engine, precision, step, quantity)
+    selection = (dimension, engine, precision, step, quantity)
     keys = ("dimension", "engine", "precision", "time_step", "quantity")
-    found = sorted(
+    rows = sorted(
         (row["packing_fraction"], row["value"], row["error"])
         for row in read()
-        if tuple(row[key] for key in keys) == wanted
+        if tuple(row[key] for key in keys) == selection
     )
-    eta, value, error = np.array(found, dtype=float).reshape(-1, 3).T
+    eta, value, error = np.array(rows, dtype=float).reshape(-1, 3).T
     return eta, value, error

@@ -12,7 +12,7 @@ from gaspart import theory
 from gaspart.accuracy import table
 from gaspart.accuracy.estimates import Component
 from gaspart.accuracy.models import model_error
-from gaspart.accuracy.option import Option, ordered
+from gaspart.accuracy.option import Option, sort_by_cost
 from gaspart.accuracy.table import EQUILIBRATION, LEAST
 from gaspart.accuracy.target import Target
 from gaspart.analysis import bulk
@@ -65,7 +65,7 @@ def tabulated_target(scene: Scene, observable: str) -> tuple[Gas, Target]:
     """
     if observable not in having(tabulated=True):
         raise SceneError("observable", observable, f"must be one of {', '.join(having(tabulated=True))}")
-    return fluid_of(scene), Target.named(scene, observable)
+    return fluid_of(scene), Target.from_name(scene, observable)
 
 
 def is_tabulated(scene: Scene, observable: str) -> bool:
@@ -79,14 +79,16 @@ def is_tabulated(scene: Scene, observable: str) -> bool:
 
 def options_of(target: Target, engines: list[Engine], accuracy: float, budget: float | None) -> list[Option]:
     """Return the cheapest option of each engine, of all settings that were measured, the best first."""
-    made = [
+    options = [
         _option(target, engine.at_step(target.scene, step, precision), accuracy, budget, step)
         for engine in engines
         for precision, step in table.steps(target.scene.dimension, engine.timed_as)
     ]
     best: dict[str, Option] = {}
-    for one in ordered([one for one in made if math.isfinite(one.speed) and one.bias < accuracy]):
-        best.setdefault(one.engine.timed_as, one)
+    for option in sort_by_cost(
+        [option for option in options if math.isfinite(option.speed) and option.bias < accuracy]
+    ):
+        best.setdefault(option.engine.timed_as, option)
     return list(best.values())
 
 
@@ -99,7 +101,7 @@ def _option(target: Target, engine: Engine, accuracy: float, budget: float | Non
     frequency = float(theory.collision_rate(**gas.parameters))
     row = gas.dimension, gas.packing_fraction, engine.timed_as, engine.precision, step
     each = table.seconds(*row)
-    candidate = _bounded(target, engine, gas, step)
+    candidate = _with_bounds(target, engine, gas, step)
     each_time = 0.5 * gas.count * frequency  # contacts
     value = value_of(gas, target.observable)
     variance = table.noise(gas.dimension, gas.packing_fraction, target.observable) / each_time
@@ -113,7 +115,7 @@ def _option(target: Target, engine: Engine, accuracy: float, budget: float | Non
     )  # fmt: skip
 
 
-def _bounded(target: Target, engine: Engine, gas: Gas, step: float) -> Candidate:
+def _with_bounds(target: Target, engine: Engine, gas: Gas, step: float) -> Candidate:
     """Return the engine with bounds of its errors, measured or by theory.
 
     By theory they are the errors of its equation, and of its cells and steps as the engine states them.

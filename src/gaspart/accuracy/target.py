@@ -64,7 +64,7 @@ class Target:
     settled: State | None = field(default=None, compare=False)
 
     @classmethod
-    def named(cls, scene: Scene, name: str) -> Target:
+    def from_name(cls, scene: Scene, name: str) -> Target:
         """Return the target of a name as on the command line: `Z`, or `pressure:x low`.
 
         Raises SceneError for an unknown name, an observable that the scene does not have, and a wall that
@@ -110,10 +110,10 @@ class Target:
         By theory in a gas as hot as at the start, or in the column that it becomes; or, if its particles
         start at rest, in the second half of a short run.
         """
-        found = rates(self.scene, dense=True).frequency
-        if found > 0.0:
+        at_start = rates(self.scene, dense=True).frequency
+        if at_start > 0.0:
             gas = self.conditions if self.scene.gravity else None
-            return found if gas is None or gas.columns is None else found * gas.quickened
+            return at_start if gas is None or gas.columns is None else at_start * gas.quickened
         simulation = Simulation(self.scene, reference_engine(), SEED, initial=self.start)
         times, counts = [0.0], [0.0]
         while times[-1] < _FALL * self.crossing and counts[-1] < _COLLIDED * self.scene.count:
@@ -173,8 +173,8 @@ class Target:
             return ()
         axes = {self.scene.dimension - 1}
         if "face" in self.declared.along:
-            asked = [self.face] if self.face else walls_of(self.observable, self.scene)
-            axes = {"xyz".index(face[0]) for face in asked} if knows_energies(engine, self.scene) else set()
+            faces = [self.face] if self.face else walls_of(self.observable, self.scene)
+            axes = {"xyz".index(face[0]) for face in faces} if knows_energies(engine, self.scene) else set()
         if len(axes) != 1:
             return ()
         return useful_impulses(self.scene, engine.tallies, axes.pop(), USUAL_BINS)
@@ -194,7 +194,7 @@ class Target:
     def schedule(self, engine: Engine, length: float) -> tuple[float, float, Correlations | None]:
         """Return duration, time between frames and correlations of a run of about a length."""
         if self.correlated:
-            return self._correlated(engine, length)
+            return self._schedule_correlations(engine, length)
         least, most = _FRAMES
         longest_interval, longest = self.span
         length = min(length, longest)
@@ -221,7 +221,7 @@ class Target:
             sample = rounded_to_12_digits(max(1, round(sample / quantum)) * quantum)
         return Correlations(sample, lags, stress=self.declared.needs == "fluxes")
 
-    def _correlated(self, engine: Engine, length: float) -> tuple[float, float, Correlations]:
+    def _schedule_correlations(self, engine: Engine, length: float) -> tuple[float, float, Correlations]:
         """Return the `schedule` with correlations; frames are at least the longest lag apart."""
         correlations = self.correlations(engine)
         sample = correlations.interval

@@ -21,7 +21,7 @@ from gaspart.analysis.observables import OBSERVABLES
 from gaspart.analysis.run import Source
 from gaspart.analysis.statistics import means_of
 from gaspart.engines import engine_from_dict, engine_to_dict
-from gaspart.errors import SceneError, shown
+from gaspart.errors import SceneError, short_repr
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.optional_tallies import ImpulseTally
@@ -194,7 +194,9 @@ def _check_replica(recipe: _Recipe, others: list[_Recipe]) -> None:
     for other in others:
         if difference := _difference(recipe.settings, other.settings):
             key, one, two = difference
-            rule = f"is {shown(two)} in {other.name}: replicas differ in nothing but seed and first state"
+            rule = (
+                f"is {short_repr(two)} in {other.name}: replicas differ in nothing but seed and first state"
+            )
             raise SceneError(key, one, rule, recipe.name)
         time = _last_common(recipe, other)
         if time is None or recipe.state(0.0) != other.state(0.0):

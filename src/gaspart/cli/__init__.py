@@ -20,7 +20,7 @@ from gaspart.cli.arguments import CheckFailed, Parser, UsageError
 from gaspart.cli.progress import clear_line
 from gaspart.errors import SceneError, SimulationError, unknown_word, visible
 from gaspart.files import OVERWRITE
-from gaspart.interruption import interrupted, set_note
+from gaspart.interruption import describe_interruption, set_note
 
 _COMMANDS = {
     "new": ("new", "write a scene file from a template"),
@@ -82,7 +82,7 @@ def main(arguments: Sequence[str] | None = None, without_output: bool = False) -
     except SimulationError as error:
         return _complain(f"error: {error}", 1)
     except KeyboardInterrupt:
-        return _complain(interrupted(), 130)
+        return _complain(describe_interruption(), 130)
     except MemoryError:
         return _complain("error: there is not enough memory for this", 1)
     except BrokenPipeError:  # the reader of the output has ended, as `head` does

@@ -160,7 +160,7 @@ def _bulk(plan: Plan, count: int) -> str:
 
 def _rarely_visited(plan: Plan) -> list[str]:
     """Describe the part of a curve to which the accuracy refers."""
-    visited, total = plan.places
+    visited, total = plan.points
     if visited == total:
         return []
     text = (

@@ -9,7 +9,7 @@ from typing import Any
 
 from gaspart.cli.arguments import alone, several
 from gaspart.engines import ENGINES
-from gaspart.errors import SceneError, shown
+from gaspart.errors import SceneError, short_repr
 from gaspart.keys import Kind, described, schema_of
 
 
@@ -64,7 +64,7 @@ def as_option(error: SceneError, engine: str) -> str:
     name = error.key.removeprefix("engine.")
     option = {"name": "--engine", "rewind": "--no-rewind"}.get(name, f"--{name.replace('_', '-')}")
     rule = f"has no meaning with --engine {engine}" if "unknown key" in error.rule else error.rule
-    return f"{option}: {'is required' if error.value is None else f'{shown(error.value)}: {rule}'}"
+    return f"{option}: {'is required' if error.value is None else f'{short_repr(error.value)}: {rule}'}"
 
 
 def changed_options(kinds: Mapping[str, Kind], settings: Mapping[str, Any]) -> list[str]:

@@ -56,7 +56,7 @@ class SceneError(OneLine, ValueError):
     def __init__(self, key: str, value: object, rule: str, file: str | None = None) -> None:
         self.key, self.value, self.rule, self.file = key, value, rule, file
         where = f"{visible(file, _LONGEST['file'])}: " if file else ""
-        text = f"{visible(key, _LONGEST['key'])} = {shown(value)}: {visible(rule, _LONGEST['rule'])}"
+        text = f"{visible(key, _LONGEST['key'])} = {short_repr(value)}: {visible(rule, _LONGEST['rule'])}"
         super().__init__(where + text)
 
     def __reduce__(self) -> tuple:
@@ -87,7 +87,7 @@ class SceneError(OneLine, ValueError):
         return SceneError(key, self.value, self.rule, file or self.file)
 
 
-def unknown_word(word: object, known: Iterable[str], what: str = "key") -> str:
+def unknown_word(word: object, candidates: Iterable[str], kind: str = "key") -> str:
     """Return the rule for a word that is not among the known ones.
 
     It states its new name, its meaning in other programs, the most similar known word, or all known words.
@@ -96,14 +96,14 @@ def unknown_word(word: object, known: Iterable[str], what: str = "key") -> str:
 
     from gaspart.errors.synonyms import meant
 
-    words = list(known)
+    names = list(candidates)
     renamed = str(word).replace("bodies", "particles").replace("body", "particle")  # names of version 0.2
-    if renamed != word and renamed in words:
+    if renamed != word and renamed in names:
         return f"is called {renamed} now"
-    if meaning := meant(str(word), words):
-        return f"unknown {what}; here it is {meaning}"
-    near = get_close_matches(str(word), words, n=1)
-    return f"unknown {what}; " + (f"did you mean {near[0]}?" if near else f"known are {', '.join(words)}")
+    if meaning := meant(str(word), names):
+        return f"unknown {kind}; here it is {meaning}"
+    near = get_close_matches(str(word), names, n=1)
+    return f"unknown {kind}; " + (f"did you mean {near[0]}?" if near else f"known are {', '.join(names)}")
 
 
 def optional(module: str, extra: str, purpose: str) -> ModuleType:
@@ -128,13 +128,15 @@ def entry_points_of(group: str) -> list[EntryPoint]:
     """
     from importlib.metadata import distributions  # 0.02 s
 
-    found: list[EntryPoint] = []
+    entry_points: list[EntryPoint] = []
     for distribution in distributions():
         try:
-            found += [one for one in distribution.entry_points if one.group == group]
+            entry_points += [
+                entry_point for entry_point in distribution.entry_points if entry_point.group == group
+            ]
         except Exception:  # text of others may be anything
             continue
-    return found
+    return entry_points
 
 
 class SimulationError(OneLine, RuntimeError):
@@ -150,7 +152,7 @@ class SimulationError(OneLine, RuntimeError):
     """
 
 
-def shown(value: object) -> str:
+def short_repr(value: object) -> str:
     """Format a value as one printable line of at most 120 characters.
 
     The time does not grow with the size of the value.
@@ -171,10 +173,10 @@ def _repr(value: object, depth: int) -> str:
     if kind is dict:
         assert isinstance(value, dict)
         pairs = (f"{_repr(key, 0)}: {_repr(item, depth - 1)}" for key, item in value.items())
-        return "{" + _joined(pairs, len(value), depth) + "}"
+        return "{" + _join_items(pairs, len(value), depth) + "}"
     if kind is list or kind is tuple:
         assert isinstance(value, list | tuple)
-        inner = _joined((_repr(item, depth - 1) for item in value), len(value), depth)
+        inner = _join_items((_repr(item, depth - 1) for item in value), len(value), depth)
         if kind is list:
             return f"[{inner}]"
         return f"({inner},)" if len(value) == 1 else f"({inner})"
@@ -184,7 +186,7 @@ def _repr(value: object, depth: int) -> str:
         return f"<{kind.__name__}>"
 
 
-def _joined(items: Iterable[str], count: int, depth: int) -> str:
+def _join_items(items: Iterable[str], count: int, depth: int) -> str:
     if count and depth <= 0:
         return "..."
     return ", ".join(islice(items, _ITEMS)) + (", ..." if count > _ITEMS else "")
@@ -208,9 +210,9 @@ def visible(text: object, longest: int | None = None, names: bool = False) -> st
     if line.isprintable():
         return line
     return "".join(
-        c if c.isprintable() or (names and _FIRST_BYTE <= c <= _LAST_BYTE) else _escaped(c) for c in line
+        c if c.isprintable() or (names and _FIRST_BYTE <= c <= _LAST_BYTE) else _escape(c) for c in line
     )
 
 
-def _escaped(character: str) -> str:
+def _escape(character: str) -> str:
     return character.encode("unicode_escape").decode()

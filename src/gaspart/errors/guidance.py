@@ -36,16 +36,16 @@ class MissingName(OneLine, AttributeError):
     def __str__(self) -> str:  # when it is shown: most of them are not, as those of hasattr
         name = repr(self._owner.__name__)
         kind = f"module {name}" if isinstance(self._owner, ModuleType) else f"{name} object"
-        what = f"{kind} has no attribute {self._name!r}"
-        return f"{what}; {remedy}" if (remedy := _remedy(self._owner, self._name)) else what
+        message = f"{kind} has no attribute {self._name!r}"
+        return f"{message}; {remedy}" if (remedy := _remedy(self._owner, self._name)) else message
 
 
 class FixedValue(OneLine, FrozenInstanceError):
     """An attempt to change a part of what cannot change."""
 
     def __init__(self, owner: type, name: str) -> None:
-        made = f"dataclasses.replace({owner.__name__.lower()}, {name}=...)"
-        super().__init__(f"{name} of a {owner.__name__} cannot change; make another one: {made}")
+        replacement = f"dataclasses.replace({owner.__name__.lower()}, {name}=...)"
+        super().__init__(f"{name} of a {owner.__name__} cannot change; make another one: {replacement}")
 
     def __reduce__(self) -> tuple:
         return (FrozenInstanceError, self.args)
@@ -59,8 +59,12 @@ def _remedy(owner: ModuleType | type, name: str) -> str:
     for part, inner in _parts(owner):
         if name in dir(inner) or name in getattr(inner, "__annotations__", ()):
             return f"it is {part}.{name}"
-    known = [one for one in {*dir(owner), *getattr(owner, "__annotations__", ())} if not one.startswith("_")]
-    near = get_close_matches(name, sorted(known), n=1)
+    candidates = [
+        candidate
+        for candidate in {*dir(owner), *getattr(owner, "__annotations__", ())}
+        if not candidate.startswith("_")
+    ]
+    near = get_close_matches(name, sorted(candidates), n=1)
     return f"did you mean {near[0]}?" if near else ""
 
 
@@ -83,17 +87,17 @@ def _parts(owner: ModuleType | type) -> Iterable[tuple[str, ModuleType | type]]:
     return classes.items()
 
 
-def guided(thing: Any) -> Any:
+def with_call_checks(member: Any) -> Any:
     """Return a public function or class that answers mistakes; other objects unchanged."""
-    if isinstance(thing, FunctionType):
-        return _answering(thing, thing.__name__)
-    if isinstance(thing, type) and not issubclass(thing, BaseException) and thing not in _guided:
-        _guided.add(thing)
-        _guide(thing)
-    return thing
+    if isinstance(member, FunctionType):
+        return _answering(member, member.__name__)
+    if isinstance(member, type) and not issubclass(member, BaseException) and member not in _guided:
+        _guided.add(member)
+        _add_call_checks(member)
+    return member
 
 
-def _guide(cls: Any) -> None:
+def _add_call_checks(cls: Any) -> None:
     """Make the calls and the missing names of a class answer mistakes."""
     for name, member in list(vars(cls).items()):
         if isinstance(member, FunctionType) and not name.startswith("_"):
@@ -116,54 +120,56 @@ def _guide(cls: Any) -> None:
     parameters = getattr(cls, "__dataclass_params__", None)
     if parameters is not None and parameters.frozen:
 
-        def fixed(instance: Any, name: str, value: Any) -> None:
+        def refuse_change(instance: Any, name: str, value: Any) -> None:
             raise FixedValue(type(instance), name)
 
-        cls.__setattr__ = fixed
+        cls.__setattr__ = refuse_change
 
 
 def _answering(function: Callable, title: str) -> Callable:
     """Return a function that raises SceneError instead of TypeError for wrong arguments."""
 
     @wraps(function)
-    def call(*given: Any, **named: Any) -> Any:
+    def call(*arguments: Any, **named: Any) -> Any:
         try:
-            return function(*given, **named)
+            return function(*arguments, **named)
         except TypeError:
-            if (mistake := _mistake(function, title, given, named)) is None:
+            if (mistake := _mistake(function, title, arguments, named)) is None:
                 raise
             raise mistake from None
 
     return call
 
 
-def _mistake(function: Callable, title: str, given: tuple, named: dict[str, Any]) -> SceneError | None:
+def _mistake(function: Callable, title: str, arguments: tuple, named: dict[str, Any]) -> SceneError | None:
     """Return the mistake in the arguments of a call.
 
     None if the arguments are right, so that its error is one of the function itself.
     """
     form = signature(function)
     try:
-        form.bind(*given, **named)
+        form.bind(*arguments, **named)
         return None
     except TypeError:
         pass
-    parameters = {name: one for name, one in form.parameters.items() if name not in ("self", "cls")}
-    known = [name for name, one in parameters.items() if one.kind in _NAMED]
+    parameters = {
+        name: parameter for name, parameter in form.parameters.items() if name not in ("self", "cls")
+    }
+    accepted = [name for name, parameter in parameters.items() if parameter.kind in _NAMED]
     for name, value in named.items():
         if name not in parameters:
-            return SceneError(name, value, unknown_word(name, known, f"argument of {title}"))
-    first = [name for name in known if parameters[name].kind is not Parameter.KEYWORD_ONLY]
+            return SceneError(name, value, unknown_word(name, accepted, f"argument of {title}"))
+    first = [name for name in accepted if parameters[name].kind is not Parameter.KEYWORD_ONLY]
     shift = len(form.parameters) - len(parameters)
     for name, value in named.items():
-        if name in first[: len(given) - shift]:
+        if name in first[: len(arguments) - shift]:
             return SceneError(name, value, f"is given twice to {title}")
-    if len(given) - shift > len(first):
-        rest = [name for name in known if name not in first]
+    if len(arguments) - shift > len(first):
+        rest = [name for name in accepted if name not in first]
         rule = f"is too much for {title}, which takes {', '.join(first) or 'nothing'} without names"
         rule += f", and by name {', '.join(rest)}" if rest else ""
-        return SceneError(f"argument {len(first) + 1}", given[len(first) + shift], rule)
-    absent = first[len(given) - shift :] + [name for name in known if name not in first]
+        return SceneError(f"argument {len(first) + 1}", arguments[len(first) + shift], rule)
+    absent = first[len(arguments) - shift :] + [name for name in accepted if name not in first]
     for name in absent:
         if name not in named and parameters[name].default is Parameter.empty:
             return SceneError(name, None, f"is required by {title}")

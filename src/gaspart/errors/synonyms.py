@@ -100,11 +100,11 @@ SYNONYMS: dict[str, str | tuple[str, ...]] = {
 several meanings the first that is known applies."""
 
 
-def meant(word: str, known: list[str]) -> str | None:
+def meant(term: str, candidates: list[str]) -> str | None:
     """Return the meaning of another word if its names are known, or None."""
-    meanings = SYNONYMS.get(word, ())
+    meanings = SYNONYMS.get(term, ())
     for meaning in (meanings,) if isinstance(meanings, str) else meanings:
-        if any(name in known for name in meaning.replace(",", " ").split()):
+        if any(name in candidates for name in meaning.replace(",", " ").split()):
             return meaning
     return None
 

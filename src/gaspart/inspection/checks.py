@@ -32,7 +32,7 @@ from gaspart.inspection.statistics import (
     why_not,
     why_not_speeds,
 )
-from gaspart.inspection.verdict import Check, compared
+from gaspart.inspection.verdict import Check, compare_with_theory
 from gaspart.state.boxes import deepest_overlap
 
 __all__ = ["Check", "judge", "judge_places"]
@@ -70,7 +70,7 @@ def judge_places(frames: Frames, tolerance: float | None = None) -> list[Check]:
     return [_overlaps(frames, seen, tolerance), _inside(frames, tolerance)]
 
 
-def _tolerated(frames: Frames, tolerance: float | None) -> float:
+def _allowed_overlap(frames: Frames, tolerance: float | None) -> float:
     """Return the tolerance as a fraction of the smallest diameter."""
     coarse = 4.0 * frames.resolution / (2.0 * float(frames.radii.min()))
     return min(max(TOUCH, coarse), COARSEST) if tolerance is None else tolerance
@@ -84,11 +84,11 @@ def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Chec
         return Check("overlaps", None, frames.no_identity)
     deepest, where = 0.0, 0
     for n in seen:
-        one = frames.at(n)
-        found = deepest_overlap(one.positions[0], one.radii, one.lengths, one.periodic)
-        if found > deepest:
-            deepest, where = found, int(n)
-    allowed = _tolerated(frames, tolerance)
+        frame = frames.at(n)
+        overlap = deepest_overlap(frame.positions[0], frame.radii, frame.lengths, frame.periodic)
+        if overlap > deepest:
+            deepest, where = overlap, int(n)
+    allowed = _allowed_overlap(frames, tolerance)
     text = (
         f"the deepest is {deepest:.2g} of a contact distance, in frame {where} (up to {allowed:.1g} allowed)"
     )
@@ -101,14 +101,14 @@ def _inside(frames: Frames, tolerance: float | None) -> Check:
     if not walls.any():
         return Check("container", None, "periodic, so that nothing can leave it")
     lengths = frames.lengths if frames.lengths_by_frame is None else frames.lengths_by_frame[:, None]
-    places, lengths = frames.positions[:, :, walls], lengths[..., walls]
-    there = np.isfinite(places)
-    out = float(np.maximum(-places, places - lengths).max(where=there, initial=0.0))
+    positions, lengths = frames.positions[:, :, walls], lengths[..., walls]
+    there = np.isfinite(positions)
+    out = float(np.maximum(-positions, positions - lengths).max(where=there, initial=0.0))
     out /= 2.0 * float(frames.radii.min())
     text = "all centres are inside" if out <= 0.0 else f"a centre is {out:.2g} diameters outside"
-    if out > 0.0 and (np.abs(places) <= 0.5 * lengths).all():
+    if out > 0.0 and (np.abs(positions) <= 0.5 * lengths).all():
         text += "; all are inside if 0 is the centre of the container: give --origin centre"
-    return Check("container", out <= _tolerated(frames, tolerance), text)
+    return Check("container", out <= _allowed_overlap(frames, tolerance), text)
 
 
 def _pressure(frames: Frames) -> Check:
@@ -128,7 +128,7 @@ def _pressure(frames: Frames) -> Check:
     way, spacing = path(frames), frames.spacing
     first = first_relaxed_frame(way, spacing)
     if first is None:
-        return Check(name, None, _unmoved(way, spacing))
+        return Check(name, None, _describe_motion(way, spacing))
     chosen = np.array(decorrelated_frames(way, WIDTH * gas.diameter, first))
     if len(chosen) < _LEAST_FRAMES:
         text = f"{len(chosen)} independent samples are too few for an error: it needs {_LEAST_FRAMES}"
@@ -138,7 +138,9 @@ def _pressure(frames: Frames) -> Check:
     if frames.counted is not None and frames.time is not None:
         return _by_collisions(frames.counted, float(frames.time[first]))
     chosen = chosen[np.unique(np.linspace(0, len(chosen) - 1, MOST_FRAMES).astype(int))]
-    found = correlated_mean(contact_values(replace(frames, positions=frames.positions[chosen]))).estimate
+    contact_value = correlated_mean(
+        contact_values(replace(frames, positions=frames.positions[chosen]))
+    ).estimate
     first_order = 2.0 ** (d - 1) * eta
     try:
         side = float(np.min(frames.lengths)) / gas.diameter
@@ -147,20 +149,20 @@ def _pressure(frames: Frames) -> Check:
         return Check(name, None, str(refusal))
     scale = first_order * (1.0 - 1.0 / gas.count)
     expected = 1.0 + scale * contact
-    unsure = math.hypot(scale * error, first_order * FIT_ERROR * found.value)
+    unsure = math.hypot(scale * error, first_order * FIT_ERROR * contact_value.value)
     basis = f"fluid, eta = {eta:.4g}; {len(chosen)} independent samples"
-    return compared(name, found * first_order + 1.0, Estimate(expected, unsure), basis)
+    return compare_with_theory(name, contact_value * first_order + 1.0, Estimate(expected, unsure), basis)
 
 
 def _by_collisions(path: Path, start: float) -> Check:
     """Compare Z by the collisions of a run of gaspart from a time on with theory."""
-    found = compressibility_factor(path, start=start)
-    if found.theory is None:
+    factor = compressibility_factor(path, start=start)
+    if factor.theory is None:
         return Check(_PRESSURE, None, "there is no theory of it for this scene")
-    unsure = float(found[f"{found.estimate.name}_theory_error"])
-    measured = Estimate(float(found.estimate), float(found.error), float(found.attrs["freedom"]))
-    basis = f"{found.attrs['source']}; by collisions"
-    return compared(_PRESSURE, measured, Estimate(float(found.theory), unsure), basis)
+    unsure = float(factor[f"{factor.estimate.name}_theory_error"])
+    measured = Estimate(float(factor.estimate), float(factor.error), float(factor.attrs["freedom"]))
+    basis = f"{factor.attrs['source']}; by collisions"
+    return compare_with_theory(_PRESSURE, measured, Estimate(float(factor.theory), unsure), basis)
 
 
 def _no_pressure(frames: Frames) -> str | None:
@@ -181,7 +183,7 @@ def _no_pressure(frames: Frames) -> str | None:
     return None
 
 
-def _unmoved(way: np.ndarray, distance: float) -> str:
+def _describe_motion(way: np.ndarray, distance: float) -> str:
     """Return the reason why a run is not relaxed."""
     there = math.sqrt(float((way[-1] ** 2).sum(axis=1).mean()))
     return (
@@ -197,7 +199,7 @@ def _diffusion(frames: Frames) -> Check:
     way, spacing = path(frames), frames.spacing
     first = first_relaxed_frame(way, spacing)
     if first is None:
-        return Check(name, None, _unmoved(way, spacing))
+        return Check(name, None, _describe_motion(way, spacing))
     assert frames.velocities is not None and frames.time is not None, "see `why_not`"
     used = replace(
         frames,
@@ -211,9 +213,9 @@ def _diffusion(frames: Frames) -> Check:
     if reason := why_not(used):
         return Check(name, None, reason)
     try:
-        found, window = diffusion(used)
+        coefficient, window = diffusion(used)
     except SceneError as unsettled:
         return Check(name, None, unsettled.rule)
     value, error, source = expected_diffusion(used, window)
     basis = f"{source}; {groups_of(used)} groups of particles, {window[0]:.3g} to {window[1]:.3g} collisions"
-    return compared(name, found, Estimate(value, error), basis)
+    return compare_with_theory(name, coefficient, Estimate(value, error), basis)

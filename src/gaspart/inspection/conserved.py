@@ -54,9 +54,10 @@ def judge_flights(frames: Frames) -> Check:
         return Check("flights", None, reason)
     if frames.time is None or not (np.diff(frames.time) > 0.0).all():
         return Check("flights", None, "needs increasing times (--time-step)")
-    found = flights(frames)
-    if not found.number:
+    deviation = flights(frames)
+    if not deviation.number:
         return Check("flights", None, "no particle kept its velocity from one frame to the next")
-    text = f"off by {found.worst:.2g} of their length at most in {found.number} flights without a collision"
-    wrong = found.worst > WRONG
-    return Check("flights", not wrong, text + (f", before frame {found.frame}" if wrong else ""))
+    text = f"off by {deviation.worst:.2g} of their length at most in {deviation.number} flights"
+    text += " without a collision"
+    wrong = deviation.worst > WRONG
+    return Check("flights", not wrong, text + (f", before frame {deviation.frame}" if wrong else ""))

@@ -73,7 +73,7 @@ class Contents:
 
 
 @dataclass(frozen=True)
-class Given:
+class Overrides:
     """Statements of the user about a file, which take precedence over it; see `readers.read_frames`.
 
     If `last`, only the last frame of a file of GSD or XYZ is read; it must be complete.
@@ -87,7 +87,7 @@ class Given:
     last: bool = False
 
 
-def complete_frames(contents: Contents, given: Given, path: str) -> Frames:
+def complete_frames(contents: Contents, overrides: Overrides, path: str) -> Frames:
     """Complete the contents of a file by the user's statements.
 
     Raises SceneError for missing, invalid or contradictory values.
@@ -99,15 +99,15 @@ def complete_frames(contents: Contents, given: Given, path: str) -> Frames:
     if contents.velocities is not None:
         _require_finite("velocities", contents.velocities, path)
     sort_by_id(contents, path)
-    if contents.lengths is None and given.lengths is None:
+    if contents.lengths is None and overrides.lengths is None:
         raise SceneError("lengths", None, "is not stated: give --lengths X,Y[,Z]", path)
-    radii = _per_frame(_radii(contents, given, path))
-    d = _dimension(contents, given, 2.0 * float(radii.max()))
-    sides, container = _container(contents, given, d, path)
-    origin = _origin(contents, given, sides, path)
-    places = contents.positions[:, :, :d].astype(float) - origin[:, None, :]
+    radii = _per_frame(_radii(contents, overrides, path))
+    d = _dimension(contents, overrides, 2.0 * float(radii.max()))
+    sides, container = _container(contents, overrides, d, path)
+    origin = _origin(contents, overrides, sides, path)
+    coordinates = contents.positions[:, :, :d].astype(float) - origin[:, None, :]
     size = sides[:, None, :]
-    wrapped = np.where(container.periodic, places - size * np.floor(places / size), places)
+    wrapped = np.where(container.periodic, coordinates - size * np.floor(coordinates / size), coordinates)
     wrapped = np.where((wrapped >= size) & container.periodic, 0.0, wrapped)  # rounding of -1e-17
     masses = None if contents.masses is None else _per_frame(contents.masses)
     alike = masses is None or np.ptp(masses) == 0.0
@@ -118,7 +118,7 @@ def complete_frames(contents: Contents, given: Given, path: str) -> Frames:
         radii=radii[0],
         periodic=container.periodic,
         velocities=None if contents.velocities is None else contents.velocities[:, :, :d].astype(float),
-        time=_times(contents, given, path),
+        time=_times(contents, overrides, path),
         plain=contents.plain and steady and alike,
         isolated=contents.isolated and steady and alike,
         part=contents.part,
@@ -137,16 +137,16 @@ def complete_frames(contents: Contents, given: Given, path: str) -> Frames:
     return continuous(frames, contents.velocities_from_first, contents.ids is not None)
 
 
-def _origin(contents: Contents, given: Given, sides: np.ndarray, path: str) -> np.ndarray:
+def _origin(contents: Contents, overrides: Overrides, sides: np.ndarray, path: str) -> np.ndarray:
     """Return the lower corner of the container, (1, d) or (T, d)."""
     d = sides.shape[1]
-    if given.origin == CENTRE or (given.origin is None and contents.centred):
+    if overrides.origin == CENTRE or (overrides.origin is None and contents.centred):
         return -0.5 * sides
-    if given.origin is not None:
-        if isinstance(given.origin, str) or len(given.origin) < d:
+    if overrides.origin is not None:
+        if isinstance(overrides.origin, str) or len(overrides.origin) < d:
             rule = f"must be {d} numbers, or the word {CENTRE}: the positions have {d} dimensions"
-            raise SceneError("origin", given.origin, rule, path)
-        return np.array([given.origin[:d]], dtype=float)
+            raise SceneError("origin", overrides.origin, rule, path)
+        return np.array([overrides.origin[:d]], dtype=float)
     return np.zeros((1, d)) if contents.origin is None else _per_frame(contents.origin)[:, :d]
 
 
@@ -184,7 +184,7 @@ def sort_by_id(contents: Contents, path: str) -> None:
         setattr(contents, name, np.take_along_axis(values, index, axis=1))
 
 
-def _dimension(contents: Contents, given: Given, diameter: float) -> int:
+def _dimension(contents: Contents, overrides: Overrides, diameter: float) -> int:
     """Return the number of dimensions, 2 or 3.
 
     It is stated by the file, or depends on motion along z. Particles that stay at one z are discs, unless
@@ -198,24 +198,28 @@ def _dimension(contents: Contents, given: Given, diameter: float) -> int:
         return 2 if contents.flat else 3
     moving = np.any(positions != positions[0]) or bool(velocities is not None and velocities.any())
     along = velocities is not None and velocities.shape[2] == 3 and velocities[:, :, 2].any()
-    if along or np.ptp(positions[:, :, 2]) > 0.0 or (given.lengths is not None and len(given.lengths) == 3):
+    if (
+        along
+        or np.ptp(positions[:, :, 2]) > 0.0
+        or (overrides.lengths is not None and len(overrides.lengths) == 3)
+    ):
         return 3
-    sides = given.lengths if contents.lengths is None else contents.lengths[0]
+    sides = overrides.lengths if contents.lengths is None else contents.lengths[0]
     low = sides is None or len(sides) < 3 or not sides[2] > 2.0 * diameter
     return 2 if moving or low else 3
 
 
-def _container(contents: Contents, given: Given, d: int, path: str) -> tuple[np.ndarray, Container]:
+def _container(contents: Contents, overrides: Overrides, d: int, path: str) -> tuple[np.ndarray, Container]:
     """Return the sides, (1, d) or (T, d), and the container of the first frame.
 
     The sides are (T, d) if they change.
     """
     stated = None if contents.lengths is None else np.asarray(contents.lengths, dtype=float)[:, :d]
-    if given.lengths is not None:
-        if len(given.lengths) < d:
+    if overrides.lengths is not None:
+        if len(overrides.lengths) < d:
             rule = f"must be {d} sides: the positions have {d} dimensions"
-            raise SceneError("lengths", given.lengths, rule, path)
-        sides = np.array([given.lengths[:d]], dtype=float)
+            raise SceneError("lengths", overrides.lengths, rule, path)
+        sides = np.array([overrides.lengths[:d]], dtype=float)
     else:
         assert stated is not None, "see `complete_frames`"
         sides = _per_frame(stated, _SAME)
@@ -232,15 +236,15 @@ def _container(contents: Contents, given: Given, d: int, path: str) -> tuple[np.
     boundary: str | tuple[str, ...] = tuple("wall" if wall else "periodic" for wall in walls)
     if contents.boundary is not None:
         boundary = contents.boundary[:d]
-    if given.boundary is not None:
-        boundary = given.boundary
+    if overrides.boundary is not None:
+        boundary = overrides.boundary
     return sides, Container(tuple(float(x) for x in sides[0]), boundary)
 
 
-def _radii(contents: Contents, given: Given, path: str) -> np.ndarray:
+def _radii(contents: Contents, overrides: Overrides, path: str) -> np.ndarray:
     """Return the radii, (N,) or (T, N)."""
-    if given.radius is not None:
-        return np.full(contents.positions.shape[1], given.radius)
+    if overrides.radius is not None:
+        return np.full(contents.positions.shape[1], overrides.radius)
     if contents.radii is None:
         raise SceneError("radius", None, "is not stated: give --radius", path)
     if not (np.asarray(contents.radii) > 0.0).all() or not np.isfinite(contents.radii).all():
@@ -249,7 +253,7 @@ def _radii(contents: Contents, given: Given, path: str) -> np.ndarray:
     return np.asarray(contents.radii, dtype=float)
 
 
-def _times(contents: Contents, given: Given, path: str) -> np.ndarray | None:
+def _times(contents: Contents, overrides: Overrides, path: str) -> np.ndarray | None:
     """Return the times (T,), or None if the file states no times.
 
     It states none if the time is the same in every frame, like a field that was never set. Times that are
@@ -258,16 +262,16 @@ def _times(contents: Contents, given: Given, path: str) -> np.ndarray | None:
     """
     frames = len(contents.positions)
     time, resolution = contents.time, contents.time_resolution
-    if given.time_step is not None:
+    if overrides.time_step is not None:
         never_set = contents.steps is None or (frames > 1 and np.ptp(contents.steps) == 0.0)
         steps = np.arange(frames) if never_set else contents.steps
-        time, resolution = given.time_step * np.asarray(steps, dtype=float), 0.0
+        time, resolution = overrides.time_step * np.asarray(steps, dtype=float), 0.0
     if time is None or (frames > 1 and np.ptp(time) == 0.0):
         return None
     later = np.diff(time) > 0.0
     if not np.isfinite(time).all() or not later.all():
         frame = int(np.argmin(np.isfinite(time))) if later.all() else int(np.argmin(later)) + 1
-        remedy = "" if given.time_step is not None else ": give --time-step"
+        remedy = "" if overrides.time_step is not None else ": give --time-step"
         raise SceneError("file", path, f"has a time in frame {frame} that is not later than before{remedy}")
     even = np.linspace(time[0], time[-1], frames)
     return even if np.abs(time - even).max() <= resolution else time

@@ -54,8 +54,8 @@ def _are_copied(frames: Frames, doubtful: bool) -> bool:
         squares = np.maximum((velocities[0] ** 2).sum(axis=1), np.finfo(float).tiny)
         times = np.median((steps(frames) * velocities[0]).sum(axis=2) / squares, axis=1)
         frames = replace(frames, time=np.concatenate([[0.0], np.cumsum(times)]))
-    found = flights(frames)
-    return found.worst > WRONG or not found.number
+    deviation = flights(frames)
+    return deviation.worst > WRONG or not deviation.number
 
 
 def _reordered_frame(frames: Frames) -> int | None:
@@ -106,7 +106,7 @@ def _predicted_elsewhere(frames: Frames, n: int) -> bool:
     own = np.sqrt((_nearest(frames, frames.positions[n + 1] - predicted) ** 2).sum(axis=1))
     if (own < near).mean() > 1.0 - _MOST:
         return False
-    distance, row = tree.query(_wrapped(frames, predicted), k=1, distance_upper_bound=near)
+    distance, row = tree.query(_wrap_positions(frames, predicted), k=1, distance_upper_bound=near)
     elsewhere = np.isfinite(distance) & (row != np.arange(frames.count))
     return bool(elsewhere.sum() > max(_MOST * frames.count, 2))
 
@@ -121,7 +121,7 @@ def _near(frames: Frames, n: int, tree: cKDTree) -> float:
     return _NEAR * float(np.median(tree.query(frames.positions[n], k=2)[0][:, 1]))
 
 
-def _wrapped(frames: Frames, positions: np.ndarray) -> np.ndarray:
+def _wrap_positions(frames: Frames, positions: np.ndarray) -> np.ndarray:
     """Return positions in the container along periodic axes."""
     inside = np.where(
         frames.periodic, positions - frames.lengths * np.floor(positions / frames.lengths), positions

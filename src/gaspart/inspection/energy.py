@@ -36,9 +36,9 @@ def energy_line(scene: Scene, data: xr.Dataset) -> str:
     scale = max(float(kinetic.max()), np.finfo(float).tiny)
     drift = np.abs(total - total[0]).max() / scale
     text = f"drift of the energy: {drift:.1e} of it at most"
-    if _exchanged(data).any():
+    if _removed_energy(data).any():
         text += ", less what contacts, faces and kicks have exchanged"
-    return text + (" (positions have single precision)" if _positioned(scene, data) else "")
+    return text + (" (positions have single precision)" if _needs_positions(scene, data) else "")
 
 
 def conserved_energy(scene: Scene, data: xr.Dataset) -> np.ndarray:
@@ -46,7 +46,7 @@ def conserved_energy(scene: Scene, data: xr.Dataset) -> np.ndarray:
 
     The energy is kinetic, vibrational and potential. Raises SceneError where the file does not state it.
     """
-    energy = data["kinetic_energy"].values + _exchanged(data)
+    energy = data["kinetic_energy"].values + _removed_energy(data)
     if "vibrations" in data:
         energy += data["vibrations"].values.sum(axis=1)
     if scene.gravity is None and not any(isinstance(face, Well) for face in scene.faces.values()):
@@ -64,13 +64,13 @@ def conserved_energy(scene: Scene, data: xr.Dataset) -> np.ndarray:
     return energy
 
 
-def _exchanged(data: xr.Dataset) -> np.ndarray:
+def _removed_energy(data: xr.Dataset) -> np.ndarray:
     """Return the energy (T,) taken by contacts and faces since time 0, less kicks."""
-    taken = data["dissipated_energy"].values + data["wall_energy"].values.sum(axis=1)
-    return np.asarray(taken - data["thermostat_energy"].values, dtype=float)
+    removed = data["dissipated_energy"].values + data["wall_energy"].values.sum(axis=1)
+    return np.asarray(removed - data["thermostat_energy"].values, dtype=float)
 
 
-def _positioned(scene: Scene, data: xr.Dataset) -> bool:
+def _needs_positions(scene: Scene, data: xr.Dataset) -> bool:
     """Return True if the potential energy follows from positions in single precision."""
     return scene.gravity is not None and "displacements" not in data
 
@@ -80,18 +80,18 @@ def _potential(scene: Scene, data: xr.Dataset) -> np.ndarray:
 
     The energy under gravity is relative to time 0 if there are displacements.
     """
-    places = data["coordinates"].values.astype(float)
-    energy = np.zeros(len(places))
+    positions = data["coordinates"].values.astype(float)
+    energy = np.zeros(len(positions))
     if scene.gravity is not None:
         falls = [along and g != 0.0 for along, g in zip(scene.container.periodic, scene.gravity, strict=True)]
         if any(falls) and "displacements" not in data:
             raise SceneError("displacements", False, "a fall through periodic faces needs --displacements")
-        ways = data["displacements"].values if "displacements" in data else places
+        ways = data["displacements"].values if "displacements" in data else positions
         masses = np.where(per_particle(scene, "fixed").astype(bool), 0.0, per_particle(scene, "mass"))
         energy -= np.einsum("n,tnd,d->t", masses.astype(float), ways, np.array(scene.gravity))
     radii = per_particle(scene, "radius").astype(float)
     if any(isinstance(face, Well) for face in scene.faces.values()):
-        energy += [well_energies(scene, places_in_wells(scene, one, radii)).sum() for one in places]
+        energy += [well_energies(scene, places_in_wells(scene, row, radii)).sum() for row in positions]
     return energy
 
 

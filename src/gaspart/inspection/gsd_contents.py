@@ -9,7 +9,7 @@ import numpy as np
 
 from gaspart.errors import SceneError, optional
 from gaspart.files import open_regular
-from gaspart.inspection.contents import Contents, Given
+from gaspart.inspection.contents import Contents, Overrides
 from gaspart.system import descriptor_path
 
 _TOPOLOGY = ("bonds", "angles", "dihedrals", "impropers", "constraints", "pairs")
@@ -20,7 +20,7 @@ _SPHERE_RADIUS = "state/hpmc/sphere/radius"
 """Radii of the types, as HOOMD 2 wrote them; other shapes have other names."""
 
 
-def read_gsd(path: Path, given: Given) -> Contents:
+def read_gsd(path: Path, overrides: Overrides) -> Contents:
     """Read all frames, or the last one.
 
     A field that no frame states is unknown, although the schema has a default. The origin is the middle of
@@ -29,7 +29,7 @@ def read_gsd(path: Path, given: Given) -> Contents:
     """
     hoomd = optional("gsd.hoomd", "gsd", "GSD files")
     with open_regular(path) as opened_file, hoomd.open(descriptor_path(opened_file), "r") as file:
-        first = max(len(file) - 1, 0) if given.last else 0
+        first = max(len(file) - 1, 0) if overrides.last else 0
         frames = list(file[first:])
         chunks = set(file.file.find_matching_chunk_names(""))
         moving = [n for n in range(len(file)) if file.file.chunk_exists(frame=n, name="particles/velocity")]
@@ -49,13 +49,13 @@ def read_gsd(path: Path, given: Given) -> Contents:
     positions = np.array([frame.particles.position for frame in frames])
     extent = max(float(np.abs(positions).max(initial=0.0)), float(boxes.max()))
     stated = {name: f"particles/{name}" in chunks for name in ("velocity", "mass", "diameter")}
-    if given.last:  # what frame n does not have is taken from frame 0, of another time
+    if overrides.last:  # what frame n does not have is taken from frame 0, of another time
         stated["velocity"] &= first in moving
     return Contents(
         positions=positions,
         velocities=np.array([frame.particles.velocity for frame in frames]) if stated["velocity"] else None,
         steps=np.array([float(frame.configuration.step) for frame in frames]),
-        radii=_radii(frames, stated["diameter"], old, given, path),
+        radii=_radii(frames, stated["diameter"], old, overrides, path),
         masses=np.array([frame.particles.mass for frame in frames]) if stated["mass"] else None,
         lengths=boxes[:, :3] if "configuration/box" in chunks else None,
         centred=True,
@@ -92,7 +92,7 @@ def _old_radii(file: Any, chunks: set[str], path: Path) -> np.ndarray | None:
 
 
 def _radii(
-    frames: list[Any], diameters: bool, old: np.ndarray | None, given: Given, path: Path
+    frames: list[Any], diameters: bool, old: np.ndarray | None, overrides: Overrides, path: Path
 ) -> np.ndarray | None:
     """Return the radii (T, N) by the diameters or by the shapes of the types.
 
@@ -102,12 +102,12 @@ def _radii(
     shapes = []
     for frame in frames:
         by_type = _of_shapes(frame.particles.type_shapes, path) if old is None else [float(x) for x in old]
-        known = np.array([by_type[n] if n < len(by_type) else np.nan for n in frame.particles.typeid])
-        shapes.append(known)
+        radii = np.array([by_type[n] if n < len(by_type) else np.nan for n in frame.particles.typeid])
+        shapes.append(radii)
     by_shape = np.array(shapes)
     if not np.isfinite(by_shape).all():
         return by_diameter if diameters else None
-    if given.radius is None and diameters and not np.allclose(by_shape, by_diameter, rtol=1e-6, atol=0.0):
+    if overrides.radius is None and diameters and not np.allclose(by_shape, by_diameter, rtol=1e-6, atol=0.0):
         rule = "states other sizes in particles/diameter than in particles/type_shapes: give --radius"
         raise SceneError("file", str(path), rule)
     return by_shape

@@ -18,7 +18,7 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
-from gaspart.inspection.contents import Contents, Given
+from gaspart.inspection.contents import Contents, Overrides
 from gaspart.scene.open_faces import refuse_open
 from gaspart.state.insertion import per_particle
 from gaspart.trajectory.amber import BOOKKEEPING
@@ -67,7 +67,7 @@ class _Header:
 
     def skip(self, length: int) -> None:
         """Pass over values, which are padded to words."""
-        self._file.seek(_padded(length), 1)
+        self._file.seek(_pad_length(length), 1)
 
     def skip_attributes(self) -> None:
         """Pass over a list of attributes."""
@@ -77,7 +77,7 @@ class _Header:
             self.skip(width * self.count())
 
 
-def _padded(length: int) -> int:
+def _pad_length(length: int) -> int:
     return -(-length // 4) * 4
 
 
@@ -120,7 +120,7 @@ def _size(header: _Header) -> int | None:
         return max(fixed)
     if records in (2**32 - 1, 2**64 - 1):
         return None  # being written: the library derives the number from the size
-    step = sum(_padded(size) for _, size in of_records) if len(of_records) > 1 else of_records[0][1]
+    step = sum(_pad_length(size) for _, size in of_records) if len(of_records) > 1 else of_records[0][1]
     return max(*fixed, *(begin + (records - 1) * step + size for begin, size in of_records))
 
 
@@ -135,7 +135,7 @@ _TYPES = ("type", "atom_types")
 _SECONDS = ("second", "microsecond", "nanosecond", "picosecond", "femtosecond", "atomic time unit")
 
 
-def read_netcdf(path: Path, given: Given) -> Contents:
+def read_netcdf(path: Path, overrides: Overrides) -> Contents:
     """Read all frames.
 
     Raises SceneError for contents that cannot be checked, and what the library raises for a file that cannot
@@ -147,7 +147,7 @@ def read_netcdf(path: Path, given: Given) -> Contents:
         refuse_open(read_recipe(path).scene, "changes the particles: frames are those of particles that stay")
     with opened(path) if by_gaspart else _foreign(path) as file:
         _check_convention(file, path)
-        contents = _contents(file, given, path)
+        contents = _contents(file, overrides, path)
     if by_gaspart:
         _add_scene(contents, path)
     return contents
@@ -167,9 +167,9 @@ def is_own(path: Path) -> bool:
 def _foreign(path: Path) -> Iterator[Any]:
     """Open a netCDF file of another program; reject a file that ends before its last value."""
     with open_regular(path) as file:
-        needed, size = needed_bytes(file), os.fstat(file.fileno()).st_size
-        if needed is not None and size < needed:
-            rule = f"is truncated: {size} bytes, where its header states {needed}"
+        minimum, size = needed_bytes(file), os.fstat(file.fileno()).st_size
+        if minimum is not None and size < minimum:
+            rule = f"is truncated: {size} bytes, where its header states {minimum}"
             raise SceneError("file", str(path), rule)
         with open_descriptor(file) as dataset:
             yield dataset
@@ -227,7 +227,7 @@ def _read_frames(file: Any, name: str, path: Path, width: int | None = None) -> 
     return values
 
 
-def _contents(file: Any, given: Given, path: Path) -> Contents:
+def _contents(file: Any, overrides: Overrides, path: Path) -> Contents:
     """Return the fields of a file in which every frame has a complete set of particles."""
     lengths = _read_frames(file, "cell_lengths", path, 3)
     origin = _read_frames(file, "cell_origin", path, 3)
@@ -237,20 +237,20 @@ def _contents(file: Any, given: Given, path: Path) -> Contents:
         if tilted.any():
             rule = "a tilted cell cannot be checked"
             raise SceneError("cell_angles", angles[tilted.argmax()].tolist(), rule, str(path))
-    positions, resolution = _positions(file, given, lengths, origin, path)
-    time, time_resolution = (None, 0.0) if given.time_step is not None else _times(file)
-    if given.time_step is None:
+    positions, resolution = _positions(file, overrides, lengths, origin, path)
+    time, time_resolution = (None, 0.0) if overrides.time_step is not None else _times(file)
+    if overrides.time_step is None:
         _check_units(file, path)
-    radii, diameters = (_read(file, _named(file, name)) for name in ("radius", "diameter"))
+    radii, diameters = (_read(file, _find_variable(file, name)) for name in ("radius", "diameter"))
     velocities, reason = _velocities(file, path)
-    acting = (_read(file, _named(file, name)) for name in _INTERACTIONS)
+    acting = (_read(file, _find_variable(file, name)) for name in _INTERACTIONS)
     contents = Contents(
         positions=positions,
         velocities=velocities,
         time=time,
         radii=0.5 * diameters if radii is None and diameters is not None else radii,
-        masses=_read(file, _named(file, "mass")),
-        ids=_read_frames(file, _named(file, *_IDS), path),
+        masses=_read(file, _find_variable(file, "mass")),
+        ids=_read_frames(file, _find_variable(file, *_IDS), path),
         lengths=lengths,
         origin=origin,
         plain=not any(np.any(values) for values in acting if values is not None),
@@ -258,14 +258,14 @@ def _contents(file: Any, given: Given, path: Path) -> Contents:
         time_resolution=time_resolution,
         no_velocities=reason,
     )
-    kinds = _named(file, *_TYPES)
+    kinds = _find_variable(file, *_TYPES)
     if kinds in file.variables and file[kinds].ndim == 2:
         contents.species = _read_frames(file, kinds, path)
     _check_shapes(contents, path)
     return contents
 
 
-def _named(file: Any, *names: str) -> str:
+def _find_variable(file: Any, *names: str) -> str:
     """Return the first of some names that a file has, in small or capital letters (Radius).
 
     If it has none of them, the first name is returned.
@@ -286,7 +286,7 @@ def _velocities(file: Any, path: Path) -> tuple[np.ndarray | None, str | None]:
 
 
 def _positions(
-    file: Any, given: Given, lengths: np.ndarray | None, origin: np.ndarray | None, path: Path
+    file: Any, overrides: Overrides, lengths: np.ndarray | None, origin: np.ndarray | None, path: Path
 ) -> tuple[np.ndarray, float]:
     """Return the positions and their resolution.
 
@@ -307,7 +307,7 @@ def _positions(
             raise SceneError("file", str(path), f"{rule}: a changing number cannot be checked")
     scale = 1.0
     if name == "scaled_coordinates":
-        sides = lengths if given.lengths is None else np.array([given.lengths])
+        sides = lengths if overrides.lengths is None else np.array([overrides.lengths])
         d = positions.shape[2]
         if sides is None or sides.shape[1] < d or not (sides[:, :d] > 0.0).all():
             rule = f"does not state them, and {name} are multiples of them: give --lengths X,Y[,Z]"

@@ -15,14 +15,14 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
-from gaspart.inspection.contents import Contents, Given, complete_frames, sort_by_id
+from gaspart.inspection.contents import Contents, Overrides, complete_frames, sort_by_id
 from gaspart.inspection.frames import Frames
 from gaspart.inspection.gsd_contents import read_gsd
 from gaspart.inspection.netcdf_contents import is_own, read_netcdf
 from gaspart.inspection.xyz_contents import read_xyz
 from gaspart.scene.scene import Scene
 from gaspart.state.given import state_at_time_zero
-from gaspart.state.initial import assembled
+from gaspart.state.initial import assemble_state
 from gaspart.state.insertion import per_particle
 from gaspart.state.state import State
 from gaspart.system import memory
@@ -57,9 +57,9 @@ def read_frames(
 
     Raises SceneError for a file that cannot be read, or for missing data.
     """
-    path, given = Path(path), Given(radius, lengths, boundary, time_step, origin)
+    path, overrides = Path(path), Overrides(radius, lengths, boundary, time_step, origin)
     with _reading(path):
-        return complete_frames(_contents(path, given), given, str(path))
+        return complete_frames(_contents(path, overrides), overrides, str(path))
 
 
 def is_open_run(path: str | Path) -> bool:
@@ -70,18 +70,18 @@ def is_open_run(path: str | Path) -> bool:
         return netcdf and is_own(path) and read_recipe(path).scene.is_open
 
 
-def read_contents(path: Path, given: Given) -> Contents:
+def read_contents(path: Path, overrides: Overrides) -> Contents:
     """Read the contents of a file as `read_frames` does; raise SceneError."""
     with _reading(path):
-        return _contents(path, given)
+        return _contents(path, overrides)
 
 
-def _contents(path: Path, given: Given) -> Contents:
+def _contents(path: Path, overrides: Overrides) -> Contents:
     reader = _READERS.get(path.suffix.lower())
     if reader is None:
         raise SceneError("file", str(path), f"must end in {', '.join(SUFFIXES)}")
     _require_memory(path)
-    return reader(path, given)
+    return reader(path, overrides)
 
 
 @contextmanager
@@ -107,9 +107,10 @@ def _require_memory(path: Path) -> None:
     """
     with open_regular(path) as file:
         size = os.fstat(file.fileno()).st_size
-    there, needed = memory(), COPIES * size
-    if there is not None and needed > there:
-        rule = f"needs {needed / 1e9:.3g} GB of memory for all frames; this machine has {there / 1e9:.3g} GB"
+    available, required = memory(), COPIES * size
+    if available is not None and required > available:
+        rule = f"needs {required / 1e9:.3g} GB of memory for all frames; "
+        rule += f"this machine has {available / 1e9:.3g} GB"
         raise SceneError("file", str(path), rule)
 
 
@@ -165,7 +166,7 @@ def read_state(path: str | Path, scene: Scene) -> State:
     path = Path(path)
     if path.suffix not in STARTS:
         raise SceneError("file", str(path), f"must end in {', '.join(STARTS)}")
-    contents = read_contents(path, Given(last=True))
+    contents = read_contents(path, Overrides(last=True))
     if contents.velocities is None:
         raise SceneError("file", str(path), "has no velocities in its last frame, which a run starts from")
     count = contents.positions.shape[1]
@@ -174,12 +175,12 @@ def read_state(path: str | Path, scene: Scene) -> State:
     sort_by_id(contents, str(path))
     _check_container(contents, scene, path)
     order = _order(contents, scene, path)
-    places, velocities = (
+    positions, velocities = (
         _in_dimensions(name, values[-1], scene, path)[order]
         for name, values in (("positions", contents.positions), ("velocities", contents.velocities))
     )
     turning = (scene.count,) if scene.dimension == 2 else (scene.count, 3)
-    state = assembled(scene, places - _origin(contents, scene), velocities, np.zeros(turning))
+    state = assemble_state(scene, positions - _origin(contents, scene), velocities, np.zeros(turning))
     plain = replace(state, piston=None, piston_face=None, displaced=None, shear_rate=None)
     try:
         return state_at_time_zero(scene, plain)
@@ -229,10 +230,10 @@ def _check_container(contents: Contents, scene: Scene, path: Path) -> None:
         raise SceneError("file", str(path), f"has {has} dimensions, and the scene {scene.dimension}")
     if contents.lengths is None:
         return
-    wanted = np.array(scene.container.lengths)
+    lengths = np.array(scene.container.lengths)
     stated = np.asarray(contents.lengths, dtype=float)[-1, : scene.dimension]
     movable = np.isin(np.arange(scene.dimension), [number // 2 for number, _ in scene.pistons])
-    within = (stated == 0.0) | (movable & (stated < wanted)) | (np.abs(stated - wanted) <= _SAME * wanted)
+    within = (stated == 0.0) | (movable & (stated < lengths)) | (np.abs(stated - lengths) <= _SAME * lengths)
     if not within.all():
         rule = f"the container of the scene is {scene.container.lengths}"
         raise SceneError("lengths", tuple(stated.tolist()), rule, str(path))
@@ -259,6 +260,6 @@ def _order(contents: Contents, scene: Scene, path: Path) -> np.ndarray:
     return order
 
 
-def _alike(values: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+def _alike(values: np.ndarray, expected: np.ndarray) -> np.ndarray:
     """Return True for each value (N,) that has the wanted value but for rounding."""
-    return np.abs(values - wanted) <= _SAME * wanted
+    return np.abs(values - expected) <= _SAME * expected

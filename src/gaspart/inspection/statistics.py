@@ -19,7 +19,7 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.expected.transport import diffusion_in_cube
 from gaspart.analysis.statistics import histogram_chi_square, mean_of
 from gaspart.inspection.frames import Frames
-from gaspart.inspection.verdict import Check, compared
+from gaspart.inspection.verdict import Check, compare_with_theory
 from gaspart.scene.gas import Gas
 from gaspart.scene.geometry import ball_volume
 
@@ -29,7 +29,7 @@ chance once in 1e8."""
 _CHANGED = 0.05  # of the root-mean-square speed, from which on a velocity has changed
 
 
-def collided(frames: Frames) -> np.ndarray:
+def count_collisions(frames: Frames) -> np.ndarray:
     """Compute a lower bound of the collisions (T,) of a particle since the first frame.
 
     From frame to frame it is the smaller of two numbers: -ln of the fraction of particles whose velocity has
@@ -152,35 +152,35 @@ def why_not_speeds(frames: Frames) -> str | None:
 def judge_speeds(frames: Frames) -> list[Check]:
     """Check the distribution of speeds in the last frame, and its kurtosis in all relaxed frames.
 
-    The clock is `samples.collided`. A deviation of the kurtosis decays by its slowest rate of the homogeneous
+    The clock is `count_collisions`. A deviation of the kurtosis decays by its slowest rate of the homogeneous
     Boltzmann equation; the deviation in the first frame is known from that frame.
     """
     names = SPEEDS
     if reason := why_not_speeds(frames):
         return [Check(name, None, reason) for name in names]
     series, expected = _kurtosis(frames), _expected_kurtosis(frames)
-    clock, rate = collided(frames), theory.KURTOSIS_RELAXATION_RATE[frames.dimension]
+    clock, rate = count_collisions(frames), theory.KURTOSIS_RELAXATION_RATE[frames.dimension]
     scatter, skewness = theory.kurtosis_scatter(frames.dimension, frames.count)
     excess = max(abs(series[0] - expected), scatter)
-    needed = math.log(excess / (RESIDUE * scatter)) / rate
-    if clock[-1] < needed:
+    relaxation = math.log(excess / (RESIDUE * scatter)) / rate
+    if clock[-1] < relaxation:
         reason = (
-            f"needs {needed:.3g} collisions of a particle after the first frame, to relax; there are"
+            f"needs {relaxation:.3g} collisions of a particle after the first frame, to relax; there are"
             f" {clock[-1]:.3g}"
         )
         return [Check(name, None, reason) for name in names]
-    first = int(np.argmax(clock >= needed))
+    first = int(np.argmax(clock >= relaxation))
     if any(density_modulation(frames, n, _squares(frames, n)) > UNEVEN for n in (first, len(series) - 1)):
         return [Check(name, None, "the temperature is not uniform: not relaxed") for name in names]
     samples = independent(clock[first:], rate)
-    found = Estimate(series[first:].mean(), scatter / math.sqrt(samples))
+    kurtosis = Estimate(series[first:].mean(), scatter / math.sqrt(samples))
     skewness /= math.sqrt(samples)
     if skewness > _MOST_SKEWED:
         text = f"{samples:.2g} independent samples of {frames.count} particles are too few"
         return [_law(frames), Check(names[1], None, text)]
     basis = f"Maxwell's; {samples:.3g} independent samples of {frames.count} particles"
-    deviation = _normal((found.value - expected) / found.error, skewness)
-    return [_law(frames), compared(names[1], found, Estimate(expected), basis, deviation)]
+    deviation = _normal((kurtosis.value - expected) / kurtosis.error, skewness)
+    return [_law(frames), compare_with_theory(names[1], kurtosis, Estimate(expected), basis, deviation)]
 
 
 def _law(frames: Frames) -> Check:
@@ -190,11 +190,11 @@ def _law(frames: Frames) -> Check:
         return Check("speed law", None, f"{frames.count} particles are too few for a histogram")
     square = _squares(frames, -1)
     temperature = float(frames.temperatures[-1])
-    found = histogram_chi_square(
+    result = histogram_chi_square(
         np.sqrt(square), lambda v: theory.maxwell_cdf(v, frames.dimension, temperature), bins
     )
-    text = f"chi-square {found.chi_square:.3g} of {found.degrees_of_freedom} about Maxwell's, last frame"
-    return Check("speed law", found.p_value > RARE, f"{text} (p = {found.p_value:.2g})")
+    text = f"chi-square {result.chi_square:.3g} of {result.degrees_of_freedom} about Maxwell's, last frame"
+    return Check("speed law", result.p_value > RARE, f"{text} (p = {result.p_value:.2g})")
 
 
 def _squares(frames: Frames, n: int) -> np.ndarray:
@@ -332,9 +332,9 @@ def diffusion(frames: Frames) -> tuple[Estimate, tuple[float, float]]:
     rises = np.diff(squares, axis=0) / (6.0 * times[:, None]) * n / (n - 1.0)
     groups = np.array([part.mean(axis=1) for part in np.array_split(rises, groups_of(frames), axis=1)])
     number, tail = settled_slope(groups)
-    found, rate = mean_of(groups[:, number]), _rate(frames) * _interval(frames)
+    estimate, rate = mean_of(groups[:, number]), _rate(frames) * _interval(frames)
     window = rate * lags[number], rate * lags[number + 1]
-    return Estimate(found.value, math.hypot(found.error, float(tail)), found.freedom), window
+    return Estimate(estimate.value, math.hypot(estimate.error, float(tail)), estimate.freedom), window
 
 
 def expected_diffusion(frames: Frames, window: tuple[float, float]) -> tuple[float, float, str]:
@@ -342,9 +342,11 @@ def expected_diffusion(frames: Frames, window: tuple[float, float]) -> tuple[flo
 
     They hold for the equation of the engine, if the file states one.
     """
-    found = diffusion_in_cube(_gas(frames), float(frames.lengths[0]), frames.engine, frames.scene, window)
-    assert found is not None, "see `why_not`"
-    return found
+    prediction = diffusion_in_cube(
+        _gas(frames), float(frames.lengths[0]), frames.engine, frames.scene, window
+    )
+    assert prediction is not None, "see `why_not`"
+    return prediction
 
 
 def _interval(frames: Frames) -> float:

@@ -26,11 +26,11 @@ class Check:
     acts: bool = False
 
     def __str__(self) -> str:
-        word = {True: "ok", False: "WRONG", None: "-"}[self.passed]
-        return f"{word:6}{visible(self.name, _LONGEST)}: {visible(self.text, _LONGEST)}"
+        verdict = {True: "ok", False: "WRONG", None: "-"}[self.passed]
+        return f"{verdict:6}{visible(self.name, _LONGEST)}: {visible(self.text, _LONGEST)}"
 
 
-def compared(
+def compare_with_theory(
     name: str, measured: Estimate, theory: Estimate, basis: str, deviation: float | None = None
 ) -> Check:
     """Compare a measurement with theory; it passes within `LIMIT` combined standard errors.

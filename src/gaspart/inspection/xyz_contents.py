@@ -14,7 +14,7 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
-from gaspart.inspection.contents import Contents, Given
+from gaspart.inspection.contents import Contents, Overrides
 
 _PAIR = re.compile(r"""([^\s="'{}\[\],]+)\s*=\s*("[^"]*"|'[^']*'|\{[^}]*\}|\[.*?\](?=\s|$)|\S+)""")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
@@ -37,18 +37,20 @@ _PLAIN = {"species": (0, 1), "pos": (1, 3)}
 _TRUE, _FALSE = ("t", "true", "1"), ("f", "false", "0")
 
 
-def read_xyz(path: Path, given: Given) -> Contents:
+def read_xyz(path: Path, overrides: Overrides) -> Contents:
     """Read all frames, or the last one.
 
     Raises SceneError for contents that cannot be checked, ValueError for other text.
     """
     kinds: dict[str, int] = {}  # a number for each name of a species
     with open_regular(path) as file, TextIOWrapper(file, encoding="utf-8") as lines:
-        frames = (_read_frame(n, *frame, kinds, given, path) for n, frame in enumerate(_frames(lines, path)))
-        parts = list(deque(enumerate(frames), maxlen=1 if given.last else None))
+        frames = (
+            _read_frame(n, *frame, kinds, overrides, path) for n, frame in enumerate(_frames(lines, path))
+        )
+        parts = list(deque(enumerate(frames), maxlen=1 if overrides.last else None))
     if not parts:
         raise SceneError("file", str(path), "cannot be read: it has no frame")
-    reason = None if given.last else _drop_velocities([part for _, part in parts])
+    reason = None if overrides.last else _drop_velocities([part for _, part in parts])
     _add_origins([part for _, part in parts])
     first = parts[0][1]
     for n, part in parts:
@@ -141,7 +143,7 @@ def _frames(lines: Iterator[str], path: Path) -> Iterator[tuple[str, list[list[s
 
 
 def _read_frame(
-    n: int, comment: str, rows: list[list[str]], kinds: dict[str, int], given: Given, path: Path
+    n: int, comment: str, rows: list[list[str]], kinds: dict[str, int], overrides: Overrides, path: Path
 ) -> dict:
     """Return the fields of frame n, by the names of `_NAMES`, and of its comment.
 
@@ -158,23 +160,25 @@ def _read_frame(
             raise SceneError("file", str(path), rule)
     fields: dict = {}
     for name, (first, count) in named.items():
-        if not name or (name in ("radius", "diameter") and given.radius is not None):
+        if not name or (name in ("radius", "diameter") and overrides.radius is not None):
             continue
-        words = [row[first : first + count] for row in rows]
+        tokens = [row[first : first + count] for row in rows]
         if name == "species":
-            fields[name] = np.array([kinds.setdefault(word[0], len(kinds)) for word in words], dtype=np.int32)
+            fields[name] = np.array(
+                [kinds.setdefault(token[0], len(kinds)) for token in tokens], dtype=np.int32
+            )
         elif name == "move_mask":
-            fields["fixed"] = np.array([any(part.lower() in _FALSE for part in word) for word in words])
+            fields["fixed"] = np.array([any(part.lower() in _FALSE for part in token) for token in tokens])
         else:
-            values = _numbers(words)
+            values = _numbers(tokens)
             fields[name] = values if name in ("pos", "velo", "momenta", "forces") else values[:, 0]
     first, count = named["pos"]
-    fields["digits"] = _most_digits(word for row in rows for word in row[first : first + count])
+    fields["digits"] = _most_digits(token for row in rows for token in row[first : first + count])
     for name in ("velo", "momenta"):
         if name in fields and fields[name].shape[1] != count:
             rule = f"{name} must have {count} columns"
             raise SceneError("Properties", pairs["properties"], rule, str(path))
-    return fields | _of_comment(pairs, count, given, path)
+    return fields | _of_comment(pairs, count, overrides, path)
 
 
 def _columns(properties: str, path: Path) -> dict[str, tuple[int, int]]:
@@ -195,21 +199,21 @@ def _columns(properties: str, path: Path) -> dict[str, tuple[int, int]]:
     return {**columns, "": (first, 0)}
 
 
-def _numbers(words: list[list[str]]) -> np.ndarray:
+def _numbers(tokens: list[list[str]]) -> np.ndarray:
     """Convert words to numbers, also with the exponents of Fortran; raise ValueError."""
     try:
-        return np.array(words, dtype=float)
+        return np.array(tokens, dtype=float)
     except ValueError:
-        return np.array([[re.sub("[dD]", "e", word) for word in row] for row in words], dtype=float)
+        return np.array([[re.sub("[dD]", "e", token) for token in row] for row in tokens], dtype=float)
 
 
-def _of_comment(pairs: dict[str, str], dimension: int, given: Given, path: Path) -> dict:
+def _of_comment(pairs: dict[str, str], dimension: int, overrides: Overrides, path: Path) -> dict:
     """Return container, boundary and time of a frame from its comment.
 
     Fields that the user has given are left out. `dimension` is the number of columns of the positions.
     """
     fields: dict = {}
-    if "lattice" in pairs and (given.lengths is None or len(_words(pairs["lattice"])) in (3, 4, 9)):
+    if "lattice" in pairs and (overrides.lengths is None or len(_words(pairs["lattice"])) in (3, 4, 9)):
         cell = _vector(pairs, "lattice", (3, 4, 9), "--lengths X,Y[,Z]", path)
         if len(cell) == 4:  # two vectors of the plane
             cell = np.array([*cell[:2], 0.0, *cell[2:], 0.0, 0.0, 0.0, 0.0])
@@ -217,16 +221,16 @@ def _of_comment(pairs: dict[str, str], dimension: int, given: Given, path: Path)
         if np.any(matrix != np.diag(np.diag(matrix))):
             raise SceneError("Lattice", pairs["lattice"], "a tilted box cannot be checked", str(path))
         fields["lattice"] = np.diag(matrix)
-    if "origin" in pairs and given.origin is None:
+    if "origin" in pairs and overrides.origin is None:
         fields["origin"] = _vector(pairs, "origin", (dimension, 3), "--origin X,Y[,Z]", path)
-    if "pbc" in pairs and given.boundary is None:
-        words = _words(pairs["pbc"].lower())
-        words = words * 3 if len(words) == 1 else words
-        if len(words) not in (dimension, 3) or not set(words) <= {*_TRUE, *_FALSE}:
+    if "pbc" in pairs and overrides.boundary is None:
+        tokens = _words(pairs["pbc"].lower())
+        tokens = tokens * 3 if len(tokens) == 1 else tokens
+        if len(tokens) not in (dimension, 3) or not set(tokens) <= {*_TRUE, *_FALSE}:
             rule = f"must be T or F for each of {dimension} axes; give --boundary"
             raise SceneError("pbc", pairs["pbc"], rule, str(path))
-        fields["boundary"] = tuple("periodic" if word in _TRUE else "wall" for word in words)
-    if "time" in pairs and given.time_step is None:
+        fields["boundary"] = tuple("periodic" if token in _TRUE else "wall" for token in tokens)
+    if "time" in pairs and overrides.time_step is None:
         fields["time"] = _vector(pairs, "time", (1,), "--time-step", path)[0]
         decimals = len(pairs["time"].lower().partition("e")[0].partition(".")[2])
         exponent = pairs["time"].lower().partition("e")[2]
@@ -244,26 +248,26 @@ def _vector(pairs: dict[str, str], key: str, sizes: tuple[int, ...], option: str
 
     The error message names an `option` that can be given instead.
     """
-    words = _words(pairs[key])
-    if len(words) not in sizes or not all(_NUMBER.fullmatch(word) for word in words):
+    tokens = _words(pairs[key])
+    if len(tokens) not in sizes or not all(_NUMBER.fullmatch(token) for token in tokens):
         *some, last = map(str, dict.fromkeys(sizes))
         rule = f"must be {', '.join(some)}{' or ' if some else ''}{last} numbers; give {option}"
         raise SceneError(key, pairs[key], rule, str(path))
-    return _numbers([words])[0]
+    return _numbers([tokens])[0]
 
 
-def _most_digits(words: Iterable[str]) -> int:
+def _most_digits(tokens: Iterable[str]) -> int:
     """Return the largest number of significant digits of some printed numbers."""
     most = 0
-    for word in words:
-        if len(word) > most:  # else it cannot have more
-            most = max(most, _significant(word))
+    for token in tokens:
+        if len(token) > most:  # else it cannot have more
+            most = max(most, _significant(token))
     return most
 
 
-def _significant(word: str) -> int:
+def _significant(token: str) -> int:
     """Count the significant digits of a printed number."""
-    mantissa = re.split("[eEdD]", word)[0].lstrip("+-").replace(".", "")
+    mantissa = re.split("[eEdD]", token)[0].lstrip("+-").replace(".", "")
     return len(mantissa.lstrip("0"))
 
 

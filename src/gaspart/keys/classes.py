@@ -172,10 +172,10 @@ def refuse_unknown(cls: Any, mapping: dict, where: str) -> None:
     SceneError
         If a key is unknown, with the rule of `unknown_word`.
     """
-    known = [item.name for item in fields(cls)]
+    names = [item.name for item in fields(cls)]
     for key, value in mapping.items():
-        if key not in known:
-            raise SceneError(f"{where}.{key}", value, unknown_word(key, known))
+        if key not in names:
+            raise SceneError(f"{where}.{key}", value, unknown_word(key, names))
 
 
 def instance_of(cls: type, meaning: str) -> Kind:
@@ -255,14 +255,14 @@ def require(kind: Mapping[str, Any], value: object, where: str) -> None:
         return
     key = ".".join(part for part in (where, *(str(part) for part in error.absolute_path)) if part)
     if error.validator == "additionalProperties":
-        known, patterns = error.schema.get("properties", {}), error.schema.get("patternProperties", {})
+        properties, patterns = error.schema.get("properties", {}), error.schema.get("patternProperties", {})
         unknown = next(
             name
             for name in error.instance
-            if name not in known and not any(re.search(pattern, name) for pattern in patterns)
+            if name not in properties and not any(re.search(pattern, name) for pattern in patterns)
         )
         raise SceneError(
-            f"{key}.{unknown}".lstrip("."), error.instance[unknown], unknown_word(unknown, known)
+            f"{key}.{unknown}".lstrip("."), error.instance[unknown], unknown_word(unknown, properties)
         )
     if error.validator == "required":
         missing = next(name for name in error.validator_value if name not in error.instance)
@@ -279,18 +279,18 @@ def _validator() -> Any:
     from jsonschema import Draft202012Validator, ValidationError
     from jsonschema.validators import extend
 
-    def unique(validator: object, wanted: bool, items: object, schema: dict) -> Iterable[ValidationError]:
+    def unique(validator: object, required: bool, items: object, schema: dict) -> Iterable[ValidationError]:
         words = [item for item in items if isinstance(item, str)] if isinstance(items, list) else []
-        if wanted and len(set(words)) < len(words):
+        if required and len(set(words)) < len(words):
             yield ValidationError("not unique")
 
     return extend(Draft202012Validator, {"uniqueItems": unique})
 
 
-def _rule(validator: str, wanted: Any) -> str:
+def _rule(validator: str, expected: Any) -> str:
     """Return the rule of a JSON schema's keyword in words."""
     if validator == "type":
-        types = [wanted] if isinstance(wanted, str) else wanted
+        types = [expected] if isinstance(expected, str) else expected
         return f"must be of type {' or '.join(types)}"
     words = {
         "exclusiveMinimum": "must be greater than",
@@ -305,5 +305,5 @@ def _rule(validator: str, wanted: Any) -> str:
         "maxLength": "must have this many characters at most:",
         "pattern": "must match",
     }
-    bound = "" if validator == "uniqueItems" else f" {wanted}"
+    bound = "" if validator == "uniqueItems" else f" {expected}"
     return words.get(validator, f"breaks the schema's {validator}:") + bound

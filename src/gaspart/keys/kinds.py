@@ -13,7 +13,7 @@ Check = Callable[[str, Any], Any]
 """Function check(key, value) that returns the value in its final type, or raises SceneError."""
 
 
-def _as_given(_: str, value: Any) -> Any:
+def _identity(_: str, value: Any) -> Any:
     """Return the value as it is."""
     return value
 
@@ -29,7 +29,7 @@ class Kind(dict[str, Any]):
         Check for a field of a class. Default: the value is taken as it is, and the class itself checks it.
     """
 
-    def __init__(self, schema: Mapping[str, Any], check: Check = _as_given) -> None:
+    def __init__(self, schema: Mapping[str, Any], check: Check = _identity) -> None:
         super().__init__(schema)
         self.check = check
 
@@ -78,7 +78,7 @@ def described(kind: Mapping[str, Any], meaning: str, check: Check | None = None,
         New kind.
     """
     schema = {**kind, **more} | ({"description": meaning} if meaning else {})
-    return Kind(schema, check or (kind.check if isinstance(kind, Kind) else _as_given))
+    return Kind(schema, check or (kind.check if isinstance(kind, Kind) else _identity))
 
 
 def positive(meaning: str, **more: Any) -> Kind:
@@ -218,14 +218,14 @@ def flag(meaning: str, **more: Any) -> Kind:
     return described(FLAG, meaning, **more)
 
 
-def choice(meaning: str, *known: Any, **more: Any) -> Kind:
+def choice(meaning: str, *accepted: Any, **more: Any) -> Kind:
     """Return the kind of a value from a list.
 
     Parameters
     ----------
     meaning : str
         Description.
-    *known : object
+    *accepted : object
         Accepted values.
     **more : object
         Further entries of the schema.
@@ -237,9 +237,9 @@ def choice(meaning: str, *known: Any, **more: Any) -> Kind:
     """
 
     def check(key: str, value: Any) -> Any:
-        return values.one_of(key, value, known)
+        return values.one_of(key, value, accepted)
 
-    return described({"enum": list(known)}, meaning, check, **more)
+    return described({"enum": list(accepted)}, meaning, check, **more)
 
 
 def vector(meaning: str, dimension: int | None = None, sized: bool = True) -> Kind:
@@ -261,10 +261,10 @@ def vector(meaning: str, dimension: int | None = None, sized: bool = True) -> Ki
     """
 
     def check(key: str, value: Any) -> tuple[float, ...]:
-        found = values.finite_vector(key, value, dimension)
+        components = values.finite_vector(key, value, dimension)
         if sized:
-            values.size(key, found)
-        return found
+            values.size(key, components)
+        return components
 
     return described(_numbers(dimension), meaning, check)
 
@@ -397,5 +397,5 @@ def nullable(kind: Kind) -> Kind:
         The same kind if it accepts null, otherwise a new kind.
     """
     key, none = ("enum", None) if "enum" in kind else ("type", "null")
-    given = [kind[key]] if isinstance(kind[key], str) else kind[key]
-    return kind if none in given else kind.stating(**{key: [*given, none]})
+    accepted = [kind[key]] if isinstance(kind[key], str) else kind[key]
+    return kind if none in accepted else kind.stating(**{key: [*accepted, none]})

@@ -43,10 +43,10 @@ def finite(value: object) -> float | None:
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         return None
     try:
-        found = float(value)
+        result = float(value)
     except (ArithmeticError, TypeError, ValueError):  # an integer or a fraction beyond the range of floats
         return None
-    return found if math.isfinite(found) else None
+    return result if math.isfinite(result) else None
 
 
 def number(
@@ -83,10 +83,10 @@ def number(
     SceneError
         If the value is not a finite number in the range.
     """
-    found = finite(value)
-    if found is None or not (found > above and least <= found <= most):
+    result = finite(value)
+    if result is None or not (result > above and least <= result <= most):
         raise SceneError(key, value, rule)
-    return found
+    return result
 
 
 def size(key: str, value: float | tuple[float, ...]) -> None:
@@ -137,10 +137,10 @@ def positive_number(key: str, value: Any) -> float:
         If the value breaks this rule.
     """
     _refuse_text(key, value)
-    found = number(key, value, "must be positive", above=0.0)
-    if not SMALLEST <= found <= LARGEST:
+    result = number(key, value, "must be positive", above=0.0)
+    if not SMALLEST <= result <= LARGEST:
         raise SceneError(key, value, f"must be from {SMALLEST:g} to {LARGEST:g}: choose other units")
-    return found
+    return result
 
 
 def not_negative_number(key: str, value: Any) -> float:
@@ -164,9 +164,9 @@ def not_negative_number(key: str, value: Any) -> float:
         If the value breaks this rule.
     """
     _refuse_text(key, value)
-    found = number(key, value, "must not be negative", least=0.0)
-    size(key, found)
-    return found
+    result = number(key, value, "must not be negative", least=0.0)
+    size(key, result)
+    return result
 
 
 def sized_number(key: str, value: Any) -> float:
@@ -189,9 +189,9 @@ def sized_number(key: str, value: Any) -> float:
     SceneError
         If the value breaks this rule.
     """
-    found = number(key, value, "must be a finite number")
-    size(key, found)
-    return found
+    result = number(key, value, "must be a finite number")
+    size(key, result)
+    return result
 
 
 def count_of(key: str, value: Any, least: int = 0, most: int = LARGEST_INTEGER) -> int:
@@ -247,10 +247,10 @@ def finite_vector(key: str, value: Any, dimension: int | None = None) -> tuple[f
         If the value is not a list of this length of finite numbers.
     """
     rule = f"must be a list of {dimension or '2 or 3'} finite numbers"
-    found = tuple(number(key, item, rule) for item in _items(key, value, rule, 4))
-    if len(found) not in ((2, 3) if dimension is None else (dimension,)):
+    components = tuple(number(key, item, rule) for item in _items(key, value, rule, 4))
+    if len(components) not in ((2, 3) if dimension is None else (dimension,)):
         raise SceneError(key, value, rule)
-    return found
+    return components
 
 
 def _items(key: str, value: Any, rule: str, most: int) -> Iterable[Any]:
@@ -289,14 +289,14 @@ def instances(key: str, value: Any, kinds: type | tuple[type, ...], rule: str) -
     """
     if isinstance(value, kinds):
         return (value,)
-    found: list[Any] = []
+    items: list[Any] = []
     for item in _items(key, value, rule, MOST_LISTED + 1):
         if not isinstance(item, kinds):
-            raise SceneError(f"{key}[{len(found)}]", item, rule)
-        found.append(item)
-    if len(found) > MOST_LISTED:
-        raise SceneError(key, len(found), f"there may be {MOST_LISTED} at most")
-    return tuple(found)
+            raise SceneError(f"{key}[{len(items)}]", item, rule)
+        items.append(item)
+    if len(items) > MOST_LISTED:
+        raise SceneError(key, len(items), f"there may be {MOST_LISTED} at most")
+    return tuple(items)
 
 
 def true_or_false(key: str, value: Any) -> bool:
@@ -324,7 +324,7 @@ def true_or_false(key: str, value: Any) -> bool:
     return value
 
 
-def one_of(key: str, value: Any, known: Iterable[Any]) -> Any:
+def one_of(key: str, value: Any, accepted: Iterable[Any]) -> Any:
     """Return `value`, if it is one of the accepted words or numbers.
 
     Parameters
@@ -333,7 +333,7 @@ def one_of(key: str, value: Any, known: Iterable[Any]) -> Any:
         Key of the value, for the message.
     value : object
         Value.
-    known : iterable
+    accepted : iterable
         Accepted values, whose type counts, too.
 
     Returns
@@ -346,8 +346,8 @@ def one_of(key: str, value: Any, known: Iterable[Any]) -> Any:
     SceneError
         If the value is not accepted.
     """
-    if not any(isinstance(value, type(one)) and value == one for one in known):
-        raise SceneError(key, value, f"must be one of {tuple(known)}")
+    if not any(isinstance(value, type(item)) and value == item for item in accepted):
+        raise SceneError(key, value, f"must be one of {tuple(accepted)}")
     return value
 
 
@@ -371,8 +371,8 @@ def partition(key: str, value: Any) -> int | tuple[int, ...]:
     SceneError
         If the value is no such number or list.
     """
-    given = value if isinstance(value, (tuple, list)) else (value,)
-    sides = tuple(count_of(key, n, least=1) for n in given)
+    counts = value if isinstance(value, (tuple, list)) else (value,)
+    sides = tuple(count_of(key, n, least=1) for n in counts)
     if math.prod(sides) > MOST_BOXES or len(sides) > 3:
         rule = f"must be one number, or one per axis, of at most {MOST_BOXES} boxes"
         raise SceneError(key, value, rule)

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gaspart.errors import SceneError, unknown_word
-from gaspart.files import resolved
+from gaspart.files import resolve_path
 from gaspart.keys import Kind, choice, names, record, require
 from gaspart.keys.values import finite, size
 from gaspart.reproduction.claims.table import filled, place_fault
@@ -37,8 +37,8 @@ def merged_with_default(path: Path, base: Path | None = None) -> tuple[dict[str,
     The other config is `base`, by default the `config.yaml` in the same folder. Raises SceneError for a file
     that cannot be read.
     """
-    path = resolved(path)
-    base = path.parent / "config.yaml" if base is None else resolved(base)
+    path = resolve_path(path)
+    base = path.parent / "config.yaml" if base is None else resolve_path(base)
     files = [base, path] if base.exists() and base != path else [path]
     merged: dict[str, Any] = {}
     for file in files:

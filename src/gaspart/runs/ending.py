@@ -111,7 +111,7 @@ class Accuracy(Requirement):
 
 
 def require_measurable(
-    asked: Requirement,
+    requirement: Requirement,
     scene: Scene,
     engine: Engine,
     follow: int | None = None,
@@ -121,7 +121,7 @@ def require_measurable(
 
     Parameters
     ----------
-    asked : Requirement
+    requirement : Requirement
         The requested accuracy.
     scene : Scene
         The scene, which may not have the observable, however long the run.
@@ -137,30 +137,30 @@ def require_measurable(
     SceneError
         If the run cannot measure the observable.
     """
-    walls = walls_of(asked.observable, scene)
+    walls = walls_of(requirement.observable, scene)
     kept = ("fluxes",) if correlations is not None and correlations.stress else ()
     try:
-        require_run(asked.observable, scene, kept, follow)
-        require_steady_value(asked.observable, scene)
-        require_modelled(asked.observable, scene, engine)
+        require_run(requirement.observable, scene, kept, follow)
+        require_steady_value(requirement.observable, scene)
+        require_modelled(requirement.observable, scene, engine)
     except SceneError as error:
-        raise SceneError("until", asked.name, f"{error.key}: {error.rule}") from None
-    if asked.face not in (None, *walls):
-        raise SceneError("until", asked.name, f"the walls are {', '.join(walls)}")
+        raise SceneError("until", requirement.name, f"{error.key}: {error.rule}") from None
+    if requirement.face not in (None, *walls):
+        raise SceneError("until", requirement.name, f"the walls are {', '.join(walls)}")
 
 
-def require_end(asked: Requirement, scene: Scene, at_most: float | None, given: bool) -> None:
+def require_end(requirement: Requirement, scene: Scene, at_most: float | None, from_state: bool) -> None:
     """Raise SceneError for a run that has no end.
 
     Parameters
     ----------
-    asked : Requirement
+    requirement : Requirement
         The requested accuracy.
     scene : Scene
         The scene, in which nothing may ever happen, or which may have no steady state.
     at_most : float, [time], optional
         Maximum length of the run. Without it a steady state is required.
-    given : bool
+    from_state : bool
         True if the run starts from a given state.
 
     Raises
@@ -171,28 +171,28 @@ def require_end(asked: Requirement, scene: Scene, at_most: float | None, given: 
     kinds = [kind for kind in scene.kinds if kind.count]
     if not kinds:
         return  # which the recipe refuses
-    moving = given or any(kind.initial_temperature(scene.dimension) > 0.0 for kind in kinds)
+    moving = from_state or any(kind.initial_temperature(scene.dimension) > 0.0 for kind in kinds)
     driven = scene.gravity or scene.thermostat or any(face.moves for face in scene.faces.values())
     if not moving and not driven:
-        raise SceneError("until", asked.name, "never becomes known: nothing moves")
-    if scene.count == 1 and "face" not in OBSERVABLES[asked.observable].along:
-        raise SceneError("until", asked.name, "never becomes known: a single particle meets no other")
+        raise SceneError("until", requirement.name, "never becomes known: nothing moves")
+    if scene.count == 1 and "face" not in OBSERVABLES[requirement.observable].along:
+        raise SceneError("until", requirement.name, "never becomes known: a single particle meets no other")
     if at_most is None:
         try:
             require_steady(scene)
         except SceneError as error:
             rule = f"{error.key}: {error.rule}, or a longest one (at_most)"
-            raise SceneError("until", asked.name, rule) from None
+            raise SceneError("until", requirement.name, rule) from None
 
 
-def require_reachable(asked: Requirement, scene: Scene, replicas: int) -> None:
+def require_reachable(requirement: Requirement, scene: Scene, replicas: int) -> None:
     """Raise SceneError for an accuracy that the mean of replicas never reaches.
 
     Each replica has its own seed, and the energies of their initial states scatter.
 
     Parameters
     ----------
-    asked : Requirement
+    requirement : Requirement
         The requested accuracy.
     scene : Scene
         The scene.
@@ -209,16 +209,16 @@ def require_reachable(asked: Requirement, scene: Scene, replicas: int) -> None:
     from gaspart.accuracy.scatter import start_scatter  # loads the analysis, which few runs need
     from gaspart.accuracy.target import Target
 
-    starts = start_scatter(Target(scene, asked.observable, asked.face))
-    if starts.value / math.sqrt(replicas) < asked.accuracy:
+    starts = start_scatter(Target(scene, requirement.observable, requirement.face))
+    if starts.value / math.sqrt(replicas) < requirement.accuracy:
         return
-    enough = math.ceil(2.0 * (starts.value / asked.accuracy) ** 2)
+    enough = math.ceil(2.0 * (starts.value / requirement.accuracy) ** 2)
     rule = (
         f"the energies of the starts alone scatter the mean of {replicas} replicas by "
         f"{100.0 * starts.value / math.sqrt(replicas):.2g} %: {starts.remedy}; {enough} replicas would "
         "suffice, or give a longest duration (at_most)"
     )
-    raise SceneError("until", f"{asked.name}={asked.accuracy:g}", rule)
+    raise SceneError("until", f"{requirement.name}={requirement.accuracy:g}", rule)
 
 
 def default_sample_interval(scene: Scene, engine: Engine, correlations: Correlations | None) -> float:

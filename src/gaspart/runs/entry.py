@@ -158,20 +158,20 @@ def run(
     21
     """
     engine = _engine_of(scene, engine)
-    wanted = _request(duration, sample_interval, until, at_most)
-    needs_paths = _needs_paths(wanted, scene, engine, follow, correlations, initial)
+    request = _request(duration, sample_interval, until, at_most)
+    needs_paths = _needs_paths(request, scene, engine, follow, correlations, initial)
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
-    if impulses is None and wanted is not None:
-        impulses = _useful_impulses(wanted, scene, engine)
+    if impulses is None and request is not None:
+        impulses = _useful_impulses(request, scene, engine)
     tallies = {"impulses": impulses, "pair_impulses": pair_impulses}
     recipe = Recipe(
         scene, engine, seed, duration, sample_interval, displacements or needs_paths,
-        correlations=correlations, until=wanted, initial=_start(initial, scene, path, replicas),
+        correlations=correlations, until=request, initial=_start(initial, scene, path, replicas),
         **recipe_fields({"follow": follow, "keep": keep, "pairs": pairs, **tallies}),
     )  # fmt: skip
     options = WriteOptions(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
-    return _record(_in_replicas(recipe, replicas), _required(path), options, examined)
+    return _record(_in_replicas(recipe, replicas), _require_path(path), options, examined)
 
 
 def _engine_of(scene: object, engine: Engine | str | None) -> Engine:
@@ -183,11 +183,14 @@ def _engine_of(scene: object, engine: Engine | str | None) -> Engine:
     return chosen(engine)
 
 
-def _useful_impulses(wanted: Until, scene: Scene, engine: Engine) -> str | None:
+def _useful_impulses(request: Until, scene: Scene, engine: Engine) -> str | None:
     """Return the tally of impulses that makes requested accuracies cheaper; None without one."""
     from gaspart.accuracy.target import Target  # loads the analysis, which few runs need
 
-    each = (Target(scene, asked.observable, asked.face).tallies(engine) for asked in wanted.accuracies)
+    each = (
+        Target(scene, requirement.observable, requirement.face).tallies(engine)
+        for requirement in request.accuracies
+    )
     return next((tally.to_text() for tallies in each for tally in tallies), None)
 
 
@@ -198,8 +201,8 @@ def _in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
     """
     recipes, until = in_replicas(recipe, replicas), recipe.until
     if until is not None and until.at_most is None and recipe.initial is None:
-        for asked in until.accuracies:
-            require_reachable(asked, recipe.scene, replicas)
+        for requirement in until.accuracies:
+            require_reachable(requirement, recipe.scene, replicas)
     return recipes
 
 
@@ -216,7 +219,7 @@ def _record(
 
 
 def _needs_paths(
-    wanted: Until | None,
+    request: Until | None,
     scene: Scene,
     engine: Engine,
     follow: int | None,
@@ -228,12 +231,12 @@ def _needs_paths(
     Raises SceneError for an observable that cannot be measured, or never becomes accurate, also of a run from
     a given state.
     """
-    if wanted is None:
+    if request is None:
         return False
-    for asked in wanted.accuracies:
-        require_measurable(asked, scene, engine, follow, correlations)
-        require_end(asked, scene, wanted.at_most, initial is not None)
-    return any(OBSERVABLES[asked.observable].needs == "paths" for asked in wanted.accuracies)
+    for requirement in request.accuracies:
+        require_measurable(requirement, scene, engine, follow, correlations)
+        require_end(requirement, scene, request.at_most, initial is not None)
+    return any(OBSERVABLES[requirement.observable].needs == "paths" for requirement in request.accuracies)
 
 
 def _start(
@@ -243,20 +246,20 @@ def _start(
 
     Raises SceneError if that file is one of the files at `path`, by any name: it would be lost.
     """
-    paths = replica_paths(_required(path), count_of("replicas", replicas, least=1, most=MOST_REPLICAS))
+    paths = replica_paths(_require_path(path), count_of("replicas", replicas, least=1, most=MOST_REPLICAS))
     if not isinstance(initial, str | Path):
         return initial
     from gaspart.inspection.readers import STARTS, read_state  # which few runs need
 
     for output in map(output_path, paths):
-        for place in (output, partial_path(output), checkpoint_path(output)):
-            if is_same_file(initial, place):
+        for target in (output, partial_path(output), checkpoint_path(output)):
+            if is_same_file(initial, target):
                 rule = f"is the file that is to be written, {output}: choose another name for the new run"
                 raise SceneError("initial", str(initial), rule)
     return read_state(initial, scene) if Path(initial).suffix in STARTS else last_state(initial)
 
 
-def _required(path: str | Path | None) -> str | Path:
+def _require_path(path: str | Path | None) -> str | Path:
     """Return the path of a trajectory, which must be given."""
     if path is None:
         raise SceneError("path", None, "must be given: the file of the trajectory")

@@ -88,16 +88,18 @@ def resume_together(
     SceneError, SimulationError
         As `gaspart.trajectory.run.resume` and `extend`.
     """
-    path, all_of_them = path_of_all(file, recipe), beside(file, recipe)
+    path, replicas = path_of_all(file, recipe), beside(file, recipe)
     if duration is not None:
-        _carry_out(_extend, [(duration, one) for one, _ in all_of_them], path, options, examined)
+        _carry_out(
+            _extend, [(duration, replica_file) for replica_file, _ in replicas], path, options, examined
+        )
         return path
-    unfinished = [partial for one, _ in all_of_them if (partial := partial_path(one)).exists()]
+    unfinished = [partial for replica_file, _ in replicas if (partial := partial_path(replica_file)).exists()]
     for partial in unfinished:
         begun(partial)
-    if not unfinished and all(one.exists() for one, _ in all_of_them):
+    if not unfinished and all(replica_file.exists() for replica_file, _ in replicas):
         raise SceneError("path", str(path), "is already complete, in all of its replicas")
-    return record_together([one for _, one in all_of_them], path, options, examined)
+    return record_together([replica_recipe for _, replica_recipe in replicas], path, options, examined)
 
 
 def _carry_out(
@@ -110,7 +112,7 @@ def _carry_out(
     """Call a function for all replicas, with `send`, its arguments, options and a flag for progress."""
     reached: dict[int, tuple[float, float, int]] = {}
 
-    def received(number: int, message: Any) -> None:
+    def receive(number: int, message: Any) -> None:
         if isinstance(message, list):
             if examined and number == 0:  # the others say the same
                 examined(message)
@@ -120,7 +122,7 @@ def _carry_out(
             times, durations, collisions = zip(*reached.values(), strict=True)
             options.progress(sum(times) / len(times), max(durations), sum(collisions))
 
-    def finished(number: int, result: Any) -> None:
+    def finish(number: int, result: Any) -> None:
         if isinstance(result, Lost):
             rule = f"replica {number + 1} of {path}: {result}; the same command continues it"
             raise SimulationError(rule)
@@ -128,23 +130,23 @@ def _carry_out(
     require_processes("replicas", len(calls))
     plain = replace(options, progress=None, examiner=None), options.progress is not None
     set_note("the same command continues it")
-    in_processes(function, [(*call, *plain) for call in calls], len(calls), finished, received)
+    in_processes(function, [(*call, *plain) for call in calls], len(calls), finish, receive)
     set_note("")
 
 
-def _record(send: Send, recipe: Recipe, path: Path, options: WriteOptions, shown: bool) -> None:
+def _record(send: Send, recipe: Recipe, path: Path, options: WriteOptions, with_progress: bool) -> None:
     """Record the trajectory of a replica."""
     load_numba(ours=True)
-    trajectory.record(recipe, path, _sending(options, send, shown))
+    trajectory.record(recipe, path, _sending(options, send, with_progress))
 
 
-def _extend(send: Send, duration: float, path: Path, options: WriteOptions, shown: bool) -> None:
+def _extend(send: Send, duration: float, path: Path, options: WriteOptions, with_progress: bool) -> None:
     """Continue the trajectory of a replica."""
     load_numba(ours=True)
-    trajectory.extend(path, duration, _sending(options, send, shown))
+    trajectory.extend(path, duration, _sending(options, send, with_progress))
 
 
-def _sending(options: WriteOptions, send: Send, shown: bool) -> WriteOptions:
+def _sending(options: WriteOptions, send: Send, with_progress: bool) -> WriteOptions:
     """Return the options of a process that sends its progress and the results of its tests."""
-    progress = (lambda *reached: send(reached)) if shown else None
+    progress = (lambda *reached: send(reached)) if with_progress else None
     return replace(options, progress=progress, examiner=Examiner(send))

@@ -193,12 +193,12 @@ def make_boxes(
     """
     lengths = scene.container.lengths
     partition("boxes_per_side", boxes_per_side)
-    given = boxes_per_side
-    if not isinstance(given, (tuple, list)):
-        given = (given,) * len(lengths)
-    if len(given) != len(lengths):
+    numbers = boxes_per_side
+    if not isinstance(numbers, (tuple, list)):
+        numbers = (numbers,) * len(lengths)
+    if len(numbers) != len(lengths):
         raise SceneError("boxes_per_side", boxes_per_side, "must be one number, or one per axis")
-    sides = [int(n) for n in given]
+    sides = [int(n) for n in numbers]
     narrowest = narrowest_box(scene) if narrowest is None else narrowest
     for length, n in zip(lengths, sides, strict=True):
         if n > 1 and length / n < narrowest:
@@ -421,8 +421,8 @@ def deepest_overlap(
             pairs = trees[a].query_pairs(reach, output_type="ndarray")
         else:  # the larger ones ask: they are fewer where sizes differ much
             near = trees[b].query_ball_tree(trees[a], reach)
-            asked = np.repeat(np.arange(len(near)), [len(neighbours) for neighbours in near])
-            pairs = np.stack([np.fromiter(chain.from_iterable(near), dtype=int), asked], axis=1)
+            larger = np.repeat(np.arange(len(near)), [len(neighbours) for neighbours in near])
+            pairs = np.stack([np.fromiter(chain.from_iterable(near), dtype=int), larger], axis=1)
         if len(pairs):
             first, second = members[a][pairs[:, 0]], members[b][pairs[:, 1]]
             gap = positions[first] - positions[second]

@@ -27,7 +27,7 @@ from gaspart.state.random import normals, stream
 JAMMED = 1e6
 """Reduced pressure PV/(N k_B T) at which particles count as jammed."""
 RATES = (2.0**-4, 2.0**-7, 2.0**-10)
-"""Growth of the largest diameter per thermal speed: the rates that `compressed` tries, in this order."""
+"""Growth of the largest diameter per thermal speed: rates of `compress_positions`, tried in this order."""
 
 _START = {2: 0.3, 3: 0.2}  # packing fraction at which growth begins, within easy reach of insertion
 _SPARE = 2.0**-36  # relative excess of the grown size, so that rounding leaves no overlap
@@ -120,23 +120,23 @@ def compress(
         return Packing(np.empty((0, scene.dimension)), 1.0, 0.0, 1.0, 0)
     d = scene.dimension
     unit = scene.packing_fraction
-    wanted = unit if until is None else closest_packing(scene) if until == "jammed" else until
-    end = _root(wanted / unit, d)
+    target = unit if until is None else closest_packing(scene) if until == "jammed" else until
+    end = _root(target / unit, d)
     growing = _Growing(scene, seed, min(end, _root(_START[d] / unit, d)), end)
     while growing.scale < end * (1.0 + _SPARE) and growing.pressure < jammed:
         growing.grow(growth_rate, end * (1.0 + _SPARE))
     if growing.scale < end and until != "jammed":
         raise SceneError(
             "packing_fraction",
-            wanted,
+            target,
             f"particles that grow by {growth_rate:g} jam already at {unit * growing.scale**d:.4f}",
         )
     scale = min(end, growing.scale * (1.0 - _SPARE))
-    fraction = replace(scene, species=_scaled(scene, scale)).packing_fraction
+    fraction = replace(scene, species=_scale_species(scene, scale)).packing_fraction
     return Packing(growing.final_positions(scale), scale, fraction, growing.pressure, growing.collisions)
 
 
-def compressed(scene: Scene, seed: int | tuple[int, ...]) -> np.ndarray:
+def compress_positions(scene: Scene, seed: int | tuple[int, ...]) -> np.ndarray:
     """Return positions for a scene, by the fastest of `RATES` that reaches its packing fraction.
 
     Parameters
@@ -172,7 +172,7 @@ def _root(value: float, dimension: int) -> float:
     return low
 
 
-def _scaled(scene: Scene, scale: float) -> tuple[Species, ...]:
+def _scale_species(scene: Scene, scale: float) -> tuple[Species, ...]:
     """Return the species of a scene with scaled radii, at random positions."""
     return tuple(replace(kind, radius=kind.radius * scale, arrangement="random") for kind in scene.species)
 
@@ -187,7 +187,7 @@ class _Growing:
         from gaspart.kernels.event.queue import empty_queue
         from gaspart.kernels.physics import flight
 
-        start = replace(scene, species=_scaled(scene, scale), faces={})
+        start = replace(scene, species=_scale_species(scene, scale), faces={})
         positions, _ = random_insertion(start, stream(seed, _POSITIONS))
         self._scene, self._growth, self._flight, self._kernels = scene, growth, flight, model
         d, n = scene.dimension, scene.count

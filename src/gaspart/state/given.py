@@ -17,7 +17,7 @@ from gaspart.scene.moving_walls import MOVING_WALL
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import flow_of_rate
 from gaspart.state.boxes import deepest_overlap
-from gaspart.state.initial import assembled, in_flow, masses_of
+from gaspart.state.initial import assemble_state, in_flow, masses_of
 from gaspart.state.insertion import per_particle
 from gaspart.state.state import State
 
@@ -74,20 +74,22 @@ def state_from_arrays(
     turning = (scene.count,) if scene.dimension == 2 else (scene.count, 3)
     spins = np.zeros(turning) if spins is None or not scene.rough else np.array(spins, dtype=float)
     shape = scene.count, scene.dimension
-    for name, values, wanted in (
+    for name, values, expected in (
         ("positions", positions, shape),
         ("velocities", velocities, shape),
         ("spins", spins, turning),
         ("vibrations", vibrations, shape[:1]),
     ):
-        if np.shape(values) != wanted:
-            raise SceneError("initial", np.shape(values), f"must have {name} of the scene's shape, {wanted}")
+        if np.shape(values) != expected:
+            raise SceneError(
+                "initial", np.shape(values), f"must have {name} of the scene's shape, {expected}"
+            )
         if not np.isfinite(values).all():
             raise SceneError("initial", name, "must be finite numbers")
     velocities = np.where(np.isinf(masses_of(scene))[:, None], 0.0, velocities)
     radii = per_particle(scene, "radius").astype(float)
-    places = _inside(scene, np.array(positions, dtype=float), radii, _checked_piston(scene, piston))
-    state = assembled(scene, places, velocities, spins)
+    coordinates = _inside(scene, np.array(positions, dtype=float), radii, _checked_piston(scene, piston))
+    state = assemble_state(scene, coordinates, velocities, spins)
     return replace(
         state,
         piston=state.piston if piston is None else np.array(piston, dtype=float),
@@ -144,23 +146,23 @@ def state_at_time_zero(scene: Scene, other: State) -> State:
             n = differ[0]
             rule = f"particle {n} has this {name}, and {mine[n]:.17g} in the scene: species must be the same"
             raise SceneError("initial", float(its[n]), rule)
-    places, velocities = _in_flow(scene, other)
-    piston, displaced = _taken_piston(scene, other), _displaced(scene, other)
-    return state_from_arrays(scene, places, velocities, other.spins, piston, displaced, other.vibrations)
+    positions, velocities = _in_flow(scene, other)
+    piston, displaced = _taken_piston(scene, other), _image_displacement(scene, other)
+    return state_from_arrays(scene, positions, velocities, other.spins, piston, displaced, other.vibrations)
 
 
 def _in_flow(scene: Scene, other: State) -> tuple[np.ndarray, np.ndarray]:
     """Return (N, d) positions and velocities of a state, about the flow of the scene."""
-    places, height = np.array(other.positions, dtype=float), scene.container.lengths[GRADIENT]
+    positions, height = np.array(other.positions, dtype=float), scene.container.lengths[GRADIENT]
     if scene.shear_rate is not None and other.shear_rate is None:  # whose faces are places as any other
-        places[:, GRADIENT] = _wrapped(places[:, GRADIENT], height)
+        positions[:, GRADIENT] = _wrap_coordinates(positions[:, GRADIENT], height)
     if (scene.shear_rate or 0.0) == (other.shear_rate or 0.0):
-        return places, other.velocities
-    peculiar = other.velocities - flow_of_rate(other.shear_rate, height, places)
-    return places, in_flow(scene, other.masses, places, peculiar)
+        return positions, other.velocities
+    peculiar = other.velocities - flow_of_rate(other.shear_rate, height, positions)
+    return positions, in_flow(scene, other.masses, positions, peculiar)
 
 
-def _displaced(scene: Scene, other: State) -> float | None:
+def _image_displacement(scene: Scene, other: State) -> float | None:
     """Return the displacement of images; raise SceneError if the scene has none.
 
     Complete lengths of the container are subtracted, which is exact.
@@ -222,10 +224,10 @@ def check_apart(scene: Scene, state: State) -> None:
     """
     if state.count == 0:
         return
-    places, radii = state.positions, state.radii
+    positions, radii = state.positions, state.radii
     if state.displaced is not None:
-        places, radii = _with_images(state)
-    depth = deepest_overlap(places, radii, state.lengths, scene.image_axes)
+        positions, radii = _with_images(state)
+    depth = deepest_overlap(positions, radii, state.lengths, scene.image_axes)
     allowed = 2.0 * np.sqrt(state.dimension) * _SINGLE * max(scene.container.lengths)  # of two particles
     if depth * 2.0 * state.radii.min() > allowed:
         rule = (
@@ -243,11 +245,11 @@ def _with_images(state: State) -> tuple[np.ndarray, np.ndarray]:
     near = state.lengths[GRADIENT] - state.positions[:, GRADIENT] <= 2.0 * state.radii.max()
     images = state.positions[near]
     images[:, GRADIENT] -= state.lengths[GRADIENT]
-    images[:, FLOW] = _wrapped(images[:, FLOW] - state.displaced, state.lengths[FLOW])
+    images[:, FLOW] = _wrap_coordinates(images[:, FLOW] - state.displaced, state.lengths[FLOW])
     return np.concatenate([state.positions, images]), np.concatenate([state.radii, state.radii[near]])
 
 
-def _wrapped(values: np.ndarray, lengths: np.ndarray | float) -> np.ndarray:
+def _wrap_coordinates(values: np.ndarray, lengths: np.ndarray | float) -> np.ndarray:
     """Return coordinates in [0, L) of the same positions among periodic images."""
     placed = values - lengths * np.floor(values / lengths)
     return np.where(placed >= lengths, 0.0, placed)  # rounded up
@@ -261,7 +263,7 @@ def _inside(scene: Scene, positions: np.ndarray, radii: np.ndarray, piston: np.n
     lengths, periodic = np.array(scene.container.lengths), np.array(scene.image_axes)
     slack = _SINGLE * lengths
     low, high = _bounds(scene, positions, radii, piston)
-    placed = np.where(periodic, _wrapped(positions, lengths), positions)
+    placed = np.where(periodic, _wrap_coordinates(positions, lengths), positions)
     outside = ~periodic & ((placed < low - slack) | (placed > high + slack))
     for n in np.flatnonzero(outside.any(axis=1)).tolist():
         rule = f"particle {n} is not inside the container"
@@ -288,10 +290,10 @@ def _bounds(
     if scene.shear_rate is not None:
         high[:, GRADIENT] = np.nextafter(high[:, GRADIENT], 0.0)
     if wall := scene.moving_wall:
-        axis, place = wall.axis, wall.place if piston is None else piston[0]
-        above = positions[:, axis] > place
-        low[above, axis] = place + radii[above]
-        high[~above, axis] = place - radii[~above]
+        axis, position = wall.axis, wall.place if piston is None else piston[0]
+        above = positions[:, axis] > position
+        low[above, axis] = position + radii[above]
+        high[~above, axis] = position - radii[~above]
     if piston is None:
         return low, high
     for n, _ in scene.pistons:

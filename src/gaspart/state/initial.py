@@ -13,7 +13,7 @@ from gaspart.scene.moving_walls import MOVING_WALL
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import flow
 from gaspart.scene.species import LATTICES
-from gaspart.state.compression import compressed
+from gaspart.state.compression import compress_positions
 from gaspart.state.insertion import per_particle, random_insertion
 from gaspart.state.random import directions, natural_log, normals, stream
 from gaspart.state.state import State
@@ -66,14 +66,14 @@ def places_in_wells(scene: Scene, positions: np.ndarray, radii: np.ndarray) -> n
     return high.astype(np.int8) - low.astype(np.int8)
 
 
-def well_energies(scene: Scene, places: np.ndarray) -> np.ndarray:
+def well_energies(scene: Scene, wells: np.ndarray) -> np.ndarray:
     """Return the potential energy of particles in wells.
 
     Parameters
     ----------
     scene : Scene
         Scene of the faces.
-    places : ndarray of int8, shape (N, d)
+    wells : ndarray of int8, shape (N, d)
         Wells of the particles, by `places_in_wells`.
 
     Returns
@@ -82,7 +82,7 @@ def well_energies(scene: Scene, places: np.ndarray) -> np.ndarray:
         Energies.
     """
     depths, _ = wells_of(scene)
-    return -(np.where(places < 0, depths[::2], 0.0) + np.where(places > 0, depths[1::2], 0.0)).sum(axis=1)
+    return -(np.where(wells < 0, depths[::2], 0.0) + np.where(wells > 0, depths[1::2], 0.0)).sum(axis=1)
 
 
 _POSITIONS, _VELOCITIES, _VIBRATIONS = 0, 1, 3  # 2 is that of draws at walls
@@ -118,7 +118,7 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
     if ordered:
         positions = _on_lattice(scene, rng, min(ordered))
     elif "compressed" in arrangements:
-        positions = compressed(scene, seed)
+        positions = compress_positions(scene, seed)
     else:
         try:
             positions, _ = random_insertion(scene, rng)
@@ -128,7 +128,7 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
     velocities = _velocities(scene, stream(seed, _VELOCITIES))
     _add_flow(scene, positions, velocities)
     return replace(
-        assembled(
+        assemble_state(
             scene,
             positions,
             velocities,
@@ -156,7 +156,7 @@ def masses_of(scene: Scene) -> np.ndarray:
     )
 
 
-def assembled(scene: Scene, positions: np.ndarray, velocities: np.ndarray, spins: np.ndarray) -> State:
+def assemble_state(scene: Scene, positions: np.ndarray, velocities: np.ndarray, spins: np.ndarray) -> State:
     """Return the state at time 0 with these positions, velocities and spins.
 
     Parameters
@@ -222,7 +222,7 @@ def _on_lattice(scene: Scene, rng: np.random.Generator, arrangement: str) -> np.
     """
     positions = lattice(scene, rng, slab=arrangement == "slab")
     radii = per_particle(scene, "radius").astype(float)
-    hit = (scene.wall_at(place, radius) for place, radius in zip(positions, radii, strict=True))
+    hit = (scene.wall_at(position, radius) for position, radius in zip(positions, radii, strict=True))
     if scene.walls and any(hit):
         raise SceneError("arrangement", arrangement, "a particle would overlap an interior wall; use random")
     return positions

@@ -241,15 +241,15 @@ def useful_impulses(scene: Scene, tallies: Collection[str], axis: int, bins: int
     tuple of ImpulseTally
         One tally, or none.
     """
-    asked = ImpulseTally("xyz"[axis], bins)
+    tally = ImpulseTally("xyz"[axis], bins)
     try:
-        asked.check(scene)
+        tally.check(scene)
     except SceneError:
         return ()
     one_mass = all(kind.alike for kind in scene.kinds)
     pulled = bool(scene.gravity and scene.gravity[axis])
     by_mass = pulled or scene.container.periodic[axis]
-    return (asked,) if asked.name in tallies and (one_mass or not by_mass) else ()
+    return (tally,) if tally.name in tallies and (one_mass or not by_mass) else ()
 
 
 @dataclass(frozen=True)
@@ -312,13 +312,13 @@ def tallies_of(scene: Scene) -> tuple[OptionalTally, ...]:
     tuple of OptionalTally
         Tallies.
     """
-    made = {
+    conditions = {
         WallShearTally(): scene.drags_faces,
         EntryTally(): scene.is_open,
         FixedCollisionTally(): scene.has_fixed,
         PerAreaTally(): scene.has_unequal_areas,
     }
-    return tuple(tally for tally, present in made.items() if present)
+    return tuple(tally for tally, present in conditions.items() if present)
 
 
 def tallied_fields(tallies: Iterable[OptionalTally]) -> list[str]:

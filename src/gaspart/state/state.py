@@ -140,10 +140,10 @@ class State:
         >>> state.unwrapped
         array([[12.,  5.]])
         """
-        places = self.positions + self.images * self.lengths
+        positions = self.positions + self.images * self.lengths
         if self.displaced is not None:
-            places[:, FLOW] += self.images[:, GRADIENT] * self.displaced
-        return places
+            positions[:, FLOW] += self.images[:, GRADIENT] * self.displaced
+        return positions
 
     @property
     def speeds(self) -> np.ndarray:
@@ -260,8 +260,8 @@ class State:
         1.0
         """
         momentum = self.momentum
-        whole = 0.5 * float((momentum**2).sum()) / float(_finite(self.masses).sum())
-        return 2.0 * (self.translational_energy - whole) / (self.dimension * (self.count - 1))
+        centre_energy = 0.5 * float((momentum**2).sum()) / float(_finite(self.masses).sum())
+        return 2.0 * (self.translational_energy - centre_energy) / (self.dimension * (self.count - 1))
 
     @property
     def kinetic_energy(self) -> float:

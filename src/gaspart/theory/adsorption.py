@@ -7,14 +7,14 @@ centre is within w of the lowest position that it can reach.
 import numpy as np
 
 from gaspart.theory.equations import STABLE_DISCS
-from gaspart.theory.geometry import Numbers, Values, checked, checked_packing_fraction, particle_volume
+from gaspart.theory.geometry import Numbers, Values, check_ranges, checked_packing_fraction, particle_volume
 from gaspart.theory.tables import packing_fraction_at
 
 _EXACT = np.sqrt(0.75)
 """Height above a layer of spheres of diameter 1 above which a point is near one sphere at most."""
 
 
-@checked
+@check_ranges
 def well_ratio(depth: Numbers, width: Numbers, outside: Numbers) -> Values:
     """Compute N_ads / N_gas of an ideal gas in equilibrium with a step well.
 
@@ -55,7 +55,7 @@ def well_ratio(depth: Numbers, width: Numbers, outside: Numbers) -> Values:
     return width / outside * np.exp(depth)
 
 
-@checked
+@check_ranges
 def excess_in_well(held: Numbers, free: Numbers, diameter: float, width: float, outside: float) -> Values:
     """Compute ln of N_ads / N_gas of spheres divided by the ratio of an ideal gas.
 
@@ -93,7 +93,7 @@ def excess_in_well(held: Numbers, free: Numbers, diameter: float, width: float, 
     return in_gas - in_well
 
 
-@checked
+@check_ranges
 def length_in_langmuirs_formula(ratio: Numbers, depth: Numbers, outside: Numbers) -> Values:
     """Compute the length that replaces lambda in Langmuir's formula, from a ratio N_ads / N_gas.
 
@@ -119,7 +119,7 @@ def length_in_langmuirs_formula(ratio: Numbers, depth: Numbers, outside: Numbers
     return ratio * outside * np.exp(-np.asarray(depth, dtype=float))
 
 
-@checked
+@check_ranges
 def planck_constant(length: Numbers, mass: Numbers, temperature: Numbers) -> Values:
     """Compute the constant h for which a length is the thermal wavelength.
 
@@ -321,7 +321,7 @@ def excess_of_few(activity: float, held: float, others: float) -> float:
     return float((slope * (1.0 - slope) - bend) / (2.0 * (others + slope * held)))
 
 
-@checked
+@check_ranges
 def langmuir_coverage(activity: Numbers) -> Values:
     """Compute the coverage of independent sites by Langmuir's isotherm.
 
@@ -348,7 +348,7 @@ def langmuir_coverage(activity: Numbers) -> Values:
     return activity / (1.0 + activity)
 
 
-@checked
+@check_ranges
 def flux_density(speed: Numbers) -> Values:
     """Compute the probability density of the normal speeds of particles that leave a wall.
 
@@ -371,7 +371,7 @@ def flux_density(speed: Numbers) -> Values:
     return speed * np.exp(-0.5 * speed**2)
 
 
-@checked
+@check_ranges
 def slow_flux_share(speed: Numbers) -> Values:
     """Compute the fraction of the particles leaving a wall that are slower than a normal speed.
 

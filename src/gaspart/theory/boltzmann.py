@@ -53,11 +53,11 @@ def collisions(
     """
     from scipy.special import roots_hermitenorm, roots_laguerre
 
-    place, share = roots_hermitenorm(nodes)
+    abscissae, share = roots_hermitenorm(nodes)
     share = share / np.sqrt(2.0 * np.pi)
     energy, weight = roots_laguerre(nodes)  # of the approach, half the square of its speed over sqrt 2
     free = 2 * (dimension - 1) + 1
-    axes = [part.ravel() for part in np.meshgrid(*[place] * free, np.sqrt(2.0 * energy), indexing="ij")]
+    axes = [part.ravel() for part in np.meshgrid(*[abscissae] * free, np.sqrt(2.0 * energy), indexing="ij")]
     shares = np.meshgrid(*[share] * free, weight / np.sqrt(np.pi), indexing="ij")
     first, second = axes[: dimension - 1], axes[dimension - 1 : 2 * dimension - 2]
     along = [(axes[-2] + sign * axes[-1]) / np.sqrt(2.0) for sign in (1, -1)]
@@ -238,16 +238,16 @@ def homogeneous_gas(
     rng, d = np.random.default_rng(seed), checked_dimension(dimension)
     velocity = directions(rng, count, d)
     hit = np.zeros(count, dtype=bool)
-    made, rows = 0.0, [(0.0, 1.0, 1.0, 1.0)]
-    while made < collisions:
+    progress, rows = 0.0, [(0.0, 1.0, 1.0, 1.0)]
+    while progress < collisions:
         i, j, normal, approach = _meetings(rng, velocity)
         change = 0.5 * (1.0 + restitution) * approach[:, None] * normal
         velocity[i] -= change
         velocity[j] += change
         hit[i] = hit[j] = True
-        made += 2.0 * len(i) / count
+        progress += 2.0 * len(i) / count
         square = dot(velocity, velocity)
-        rows.append((made, (square**2).mean() / square.mean() ** 2, 1.0 - hit.mean(), square.mean()))
+        rows.append((progress, (square**2).mean() / square.mean() ** 2, 1.0 - hit.mean(), square.mean()))
     return Homogeneous(*np.array(rows).T)
 
 
@@ -323,9 +323,9 @@ def rough_discs(
     rng = np.random.default_rng(seed)
     velocity, spin = rng.standard_normal((count, 2)), rng.standard_normal(count)  # spin: R omega
     spin *= np.sqrt(rough_ratio(inertia, tangential, normal) / inertia)
-    made, ratios = 0.0, []
-    while made < collisions:
-        made += _rough_step(rng, velocity, spin, inertia, tangential, normal)
+    progress, ratios = 0.0, []
+    while progress < collisions:
+        progress += _rough_step(rng, velocity, spin, inertia, tangential, normal)
         ratios.append(2.0 * inertia * (spin**2).mean() / dot(velocity, velocity).mean())
     return np.array(ratios)
 
@@ -356,11 +356,11 @@ def rough_start(
     rng = np.random.default_rng(seed)
     velocity, spin = rng.standard_normal((count, 2)), np.zeros(count)
     start = 0.5 * dot(velocity, velocity).mean()
-    made, rows = 0.0, [(0.0, 1.0)]
-    while made < collisions:
-        made += _rough_step(rng, velocity, spin, inertia, 1.0, 1.0)
+    progress, rows = 0.0, [(0.0, 1.0)]
+    while progress < collisions:
+        progress += _rough_step(rng, velocity, spin, inertia, 1.0, 1.0)
         difference = 0.5 * dot(velocity, velocity).mean() - inertia * (spin**2).mean()
-        rows.append((made, difference / start))
+        rows.append((progress, difference / start))
     where, differences = np.array(rows).T
     return where, differences
 
@@ -531,18 +531,18 @@ def tagged_paths(
     Statistical errors fall as 1 / sqrt(count).
     """
     rng = np.random.default_rng(seed)
-    velocity, place = np.zeros((count, 3)), np.zeros((count, 3))
-    places, velocities = [place.copy()], [velocity.copy()]
+    velocity, position = np.zeros((count, 3)), np.zeros((count, 3))
+    positions, velocities = [position.copy()], [velocity.copy()]
     for gas in speeds:
-        _advance(rng, place, velocity, gas, interval, hits, 2.0 / (1.0 + mass))
-        places.append(place.copy())
+        _advance(rng, position, velocity, gas, interval, hits, 2.0 / (1.0 + mass))
+        positions.append(position.copy())
         velocities.append(velocity.copy())
-    return Tagged(np.array(places), np.array(velocities))
+    return Tagged(np.array(positions), np.array(velocities))
 
 
 def _advance(
     rng: np.random.Generator,
-    place: np.ndarray,
+    position: np.ndarray,
     velocity: np.ndarray,
     gas: np.ndarray,
     interval: float,
@@ -555,14 +555,14 @@ def _advance(
     speed of approach. So there is no time step, and no error of a time step.
     """
     fastest = float(gas.max())
-    flying, moving, left = np.arange(len(place)), velocity.copy(), np.full(len(place), interval)
+    flying, moving, remaining = np.arange(len(position)), velocity.copy(), np.full(len(position), interval)
     while flying.size:
         most = lengths(moving) + fastest
         wait = rng.exponential(1.0 / (4.0 * hits * most))
-        place[flying] += moving * np.minimum(wait, left)[:, None]
-        left -= wait
-        meets = left > 0.0
-        flying, moving, left, most = (values[meets] for values in (flying, moving, left, most))
+        position[flying] += moving * np.minimum(wait, remaining)[:, None]
+        remaining -= wait
+        meets = remaining > 0.0
+        flying, moving, remaining, most = (values[meets] for values in (flying, moving, remaining, most))
         normal = directions(rng, flying.size, 3)
         along = rng.choice(gas, flying.size) * rng.uniform(-1.0, 1.0, flying.size)
         approach = dot(moving, normal) - along

@@ -9,14 +9,14 @@ import math
 
 import numpy as np
 
-from gaspart.theory.geometry import Numbers, Values, checked, checked_packing_fraction
+from gaspart.theory.geometry import Numbers, Values, check_ranges, checked_packing_fraction
 
 SONINE_EQUAL_MASSES = 1.01895
 """D of a particle as heavy as the gas's, divided by the first Sonine approximation k_B T / (M rate) (derived
 again, as in `enskog`)."""
 
 
-@checked
+@check_ranges
 def friction_rate(
     number_density: Numbers,
     contact_distance: float,
@@ -69,7 +69,7 @@ def friction_rate(
     return 8.0 / 3.0 * number_density * contact_distance**2 * momentum / mass
 
 
-@checked
+@check_ranges
 def tagged_diffusion(rate: Numbers, mass: float, gas_mass: float = 1.0, temperature: float = 1.0) -> Values:
     """Compute the diffusion coefficient of a particle from its friction rate.
 
@@ -112,7 +112,7 @@ def tagged_diffusion(rate: Numbers, mass: float, gas_mass: float = 1.0, temperat
     return factor * temperature / (mass * rate)
 
 
-@checked
+@check_ranges
 def langevin_msd(time: Numbers, diffusion: Numbers, rate: Numbers, dimension: int = 3) -> Values:
     """Compute the mean-squared displacement of a Brownian particle in equilibrium.
 
@@ -155,7 +155,7 @@ def langevin_msd(time: Numbers, diffusion: Numbers, rate: Numbers, dimension: in
     return 2.0 * dimension * diffusion / rate * shape
 
 
-@checked
+@check_ranges
 def langevin_msd_from_rest(time: Numbers, diffusion: Numbers, rate: Numbers, dimension: int = 3) -> Values:
     """Compute the mean-squared displacement of a Brownian particle that starts at rest.
 
@@ -208,7 +208,7 @@ def langevin_msd_from_rest(time: Numbers, diffusion: Numbers, rate: Numbers, dim
 _HIGHEST = 0.7
 
 
-@checked
+@check_ranges
 def insertion_work(packing_fraction: Numbers, size_ratio: Numbers) -> Values:
     """Compute the work of inserting a hard disc into a fluid of smaller discs.
 
@@ -250,7 +250,7 @@ def insertion_work(packing_fraction: Numbers, size_ratio: Numbers) -> Values:
     return -np.log1p(-eta) + 2.0 * s * eta / (1.0 - eta) + s**2 * eta / (1.0 - eta) ** 2
 
 
-@checked
+@check_ranges
 def displaced_area(packing_fraction: Numbers, size_ratio: Numbers) -> Values:
     """Compute the area of fluid that a large disc displaces.
 

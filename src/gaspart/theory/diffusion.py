@@ -13,7 +13,7 @@ from gaspart.theory.enskog import collision_rate, enskog_diffusion, enskog_visco
 from gaspart.theory.geometry import (
     Numbers,
     Values,
-    checked,
+    check_ranges,
     checked_dimension,
     checked_packing_fraction,
     number_density,
@@ -86,7 +86,7 @@ def erpenbeck_wood_ratio(packing_fraction: Numbers) -> Values:
     return 1.0 + 0.05403 * y + 6.3656 * y**2 - 10.9425 * y**3
 
 
-@checked
+@check_ranges
 def erpenbeck_wood_diffusion(
     packing_fraction: Numbers, diameter: float = 1.0, temperature: float = 1.0, mass: float = 1.0
 ) -> Values:
@@ -127,7 +127,7 @@ def erpenbeck_wood_diffusion(
     return erpenbeck_wood_ratio(packing_fraction) * enskog
 
 
-@checked
+@check_ranges
 def viscosity_ratio(packing_fraction: Numbers) -> Values:
     """Compute the shear viscosity of spheres divided by Enskog's.
 
@@ -160,11 +160,11 @@ def viscosity_ratio(packing_fraction: Numbers) -> Values:
     """
     eta = checked_packing_fraction(packing_fraction, ERPENBECK_WOOD_HIGHEST)
     path = Path(__file__).parent / "data" / "viscosity_3d.csv"
-    known, ratio, _ = np.loadtxt(path, delimiter=",", skiprows=1, unpack=True)
-    return np.interp(eta, known, np.r_[1.0, ratio[1:]])[()]
+    fractions, ratio, _ = np.loadtxt(path, delimiter=",", skiprows=1, unpack=True)
+    return np.interp(eta, fractions, np.r_[1.0, ratio[1:]])[()]
 
 
-@checked
+@check_ranges
 def yeh_hummer(length: Numbers, viscosity: Numbers, temperature: float = 1.0) -> Values:
     """Compute the correction of the self-diffusion coefficient of spheres for a finite periodic cube.
 
@@ -206,7 +206,7 @@ def yeh_hummer(length: Numbers, viscosity: Numbers, temperature: float = 1.0) ->
     return YEH_HUMMER_CONSTANT * temperature / (6.0 * math.pi * viscosity * length)
 
 
-@checked
+@check_ranges
 def diffusion_in_cube(
     packing_fraction: float,
     length: float,
@@ -266,7 +266,7 @@ def diffusion_in_cube(
     return infinite - shift, math.hypot(relative * infinite, min(0.5, _SHIFT + 2.0 * paths) * shift)
 
 
-@checked
+@check_ranges
 def velocity_decay_rate(
     packing_fraction: Numbers,
     dimension: int,
@@ -318,7 +318,7 @@ def velocity_decay_rate(
     return 2.0 / dimension * rate
 
 
-@checked
+@check_ranges
 def enskog_mean_squared_displacement(
     time: Numbers,
     packing_fraction: Numbers,
@@ -389,7 +389,7 @@ def _spreading(
     return density, diffusion + viscosity / (mass * density)
 
 
-@checked
+@check_ranges
 def velocity_autocorrelation_tail(
     time: Numbers,
     packing_fraction: Numbers,
@@ -446,7 +446,7 @@ def velocity_autocorrelation_tail(
     return amplitude * (4.0 * math.pi * spreading * np.asarray(time)) ** (-0.5 * dimension)
 
 
-@checked
+@check_ranges
 def logarithmic_slope(
     packing_fraction: Numbers, diameter: float = 1.0, temperature: float = 1.0, mass: float = 1.0
 ) -> Values:

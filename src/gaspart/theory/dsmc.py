@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from gaspart.scene.geometry import ball_volume
-from gaspart.theory.geometry import Numbers, Values, checked, checked_dimension
+from gaspart.theory.geometry import Numbers, Values, check_ranges, checked_dimension
 from gaspart.theory.modes import wave_vectors
 
 CELL_COEFFICIENTS = {
@@ -152,7 +152,7 @@ def _moments(per_side: int, side: float, radius: float) -> np.ndarray:
     return np.array([own @ boxes, own @ near, own @ near**2])
 
 
-@checked
+@check_ranges
 def expected_pair_tests(
     count: float, per_side: int, dimension: int, side: float, radius: float
 ) -> tuple[float, float]:
@@ -198,7 +198,7 @@ def expected_pair_tests(
     return mean, math.sqrt(max(variance, 0.0))
 
 
-@checked
+@check_ranges
 def neighbour_share(
     per_side: Sequence[int] | np.ndarray, dimension: int, side: float, radius: float
 ) -> np.ndarray:
@@ -223,7 +223,7 @@ def neighbour_share(
     return np.array([_moments(int(n), side, radius)[1] for n in per_side]) ** checked_dimension(dimension)
 
 
-@checked
+@check_ranges
 def expected_box_visits(per_side: int, dimension: int, side: float, radius: float) -> float:
     """Compute the mean number of boxes that a particle searches.
 
@@ -247,7 +247,7 @@ def expected_box_visits(per_side: int, dimension: int, side: float, radius: floa
     return 0.5 * (1.0 + boxes)
 
 
-@checked
+@check_ranges
 def boxes_in_reach(width: Numbers, reach: Numbers, dimension: int) -> Values:
     """Compute the mean number of boxes within a distance of a random point.
 

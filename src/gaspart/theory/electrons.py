@@ -55,7 +55,7 @@ class MetalSlab:
     def __init__(self, hot: float, gap: float, count: int, seed: int = 0) -> None:
         self.hot, self.gap, self.rng = hot, gap, np.random.default_rng(seed)
         mean = 0.5 * (hot + 1.0)
-        self.place = self.rng.uniform(0.0, gap, count)
+        self.positions = self.rng.uniform(0.0, gap, count)
         self.velocity = np.sqrt(mean) * self.rng.standard_normal((count, 2))
         self.modes = self.rng.exponential(mean, (_CELLS, round(_PER_CELL * count / _CELLS)))
 
@@ -77,24 +77,24 @@ class MetalSlab:
         sums = np.zeros((2, bins))
         for _ in range(round(duration / _STEP)):
             self._advance()
-            where = np.minimum((self.place * (bins / self.gap)).astype(int), bins - 1)
+            where = np.minimum((self.positions * (bins / self.gap)).astype(int), bins - 1)
             energy = 0.5 * (self.velocity**2).sum(axis=1)
             sums += [np.bincount(where, weights, bins) for weights in (energy, None)]
         return sums
 
     def _advance(self) -> None:
         """Advance all electrons by a step."""
-        moving, left = np.arange(len(self.place)), np.full(len(self.place), _STEP)
+        moving, remaining = np.arange(len(self.positions)), np.full(len(self.positions), _STEP)
         while moving.size:
             across = self.velocity[moving, 0]
-            ahead = np.where(across > 0.0, self.gap - self.place[moving], self.place[moving])
+            ahead = np.where(across > 0.0, self.gap - self.positions[moving], self.positions[moving])
             to_wall = ahead / np.maximum(np.abs(across), 1e-300)
             speed = np.linalg.norm(self.velocity[moving], axis=1)
             to_hit = self.rng.exponential(size=moving.size) / speed
-            flight = np.minimum(np.minimum(to_wall, to_hit), left[moving])
-            self.place[moving] = np.clip(self.place[moving] + across * flight, 0.0, self.gap)
-            stopped = flight < left[moving]
-            left[moving] -= flight
+            flight = np.minimum(np.minimum(to_wall, to_hit), remaining[moving])
+            self.positions[moving] = np.clip(self.positions[moving] + across * flight, 0.0, self.gap)
+            stopped = flight < remaining[moving]
+            remaining[moving] -= flight
             self._leave_wall(moving[stopped & (to_wall <= to_hit)])
             self._swap(moving[stopped & (to_hit < to_wall)])
             moving = moving[stopped]
@@ -115,7 +115,7 @@ class MetalSlab:
 
         No mode is taken twice.
         """
-        cell = np.minimum((self.place[which] * (_CELLS / self.gap)).astype(int), _CELLS - 1)
+        cell = np.minimum((self.positions[which] * (_CELLS / self.gap)).astype(int), _CELLS - 1)
         order = np.argsort(cell, kind="stable")
         which, cell = which[order], cell[order]
         rank = np.arange(which.size) - np.searchsorted(cell, cell)
@@ -128,6 +128,6 @@ class MetalSlab:
         aside = np.stack([-ahead[:, 1], ahead[:, 0]], axis=1)
         normal = sine[:, None] * aside - cosine[:, None] * ahead
         along = -speed * cosine
-        taken = np.sqrt(2.0 * self.modes[cell, mode])
+        mode_speed = np.sqrt(2.0 * self.modes[cell, mode])
         self.modes[cell, mode] = 0.5 * along**2
-        self.velocity[which] = velocity + (taken - along)[:, None] * normal
+        self.velocity[which] = velocity + (mode_speed - along)[:, None] * normal

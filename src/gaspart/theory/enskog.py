@@ -16,7 +16,7 @@ import numpy as np
 from gaspart.theory.geometry import (
     Numbers,
     Values,
-    checked,
+    check_ranges,
     checked_dimension,
     number_density,
     unit_sphere_surface,
@@ -112,7 +112,7 @@ def kinetic_conductivity(packing_fraction: Numbers, dimension: int, contact: Num
     return _kinetic(_DILUTE_CONDUCTIVITY[dimension], 3.0, packing_fraction, dimension, contact)
 
 
-@checked
+@check_ranges
 def collision_rate(
     packing_fraction: Numbers,
     dimension: int,
@@ -166,7 +166,7 @@ def collision_rate(
     return unit_sphere_surface(dimension) * density * diameter ** (dimension - 1) * contact * speed
 
 
-@checked
+@check_ranges
 def collision_rate_finite_size_factor(packing_fraction: Numbers, dimension: int, count: int) -> Values:
     """Compute the collision rate of a finite number of particles divided by the infinite system's.
 
@@ -235,7 +235,7 @@ def approach_factor(dimension: int, count: int) -> float:
     return math.sqrt(count / (count - 1.0)) * mean_speed_factor(dimension * (count - 1))
 
 
-@checked
+@check_ranges
 def mean_free_path(packing_fraction: Numbers, dimension: int, diameter: float = 1.0) -> Values:
     """Compute the mean path of a particle between collisions.
 
@@ -273,7 +273,7 @@ def mean_free_path(packing_fraction: Numbers, dimension: int, diameter: float = 
         return mean_speed(dimension) / collision_rate(packing_fraction, dimension, diameter)
 
 
-@checked
+@check_ranges
 def enskog_diffusion(
     packing_fraction: Numbers,
     dimension: int,
@@ -330,7 +330,7 @@ def enskog_diffusion(
     return first * _DIFFUSION_FACTOR[dimension] * speed * path
 
 
-@checked
+@check_ranges
 def enskog_bulk_viscosity(
     packing_fraction: Numbers,
     dimension: int,
@@ -385,7 +385,7 @@ def enskog_bulk_viscosity(
     return surface / dimension**2 * density**2 * diameter ** (dimension + 1) * contact * thermal
 
 
-@checked
+@check_ranges
 def enskog_viscosity(
     packing_fraction: Numbers,
     dimension: int,
@@ -441,7 +441,7 @@ def enskog_viscosity(
     return kinetic + dimension / (dimension + 2) * bulk
 
 
-@checked
+@check_ranges
 def enskog_longitudinal_viscosity(
     packing_fraction: Numbers,
     dimension: int,
@@ -490,7 +490,7 @@ def enskog_longitudinal_viscosity(
     return 2.0 * (dimension - 1) / dimension * shear + bulk
 
 
-@checked
+@check_ranges
 def enskog_conductivity(
     packing_fraction: Numbers,
     dimension: int,
@@ -545,7 +545,7 @@ def enskog_conductivity(
     return kinetic + 0.5 * dimension / mass * bulk
 
 
-@checked
+@check_ranges
 def transport_finite_size_factor(count: int, dimension: int, quantity: str) -> float:
     """Compute a transport coefficient of few dilute particles divided by the infinite gas's.
 

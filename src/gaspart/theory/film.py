@@ -14,7 +14,12 @@ import numpy as np
 
 from gaspart.theory.boltzmann import directions
 from gaspart.theory.equations import METASTABLE_SPHERES, carnahan_starling
-from gaspart.theory.geometry import checked, checked_dimension, checked_packing_fraction, packing_fraction
+from gaspart.theory.geometry import (
+    check_ranges,
+    checked_dimension,
+    checked_packing_fraction,
+    packing_fraction,
+)
 
 _RADIUS = 0.5
 _MIXING = 0.015
@@ -25,7 +30,7 @@ _NEAR, _NEAR_MIXING, _REMEMBERED = 0.3, 0.05, 5
 changes that are remembered."""
 
 
-@checked
+@check_ranges
 def white_bear_slit(
     bulk_density: float, width: float, spacing: float = 0.01, tolerance: float = 1e-8
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -107,8 +112,8 @@ def white_bear_slit(
             + np.correlate(by_surface, surface, "valid")
             + np.correlate(by_vector, vector, "valid")
         )
-        wanted = bulk_density * np.exp(np.clip(bulk_excess - felt, -20.0, 5.0))
-        change = wanted - density
+        target = bulk_density * np.exp(np.clip(bulk_excess - felt, -20.0, 5.0))
+        change = target - density
         changes.append(change)
         largest = float(np.max(np.abs(change))) / bulk_density
         move = _anderson(moves, changes) if largest < _NEAR else _MIXING * change
@@ -133,7 +138,7 @@ def _anderson(moves: list[np.ndarray], changes: list[np.ndarray]) -> np.ndarray:
     return _NEAR_MIXING * least - np.transpose(moves) @ shares
 
 
-@checked
+@check_ranges
 def white_bear_pressure(bulk_density: float) -> float:
     """Compute the bulk pressure of the White Bear functional.
 
@@ -239,21 +244,21 @@ def cluster_integrals(order: int, dimension: int, samples: int, seed: int = 0) -
     """
     d, rng = checked_dimension(dimension), np.random.default_rng(seed)
     ursell, trees = _graphs(order)
-    places = np.zeros((samples, order, d))
+    positions = np.zeros((samples, order, d))
     rows = np.arange(samples)
     for leaf, parent in _random_trees(rng, order, samples):
         away = directions(rng, samples, d) * rng.random((samples, 1)) ** (1.0 / d)
-        places[rows, leaf] = places[rows, parent] + away
+        positions[rows, leaf] = positions[rows, parent] + away
     overlaps = np.zeros(samples, dtype=np.int64)
     for bit, (i, j) in enumerate(combinations(range(order), 2)):
-        near = ((places[:, i] - places[:, j]) ** 2).sum(axis=1) < 1.0
+        near = ((positions[:, i] - positions[:, j]) ** 2).sum(axis=1) < 1.0
         overlaps |= near.astype(np.int64) << bit
     ball = math.pi ** (d / 2.0) / math.gamma(d / 2.0 + 1.0)
     weight = ursell[overlaps] / trees[overlaps]
     weight *= order ** (order - 2.0) * ball ** (order - 1.0) / math.factorial(order)
-    extents = np.ptp(places, axis=1)
+    extents = np.ptp(positions, axis=1)
     chosen = [combinations(range(d), k) for k in range(d + 1)]
-    products = [np.mean([extents[:, one].prod(axis=1) for one in sets], axis=0) for sets in chosen]
+    products = [np.mean([extents[:, axes].prod(axis=1) for axes in sets], axis=0) for sets in chosen]
     return np.array([(weight * product).mean() for product in products])
 
 

@@ -26,7 +26,7 @@ from gaspart.errors import SceneError
 from gaspart.theory.geometry import (
     Numbers,
     Values,
-    checked,
+    check_ranges,
     checked_dimension,
     checked_packing_fraction,
     particle_volume,
@@ -58,7 +58,7 @@ LARGEST_REMAINDER = 0.1
 """Relative uncertainty above which `finite_contact_value` and `insertion_potential` state nothing."""
 
 
-@checked
+@check_ranges
 def pair_contact_value(packing_fraction: Numbers, dimension: int) -> Values:
     """Compute the contact value of two particles in a periodic square or cube.
 
@@ -109,7 +109,7 @@ def pair_contact_value(packing_fraction: Numbers, dimension: int) -> Values:
     return (1.0 - covered) / (1.0 - 2.0 ** (d - 1) * eta * (1.0 - overlap))
 
 
-@checked
+@check_ranges
 def finite_size_remainder(packing_fraction: Numbers, dimension: int, side: Numbers) -> Values:
     """Estimate the relative size of what the expansion in 1/N leaves out of a contact value.
 
@@ -152,7 +152,7 @@ def finite_size_remainder(packing_fraction: Numbers, dimension: int, side: Numbe
     return np.where(lengths < _SHORTEST, math.inf, remainder)
 
 
-@checked
+@check_ranges
 def finite_contact_value(
     packing_fraction: float, dimension: int, count: int, side: float | None = None
 ) -> tuple[float, float]:
@@ -207,13 +207,13 @@ def finite_contact_value(
     if abs(side - cube) < 1e-6 * cube:
         if count == 2 and eta <= _PAIR_HIGHEST[dimension]:
             return float(pair_contact_value(eta, dimension)), 0.0
-        choices += _interpolated(eta, dimension, count)
+        choices += _interpolate_table(eta, dimension, count)
     value, uncertainty = min(choices, key=lambda choice: choice[1] / choice[0])
     _require_small(uncertainty, value, side)
     return value, uncertainty
 
 
-@checked
+@check_ranges
 def insertion_potential(
     packing_fraction: float, dimension: int, count: int, side: float
 ) -> tuple[float, float]:
@@ -267,8 +267,8 @@ def insertion_potential(
     sides = side * (eta / fractions) ** (1.0 / d)
     remainders = finite_size_remainder(fractions, d, sides) * (compressibility_factor(fractions, d) - 1.0)
     remainder = float(remainders[-1] + (remainders / fractions).sum() * eta / _NODES)
-    known = float(chemical_potential_uncertainty(eta, d))
-    uncertainty = math.hypot(known, remainder, shift**2 / value if value else 0.0)
+    bulk_uncertainty = float(chemical_potential_uncertainty(eta, d))
+    uncertainty = math.hypot(bulk_uncertainty, remainder, shift**2 / value if value else 0.0)
     _require_small(uncertainty, value + shift, side)
     return value + shift, uncertainty
 
@@ -297,7 +297,7 @@ def _expansion(eta: float, dimension: int, count: int, side: float) -> tuple[flo
     return value, value * math.hypot(*relative)
 
 
-def _interpolated(eta: float, dimension: int, count: int) -> list[tuple[float, float]]:
+def _interpolate_table(eta: float, dimension: int, count: int) -> list[tuple[float, float]]:
     """Return the contact value between rows of the table, and its uncertainty.
 
     The list is empty outside of the rows.

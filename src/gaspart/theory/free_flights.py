@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from gaspart.theory.enskog import collision_rate
-from gaspart.theory.geometry import Numbers, Values, checked, checked_dimension
+from gaspart.theory.geometry import Numbers, Values, check_ranges, checked_dimension
 from gaspart.theory.speeds import maxwell_pdf, mean_speed
 
 _SPEEDS = 160
@@ -22,7 +22,7 @@ _FASTEST = 8.0
 """Highest speed of the quadrature, in thermal speeds: fewer than exp(-32) of all particles are faster."""
 
 
-@checked
+@check_ranges
 def collision_rate_at_speed(
     speed: Numbers,
     packing_fraction: float,
@@ -88,7 +88,7 @@ def collision_rate_at_speed(
     return collision_rate(packing_fraction, dimension, **gas) * relative / mean
 
 
-@checked
+@check_ranges
 def free_time_pdf(
     time: Numbers,
     packing_fraction: float,

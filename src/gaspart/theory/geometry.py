@@ -43,13 +43,13 @@ _RANGES = {
 """Smallest and largest value of arguments, by name, and the rule in words."""
 
 
-def checked(function: Callable[P, R]) -> Callable[P, R]:
+def check_ranges(function: Callable[P, R]) -> Callable[P, R]:
     """Return a function that raises SceneError for an argument out of the range of its name.
 
     Parameters
     ----------
     function : callable
-        Formula, whose arguments have names of `_RANGES` or are not checked.
+        Formula, whose arguments have names of `_RANGES` or no range.
 
     Returns
     -------
@@ -151,7 +151,7 @@ def unit_sphere_surface(dimension: int) -> float:
     return {2: 2.0 * math.pi, 3: 4.0 * math.pi}[checked_dimension(dimension)]
 
 
-@checked
+@check_ranges
 def particle_volume(dimension: int, diameter: float = 1.0) -> float:
     """Compute the area of a disc or the volume of a sphere.
 
@@ -185,7 +185,7 @@ def particle_volume(dimension: int, diameter: float = 1.0) -> float:
     return ball_volume(checked_dimension(dimension), 0.5 * diameter)
 
 
-@checked
+@check_ranges
 def number_density(packing_fraction: Numbers, dimension: int, diameter: float = 1.0) -> Values:
     """Compute the number of particles per volume from their packing fraction.
 
@@ -221,7 +221,7 @@ def number_density(packing_fraction: Numbers, dimension: int, diameter: float = 
     return packing_fraction / particle_volume(dimension, diameter)
 
 
-@checked
+@check_ranges
 def packing_fraction(number_density: Numbers, dimension: int, diameter: float = 1.0) -> Values:
     """Compute the fraction of the container's volume that particles occupy.
 

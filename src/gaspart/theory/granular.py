@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from gaspart.theory.enskog import collision_rate
-from gaspart.theory.geometry import Numbers, Values, checked, checked_dimension
+from gaspart.theory.geometry import Numbers, Values, check_ranges, checked_dimension
 
 DISCHARGE_EXPONENT = 1.5
 """Exponent of the width of an orifice, minus some diameters of the grains, in the flow rate of grains in two
@@ -108,7 +108,7 @@ def cooling_rate(restitution: Numbers, dimension: int) -> Values:
     return (1.0 - e**2) / dimension * (1.0 + 0.25 * fourth_cumulant(e, dimension))
 
 
-@checked
+@check_ranges
 def cooling_rate_finite_size_factor(count: Numbers, dimension: int) -> Values:
     """Compute the cooling rate of few particles divided by the cooling rate of many.
 
@@ -146,7 +146,7 @@ def cooling_rate_finite_size_factor(count: Numbers, dimension: int) -> Values:
     return (freedoms + dimension) / (freedoms + 1.0)
 
 
-@checked
+@check_ranges
 def haff_time(restitution: Numbers, dimension: int, collision_rate: Numbers) -> Values:
     """Compute the characteristic time of Haff's law of cooling.
 
@@ -237,7 +237,7 @@ def driven_cumulant(restitution: Numbers, dimension: int) -> Values:
     return 16.0 * (1.0 - e) * (1.0 - 2.0 * e**2) / below
 
 
-@checked
+@check_ranges
 def finite_size_cumulant(cumulant: Numbers, count: Numbers, dimension: int) -> Values:
     """Compute the fourth cumulant that few particles have.
 
@@ -276,7 +276,7 @@ def finite_size_cumulant(cumulant: Numbers, count: Numbers, dimension: int) -> V
     return (1.0 + np.asarray(cumulant)) * freedoms / (freedoms + 2.0) - 1.0
 
 
-@checked
+@check_ranges
 def driven_temperature(
     restitution: Numbers, dimension: int, power: Numbers, packing_fraction: Numbers
 ) -> Values:
@@ -388,7 +388,7 @@ def rough_matrix(inertia: float, tangential: float, normal: float = 1.0) -> np.n
     return np.array([[-2.0 * a, 2.0 * b], [4.0 * b, -4.0 * c]])
 
 
-@checked
+@check_ranges
 def rough_temperatures(
     collisions: Numbers,
     inertia: float,
@@ -506,7 +506,7 @@ ROUGH_START_UNCERTAINTY = 0.002
 """Standard uncertainty of `rough_start_excess` (statistical, from two gases of 100 000 discs)."""
 
 
-@checked
+@check_ranges
 def rough_start_excess(inertia: float, collisions: Numbers) -> Values:
     """Return the deviation of rough discs from Maxwellian exchange of energy, after a start without spin.
 
@@ -551,7 +551,7 @@ def rough_start_excess(inertia: float, collisions: Numbers) -> Values:
     return np.interp(collisions, s, excess, right=np.nan)
 
 
-@checked
+@check_ranges
 def rough_wall_difference(time: Numbers, inertia: float) -> Values:
     """Compute the difference of temperatures of rough particles that collide with two rough walls only.
 

@@ -10,11 +10,11 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gaspart.theory.geometry import Numbers, Values, checked, checked_dimension, particle_volume
+from gaspart.theory.geometry import Numbers, Values, check_ranges, checked_dimension, particle_volume
 from gaspart.theory.tables import packing_fraction_at
 
 
-@checked
+@check_ranges
 def ideal_profile(z: Numbers, height: float, weight: float) -> Values:
     """Compute the probability density of the height of a particle of an ideal gas.
 
@@ -53,7 +53,7 @@ def ideal_profile(z: Numbers, height: float, weight: float) -> Values:
     return weight * np.exp(-weight * z) / -math.expm1(-weight * height)
 
 
-@checked
+@check_ranges
 def ideal_mean_height(height: float, weight: Numbers) -> Values:
     """Compute the mean height of the particles of an ideal gas.
 
@@ -90,7 +90,7 @@ def ideal_mean_height(height: float, weight: Numbers) -> Values:
     return height * np.where(small, 0.5 - x / 12.0, 1.0 / safe + np.exp(-safe) / np.expm1(-safe))
 
 
-@checked
+@check_ranges
 def ideal_heat_capacity(x: Numbers, dimension: int) -> Values:
     """Compute the heat capacity of an ideal gas under gravity in a box.
 
@@ -127,7 +127,7 @@ def ideal_heat_capacity(x: Numbers, dimension: int) -> Values:
     return 0.5 * checked_dimension(dimension) + 1.0 - np.where(x == 0.0, 1.0, (half / np.sinh(half)) ** 2)
 
 
-@checked
+@check_ranges
 def ideal_energy_moments(
     energy: float, count: int, height: float, force: float, dimension: int, points: int = 2**14
 ) -> tuple[float, float]:
@@ -192,9 +192,9 @@ def ideal_energy_moments(
     potential = mean + step * (np.arange(points) - points // 2)
     frequency = 2.0 * np.pi * np.fft.fftfreq(points, step)
     # Fourier transform of one term's density, proportional to e^{-bU} between 0 and top, about its mean.
-    one = -np.expm1(-(inverse + 1j * frequency) * top) / (inverse + 1j * frequency)
-    one *= inverse / -math.expm1(-inverse * top) * np.exp(1j * frequency * mean / count)
-    tilted = np.fft.fftshift(np.fft.ifft(one**count).real)
+    transform = -np.expm1(-(inverse + 1j * frequency) * top) / (inverse + 1j * frequency)
+    transform *= inverse / -math.expm1(-inverse * top) * np.exp(1j * frequency * mean / count)
+    tilted = np.fft.fftshift(np.fft.ifft(transform**count).real)
     allowed = (tilted > 1e-13 * tilted.max()) & (potential < energy)
     kinetic = energy - potential[allowed]
     log_weight = np.log(tilted[allowed]) + inverse * potential[allowed] + (freedom - 1.0) * np.log(kinetic)
@@ -220,7 +220,7 @@ def _canonical_temperature(energy: float, top: float, dimension: int) -> float:
     return middle
 
 
-@checked
+@check_ranges
 def lebowitz_percus_verlet(mean: Numbers, variance: Numbers, count: int, dimension: int) -> Values:
     """Compute the heat capacity from the fluctuations of the kinetic energy at fixed total energy.
 
@@ -264,7 +264,7 @@ def lebowitz_percus_verlet(mean: Numbers, variance: Numbers, count: int, dimensi
     return half / (1.0 - relative)
 
 
-@checked
+@check_ranges
 def hydrostatic_profiles(
     z: np.ndarray, numbers: ArrayLike, weights: ArrayLike, dimension: int, diameter: float = 1.0
 ) -> np.ndarray:

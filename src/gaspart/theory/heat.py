@@ -16,7 +16,7 @@ from gaspart.theory.enskog import enskog_conductivity, mean_free_path
 from gaspart.theory.geometry import (
     Numbers,
     Values,
-    checked,
+    check_ranges,
     checked_dimension,
     checked_packing_fraction,
     checked_range,
@@ -48,7 +48,7 @@ FULL = (1.0, 1.0)
 """Accommodation of two walls that draw the velocities of all particles."""
 
 
-@checked
+@check_ranges
 def free_molecular_flux(
     density: Numbers,
     hot: float,
@@ -118,7 +118,7 @@ def free_molecular_flux(
     return carried * density * roots / np.sqrt(2.0 * np.pi * mass) * part
 
 
-@checked
+@check_ranges
 def dilute_fourier_flux(length: float, hot: float, cold: float, diameter: float = 1.0) -> float:
     """Compute the heat flux through dilute spheres in a wide gap by Fourier's law.
 
@@ -159,7 +159,7 @@ def dilute_fourier_flux(length: float, hot: float, cold: float, diameter: float 
     return 2.0 / 3.0 * conductivity * (hot**1.5 - cold**1.5) / length
 
 
-@checked
+@check_ranges
 def interpolated_flux(length: float, density: float, hot: float, cold: float, diameter: float = 1.0) -> float:
     """Compute the heat flux through dilute spheres between two walls at any Knudsen number.
 
@@ -208,7 +208,7 @@ def interpolated_flux(length: float, density: float, hot: float, cold: float, di
     return free * fluid / (free + fluid) if free else 0.0
 
 
-@checked
+@check_ranges
 def steady_part(time: Numbers, length: float, diffusivity: float) -> Values:
     """Compute the difference of temperature between the halves of a slab divided by its steady value.
 
@@ -265,7 +265,7 @@ class Slab:
     flux: float
 
 
-@checked
+@check_ranges
 def conducting_slab(
     length: float,
     density: float,
@@ -323,7 +323,7 @@ def conducting_slab(
         raise ValueError(f"density: {density} (a Knudsen number of {knudsen:.2g}; this holds up to 0.1)")
     ends = np.array([hot, cold], dtype=float)
     for _ in range(60):
-        slab = _between(length, density, float(ends[0]), float(ends[1]), diameter)
+        slab = _slab_without_jumps(length, density, float(ends[0]), float(ends[1]), diameter)
         eta = packing_fraction(slab.density[[0, -1]], 3, diameter)
         slope = slab.flux / enskog_conductivity(eta, 3, diameter, 1.0) / np.sqrt(ends)
         shift = jump * mean_free_path(eta, 3, diameter) * slope
@@ -331,7 +331,7 @@ def conducting_slab(
     return slab
 
 
-def _between(length: float, density: float, hot: float, cold: float, diameter: float) -> Slab:
+def _slab_without_jumps(length: float, density: float, hot: float, cold: float, diameter: float) -> Slab:
     """Return the slab of a gas without temperature jumps at its walls."""
     temperature = np.linspace(hot, cold, 401)
     eta = np.linspace(0.0, 0.45, 4001)
@@ -389,7 +389,7 @@ class Shock(NamedTuple):
     pressure: float
 
 
-@checked
+@check_ranges
 def shock_before_piston(
     packing_fraction: float,
     dimension: int,
@@ -456,9 +456,9 @@ def shock_before_piston(
 
     def excess(ratio: float) -> float:
         """Return its pressure less the pressure of the equation of state."""
-        found = behind(ratio)
-        factor = float(compressibility_factor(found.packing_fraction, d))
-        return found.pressure - ratio * density * found.temperature * factor
+        shock = behind(ratio)
+        factor = float(compressibility_factor(shock.packing_fraction, d))
+        return shock.pressure - ratio * density * shock.temperature * factor
 
     most = min(d + 1.0, highest / eta) * (1.0 - 1e-9)
     if excess(most) >= 0.0:

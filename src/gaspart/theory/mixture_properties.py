@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from gaspart.theory.geometry import Numbers, checked, particle_volume
+from gaspart.theory.geometry import Numbers, check_ranges, particle_volume
 from gaspart.theory.mixtures import Sizes, checked_mixture, contact_coefficients, virial_sum
 
 _STEP, _WIDE = 1e-3, 1e-2
@@ -144,7 +144,9 @@ def _free_energy(
         moments = (powers @ numbers).tolist()
         filled = covered * moments[dimension]
         inner = 0.5 * filled * (nodes + 1.0)
-        integrals = [one @ weights for one in contact_coefficients(theory, inner, dimension, None)]
+        integrals = [
+            coefficient @ weights for coefficient in contact_coefficients(theory, inner, dimension, None)
+        ]
         total = 0.5 * filled * virial_sum(integrals, moments)
         return float(2.0 ** (dimension - 1) * total / moments[dimension])
 
@@ -155,12 +157,12 @@ def _gradient(
     function: Callable[[np.ndarray], float | np.ndarray], at: np.ndarray, step: float
 ) -> np.ndarray:
     """Return (S, ...) derivatives by each of the numbers, by central differences of fourth order."""
-    found = []
+    derivatives = []
     for shift in step * np.eye(len(at)):
         near = np.subtract(function(at + shift), function(at - shift))
         far = np.subtract(function(at + 2.0 * shift), function(at - 2.0 * shift))
-        found.append((8.0 * near - far) / (12.0 * step))
-    return np.array(found)
+        derivatives.append((8.0 * near - far) / (12.0 * step))
+    return np.array(derivatives)
 
 
 # Structure of mixtures of additive hard spheres, by Percus and Yevick's equation.
@@ -171,7 +173,7 @@ _RADIAL_NODES = (
 )
 
 
-@checked
+@check_ranges
 def percus_yevick_partial_factors(
     wave_number: Numbers, packing_fraction: float, diameters: Sizes, fractions: Sizes | None = None
 ) -> np.ndarray:
@@ -244,7 +246,7 @@ def percus_yevick_partial_factors(
 # Transport of heat in dilute mixtures of spheres.
 
 
-@checked
+@check_ranges
 def dilute_mixture_conductivity(
     diameters: Sizes,
     fractions: Sizes | None = None,

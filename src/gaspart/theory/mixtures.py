@@ -21,7 +21,7 @@ import numpy as np
 from gaspart.errors import SceneError
 from gaspart.theory.geometry import (
     Numbers,
-    checked,
+    check_ranges,
     checked_dimension,
     checked_packing_fraction,
     particle_volume,
@@ -284,7 +284,7 @@ def mixture_contact_values(
     return np.polynomial.polynomial.polyval(z, contact_coefficients(theory, eta, dimension, pure))
 
 
-@checked
+@check_ranges
 def mixture_collision_rates(
     packing_fraction: float,
     dimension: int,
@@ -358,7 +358,7 @@ def mixture_collision_rates(
     return unit_sphere_surface(dimension) * densities * between ** (dimension - 1) * speeds * contact
 
 
-@checked
+@check_ranges
 def enskog_mutual_diffusion(
     packing_fraction: float,
     dimension: int,

@@ -35,7 +35,7 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.theory.enskog import enskog_conductivity, enskog_viscosity, mean_free_path
-from gaspart.theory.geometry import Numbers, Values, checked, number_density
+from gaspart.theory.geometry import Numbers, Values, check_ranges, number_density
 from gaspart.theory.modes import (
     Modes,
     Relaxation,
@@ -53,7 +53,7 @@ _SMALLEST = 40.0
 """Exponent of decay: pairs that have decayed by exp(-40) at the first time are left out."""
 
 
-@checked
+@check_ranges
 def transport_modes(
     time: Numbers, packing_fraction: float, count: int, quantity: str, shortest: float = 1.0
 ) -> Values:
@@ -120,13 +120,13 @@ def transport_modes(
     across = transverse_modes(packing_fraction, np.sqrt(squares))
     integrals = relaxation.integral(times)
     for weight, decay in pairs(packing_fraction, along, across):
-        for n, one in enumerate(times):
-            grown = (weight * _delayed(decay, one, relaxation)).real
+        for n, upper in enumerate(times):
+            grown = (weight * _integrate_delayed(decay, upper, relaxation)).real
             integrals[n] += density / count * grown.sum(axis=(0, 1)) @ numbers
     return integrals.reshape(np.shape(time))[()]
 
 
-@checked
+@check_ranges
 def transport_uniform_mode(time: Numbers, packing_fraction: float, count: int, quantity: str) -> Values:
     """Compute the term k = 0 of `transport_modes`, which fixed momentum and energy remove.
 
@@ -170,12 +170,12 @@ def transport_uniform_mode(time: Numbers, packing_fraction: float, count: int, q
         weight = capacity + float(speed_of_sound(packing_fraction, 2)) ** 2
     still = np.zeros(1, dtype=complex)
     times = np.atleast_1d(np.asarray(time, dtype=float))
-    grown = np.array([_delayed(still, one, relaxation)[0].real for one in times])
+    grown = np.array([_integrate_delayed(still, upper, relaxation)[0].real for upper in times])
     factor = float(number_density(packing_fraction, 2)) / count * weight
     return (factor * grown).reshape(np.shape(time))[()]
 
 
-@checked
+@check_ranges
 def transport_logarithmic_slope(packing_fraction: float, quantity: str) -> float:
     """Compute the growth of the integral of an infinite fluid of discs while time grows e-fold.
 
@@ -287,7 +287,7 @@ def _sums(first: Modes, second: Modes) -> np.ndarray:
     return first.decay[:, None] + second.decay[None, :]
 
 
-def _delayed(decay: np.ndarray, time: float, relaxation: Relaxation) -> np.ndarray:
+def _integrate_delayed(decay: np.ndarray, time: float, relaxation: Relaxation) -> np.ndarray:
     """Return the integrals until a time of exp(decay t), delayed by both vertices.
 
     This is the inverse Laplace transform of F(p)^2 / (p - decay) / p, as divided differences of (exp(p t) -

@@ -32,14 +32,14 @@ from gaspart.theory.enskog import (
     kinetic_conductivity,
     kinetic_viscosity,
 )
-from gaspart.theory.geometry import Numbers, Values, checked, checked_dimension, number_density
+from gaspart.theory.geometry import Numbers, Values, check_ranges, checked_dimension, number_density
 from gaspart.theory.state import compressibility_factor, speed_of_sound
 
 _SMALLEST = 40.0
 """Exponent of decay: modes that have decayed by exp(-40) at the first time are left out."""
 
 
-@checked
+@check_ranges
 def sound_attenuation(packing_fraction: float, dimension: int) -> float:
     """Compute the attenuation of sound from Enskog's transport coefficients.
 
@@ -101,7 +101,7 @@ def heat_capacities(packing_fraction: float, dimension: int) -> tuple[float, flo
     return 0.5 * dimension, 0.5 * dimension + z**2 / slope
 
 
-@checked
+@check_ranges
 def velocity_autocorrelation_modes(
     time: Numbers, packing_fraction: float, dimension: int, count: int
 ) -> Values:
@@ -152,7 +152,7 @@ def velocity_autocorrelation_modes(
     return _sum(time, packing_fraction, dimension, count, integrated=False) + 1.0 / count
 
 
-@checked
+@check_ranges
 def diffusion_modes(time: Numbers, packing_fraction: float, dimension: int, count: int) -> Values:
     """Compute the integral of `velocity_autocorrelation_modes` over time, except for a constant.
 
@@ -353,7 +353,7 @@ class Relaxation:
         Relaxation
             Relaxation of its parts.
         """
-        kinetic, whole = {
+        kinetic, total = {
             "viscosity": (kinetic_viscosity, enskog_viscosity),
             "conductivity": (kinetic_conductivity, enskog_conductivity),
         }[quantity]
@@ -364,7 +364,7 @@ class Relaxation:
             frequency * rates[kept],
             weights[kept] / weights[kept].sum(),
             float(kinetic(packing_fraction, 2)),
-            float(whole(packing_fraction, 2)),
+            float(total(packing_fraction, 2)),
         )
 
     @property
@@ -485,13 +485,13 @@ def _matrix(
     relaxation, and the density or heat capacity of this variable.
     """
     size = variables + sum(len(flux.rates) for _, flux, _ in fluxes)
-    matrix, place = np.zeros((len(wave_numbers), size, size), complex), variables
+    matrix, index = np.zeros((len(wave_numbers), size, size), complex), variables
     for variable, flux, inertia in fluxes:
         for rate, part in zip(flux.rates, flux.parts, strict=True):
-            matrix[:, place, place] = -rate
+            matrix[:, index, index] = -rate
             coupling = -1j * wave_numbers * math.sqrt(part * rate / inertia)
-            matrix[:, variable, place] = matrix[:, place, variable] = coupling
-            place += 1
+            matrix[:, variable, index] = matrix[:, index, variable] = coupling
+            index += 1
     return matrix
 
 

@@ -14,7 +14,7 @@ from gaspart.scene.geometry import CLOSE_PACKING
 from gaspart.theory.geometry import (
     Numbers,
     Values,
-    checked,
+    check_ranges,
     checked_dimension,
     checked_packing_fraction,
     packing_fraction,
@@ -48,7 +48,7 @@ def _shape_factor(excess: float, dimension: int, side_over_diameter: float, boun
     raise ValueError(f"boundary: {boundary!r} (must be 'periodic', 'wall' or 'centres_to_walls')")
 
 
-@checked
+@check_ranges
 def insertion_saturation(
     dimension: int, side_over_diameter: float | None = None, boundary: str = "periodic"
 ) -> float:
@@ -100,7 +100,7 @@ def insertion_saturation(
     return infinite * _shape_factor(_WALL_EXCESS[dimension], dimension, side_over_diameter, boundary)
 
 
-@checked
+@check_ranges
 def insertion_saturation_uncertainty(
     dimension: int, side_over_diameter: float | None = None, boundary: str = "periodic"
 ) -> float:
@@ -417,7 +417,7 @@ def alder_hoover_young_crystal(packing_fraction: Numbers, dimension: int) -> Val
     return dimension / alpha + np.polynomial.polynomial.polyval(alpha, series)
 
 
-@checked
+@check_ranges
 def crystal_finite_size_correction(compressibility_factor: Values, count: Values) -> Values:
     """Compute the difference between Z of a finite periodic crystal and of the infinite one.
 

@@ -7,7 +7,7 @@ accommodation, a distance `length` apart, and their velocities differ by `veloci
 import numpy as np
 
 from gaspart.theory.enskog import enskog_conductivity, enskog_viscosity
-from gaspart.theory.geometry import Numbers, Values, checked
+from gaspart.theory.geometry import Numbers, Values, check_ranges
 from gaspart.theory.heat import FULL
 
 VELOCITY_SLIP = 1.1113
@@ -30,7 +30,7 @@ products of stresses are neglected, and Sonine polynomials beyond the first.
 """
 
 
-@checked
+@check_ranges
 def free_molecular_stress(
     density: Numbers,
     velocity: Numbers,
@@ -73,12 +73,12 @@ def free_molecular_stress(
     >>> round(float(theory.free_molecular_stress(0.1, 1.0)), 5)
     0.03989
     """
-    one, other = accommodation
-    part = one * other / (one + other - one * other)
+    first, second = accommodation
+    part = first * second / (first + second - first * second)
     return density * np.asarray(velocity, dtype=float) * np.sqrt(mass * temperature / (2.0 * np.pi)) * part
 
 
-@checked
+@check_ranges
 def slip_flow_stress(length: Numbers, density: Numbers, velocity: Numbers, diameter: float = 1.0) -> Values:
     """Compute the shear stress of dilute spheres between sliding walls, with slip at both walls.
 
@@ -118,7 +118,7 @@ def slip_flow_stress(length: Numbers, density: Numbers, velocity: Numbers, diame
     return enskog_viscosity(0.0, 3, diameter) * velocity / (length + 2.0 * VELOCITY_SLIP * path)
 
 
-@checked
+@check_ranges
 def channel_velocity(
     height: Numbers, length: Numbers, density: Numbers, force: Numbers, diameter: float = 1.0
 ) -> Values:
@@ -169,7 +169,7 @@ def channel_velocity(
     return 0.5 * density * force / enskog_viscosity(0.0, 3, diameter) * shape
 
 
-@checked
+@check_ranges
 def free_flight_drift(
     time: Numbers, length: float, force: float = 1.0, temperature: float = 1.0, mass: float = 1.0
 ) -> Values:
@@ -220,7 +220,7 @@ def free_flight_drift(
     return force / mass * crossing * age
 
 
-@checked
+@check_ranges
 def interpolated_stress(
     length: Numbers, density: Numbers, velocity: Numbers, diameter: float = 1.0
 ) -> Values:
@@ -268,7 +268,7 @@ def interpolated_stress(
     return velocity * free * fluid / (free + fluid)
 
 
-@checked
+@check_ranges
 def viscous_heating(packing_fraction: Numbers, dimension: int) -> Values:
     """Compute Enskog's viscosity divided by twice the conductivity.
 

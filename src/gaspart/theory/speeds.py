@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.theory.geometry import Numbers, Values, checked, checked_dimension
+from gaspart.theory.geometry import Numbers, Values, check_ranges, checked_dimension
 
 _TABLES = Path(__file__).parent / "data"
 
@@ -21,7 +21,7 @@ RELAXATION_UNCERTAINTY = 3e-4
 """Standard uncertainty of the tabulated kurtosis and never-hit fraction (computed, Monte Carlo)."""
 
 
-@checked
+@check_ranges
 def mean_speed(
     dimension: int, temperature: float = 1.0, mass: float = 1.0, count: int | None = None
 ) -> float:
@@ -84,7 +84,7 @@ def mean_speed_factor(freedoms: float) -> float:
     return math.sqrt(half) * math.exp(math.lgamma(half) - math.lgamma(half + 0.5))
 
 
-@checked
+@check_ranges
 def maxwell_pdf(speed: Numbers, dimension: int, temperature: float = 1.0, mass: float = 1.0) -> Values:
     """Compute the density of speeds of Maxwell's distribution.
 
@@ -127,7 +127,7 @@ def maxwell_pdf(speed: Numbers, dimension: int, temperature: float = 1.0, mass: 
     return scale * factor * np.exp(-0.5 * u**2)
 
 
-@checked
+@check_ranges
 def maxwell_cdf(
     speed: Numbers,
     dimension: int,
@@ -185,7 +185,7 @@ def maxwell_cdf(
     return betainc(half, 0.5 * freedoms - half, np.minimum(2.0 * energy / freedoms, 1.0))
 
 
-@checked
+@check_ranges
 def maxwell_ppf(probability: Numbers, dimension: int, temperature: float = 1.0, mass: float = 1.0) -> Values:
     """Compute the speed below which a fraction of the particles lies: the inverse of `maxwell_cdf`.
 
@@ -223,7 +223,7 @@ def maxwell_ppf(probability: Numbers, dimension: int, temperature: float = 1.0, 
     return np.sqrt(2.0 * temperature / mass * energy)
 
 
-@checked
+@check_ranges
 def kurtosis(dimension: int, count: int | None = None, zero_momentum: bool = False) -> float:
     """Compute the kurtosis <v^4> / <v^2>^2 of the speeds in equilibrium.
 
@@ -265,7 +265,7 @@ def kurtosis(dimension: int, count: int | None = None, zero_momentum: bool = Fal
     return infinite * freedoms / (freedoms + 2.0)
 
 
-@checked
+@check_ranges
 def kurtosis_scatter(dimension: int, count: int) -> tuple[float, float]:
     """Compute the scatter in equilibrium of the kurtosis of N particles at one time.
 
@@ -404,7 +404,7 @@ class Relaxation:
         """
         return float(self.collisions_table[-1])
 
-    def _checked(self, s: Numbers) -> np.ndarray:
+    def _require_not_negative(self, s: Numbers) -> np.ndarray:
         """Return `s` as an array; raise ValueError if a number is negative."""
         s = np.asarray(s, dtype=float)
         if not np.all(s >= 0.0):
@@ -435,7 +435,7 @@ class Relaxation:
         >>> float(theory.relaxation(3).kurtosis(1.0).round(3))
         1.202
         """
-        s = self._checked(s)
+        s = self._require_not_negative(s)
         beyond = np.maximum(s - self.longest, 0.0) * KURTOSIS_RELAXATION_RATE[self.dimension]
         log_excess = np.interp(s, self.collisions_table, self.log_excess_table) - beyond
         end = kurtosis(self.dimension)
@@ -465,7 +465,7 @@ class Relaxation:
         >>> float(theory.relaxation(3).never_hit(1.0).round(3))
         0.367
         """
-        s = self._checked(s)
+        s = self._require_not_negative(s)
         last_rate = -self.log_never_hit_table[-1] / self.longest
         log_fraction = np.interp(s, self.collisions_table, self.log_never_hit_table)
         return np.exp(log_fraction - last_rate * np.maximum(s - self.longest, 0.0))
@@ -494,7 +494,7 @@ class Relaxation:
         >>> float(theory.relaxation(3).mean_speed(1.0).round(3))
         0.971
         """
-        s = self._checked(s)
+        s = self._require_not_negative(s)
         decay = np.exp(-KURTOSIS_RELAXATION_RATE[self.dimension] * np.maximum(s - self.longest, 0.0))
         end = mean_speed(self.dimension) / math.sqrt(self.dimension)
         return end + (np.interp(s, self.collisions_table, self.mean_speed_table) - end) * decay
@@ -529,7 +529,7 @@ class Relaxation:
         >>> float(theory.relaxation(3).collisions(1.0).round(3))
         1.021
         """
-        tau = self._checked(equilibrium_collisions)
+        tau = self._require_not_negative(equilibrium_collisions)
         beyond = np.maximum(tau - self.equilibrium_table[-1], 0.0)
         return np.interp(tau, self.equilibrium_table, self.collisions_table) + beyond
 

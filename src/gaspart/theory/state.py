@@ -7,7 +7,7 @@ Everything here is dimensionless and depends on the packing fraction alone.
 import numpy as np
 
 from gaspart.theory.equations import METASTABLE_SPHERES, STABLE_DISCS, kolafa_labik_malijevsky, liu
-from gaspart.theory.geometry import Numbers, Values, checked, checked_dimension, checked_packing_fraction
+from gaspart.theory.geometry import Numbers, Values, check_ranges, checked_dimension, checked_packing_fraction
 from gaspart.theory.virial import (
     HIGHEST_ORDER,
     linear_tail,
@@ -311,14 +311,14 @@ def adiabatic_temperature(packing_fraction: Numbers, initial: Numbers, dimension
     highest = HIGHEST_PACKING_FRACTION[checked_dimension(dimension)]
     start = np.log(checked_packing_fraction(initial, highest))
     stop = np.log(checked_packing_fraction(packing_fraction, highest))
-    places, weights = np.polynomial.legendre.leggauss(_NODES)
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
     half = 0.5 * (stop - start)
-    eta = np.exp(np.multiply.outer(places, half) + 0.5 * (start + stop))
+    eta = np.exp(np.multiply.outer(nodes, half) + 0.5 * (start + stop))
     integral = half * np.tensordot(weights, compressibility_factor(eta, dimension), 1)
     return np.exp(2.0 / dimension * integral)
 
 
-@checked
+@check_ranges
 def finite_size_correction(
     packing_fraction: Numbers, dimension: int, count: int, ensemble: str = "dynamics"
 ) -> Values:
@@ -393,7 +393,7 @@ def finite_size_correction(
     return (excess + canonical) * count / (count - 1.0) - excess
 
 
-@checked
+@check_ranges
 def constant_enthalpy_factor(packing_fraction: Numbers, dimension: int, count: Numbers) -> Values:
     """Compute the ratio of pressures of few particles behind a piston and of the infinite fluid.
 

@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 
 from gaspart.theory.equations import METASTABLE_SPHERES, carnahan_starling
-from gaspart.theory.geometry import Numbers, Values, checked, checked_packing_fraction
+from gaspart.theory.geometry import Numbers, Values, check_ranges, checked_packing_fraction
 
 _NODES = 64  # on a circle around each zero, of `_PART` of the distance to the nearest other one
 _PART = 0.35
@@ -19,7 +19,7 @@ _FURTHEST = 5
 _SMALL = 1e-3  # wave number below which a quotient of small numbers is replaced by its limit
 
 
-@checked
+@check_ranges
 def percus_yevick_structure_factor(wave_number: Numbers, packing_fraction: float) -> Values:
     """Compute S(k) of spheres by Percus and Yevick's equation.
 
@@ -68,7 +68,7 @@ def percus_yevick_structure_factor(wave_number: Numbers, packing_fraction: float
     return 1.0 / (1.0 + 24.0 * eta * integral)
 
 
-@checked
+@check_ranges
 def percus_yevick_rdf(distance: Numbers, packing_fraction: float) -> Values:
     """Compute g(r) of spheres by Percus and Yevick's equation, up to 5 diameters.
 
@@ -170,7 +170,7 @@ def _overlapping(k: np.ndarray, eta: float, effective: float, diameter: float) -
     return 24.0 * eta * np.sinc(k[..., None] * r / np.pi) @ parts
 
 
-@checked
+@check_ranges
 def verlet_weis_rdf(distance: Numbers, packing_fraction: float) -> Values:
     """Compute g(r) of spheres by the theory of Verlet and Weis.
 
@@ -217,7 +217,7 @@ def verlet_weis_rdf(distance: Numbers, packing_fraction: float) -> Values:
     return np.where(r >= 1.0, percus_yevick_rdf(r / diameter, effective) + added, 0.0)[()]
 
 
-@checked
+@check_ranges
 def verlet_weis_structure_factor(wave_number: Numbers, packing_fraction: float) -> Values:
     """Compute S(k) of spheres by the theory of Verlet and Weis.
 
@@ -258,8 +258,8 @@ def verlet_weis_structure_factor(wave_number: Numbers, packing_fraction: float) 
     # the integral of e^{-mu x} cos(mu x) e^{i k x} from 0
     wave = 0.5 / (rate * (1.0 - 1j) - 1j * safe) + 0.5 / (rate * (1.0 + 1j) - 1j * safe)
     added = 24.0 * eta * amplitude * (np.exp(1j * safe) * wave).imag / safe
-    taken = _overlapping(k, eta, effective, diameter)
-    return percus_yevick_structure_factor(k * diameter, effective) - taken + added
+    overlap = _overlapping(k, eta, effective, diameter)
+    return percus_yevick_structure_factor(k * diameter, effective) - overlap + added
 
 
 def _of(packing_fraction: float) -> tuple[float, float, float, float]:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.theory.geometry import Numbers, Values, checked, checked_dimension, checked_packing_fraction
+from gaspart.theory.geometry import Numbers, Values, check_ranges, checked_dimension, checked_packing_fraction
 from gaspart.theory.state import (
     HIGHEST_PACKING_FRACTION,
     compressibility_factor,
@@ -152,10 +152,10 @@ def _of(table: str, quantity: str, dimension: int) -> np.recarray:
     """Return the rows of a quantity; raise SceneError if the table has no row."""
     rows = _read(table)
     same = rows[rows.dimension == checked_dimension(dimension)]
-    found = same[same.quantity == quantity]
-    if not len(found):
+    matches = same[same.quantity == quantity]
+    if not len(matches):
         raise SceneError("quantity", quantity, f"must be one of {', '.join(np.unique(same.quantity))}")
-    return found
+    return matches
 
 
 @cache
@@ -326,7 +326,7 @@ def activity(packing_fraction: Numbers, dimension: int) -> Values:
     return np.asarray(packing_fraction) * np.exp(excess_chemical_potential(packing_fraction, dimension))
 
 
-@checked
+@check_ranges
 def insertion_finite_size_correction(packing_fraction: Numbers, dimension: int, count: int) -> Values:
     """Compute the shift of the insertion potential in a periodic container of N particles.
 
@@ -388,7 +388,7 @@ def _table(dimension: int) -> tuple[np.ndarray, np.ndarray]:
     return np.log(eta), np.log(eta) + excess_chemical_potential(eta, dimension)
 
 
-@checked
+@check_ranges
 def packing_fraction_at(activity: Numbers, dimension: int) -> Values:
     """Compute the packing fraction from the activity.
 

@@ -29,7 +29,7 @@ from gaspart.errors import SceneError
 from gaspart.theory.geometry import (
     Numbers,
     Values,
-    checked,
+    check_ranges,
     checked_dimension,
     checked_packing_fraction,
     number_density,
@@ -79,7 +79,7 @@ def _element(packing_fraction: Numbers, dimension: int, kind: int, further: floa
     return scale / (1.0 - eta) ** dimension * shape
 
 
-def _unknown(dimension: int, kind: int) -> float:
+def _estimate_neglected(dimension: int, kind: int) -> float:
     """Estimate the first neglected coefficient by the larger of the last two known coefficients."""
     return max(map(abs, _SHAPES[dimension][kind][-2:]))
 
@@ -156,11 +156,11 @@ def surface_tension_uncertainty(packing_fraction: Numbers, dimension: int) -> Va
     0.0036
     """
     eta = checked_packing_fraction(packing_fraction, _DENSEST)
-    further = _unknown(checked_dimension(dimension), 0)
+    further = _estimate_neglected(checked_dimension(dimension), 0)
     return np.abs(_element(eta, dimension, 0, further) - _element(eta, dimension, 0))
 
 
-@checked
+@check_ranges
 def wall_pressure(
     length: float, density: float, count: int, dimension: int, axes: int
 ) -> tuple[float, float]:
@@ -222,7 +222,7 @@ def wall_pressure(
     errors += [math.sqrt(walled) * _opposite(eta, dimension, length) * value, shift**2 / value]
     for kind in range(walled):
         further = [0.0] * walled
-        further[kind] = _unknown(dimension, kind)
+        further[kind] = _estimate_neglected(dimension, kind)
         errors.append(_in_container(sides, density, count, dimension, further)[1] - value)
     error = math.hypot(*errors)
     if not error <= LARGEST_UNCERTAINTY * value:
@@ -255,7 +255,11 @@ class _Container:
     def __init__(self, sides: Sequence[float], dimension: int, further: Sequence[float]) -> None:
         self.dimension, self.further = dimension, further
         inverse = [2.0 / side for side in sides]
-        sums = [sum(inverse), 0.5 * (sum(inverse) ** 2 - sum(one**2 for one in inverse)), math.prod(inverse)]
+        sums = [
+            sum(inverse),
+            0.5 * (sum(inverse) ** 2 - sum(value**2 for value in inverse)),
+            math.prod(inverse),
+        ]
         self.elements = sums[: len(sides)]
 
     def surplus(self, eta: float) -> float:
@@ -299,18 +303,16 @@ def _in_container(
     eta = here.bulk(density)
     bulk = float(number_density(eta, dimension) * compressibility_factor(eta, dimension))
 
-    def stretched(factor: float) -> _Container:
+    def stretch(factor: float) -> _Container:
         return _Container((sides[0] * factor, *sides[1:]), dimension, further)
 
     wide, narrow = 1.0 + _STRETCH, 1.0 - _STRETCH
-    surplus = (wide * stretched(wide).surplus(eta) - narrow * stretched(narrow).surplus(eta)) / (
-        2.0 * _STRETCH
-    )
-    shift = _canonical(stretched, density, count)
+    surplus = (wide * stretch(wide).surplus(eta) - narrow * stretch(narrow).surplus(eta)) / (2.0 * _STRETCH)
+    shift = _canonical(stretch, density, count)
     return eta, bulk - surplus + shift, shift
 
 
-def _canonical(stretched: Callable[[float], _Container], density: float, count: int) -> float:
+def _canonical(stretch: Callable[[float], _Container], density: float, count: int) -> float:
     """Return the difference of the pressures of `count` particles and of the grand canonical ensemble.
 
     The saddle point gives the term of N particles in the grand partition function: ln Q_N = -Omega - N mu -
@@ -320,7 +322,7 @@ def _canonical(stretched: Callable[[float], _Container], density: float, count: 
     """
     logarithms = []
     for factor in (1.0 + _STRETCH, 1.0 - _STRETCH):
-        container = stretched(factor)
+        container = stretch(factor)
         eta = container.bulk(density / factor)
         logarithms.append(math.log(factor * container.fluctuation(eta)))
     return -0.5 * density / count * (logarithms[0] - logarithms[1]) / (2.0 * _STRETCH)

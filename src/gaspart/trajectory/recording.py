@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from gaspart.errors import SceneError, SimulationError
-from gaspart.interruption import Deferral, deferred, set_note
+from gaspart.interruption import Deferral, defer_signals, set_note
 from gaspart.simulation import Simulation
 from gaspart.state.state import State, by_number
 from gaspart.trajectory import amber
@@ -86,7 +86,7 @@ class Recording:
         next to the trajectory, in `.failed.npz`. A signal takes effect after a checkpoint was written.
         """
         try:
-            with deferred() as signals:
+            with defer_signals() as signals:
                 self._estimate_again()
                 while not self._is_complete(signals):
                     self._finish_frame(signals)

@@ -16,7 +16,7 @@ from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, TypeAlias
 
-from gaspart.errors import SceneError, shown
+from gaspart.errors import SceneError, short_repr
 from gaspart.files import OVERWRITE, may_replace, open_regular, output_path, place
 from gaspart.keys.values import number
 from gaspart.simulation import Simulation
@@ -189,7 +189,7 @@ def _difference(path: Path, wanted: Recipe, content: Content) -> str:
     keys = [item.name for item in fields(Recipe) if item.compare]
     changed = [key for key in keys if getattr(stored, key) != getattr(wanted, key)]
     texts = [
-        f"{key} {shown(getattr(stored, key))}, not {shown(getattr(wanted, key))}"
+        f"{key} {short_repr(getattr(stored, key))}, not {short_repr(getattr(wanted, key))}"
         if isinstance(getattr(wanted, key), int | float | str | tuple)
         else key
         for key in changed

@@ -11,6 +11,7 @@ from gaspart.analysis.statistics.blocks import (
     Histogram,
     autocorrelation_time,
     correlated_mean,
+    count_changes,
     histogram_chi_square,
     slow_mean,
 )
@@ -47,6 +48,7 @@ __all__ = [
     "combine",
     "combine_estimates",
     "correlated_mean",
+    "count_changes",
     "fit_curve",
     "fit_linear",
     "fit_polynomial",

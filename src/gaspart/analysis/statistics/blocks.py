@@ -164,6 +164,11 @@ def autocorrelation_time(series: ArrayLike) -> float:
     return 0.5 * spectrum / float(series.var()) if spectrum > 0.0 else 0.5
 
 
+def count_changes(series: np.ndarray) -> int:
+    """Count the changes from one sample to the next that are larger than rounding."""
+    return int(np.count_nonzero(np.abs(np.diff(series)) > _ROUNDING * np.abs(series).max()))
+
+
 def _spectrum(series: np.ndarray) -> tuple[float, float]:
     """Compute the sum of a series' autocovariances over all lags.
 
@@ -175,7 +180,7 @@ def _spectrum(series: np.ndarray) -> tuple[float, float]:
     number = series.size
     order = round(ORDER * number ** (1.0 / 3.0))
     centred = series - series.mean()
-    changes = np.count_nonzero(np.abs(np.diff(series)) > _ROUNDING * np.abs(series).max())
+    changes = count_changes(series)
     if not changes:
         return 0.0, 1.0
     found = np.array([centred[: number - lag] @ centred[lag:] for lag in range(order + 1)]) / number

@@ -14,7 +14,7 @@ from functools import cache, wraps
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
-from gaspart.interruption import uninterrupted
+from gaspart.interruption import prevent_interruption
 from gaspart.kernels.compile.cache import load_numba, report_unwritable, usable_cache
 from gaspart.kernels.compile.sources import file_digests
 
@@ -99,7 +99,7 @@ def _without_interruption(compile_: F) -> F:
 
     @wraps(compile_)
     def compile_whole(*arguments: Any) -> Any:
-        with uninterrupted():
+        with prevent_interruption():
             return compile_(*arguments)
 
     return cast(F, compile_whole)

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from gaspart.errors import SceneError
-from gaspart.files import resolved
+from gaspart.files import resolve_path
 from gaspart.reproduction.archive.limits import name_fault
 from gaspart.reproduction.claims import table
 from gaspart.reproduction.claims.table import filled
@@ -126,7 +126,7 @@ def find_finished(results: str | Path, config: str | Path | None = None) -> Fini
     Raises SceneError for a folder without results, results that are not complete, and trajectories that were
     made with other settings than the config states.
     """
-    folder = resolved(results)
+    folder = resolve_path(results)
     if not (folder / "tables/claims.csv").is_file():
         rule = "holds no results of a finished run: tables/claims.csv is missing"
         raise SceneError("results", str(results), rule)

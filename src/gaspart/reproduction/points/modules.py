@@ -15,7 +15,7 @@ from functools import cache
 from pathlib import Path
 
 from gaspart.kernels.compile.sources import file_digests
-from gaspart.public import stated
+from gaspart.public import read_stub
 
 PACKAGE = Path(__file__).parents[2]
 _TYPES = re.compile(r"^if TYPE_CHECKING:\n(?:[ \t]+.*\n|\n)+", re.MULTILINE)
@@ -66,7 +66,7 @@ def imported(path: Path) -> frozenset[Path]:
 def _homes(package: str) -> dict[str, str]:
     """Return the module of each name that a package loads when it is used."""
     stub = PACKAGE.joinpath(*package.split(".")[1:], "__init__.pyi")
-    return stated(str(stub)) if stub.is_file() else {}
+    return read_stub(str(stub)) if stub.is_file() else {}
 
 
 @cache

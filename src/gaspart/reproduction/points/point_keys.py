@@ -163,7 +163,7 @@ def ending(point: Point) -> dict[str, Any]:
     accuracies = tuple(Accuracy.named(name, value, start) for name, value in settings["until"].items())
     for asked in accuracies:
         require_measurable(asked, point.scene, point.engine)
-        require_end(asked, point.scene, times.duration, given=False)
+        require_end(asked, point.scene, times.duration, from_state=False)
     interval = times.sample_interval
     if "samples" not in settings:
         interval = default_sample_interval(point.scene, point.engine, None)

@@ -14,7 +14,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from gaspart.errors import SceneError, shown
+from gaspart.errors import SceneError, short_repr
 from gaspart.keys.values import MOST_PARTICLES
 from gaspart.reproduction.points.point_keys import EXTENTS, GAS, PREFIX
 from gaspart.scene.geometry import ball_volume
@@ -220,7 +220,7 @@ def _place(block: object, part: str, key: str, point: Point) -> str | int:
         block.setdefault(part, None)
         return part
     if not isinstance(block, list):
-        raise point.refused(key, f"the scene file has {shown(block)} where this looks for {part}")
+        raise point.refused(key, f"the scene file has {short_repr(block)} where this looks for {part}")
     if not part.isdecimal() or len(part) > 9 or int(part) >= len(block):
         rule = f"{part} must be the number of an item, of which the scene file has {len(block)}, from 0"
         raise point.refused(key, rule)
