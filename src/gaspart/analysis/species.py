@@ -98,9 +98,9 @@ def _of_motion() -> tuple[str, ...]:
 def _of_velocities(run: Run, kind: int) -> dict[str, Observable]:
     """Measure the temperature and the mean speed of the moving particles of a species."""
     chosen, masses = selected(run, kind, None), run.masses[run.moving]
-    about, rows = mean_motion(run), []
+    peculiar, rows = mean_motion(run), []
     for _, part in run.parts():
-        motion = about(part)
+        motion = peculiar(part)
         free = np.broadcast_to(motion.freedom, motion.velocities.shape)
         # in the order of C, in which sums have the same bits for any number of frames
         velocities, free = (each.take(chosen, axis=1) for each in (motion.velocities, free))
