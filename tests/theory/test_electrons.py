@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gaspart import theory
+from gaspart.theory import heat
 from gaspart.theory.electrons import MetalSlab
 
 
@@ -39,14 +39,14 @@ def test_without_collisions_the_profile_is_that_of_free_flight():
 
 def test_the_bend_of_the_profile_is_that_of_the_program():
     """And not that of a gas, -0.12."""
-    metal = MetalSlab(2.0, theory.heat.METAL_GAP, 16_000, seed=4)
+    metal = MetalSlab(2.0, heat.METAL_GAP, 16_000, seed=4)
     metal.profile(150.0, 10)
     energy, number = metal.profile(300.0, 10)
     temperature, position = energy / number, (np.arange(10) + 0.5) / 10
     bend = np.polyfit(position[1:-1], temperature[1:-1], 2)[0]
     # 10 metals of 20 000 electrons, for 1000 times on average, instead of 16 000 for 300
-    scatter = theory.heat.METAL_BEND_ERROR * (2e8 / 4.8e6 + 1.0) ** 0.5
-    assert bend == pytest.approx(theory.heat.METAL_BEND, abs=3.5 * scatter)
+    scatter = heat.METAL_BEND_ERROR * (2e8 / 4.8e6 + 1.0) ** 0.5
+    assert bend == pytest.approx(heat.METAL_BEND, abs=3.5 * scatter)
 
 
 def test_slow_electrons_are_where_it_is_cold_by_a_power_of_the_temperature():

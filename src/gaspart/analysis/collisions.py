@@ -103,14 +103,14 @@ def collision_data(
         np.full(state.count, np.nan),
         state.velocities,
     )  # time and velocity after each particle's last event
-    parts, found, alone = [], 0, 0
-    while found < collisions:
+    parts, progress, alone = [], 0, 0
+    while progress < collisions:
         simulation.record_events = True  # a new, empty list
-        events = min(_CHUNK, max(collisions - found, 1))
+        events = min(_CHUNK, max(collisions - progress, 1))
         simulation.advance(max_events=events)
         part, last = pair_rows(simulation.events, last, scene)
         parts.append(part)
-        found += part.sizes["collision"]
+        progress += part.sizes["collision"]
         alone = 0 if part.sizes["collision"] else alone + events
         if alone > _PATIENCE:
             raise SimulationError(f"none of the last {_PATIENCE} events was a collision of two particles")
@@ -187,10 +187,10 @@ COLLISIONS = FileKind("a data set of collisions written by gaspart", _is_collisi
 
 def _check_memory(collisions: int, scene: Scene) -> None:
     """Raise SceneError for more collisions than this machine can hold, twice."""
-    needed = 16.0 * collisions * (9 + scene.dimension)
+    required = 16.0 * collisions * (9 + scene.dimension)
     there = memory()
-    if there is not None and needed > there:
-        rule = f"needs {needed / 1e9:.3g} GB of memory; this machine has {there / 1e9:.3g} GB"
+    if there is not None and required > there:
+        rule = f"needs {required / 1e9:.3g} GB of memory; this machine has {there / 1e9:.3g} GB"
         raise SceneError("collisions", collisions, rule)
 
 
@@ -381,8 +381,8 @@ def free_flight_times(simulation: Simulation, bins: int = 40) -> Observable:
     sizes = [len(time) for time, _ in members]
     grid = Grid.line(0.0, _LONGEST * mean, count_of("bins", bins, least=2))
     (edges,), (middle,) = grid.edges, grid.middles
-    found = [grid.sums(grid.cells(time[:, None])) / grid.volume / len(time) for time, _ in members]
-    values, errors = means_of(found, sizes)
+    densities = [grid.sums(grid.cells(time[:, None])) / grid.volume / len(time) for time, _ in members]
+    values, errors = means_of(densities, sizes)
     means, scatter = means_of([(time.mean(), path.mean()) for time, path in members], sizes)
     about: dict[str, Any] = {"units": "1 / time", "long_name": "probability density of free times"}
     along = {"free_time": (middle, {"units": "time", "long_name": "time between collisions"})}

@@ -85,17 +85,17 @@ def replicas(
     """
     if isinstance(sources, str | Path | Simulation | xr.Dataset) or len(sources) < 2:
         raise SceneError("sources", sources, "must be a list of two runs or more")
-    found: list[Observable] = []
+    results: list[Observable] = []
     recipes: list[_Recipe] = []
     for number, source in enumerate(sources, 1):
         with _opened(source) as run:
             recipe = _recipe(run, str(source) if isinstance(source, str | Path) else f"run {number}")
             _check_replica(recipe, recipes)
             recipes.append(recipe)
-            found.append(measure(run, name, start, end, **selection))
+            results.append(measure(run, name, start, end, **selection))
     if OBSERVABLES[name].ends:
-        found = _in_joint_bins(name, sources, found, start, end)
-    return _mean(found, recipes)
+        results = _in_joint_bins(name, sources, results, start, end)
+    return _mean(results, recipes)
 
 
 def _opened(source: Source) -> AbstractContextManager[xr.Dataset | Simulation]:
@@ -104,11 +104,11 @@ def _opened(source: Source) -> AbstractContextManager[xr.Dataset | Simulation]:
 
 
 def _in_joint_bins(
-    name: str, sources: Sequence[Source], found: list[Observable], start: float | None, end: float | None
+    name: str, sources: Sequence[Source], results: list[Observable], start: float | None, end: float | None
 ) -> list[Observable]:
     """Measure an observable again in the widest of the bins that follow from each run."""
     declared = OBSERVABLES[name]
-    middles = [one[declared.along[-1]].values for one in found]
+    middles = [result[declared.along[-1]].values for result in results]
     widest = max(float(middle[-1] + 0.5 * (middle[1] - middle[0])) for middle in middles)
     function, again = getattr(analysis, declared.function), []
     for source in sources:
@@ -146,13 +146,13 @@ def _recipe(run: Any, name: str) -> _Recipe:
         settings = {"scene": run.scene.to_dict(), "engine": engine_to_dict(run.engine)}
         times = np.array([0.0, run.time])
         draws, state = run.engine.draws(run.scene), partial(_simulated, run)
-        tally = next((one for one in run.tallies if isinstance(one, ImpulseTally)), None)
+        tally = next((item for item in run.tallies if isinstance(item, ImpulseTally)), None)
         return _Recipe(name, settings, str(run.seed), draws, times, True, state, _named(tally))
     if not isinstance(run, xr.Dataset) or not {"scene", "engine", "seed"} <= set(run.attrs):
         raise SceneError("sources", type(run).__name__, "must be trajectories, their paths or simulations")
     settings = {"scene": parse_yaml(run.attrs["scene"]), "engine": json.loads(run.attrs["engine"])}
     draws = engine_from_dict(settings["engine"]).draws(Scene.from_dict(settings["scene"]))
-    frames = {one: run[one].values for one in ("time", "coordinates", "velocities") if one in run}
+    frames = {key: run[key].values for key in ("time", "coordinates", "velocities") if key in run}
     stored = partial(_stored, frames)
     seed, impulses = str(run.attrs["seed"]), _named(kept(run))
     return _Recipe(name, settings, seed, draws, frames["time"], False, stored, impulses)
@@ -166,7 +166,7 @@ def _named(tally: ImpulseTally | None) -> str:
 def _stored(frames: dict[str, np.ndarray], time: float) -> bytes:
     """Return the state of a trajectory in the frame at a time."""
     number = int(np.searchsorted(frames["time"], time))
-    return _bits(*(frames[one][number] for one in ("coordinates", "velocities") if one in frames))
+    return _bits(*(frames[name][number] for name in ("coordinates", "velocities") if name in frames))
 
 
 def _simulated(simulation: Simulation, time: float) -> bytes:
@@ -193,11 +193,10 @@ def _check_replica(recipe: _Recipe, others: list[_Recipe]) -> None:
     """
     for other in others:
         if difference := _difference(recipe.settings, other.settings):
-            key, one, two = difference
-            rule = (
-                f"is {short_repr(two)} in {other.name}: replicas differ in nothing but seed and first state"
-            )
-            raise SceneError(key, one, rule, recipe.name)
+            key, value, second = difference
+            differs = f"is {short_repr(second)} in {other.name}"
+            rule = f"{differs}: replicas differ in nothing but seed and first state"
+            raise SceneError(key, value, rule, recipe.name)
         time = _last_common(recipe, other)
         if time is None or recipe.state(0.0) != other.state(0.0):
             continue
@@ -207,39 +206,39 @@ def _check_replica(recipe: _Recipe, others: list[_Recipe]) -> None:
             raise SceneError("seed", recipe.seed, rule, recipe.name)
 
 
-def _last_common(one: _Recipe, other: _Recipe) -> float | None:
+def _last_common(recipe: _Recipe, other: _Recipe) -> float | None:
     """Return the last time at which both have a state; None without a common start."""
-    if one.every and other.every:
-        return float(min(one.times[-1], other.times[-1]))
-    if one.every or other.every:
-        stored, end = (other, one.times[-1]) if one.every else (one, other.times[-1])
+    if recipe.every and other.every:
+        return float(min(recipe.times[-1], other.times[-1]))
+    if recipe.every or other.every:
+        stored, end = (other, recipe.times[-1]) if recipe.every else (recipe, other.times[-1])
         common = stored.times[stored.times <= end]
     else:
-        common = np.intersect1d(one.times, other.times)
+        common = np.intersect1d(recipe.times, other.times)
     return float(common[-1]) if common.size and common[0] == 0.0 else None
 
 
-def _difference(one: Any, two: Any, key: str = "") -> tuple[str, Any, Any] | None:
+def _difference(first: Any, second: Any, key: str = "") -> tuple[str, Any, Any] | None:
     """Find the first difference of two trees: its dotted key and both values.
 
     None if they are equal.
     """
-    if isinstance(one, dict) and isinstance(two, dict):
-        pairs = {str(name): (one.get(name), two.get(name)) for name in {**one, **two}}
+    if isinstance(first, dict) and isinstance(second, dict):
+        pairs = {str(name): (first.get(name), second.get(name)) for name in {**first, **second}}
         form = f"{key}.{{}}" if key else "{}"
-    elif isinstance(one, list | tuple) and isinstance(two, list | tuple) and len(one) == len(two):
-        pairs = {str(n): pair for n, pair in enumerate(zip(one, two, strict=True))}
+    elif isinstance(first, list | tuple) and isinstance(second, list | tuple) and len(first) == len(second):
+        pairs = {str(n): pair for n, pair in enumerate(zip(first, second, strict=True))}
         form = f"{key}[{{}}]"
     else:
-        return None if one == two else (key, one, two)
-    found = (_difference(*pair, form.format(name)) for name, pair in pairs.items())
-    return next((difference for difference in found if difference), None)
+        return None if first == second else (key, first, second)
+    differences = (_difference(*pair, form.format(name)) for name, pair in pairs.items())
+    return next((difference for difference in differences if difference), None)
 
 
-def _other_coordinate(one: Observable, other: Observable, name: str, other_name: str) -> SceneError:
+def _other_coordinate(result: Observable, other: Observable, name: str, other_name: str) -> SceneError:
     """Return the error of two results of one observable with different coordinates, which it names."""
-    for dim in map(str, one.estimate.dims):
-        first, second = one[dim].values, other[dim].values
+    for dim in map(str, result.estimate.dims):
+        first, second = result[dim].values, other[dim].values
         if not np.array_equal(first, second):
             rule = (
                 f"{_described(first)} in {name}: all runs need the same values of it, as with one "
@@ -256,31 +255,35 @@ def _described(values: np.ndarray) -> str:
     return f"{values.size} values from {values[0]:.6g} to {values[-1]:.6g}"
 
 
-def _mean(found: list[Observable], recipes: list[_Recipe]) -> Observable:
+def _mean(measurements: list[Observable], recipes: list[_Recipe]) -> Observable:
     """Average independent measurements of one observable, of runs with these recipes."""
-    first, quantity = found[0], str(found[0].attrs["quantity"])
+    first, quantity = measurements[0], str(measurements[0].attrs["quantity"])
     dims = first.estimate.dims
-    for one, recipe in zip(found[1:], recipes[1:], strict=True):
-        same = one.estimate.shape == first.estimate.shape
-        if not same or any(not np.array_equal(one[dim], first[dim]) for dim in dims if dim in first.coords):
+    for measurement, recipe in zip(measurements[1:], recipes[1:], strict=True):
+        same = measurement.estimate.shape == first.estimate.shape
+        if not same or any(
+            not np.array_equal(measurement[dim], first[dim]) for dim in dims if dim in first.coords
+        ):
             if recipe.impulses != recipes[0].impulses:
                 rule = f"are {recipes[0].impulses} in {recipes[0].name}: {quantity} is in the bins of these"
                 raise SceneError("impulses", recipe.impulses, rule, recipe.name)
-            raise _other_coordinate(first, one, recipes[0].name, recipe.name)
-    each = np.array([one.estimate.values for one in found])
+            raise _other_coordinate(first, measurement, recipes[0].name, recipe.name)
+    each = np.array([measurement.estimate.values for measurement in measurements])
     values, errors = means_of(each)
     parts = {"": values, "_error": errors}
-    if all(one.theory is not None for one in found):
+    if all(measurement.theory is not None for measurement in measurements):
         for part in ("_theory", "_theory_error"):
-            parts[part] = np.mean([one[quantity + part].values for one in found], axis=0)
+            parts[part] = np.mean(
+                [measurement[quantity + part].values for measurement in measurements], axis=0
+            )
     coords = {dim: first.coords[dim] for dim in dims if dim in first.coords}
     data = {key: (dims, part, first[quantity + key].attrs) for key, part in parts.items()}
     attrs = {key: text for key, text in first.attrs.items() if key in ("quantity", "source")}
     result = Observable({quantity + key: value for key, value in data.items()}, coords, attrs)
     result[f"{quantity}_replicas"] = (("replica", *dims), each, first.estimate.attrs)
-    result.attrs["freedom"] = len(found) - 1
+    result.attrs["freedom"] = len(measurements) - 1
     if not dims:  # what a plot of a scalar shows
         about = {"long_name": "replica", "units": "1"}
-        result = result.assign_coords(time=("time", np.arange(len(found)), about))
+        result = result.assign_coords(time=("time", np.arange(len(measurements)), about))
         result["stretches"] = ("time", each, {**first.estimate.attrs, "long_name": "replicas"})
     return result

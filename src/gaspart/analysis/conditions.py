@@ -195,8 +195,8 @@ def grouped(scene: Scene, selection: Selection) -> None:
     if chosen["particles"] is not None:
         if chosen["species"] is not None:
             raise SceneError("species", chosen["species"], "excludes particles")
-        numbers = [count_of("particles", one) for one in chosen["particles"]]
-        if any(one >= scene.count for one in numbers):
+        numbers = [count_of("particles", index) for index in chosen["particles"]]
+        if any(index >= scene.count for index in numbers):
             raise SceneError("particles", max(numbers), f"there are {scene.count}, numbered from 0")
         return
     if not _in_species(scene, chosen["species"]):
@@ -217,7 +217,7 @@ def _in_species(scene: Scene, species: Any) -> int:
     if count_of("species", species) >= kinds:
         raise SceneError("species", species, f"there are {kinds}, numbered from 0")
     members = scene.particles if species == len(scene.species) else (scene.species[species],)
-    return sum(one.count for one in members if not one.fixed)
+    return sum(member.count for member in members if not member.fixed)
 
 
 def has_species(scene: Scene, selection: Selection) -> None:

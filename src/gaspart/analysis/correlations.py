@@ -78,12 +78,12 @@ def squared_displacement(paths: np.ndarray, lags: int) -> np.ndarray:
     before = np.concatenate([[0.0], np.cumsum(squares)])
     lag = np.arange(lags)
     sums = before[frames - lag] + before[-1] - before[lag] - 2.0 * _products(r)[:lags]
-    found = sums / ((frames - lag) * count)
-    found[0] = 0.0
-    for short in np.flatnonzero(found[1:] < _DIRECT * squares.mean() / count) + 1:
+    means = sums / ((frames - lag) * count)
+    means[0] = 0.0
+    for short in np.flatnonzero(means[1:] < _DIRECT * squares.mean() / count) + 1:
         moved = r[short:] - r[: frames - short]
-        found[short] = np.einsum("tc,tc->", moved, moved) / ((frames - short) * count)
-    return found
+        means[short] = np.einsum("tc,tc->", moved, moved) / ((frames - short) * count)
+    return means
 
 
 def autocorrelation(values: np.ndarray, lags: int) -> np.ndarray:

@@ -183,19 +183,19 @@ def _open_walls(source: Source, start: float | None, name: str) -> Iterator[tupl
 def _of_faces(function: str, run: Run, ends: np.ndarray, about: dict[str, Any]) -> Observable:
     """Return the result of the function of this name, from blocks of a run."""
     name = name_of(function)
-    faces, found = on_walls(run, ends, name)
-    freedoms = np.full(len(faces), len(found) - 1.0)
+    faces, samples = on_walls(run, ends, name)
+    freedoms = np.full(len(faces), len(samples) - 1.0)
     improved, time = controlled_on_walls(run, name), np.diff(run.time)
-    for place, (_, regressors, each) in improved.items():
-        found[:, place] = series.over(each * time, ends) / series.over(time, ends)
-        freedoms[place] -= regressors
-    values, errors = means_of(found - found[0])  # no error of rounding at rest
+    for index, (_, regressors, each) in improved.items():
+        samples[:, index] = series.over(each * time, ends) / series.over(time, ends)
+        freedoms[index] -= regressors
+    values, errors = means_of(samples - samples[0])  # no error of rounding at rest
     along = {"face": (faces, {"long_name": "face of the container"})}
-    result = observable(function, along, values + found[0], errors, **about)
+    result = observable(function, along, values + samples[0], errors, **about)
     serves = knows_energies(engine_class(run), run.scene)
-    asked = ImpulseTally(str(faces[-1])[0], USUAL_BINS) if serves else None
+    tally = ImpulseTally(str(faces[-1])[0], USUAL_BINS) if serves else None
     of = "wall impulses", "wall impulses, with the known mean of the energy along an axis"
-    result.attrs |= estimator(run, *of, bool(improved), asked)
+    result.attrs |= estimator(run, *of, bool(improved), tally)
     return with_freedom(result, Means(values, errors, freedoms)) if improved else result
 
 
@@ -216,13 +216,13 @@ def controlled_on_walls(run: Run, name: str) -> dict[int, tuple[str, int, np.nda
         interval, shape (T - 1,).
     """
     faces, each = on_walls(run, np.arange(len(run.time)), name)
-    groups, found = group_count(run) if run.has_states else 0, {}
-    for place, face in enumerate(map(str, faces)) if groups else ():
+    groups, by_face = group_count(run) if run.has_states else 0, {}
+    for index, face in enumerate(map(str, faces)) if groups else ():
         controls = wall_controls(run, "xyz".index(face[0]))
         if controls is not None:
-            improved = controlled(each[:, place], controls, groups)
-            found[place] = face, controls.shape[1], improved
-    return found
+            improved = controlled(each[:, index], controls, groups)
+            by_face[index] = face, controls.shape[1], improved
+    return by_face
 
 
 def on_walls(run: Run, ends: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:
@@ -253,14 +253,14 @@ def on_walls(run: Run, ends: np.ndarray, name: str) -> tuple[np.ndarray, np.ndar
     time, walls = np.diff(run.time)[:, None], np.repeat(~run.periodic, 2)
     impulses, resting = series.over(series.face_impulses(run), ends), _rest_on_floors(run, ends)
     if name == "force":
-        given = impulses + resting
+        totals = impulses + resting
     elif run.scene.has_unequal_areas:  # of what rests, the sizes are not known
-        given = series.over(series.face_pressures(run) * time, ends)
-        given += np.where((np.abs(resting) > _SLIGHT * impulses).any(axis=0), np.nan, 0.0)
+        totals = series.over(series.face_pressures(run) * time, ends)
+        totals += np.where((np.abs(resting) > _SLIGHT * impulses).any(axis=0), np.nan, 0.0)
     else:
-        given = series.over(series.face_pressures(run) * time, ends)
-        given += resting * series.over(time / face_areas(run), ends) / series.over(time, ends)
-    return np.array(face_names(run.dimension))[walls], (given / series.over(time, ends))[:, walls]
+        totals = series.over(series.face_pressures(run) * time, ends)
+        totals += resting * series.over(time / face_areas(run), ends) / series.over(time, ends)
+    return np.array(face_names(run.dimension))[walls], (totals / series.over(time, ends))[:, walls]
 
 
 def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:

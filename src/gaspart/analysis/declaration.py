@@ -27,10 +27,10 @@ def units_in(units: str, dimension: int) -> str:
     For example, `mass length^(2-d) / time` is `mass length^-1 / time` in three dimensions.
     """
 
-    def number(found: re.Match[str]) -> str:
-        if found[1] is None:
+    def number(match: re.Match[str]) -> str:
+        if match[1] is None:
             return f"^{dimension}"
-        first, second = (dimension if part == "d" else int(part) for part in found.groups())
+        first, second = (dimension if part == "d" else int(part) for part in match.groups())
         return f"^{first - second}"
 
     return _EXPONENT.sub(number, units)
@@ -44,8 +44,8 @@ def powers_of(units: str, dimension: int) -> tuple[int, int, int]:
     total = [0, 0, 0]
     above, _, below = units_in(units, dimension).partition(" / ")
     for sign, part in ((1, above), (-1, below)):
-        for word, exponent in _FACTOR.findall(part):
-            for n, power in enumerate(BASE[word]):
+        for unit, exponent in _FACTOR.findall(part):
+            for n, power in enumerate(BASE[unit]):
                 total[n] += sign * power * int(exponent or 1)
     return total[0], total[1], total[2]
 
@@ -109,8 +109,8 @@ class Named:
         pair of species, "fluxes" correlations of the stress and the heat flux, or "shear" the momentum along
         faces, which some engines tally.
     conditions : conditions of a scene, see `Condition`.
-    whole : requirement that the file has all particles: "always", "never", "mixed", if there are several
-        kinds of particles, or "unless fluxes" are stored, which include the temperature.
+    needs_all_particles : requirement that the file has all particles: "always", "never", "mixed", if there
+        are several kinds of particles, or "unless fluxes" are stored, which include the temperature.
     varying : True if it is defined where particles come and go through open faces.
     ends : keyword argument of the function with the end of its bins, if that follows from the run.
     nothing : equations that an engine solves (`Engine.equation`) whose runs do not determine it, each with
@@ -157,7 +157,7 @@ class Named:
     selections: tuple[str, ...] = ()
     needs: str = ""
     conditions: tuple[Condition, ...] = ()
-    whole: str = "always"
+    needs_all_particles: str = "always"
     varying: bool = False
     ends: str = ""
     nothing: dict[str, str] = field(default_factory=dict)
@@ -181,7 +181,7 @@ class Named:
 
     @property
     def form(self) -> str:
-        """ "number", "names" (one for each of some names), or "curve"."""
+        """Form of the result: "number", "names" (a value for each of some names), or "curve"."""
         if not self.along:
             return "number"
         return "names" if DIMENSIONS[self.along[-1]].names else "curve"

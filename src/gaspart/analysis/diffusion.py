@@ -254,8 +254,8 @@ def _lasting_momentum(run: Run, lag: int) -> np.ndarray:
     """
     velocities = run.motion.velocities if run.flow_axes else run.velocities[:, run.moving]
     momentum = np.einsum("tnd,n->td", velocities, run.masses[run.moving])
-    left = (momentum[lag:] * momentum[:-lag]).mean(axis=0)
-    return run.conserved | (run.periodic & (left > 0.5 * (momentum**2).mean(axis=0)))
+    correlation = (momentum[lag:] * momentum[:-lag]).mean(axis=0)
+    return run.conserved | (run.periodic & (correlation > 0.5 * (momentum**2).mean(axis=0)))
 
 
 def _slopes(groups: Groups, lags: tuple[int, ...]) -> np.ndarray:

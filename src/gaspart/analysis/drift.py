@@ -26,26 +26,26 @@ _CONSTANT = 1e-6
 """Relative scatter of what does not change but for rounding."""
 
 
-def drift_of(data: Source, start: float | None = None, places: bool = False) -> str:
+def drift_of(data: Source, start: float | None = None, positions: bool = False) -> str:
     """Describe what drifts in the measured part of an open trajectory; "" if nothing does.
 
     The number of particles is examined where faces are open, the kinetic energy of a particle, and, with
-    `places`, the mean position of the particles along axes with walls.
+    `positions`, the mean position of the particles along axes with walls.
     """
     with open_run(data, start, sheared=True, varying=True) as run:
         if len(run.time) < LEAST_FRAMES:
             return ""
-        found = [_drift(name, series) for name, series in _series(run, places).items()]
-    return "; ".join(filter(None, found))
+        drifts = [_drift(name, series) for name, series in _series(run, positions).items()]
+    return "; ".join(filter(None, drifts))
 
 
-def _series(run: Run, places: bool) -> dict[str, np.ndarray]:
+def _series(run: Run, positions: bool) -> dict[str, np.ndarray]:
     """Return the series (T,) that are examined, by their names."""
     numbers, series = np.full(len(run.time), max(1, run.scene.moving_count), dtype=float), {}
     if run.scene.is_open:
         numbers = series["the number of particles"] = particle_numbers(run.scene, run.data).astype(float)
     series["the kinetic energy of a particle"] = run.data["kinetic_energy"].values / np.maximum(numbers, 1.0)
-    if places and "coordinates" in run.data and not run.is_subset:
+    if positions and "coordinates" in run.data and not run.is_subset:
         moving = np.ones(run.count, dtype=bool) if run.scene.is_open else run.moving
         means = np.concatenate([np.nanmean(part.positions[:, moving], axis=1) for _, part in run.parts()])
         for axis in run.scene.walled_axes:
@@ -57,9 +57,9 @@ def _drift(name: str, series: np.ndarray) -> str:
     """Describe the drift of a series (T,); "" if it has none."""
     if not np.isfinite(series).all() or np.ptp(series) <= _CONSTANT * np.abs(series).max():
         return ""
-    place = np.linspace(-0.5, 0.5, len(series))
-    rise = float(place @ (series - series.mean()) / (place @ place))
-    rest = correlated_mean(series - np.polynomial.Polynomial.fit(place, series, _DEGREE)(place)).estimate
+    time = np.linspace(-0.5, 0.5, len(series))
+    rise = float(time @ (series - series.mean()) / (time @ time))
+    rest = correlated_mean(series - np.polynomial.Polynomial.fit(time, series, _DEGREE)(time)).estimate
     if abs(Estimate(rise, math.sqrt(12.0) * rest.error, rest.freedom).deviation) <= SIGNIFICANT:
         return ""
     halves = [half.mean() for half in np.array_split(series, 2)]

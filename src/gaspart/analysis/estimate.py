@@ -64,7 +64,7 @@ class Estimate:
     @classmethod
     def stack(cls, estimates: Sequence[Estimate]) -> Estimate:
         """Join estimates of one shape along a new first axis; without any, return an empty array."""
-        parts = ([one._parts[k] for one in estimates] for k in range(3))
+        parts = ([estimate._parts[k] for estimate in estimates] for k in range(3))
         return cls(*parts)
 
     @property

@@ -78,12 +78,12 @@ def field(
         numbers = _numbers(cells, len(along))
         members = np.flatnonzero(run.moving)[selected(run, species, None)]
         cells = Cells(run, members, tuple(along), tuple(numbers))
-        found, attributes = None, dict[str, str]()
+        means, attributes = None, dict[str, str]()
         if of == "density" and len(along) == 1:
-            found = mixed_density(run, along[0], numbers[0], species)
-            attributes = described_density(run, along[0], numbers[0], found is not None)
-        if found is None:
-            found = cells.temperature(local=True) if of == "temperature" else getattr(cells, of)()
+            means = mixed_density(run, along[0], numbers[0], species)
+            attributes = described_density(run, along[0], numbers[0], means is not None)
+        if means is None:
+            means = cells.temperature(local=True) if of == "temperature" else getattr(cells, of)()
         coordinates: dict[str, Any] = {}
         if of == "velocity":
             coordinates["component"] = (np.array(list("xyz"[: run.dimension])), {"long_name": "component"})
@@ -94,18 +94,18 @@ def field(
             "velocity": ("length / time", "velocity"),
             "temperature": ("energy", "temperature"),
         }[of]
-        result = observable(of, coordinates, found.values, found.errors, units=units, long_name=name)
+        result = observable(of, coordinates, means.values, means.errors, units=units, long_name=name)
         result.attrs |= attributes
-        return with_freedom(result, found)
+        return with_freedom(result, means)
 
 
 def _axes(run: Run, axes: str | None) -> list[int]:
     """Return the numbers of the named axes; raise SceneError for others."""
     names = "xyz"[: run.dimension]
-    wanted = "xy" if axes is None else axes
-    if not wanted or len(set(wanted)) < len(wanted) or not set(wanted) <= set(names):
-        raise SceneError("axes", wanted, f"must be some of {names}, each once")
-    return [names.index(axis) for axis in wanted]
+    requested = "xy" if axes is None else axes
+    if not requested or len(set(requested)) < len(requested) or not set(requested) <= set(names):
+        raise SceneError("axes", requested, f"must be some of {names}, each once")
+    return [names.index(axis) for axis in requested]
 
 
 def _numbers(cells: int | Sequence[int], axes: int) -> list[int]:
@@ -173,12 +173,12 @@ def velocity_profile(
     with open_run(source, start, sheared=True, varying=True) as run:
         require_defined("velocity", run.scene, axis=axis, species=species)
         name = "xyz"[run.dimension - 1] if axis is None else axis
-        found = field(run.data, "velocity", name, bins, float(run.time[0]), species)
-        places = found[name].values
+        result = field(run.data, "velocity", name, bins, float(run.time[0]), species)
+        positions = result[name].values
         along = {
-            "component": (found["component"].values, {"long_name": "component"}),
-            "position": (places, {"units": "length", "long_name": name}),
+            "component": (result["component"].values, {"long_name": "component"}),
+            "position": (positions, {"units": "length", "long_name": name}),
         }
-        about = described("velocity", run, "xyz".index(name), places)
-        means = Means(found.estimate.values, found.error.values, found["velocity_freedom"].values)
+        about = described("velocity", run, "xyz".index(name), positions)
+        means = Means(result.estimate.values, result.error.values, result["velocity_freedom"].values)
         return with_freedom(observable("velocity", along, means.values, means.errors, **about), means)

@@ -57,17 +57,17 @@ def sides(run: Run, times: np.ndarray) -> np.ndarray:
     without its position.
     """
     scene = run.scene
-    found = np.zeros((len(times), run.dimension, 2))
-    found[:, :, 1] = scene.container.lengths
+    ends = np.zeros((len(times), run.dimension, 2))
+    ends[:, :, 1] = scene.container.lengths
     for number, face in scene.faces_of(Vibrating):
         inwards = face.places(times)
-        found[:, number // 2, number % 2] += -inwards if number % 2 else inwards
+        ends[:, number // 2, number % 2] += -inwards if number % 2 else inwards
     for number, _ in scene.pistons:
         if "piston_position" not in run.data:
             raise SceneError("source", "frames", "lack the place of the piston")
-        place = np.interp(times, run.time, run.data["piston_position"].values)
-        found[:, number // 2, number % 2] = place
-    return found
+        position = np.interp(times, run.time, run.data["piston_position"].values)
+        ends[:, number // 2, number % 2] = position
+    return ends
 
 
 def touched(run: Run, times: np.ndarray) -> np.ndarray:
@@ -90,17 +90,17 @@ def face_areas(run: Run) -> np.ndarray:
     """
     scene, intervals = run.scene, len(run.time) - 1
     if scene.has_unequal_areas:
-        found = np.full((1, 2 * run.dimension), np.nan)
+        areas = np.full((1, 2 * run.dimension), np.nan)
     else:
-        found = run.accessible.areas(np.array([scene.largest_moving_radius]))
+        areas = run.accessible.areas(np.array([scene.largest_moving_radius]))
     if not scene.has_unequal_areas and scene.moving_axes:
         lower, upper = scene.reach(scene.largest_moving_radius)
-        found = found + _mean_areas(run) - _across(np.subtract(upper, lower)[None]).repeat(2, axis=1)
-    found = np.array(np.broadcast_to(found, (intervals, 2 * run.dimension)))
+        areas = areas + _mean_areas(run) - _across(np.subtract(upper, lower)[None]).repeat(2, axis=1)
+    areas = np.array(np.broadcast_to(areas, (intervals, 2 * run.dimension)))
     if scene.load_axis is not None:
         loaded = slice(2 * scene.load_axis, 2 * scene.load_axis + 2)
-        found[:, loaded] = np.delete(scene.container.lengths, scene.load_axis).prod()
-    return found
+        areas[:, loaded] = np.delete(scene.container.lengths, scene.load_axis).prod()
+    return areas
 
 
 def _mean_areas(run: Run) -> np.ndarray:
@@ -116,18 +116,18 @@ def _mean_areas(run: Run) -> np.ndarray:
     return areas.reshape(intervals, number, run.dimension).mean(axis=1).repeat(2, axis=1)
 
 
-def per_area(run: Run, given: np.ndarray, tallied: str) -> np.ndarray:
-    """Divide what each face is given per interval by the area that centres reach.
+def per_area(run: Run, amounts: np.ndarray, tallied: str) -> np.ndarray:
+    """Divide the amounts that each face receives per interval by the area that centres reach.
 
     If particles of several sizes reach different areas, it is the sum over sizes of what the particles of
     each size give divided by their area, from the tally of this name, with the component along the normal
-    where `given` has no components. NaN for faces whose area then changes with time. Raises SceneError for a
-    file without that tally.
+    where `amounts` has no components. NaN for faces whose area then changes with time. Raises SceneError for
+    a file without that tally.
     """
     areas = face_areas(run)
-    found = given / areas.reshape(*areas.shape, *[1] * (given.ndim - 2))
+    fluxes = amounts / areas.reshape(*areas.shape, *[1] * (amounts.ndim - 2))
     if not run.scene.has_unequal_areas:
-        return np.asarray(found)
+        return np.asarray(fluxes)
     if tallied not in run.data:
         rule = (
             "particles of several sizes reach other areas of the faces; make the run again, or measure force"
@@ -135,12 +135,14 @@ def per_area(run: Run, given: np.ndarray, tallied: str) -> np.ndarray:
         raise SceneError(tallied, "missing", rule)
     faces = np.arange(2 * run.dimension)
     weighted = run.increments(tallied)[:, faces].astype(float)
-    if weighted.ndim > given.ndim:
+    if weighted.ndim > amounts.ndim:
         weighted = weighted[:, faces, faces // 2]
     moved = {number // 2 for number, face in run.scene.numbered_faces if face.moves}
     weighted[:, [bool(moved - {face // 2}) for face in faces]] = np.nan
-    known = np.isfinite(areas)  # of a piston with a load
-    return np.asarray(np.where(known.reshape(*known.shape, *[1] * (given.ndim - 2)), found, weighted))
+    is_known = np.isfinite(areas)  # of a piston with a load
+    return np.asarray(
+        np.where(is_known.reshape(*is_known.shape, *[1] * (amounts.ndim - 2)), fluxes, weighted)
+    )
 
 
 def _across(lengths: np.ndarray) -> np.ndarray:
@@ -170,10 +172,10 @@ def left_by_obstacles(run: Run, radius: float, axis: int, edges: np.ndarray) -> 
     trees = [cKDTree(centres[fixed & (run.radii == size)], boxsize=period) for size in sizes]
     for n, width in enumerate(widths):
         points[:, axis] = edges[n] + width * across
-        left = np.ones(_POINTS, dtype=bool)
+        is_free = np.ones(_POINTS, dtype=bool)
         for size, tree in zip(sizes, trees, strict=True):
-            left &= ~np.isfinite(tree.query(points, distance_upper_bound=size + radius)[0])
-        shares[n] = left.mean()
+            is_free &= ~np.isfinite(tree.query(points, distance_upper_bound=size + radius)[0])
+        shares[n] = is_free.mean()
     return shares
 
 
@@ -215,25 +217,25 @@ class Grid:
         sides = zip(self.lower, self.upper, self.numbers, strict=True)
         return math.prod((high - low) / number for low, high, number in sides)
 
-    def cells(self, places: np.ndarray, inside: bool = False) -> np.ndarray:
+    def cells(self, positions: np.ndarray, inside: bool = False) -> np.ndarray:
         """Return the number of the cell at each position (..., A); -1 outside and at NaN.
 
         The upper end belongs to the last cell. If `inside`, a position that rounding put outside counts to
         the nearest cell.
         """
-        shape = np.shape(places)[:-1]
-        found, outside = np.zeros(shape, dtype=np.int64), np.zeros(shape, dtype=bool)
+        shape = np.shape(positions)[:-1]
+        index, outside = np.zeros(shape, dtype=np.int64), np.zeros(shape, dtype=bool)
         for k, (low, high, number) in enumerate(zip(self.lower, self.upper, self.numbers, strict=True)):
-            x = places[..., k].astype(float)
+            x = positions[..., k].astype(float)
             outside |= np.isnan(x) if inside else ~((x >= low) & (x <= high))
             x -= low
             x *= number / (high - low)
             np.fmax(x, 0.0, out=x)  # of NaN: 0
             np.fmin(x, number - 1.0, out=x)
-            found *= number
-            found += x.astype(np.int64)
-        found[outside] = -1
-        return found
+            index *= number
+            index += x.astype(np.int64)
+        index[outside] = -1
+        return index
 
     def sums(
         self,
@@ -265,9 +267,9 @@ class Grid:
                 first = np.arange(number * (self.size + 1)).reshape(number, -1)[:, 1:]
                 slot = np.concatenate([first.ravel(), slot])
                 spread = np.concatenate([before.ravel(), spread])
-        found = np.bincount(slot, spread, minlength=number * (self.size + 1))
-        found = found.reshape(number, -1)[:, 1:].reshape(shape)
-        return found if before is None or weights is not None else found + before
+        totals = np.bincount(slot, spread, minlength=number * (self.size + 1))
+        totals = totals.reshape(number, -1)[:, 1:].reshape(shape)
+        return totals if before is None or weights is not None else totals + before
 
 
 ABOUT = FLOW, REST = "flow", "rest"
@@ -295,8 +297,8 @@ class Peculiar:
 
     def freedoms(self) -> np.ndarray:
         """Return the degrees of freedom of each particle, shape (T, M)."""
-        whole = np.broadcast_to(self.freedom, self.velocities.shape)
-        return np.asarray(whole.sum(axis=2))
+        freedom = np.broadcast_to(self.freedom, self.velocities.shape)
+        return np.asarray(freedom.sum(axis=2))
 
 
 def about_the_whole(run: Run) -> Peculiar:
@@ -345,11 +347,11 @@ def wind(run: Run) -> np.ndarray:
     The mean of the momentum over the run is more than three times its scatter in equilibrium, sqrt(M k_B T).
     A weaker wind adds at most 9 / (d N) to the temperature. A single particle has no scatter to compare with.
     """
-    found = np.zeros(run.dimension, dtype=bool)
+    has_flow = np.zeros(run.dimension, dtype=bool)
     masses = run.masses[run.moving]
     axes = np.flatnonzero(run.periodic & ~run.conserved & (len(masses) > 1))
     if not axes.size:
-        return found
+        return has_flow
     rows = []
     for _, part in run.parts():
         weighted = masses[:, None] * part.velocities[:, run.moving][..., axes]
@@ -358,8 +360,8 @@ def wind(run: Run) -> np.ndarray:
         weighted /= masses[:, None]
         rows.append([momentum, weighted.sum(axis=1) - momentum**2 / masses.sum()])
     momenta, squares = np.concatenate(rows, axis=1).mean(axis=1)
-    found[axes] = momenta**2 > _BLOWS**2 * np.maximum(squares / len(masses), 0.0) * masses.sum()
-    return found
+    has_flow[axes] = momenta**2 > _BLOWS**2 * np.maximum(squares / len(masses), 0.0) * masses.sum()
+    return has_flow
 
 
 def about_the_flow(run: Run) -> Peculiar:

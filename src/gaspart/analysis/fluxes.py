@@ -74,10 +74,10 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
             heat[:, number] -= _given(run, "wall_shear", "momentum_per_area")[:, number] @ np.array(
                 face.velocity
             )
-        found = _steady(run, faces, heat[:, faces], _energies(run))
+        means = _steady(run, faces, heat[:, faces], _energies(run))
         along = {"face": (np.array(face_names(run.dimension))[faces], {"long_name": "face of the container"})}
         about = described("heat_flux", run, faces)
-        return with_freedom(observable("heat_flux", along, found.values, found.errors, **about), found)
+        return with_freedom(observable("heat_flux", along, means.values, means.errors, **about), means)
 
 
 def wall_shear(source: Source, start: float | None = None) -> Observable:
@@ -126,17 +126,17 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
         require_defined("wall_shear", run.scene)
         faces = np.array(run.scene.drawing_numbers)
         axes = np.array([axis for axis in range(run.dimension) if (faces // 2 != axis).any()])
-        given = _given(run, "wall_shear", "momentum_per_area")[:, faces][..., axes]
-        parts = [_steady(run, faces, given[..., n], _momenta(run, axis)) for n, axis in enumerate(axes)]
+        momentum = _given(run, "wall_shear", "momentum_per_area")[:, faces][..., axes]
+        parts = [_steady(run, faces, momentum[..., n], _momenta(run, axis)) for n, axis in enumerate(axes)]
         across = faces[:, None] // 2 == axes
         columns = {key: np.stack([getattr(part, key) for part in parts], axis=1) for key in vars(parts[0])}
-        found = Means(**{key: np.where(across, np.nan, each) for key, each in columns.items()})
+        means = Means(**{key: np.where(across, np.nan, each) for key, each in columns.items()})
         along = {
             "face": (np.array(face_names(run.dimension))[faces], {"long_name": "face of the container"}),
             "component": (np.array(list("xyz"))[axes], {"long_name": "axis along the face"}),
         }
         about = described("wall_shear", run, faces, axes)
-        return with_freedom(observable("wall_shear", along, found.values, found.errors, **about), found)
+        return with_freedom(observable("wall_shear", along, means.values, means.errors, **about), means)
 
 
 def _given(run: Run, name: str, tallied: str) -> np.ndarray:
@@ -149,10 +149,10 @@ def _given(run: Run, name: str, tallied: str) -> np.ndarray:
     return per_area(run, run.increments(name)[:, : 2 * run.dimension], tallied)
 
 
-def _steady(run: Run, faces: np.ndarray, given: np.ndarray, stored: list[np.ndarray]) -> Means:
+def _steady(run: Run, faces: np.ndarray, amounts: np.ndarray, stored: list[np.ndarray]) -> Means:
     """Compute the mean over time of what each face is given, and its error, shape (F,).
 
-    given : (T - 1, F), amounts in each interval.
+    amounts : (T - 1, F), amounts in each interval.
     stored : arrays (T,), bounded sums over the gas; blocks are corrected by their change.
 
     Raises SceneError for too few frames and for faces that nothing has hit.
@@ -165,11 +165,11 @@ def _steady(run: Run, faces: np.ndarray, given: np.ndarray, stored: list[np.ndar
     blocks = min(_BLOCKS, intervals)
     length = run.block_length(blocks)
     ends = slice(None, blocks * length + 1, length)
-    grown = given[: blocks * length].reshape(blocks, length, -1).sum(axis=1)
+    grown = amounts[: blocks * length].reshape(blocks, length, -1).sum(axis=1)
     rates = grown / np.diff(run.time[ends])[:, None]
-    changes = [np.diff(one[ends]) for one in stored]
-    found = [_corrected(rate, changes) for rate in rates.T]
-    columns = ([getattr(one, name) for one in found] for name in ("value", "error", "freedom"))
+    changes = [np.diff(values[ends]) for values in stored]
+    estimates = [_corrected(rate, changes) for rate in rates.T]
+    columns = ([getattr(estimate, name) for estimate in estimates] for name in ("value", "error", "freedom"))
     return Means(*map(np.array, columns))
 
 
@@ -224,9 +224,9 @@ def _with_moments(run: Run, carried: np.ndarray) -> list[np.ndarray]:
 
     The amounts are (T, M), each sum is (T,); moments are about the middle.
     """
-    places = run.positions[:, run.moving] - 0.5 * np.array(run.scene.container.lengths)
+    positions = run.positions[:, run.moving] - 0.5 * np.array(run.scene.container.lengths)
     across = sorted({number // 2 for number in run.scene.thermal_numbers})
-    return [carried.sum(axis=1), *((carried * places[..., axis]).sum(axis=1) for axis in across)]
+    return [carried.sum(axis=1), *((carried * positions[..., axis]).sum(axis=1) for axis in across)]
 
 
 # Particles that pass a plane in the container, or an opening of interior walls in it.
@@ -288,15 +288,15 @@ def particle_flux(
     with open_run(source, start, varying=True) as run:
         require_defined("flux", run.scene, axis=axis, at=at, species=species)
         number = walled_axis_of(run.scene, axis)
-        place = 0.5 * run.scene.container.lengths[number] if at is None else float(at)
+        position = 0.5 * run.scene.container.lengths[number] if at is None else float(at)
         members = np.flatnonzero(run.moving)[selected(run, species, None)]
-        beyond = (run.positions[:, members, number] > place).sum(axis=1) - _entered_beyond(run, number)
+        beyond = (run.positions[:, members, number] > position).sum(axis=1) - _entered_beyond(run, number)
         if len(beyond) <= LEAST_INTERVALS:
             raise SceneError("frames", len(beyond), f"an error needs {LEAST_INTERVALS + 1} or more")
-        found = correlated_mean(np.diff(beyond) / np.diff(run.time), LEAST_INTERVALS).estimate
+        estimate = correlated_mean(np.diff(beyond) / np.diff(run.time), LEAST_INTERVALS).estimate
         along = {"component": (np.array(["xyz"[number]]), {"long_name": "axis"})}
-        about = described("flux", run, number, place, members, beyond)
-        means = Means(*(np.array([each]) for each in (found.value, found.error, found.freedom)))
+        about = described("flux", run, number, position, members, beyond)
+        means = Means(*(np.array([each]) for each in (estimate.value, estimate.error, estimate.freedom)))
         return with_freedom(observable("flux", along, means.values, means.errors, **about), means)
 
 

@@ -54,25 +54,25 @@ def knows_energies(engine: Engine | type[Engine], scene: Scene) -> bool:
 
 
 def estimator(
-    run: Run, usual: str, better: str, used: bool, asked: OptionalTally | None, lacks: str = ""
+    run: Run, usual: str, better: str, used: bool, tally: OptionalTally | None, lacks: str = ""
 ) -> dict[str, str]:
     """Return the attributes that state from which data an observable was estimated.
 
     It is `usual`, or `better` if that was `used`. With the former, where the scene and the engine allow a run
-    to store `asked`, a note states the option that does so, or else `lacks`, what the tally of this run
+    to store `tally`, a note states the option that does so, or else `lacks`, what the tally of this run
     lacks.
     """
     if used:
         return {"estimator": better}
-    found = {"estimator": usual}
-    if asked is None or asked.name not in engine_tallies(run):
-        return found
+    attributes = {"estimator": usual}
+    if tally is None or tally.name not in engine_tallies(run):
+        return attributes
     try:
-        asked.check(run.scene)
+        tally.check(run.scene)
     except SceneError:
-        return found
-    advice = f"a run with {asked.option} makes it more accurate"
-    return {**found, "note": f"by {usual}; {lacks or advice}"}
+        return attributes
+    advice = f"a run with {tally.option} makes it more accurate"
+    return {**attributes, "note": f"by {usual}; {lacks or advice}"}
 
 
 USUAL_BINS = 40
@@ -129,27 +129,29 @@ class Carried:
                 self.walled,
             )
             return flipped.numbers()[:, ::-1]
-        found = self._fallen() if self.pull else self.flux * (self.width / self.spread)
-        found = np.where(self.reached, found, 0.0)
-        whole = self.count * self.time
+        content = self._fallen() if self.pull else self.flux * (self.width / self.spread)
+        content = np.where(self.reached, content, 0.0)
+        total = self.count * self.time
         if self.walled:
-            found *= whole.sum() / found.sum()  # what is missing then is missing in proportion to the density
-            shares = found.sum(axis=0) / whole.sum()
+            content *= (
+                total.sum() / content.sum()
+            )  # what is missing then is missing in proportion to the density
+            shares = content.sum(axis=0) / total.sum()
         else:
-            shares = np.full(found.shape[1], 1.0 / found.shape[1])
-        return found + (whole - found.sum(axis=1))[:, None] * shares
+            shares = np.full(content.shape[1], 1.0 / content.shape[1])
+        return content + (total - content.sum(axis=1))[:, None] * shares
 
     def _fallen(self) -> np.ndarray:
         """Compute the numbers under gravity, which gives momentum to all particles below a plane.
 
         These are the particles in lower bins, and a part of its own bin, on average over its planes.
         """
-        found, below = np.empty(self.flux.shape), np.zeros(len(self.flux))
+        numbers, below = np.empty(self.flux.shape), np.zeros(len(self.flux))
         shares = self.spread / self.width - self.pull * self.above
         for k, flux in enumerate(self.flux.T):
-            found[:, k] = (flux + self.pull * below) / shares[k]
-            below += found[:, k]
-        return found
+            numbers[:, k] = (flux + self.pull * below) / shares[k]
+            below += numbers[:, k]
+        return numbers
 
 
 def kept(data: xr.Dataset) -> ImpulseTally | None:
@@ -166,10 +168,10 @@ def numbers_by_impulses(run: Run, axis: int, bins: int, species: int | None) -> 
     if has is None or has.axis != "xyz"[axis] or has.bins % bins:
         return None
     rows = [n for n in np.unique(run.species) if species is None or n == species]
-    found = [_carried(run, axis, has.bins, int(row)) for row in rows]
-    if any(one is None for one in found):
+    fluxes = [_carried(run, axis, has.bins, int(row)) for row in rows]
+    if any(flux is None for flux in fluxes):
         return None
-    fine = np.asarray(sum(one.numbers() for one in found if one is not None))
+    fine = np.asarray(sum(flux.numbers() for flux in fluxes if flux is not None))
     return fine.reshape(len(fine), bins, -1).sum(axis=2)
 
 
@@ -224,9 +226,9 @@ def _spread(run: Run, axis: int, bins: int, members: np.ndarray) -> np.ndarray:
         spread = _mean_in(cells, np.broadcast_to(run.temperatures[:, None], cells.shape), spread)
     if not run.conserved[axis]:
         return spread
-    whole, mass = run.masses.sum(), run.masses[members][0]
-    drift = float(run.masses @ run.frame("velocities", 0)[:, axis]) / whole
-    return spread * (1.0 - mass / whole) + mass * drift**2
+    total_mass, mass = run.masses.sum(), run.masses[members][0]
+    drift = float(run.masses @ run.frame("velocities", 0)[:, axis]) / total_mass
+    return spread * (1.0 - mass / total_mass) + mass * drift**2
 
 
 def _above(run: Run, axis: int, bins: int, members: np.ndarray) -> np.ndarray:
@@ -234,14 +236,14 @@ def _above(run: Run, axis: int, bins: int, members: np.ndarray) -> np.ndarray:
 
     It is one half if no particle was in the bin.
     """
-    places, cells = _places(run, axis, bins, members)
-    return _mean_in(cells, cells + 1.0 - places, np.full(bins, 0.5))
+    positions, cells = _places(run, axis, bins, members)
+    return _mean_in(cells, cells + 1.0 - positions, np.full(bins, 0.5))
 
 
 def _places(run: Run, axis: int, bins: int, members: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the positions (T, n) of particles in units of bins, and their bins."""
-    places = run.positions[:, members, axis] * (bins / run.scene.container.lengths[axis])
-    return places, np.clip(places.astype(np.int64), 0, bins - 1)
+    positions = run.positions[:, members, axis] * (bins / run.scene.container.lengths[axis])
+    return positions, np.clip(positions.astype(np.int64), 0, bins - 1)
 
 
 def _mean_in(cells: np.ndarray, values: np.ndarray, default: np.ndarray) -> np.ndarray:
@@ -271,19 +273,19 @@ def _weights(counted: np.ndarray, impulses: np.ndarray, periodic: bool) -> np.nd
     groups = np.arange(len(counted)) * min(_GROUPS, len(counted)) // len(counted)
     starts = np.flatnonzero(np.diff(groups, prepend=-1))
     sizes = np.diff(np.append(starts, len(counted)))[:, None]
-    means = [np.add.reduceat(one, starts) / sizes for one in (counted, counted - impulses)]
-    own, apart = (one - one.mean(axis=0) for one in means)
+    means = [np.add.reduceat(values, starts) / sizes for values in (counted, counted - impulses)]
+    own, apart = (mean - mean.mean(axis=0) for mean in means)
     reach = max(1, round(_NEIGHBOURS * counted.shape[1]))
-    common, square = (_near(one.sum(axis=0), reach, periodic) for one in (own * apart, apart**2))
+    common, square = (_near(values.sum(axis=0), reach, periodic) for values in (own * apart, apart**2))
     return np.clip(np.divide(common, square, out=np.zeros(len(common)), where=square > 0.0), 0.0, 1.0)
 
 
 def _near(values: np.ndarray, reach: int, periodic: bool) -> np.ndarray:
     """Sum each value and the values up to `reach` bins away."""
     extended = np.pad(values, reach, "wrap" if periodic else "constant")
-    whole = np.concatenate([[0.0], np.cumsum(extended)])
+    cumulative = np.concatenate([[0.0], np.cumsum(extended)])
     width = 2 * reach + 1
-    return np.asarray(whole[width:] - whole[:-width])
+    return np.asarray(cumulative[width:] - cumulative[:-width])
 
 
 def mixed_density(run: Run, axis: int, bins: int, species: int | None) -> Means | None:
@@ -294,8 +296,8 @@ def mixed_density(run: Run, axis: int, bins: int, species: int | None) -> Means 
     frames = len(run.time)
     if run.is_subset and len(run.scene.kinds) > 1:
         return None
-    found = numbers_by_impulses(run, axis, bins, species)
-    if found is None or frames <= LEAST_FRAMES:
+    numbers = numbers_by_impulses(run, axis, bins, species)
+    if numbers is None or frames <= LEAST_FRAMES:
         return None
     members = np.flatnonzero(run.species == (run.species if species is None else species))
     stored = members[members < run.data.sizes["atom"]]
@@ -304,7 +306,7 @@ def mixed_density(run: Run, axis: int, bins: int, species: int | None) -> Means 
     starts = np.flatnonzero(np.diff(blocks, prepend=-1))
     time = np.add.reduceat(np.diff(run.time), starts)[:, None]
     volume = cells.grid.volume * np.delete(run.scene.container.lengths, axis).prod()
-    impulses = np.add.reduceat(found, starts) / (time * volume)
+    impulses = np.add.reduceat(numbers, starts) / (time * volume)
     impulses[np.abs(impulses) < _ROUNDING * impulses.max()] = 0.0
     counts = cells.grid.sums(cells.cells_of(run)[1:], None, blocks) * (len(members) / len(stored))
     counted = counts / (np.bincount(blocks)[:, None] * volume)
@@ -329,12 +331,12 @@ def described_density(run: Run, axis: int, bins: int, by_impulses: bool) -> dict
 
     If the bins of a run do not serve, they say so.
     """
-    has, asked = kept(run.data), useful_impulses(run.scene, engine_tallies(run), axis, 200)
+    has, tallies = kept(run.data), useful_impulses(run.scene, engine_tallies(run), axis, 200)
     lacks = ""
     if has is not None and has.axis == "xyz"[axis] and has.bins % bins:
         lacks = f"impulses are kept in {has.bins} bins, which {bins} do not divide"
     of = "counts", "counts and impulses"
-    return estimator(run, *of, by_impulses, asked[0] if asked else None, lacks)
+    return estimator(run, *of, by_impulses, tallies[0] if tallies else None, lacks)
 
 
 # Control variates: what fluctuates with a mean over time, and has itself a mean that is known exactly.
@@ -399,8 +401,8 @@ def group_count(run: Run) -> int:
     if run.moving.sum() < FEWEST:
         return 0
     collided = 2.0 * run.increments("collisions").sum() / max(1, int(run.moving.sum()))
-    found = min(_MOST, len(run.time) - 1, int(collided))
-    return found if found >= _LEAST else 0
+    number = min(_MOST, len(run.time) - 1, int(collided))
+    return number if number >= _LEAST else 0
 
 
 def controlled(series: np.ndarray, controls: np.ndarray, groups: int) -> np.ndarray:
@@ -410,11 +412,11 @@ def controlled(series: np.ndarray, controls: np.ndarray, groups: int) -> np.ndar
     `groups` / 2 groups of consecutive values: they depend on no noise that they multiply, so that the mean is
     unbiased.
     """
-    half, found = len(series) // 2, series.copy()
+    half, residual = len(series) // 2, series.copy()
     first, second = slice(None, half), slice(half, None)
     for used, other in ((first, second), (second, first)):
         values = np.column_stack([series[other], controls[other]])
         means = np.stack([part.mean(axis=0) for part in np.array_split(values, groups // 2)])
         means -= means.mean(axis=0)
-        found[used] -= controls[used] @ np.linalg.lstsq(means[:, 1:], means[:, 0], rcond=None)[0]
-    return found
+        residual[used] -= controls[used] @ np.linalg.lstsq(means[:, 1:], means[:, 0], rcond=None)[0]
+    return residual

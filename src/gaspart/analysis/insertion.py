@@ -53,18 +53,18 @@ class Insertions:
         Fraction of the container in which positions were drawn.
     successes : ndarray of int, shape (T,)
         Number of free positions.
-    places : int
+    trials : int
         Number of positions in each frame whose fraction is not 0.
     """
 
     share: np.ndarray
     successes: np.ndarray
-    places: int
+    trials: int
 
     @property
     def probability(self) -> np.ndarray:
         """(T,) chance that a random place is free, by frame."""
-        return self.share * self.successes / self.places
+        return self.share * self.successes / self.trials
 
     @property
     def resolution(self) -> float:
@@ -73,7 +73,7 @@ class Insertions:
         It is one over the number of random positions, drawn in the whole container, which these trials stand
         for.
         """
-        return float(self.share.mean() / (self.places * len(self.share)))
+        return float(self.share.mean() / (self.trials * len(self.share)))
 
 
 Hosts: TypeAlias = Sequence[tuple[np.ndarray | slice, float]]
@@ -84,7 +84,7 @@ def insertions(
     frames: np.ndarray,
     lengths: Sequence[float] | np.ndarray,
     hosts: Hosts,
-    places: int,
+    trials: int,
     seed: int | Sequence[int] = 0,
 ) -> Insertions:
     """Try random positions in each frame of a periodic container.
@@ -97,7 +97,7 @@ def insertions(
         Side lengths of the container.
     hosts : Hosts
         The particles inside and the particle to insert.
-    places : int
+    trials : int
         Number of positions in each frame.
     seed : int or sequence of int, default 0
         Seed of the positions.
@@ -112,12 +112,12 @@ def insertions(
     share, successes = np.zeros(len(frames)), np.zeros(len(frames), dtype=int)
     for n, positions in enumerate(frames):
         groups = [(positions[members] % size, distance) for members, distance in hosts]
-        share[n], successes[n] = _try(groups, size, places, generator)
-    return Insertions(share, successes, places)
+        share[n], successes[n] = _try(groups, size, trials, generator)
+    return Insertions(share, successes, trials)
 
 
 def _try(
-    groups: list[tuple[np.ndarray, float]], lengths: np.ndarray, places: int, generator: np.random.Generator
+    groups: list[tuple[np.ndarray, float]], lengths: np.ndarray, number: int, generator: np.random.Generator
 ) -> tuple[float, int]:
     """Count free trials in the region that cells do not show to be covered.
 
@@ -130,21 +130,21 @@ def _try(
     cells, sides = _remaining(groups, trees, lengths)
     if not len(cells):
         return 0.0, 0
-    chosen = cells[generator.integers(0, len(cells), size=places)]
+    chosen = cells[generator.integers(0, len(cells), size=number)]
     trials = chosen + sides * (generator.random(chosen.shape) - 0.5)
     free = _apart(trees, trials % lengths, 0.0)
     return len(cells) * float(np.prod(sides / lengths)), int(free.sum())
 
 
-def _apart(trees: list[tuple[Any, float]], places: np.ndarray, less: float) -> np.ndarray:
+def _apart(trees: list[tuple[Any, float]], positions: np.ndarray, less: float) -> np.ndarray:
     """Find positions (M, d) that are farther from every particle than its distance less a length."""
-    found = np.ones(len(places), dtype=bool)
+    is_free = np.ones(len(positions), dtype=bool)
     for tree, distance in trees:
         if distance > less:
-            left = np.flatnonzero(found)
-            nearest, _ = tree.query(places[left], distance_upper_bound=distance - less)
-            found[left] = np.isinf(nearest)
-    return found
+            remaining = np.flatnonzero(is_free)
+            nearest, _ = tree.query(positions[remaining], distance_upper_bound=distance - less)
+            is_free[remaining] = np.isinf(nearest)
+    return is_free
 
 
 def _remaining(
@@ -179,16 +179,16 @@ def _covered(groups: list[tuple[np.ndarray, float]], sides: np.ndarray, number: 
     last, strips = int(number[-1]), int(np.prod(number[:-1]))
     ends = np.zeros(strips * last, dtype=int)
     for positions, distance in groups:
-        left, strip = np.full(len(positions), distance**2), np.zeros(len(positions), dtype=int)
-        for place, side, count in zip(positions.T, sides[:-1], number, strict=False):
+        remaining, strip = np.full(len(positions), distance**2), np.zeros(len(positions), dtype=int)
+        for coordinate, side, count in zip(positions.T, sides[:-1], number, strict=False):
             reach = int(distance / side)
-            near = np.floor(place / side).astype(int)[:, None] + np.arange(-reach, reach + 1)
-            furthest = np.abs(place[:, None] - side * (near + 0.5)) + 0.5 * side
-            around = (len(place), *[1] * (left.ndim - 1), -1)
-            left = left[..., None] - (furthest**2).reshape(around)
+            near = np.floor(coordinate / side).astype(int)[:, None] + np.arange(-reach, reach + 1)
+            furthest = np.abs(coordinate[:, None] - side * (near + 0.5)) + 0.5 * side
+            around = (len(coordinate), *[1] * (remaining.ndim - 1), -1)
+            remaining = remaining[..., None] - (furthest**2).reshape(around)
             strip = strip[..., None] * count + (near % count).reshape(around)
-        chosen = np.nonzero(left > 0.0)
-        half, centre = np.sqrt(left[chosen]), positions[chosen[0], -1]
+        chosen = np.nonzero(remaining > 0.0)
+        half, centre = np.sqrt(remaining[chosen]), positions[chosen[0], -1]
         first = np.ceil((centre - half) / sides[-1]).astype(int)
         end = np.maximum(first, np.floor((centre + half) / sides[-1]).astype(int))
         start = last * strip[chosen]
@@ -240,7 +240,7 @@ def chemical_potential(source: Source, places: int = PLACES, start: float | None
     >>> gp.analysis.chemical_potential(simulation, places=50).estimate.attrs["units"]
     '1'
     """
-    places = count_of("places", places, least=1)
+    trials = count_of("places", places, least=1)
     with open_run(source, start) as run:
         require_defined("chemical_potential", run.scene)
         run.require_all()
@@ -253,7 +253,7 @@ def chemical_potential(source: Source, places: int = PLACES, start: float | None
         time = run.time[frames]
         edges = np.append(time, 2.0 * time[-1] - time[-2])
         about = described("chemical_potential", run)
-        tried = [_inserted(run, frames, hosts, places) for hosts in _hosts(run)]
+        tried = [_inserted(run, frames, hosts, trials) for hosts in _hosts(run)]
         if run.scene.alike:
             series, counts = tried[0]
             return scalar("chemical_potential", series, edges, **about).assign(_variables((), counts))
@@ -272,23 +272,23 @@ def _hosts(run: Run) -> list[Hosts]:
     return [[(each, own + radius) for each, radius in zip(numbers, radii, strict=True)] for own in radii]
 
 
-def _inserted(run: Run, frames: slice, hosts: Hosts, places: int) -> tuple[np.ndarray, dict[str, float]]:
+def _inserted(run: Run, frames: slice, hosts: Hosts, trials: int) -> tuple[np.ndarray, dict[str, float]]:
     """Compute the series (T,) of the chemical potential, and the counts of insertions."""
-    found = insertions(
-        run.vectors("coordinates")[frames].values.astype(float), run.scene.container.lengths, hosts, places
+    result = insertions(
+        run.vectors("coordinates")[frames].values.astype(float), run.scene.container.lengths, hosts, trials
     )
-    chance = float(found.probability.mean())
+    chance = float(result.probability.mean())
     if chance == 0.0:
-        rule = f"of {places} places in each of {len(found.share)} frames none was free: a fluid too dense"
+        rule = f"of {trials} places in each of {len(result.share)} frames none was free: a fluid too dense"
         raise SceneError("packing_fraction", run.scene.packing_fraction, rule)
-    series = -np.log(chance) - (found.probability / chance - 1.0)  # to first order
+    series = -np.log(chance) - (result.probability / chance - 1.0)  # to first order
     error = correlated_mean(series, LEAST_INTERVALS).estimate.error
     counts = {
         "probability": chance,
         "probability_error": chance * error,
-        "successes": found.successes.sum(),
-        "frames_with_success": np.count_nonzero(found.successes),
-        "resolution": found.resolution,
+        "successes": result.successes.sum(),
+        "frames_with_success": np.count_nonzero(result.successes),
+        "resolution": result.resolution,
     }
     return series, counts
 
@@ -296,11 +296,11 @@ def _inserted(run: Run, frames: slice, hosts: Hosts, places: int) -> tuple[np.nd
 def _of_species(run: Run, tried: list[tuple[np.ndarray, dict[str, float]]], about: dict) -> Observable:
     """Return the result of a mixture."""
     means = [correlated_mean(series, LEAST_INTERVALS).estimate for series, _ in tried]
-    values, errors, freedoms = np.array([[one.value, one.error, one.freedom] for one in means]).T
+    values, errors, freedoms = np.array([[mean.value, mean.error, mean.freedom] for mean in means]).T
     along = {"species": (np.unique(run.species), {"long_name": "number of the species"})}
     result = observable("chemical_potential", along, values, errors, **about)
     result = with_freedom(result, Means(values, errors, freedoms))
-    counts = {name: np.array([one[name] for _, one in tried]) for name in tried[0][1]}
+    counts = {name: np.array([each[name] for _, each in tried]) for name in tried[0][1]}
     return result.assign(_variables(("species",), counts))
 
 

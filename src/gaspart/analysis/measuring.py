@@ -85,12 +85,12 @@ def measure(
         with open_frames(source, any(OBSERVABLES[name].needs == "pairs" for name in names)) as data:
             return {name: measure(data, name, start, end, **selection) for name in names}
     name = known(observable)
-    one = OBSERVABLES[name]
+    declared = OBSERVABLES[name]
     require_selection(name, selection)
-    function = getattr(analysis, one.function)
-    with until_time(source, end, one.needs == "pairs") as part:
-        found: Observable = function(part, start=start, **one.arguments, **selection)
-    return found
+    function = getattr(analysis, declared.function)
+    with until_time(source, end, declared.needs == "pairs") as part:
+        result: Observable = function(part, start=start, **declared.arguments, **selection)
+    return result
 
 
 @contextmanager

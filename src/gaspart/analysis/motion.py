@@ -63,14 +63,14 @@ def accumulated_mean(run: Run, name: str) -> tuple[np.ndarray, np.ndarray, np.nd
     """
     samples, lags = run.data["correlated_samples"].values, np.arange(run.data.sizes["lag"])
     pairs = np.maximum(samples[:, None] - lags, 0.0)
-    known = np.flatnonzero(pairs[:, -1] > 0.0)
+    frames = np.flatnonzero(pairs[:, -1] > 0.0)
     least, most = _PARTS
-    if len(known) <= least:
+    if len(frames) <= least:
         rule = f"an error needs {least + 1} with samples at all lags in the measured part, or more"
-        raise SceneError("frames", len(known), rule)
-    span = float(np.ptp(run.time[known]) / run.data["lag"].values[-1])
-    parts = min(len(known) - 1, int(np.clip(span / _PART, least, most)))
-    edges = known[np.linspace(0, len(known) - 1, parts + 1).round().astype(int)]
+        raise SceneError("frames", len(frames), rule)
+    span = float(np.ptp(run.time[frames]) / run.data["lag"].values[-1])
+    parts = min(len(frames) - 1, int(np.clip(span / _PART, least, most)))
+    edges = frames[np.linspace(0, len(frames) - 1, parts + 1).round().astype(int)]
     sums = run.data[name].values[edges]
     scale = _of_free_particles(run)
     _, errors = means_of(np.diff(sums, axis=0) / np.diff(pairs[edges], axis=0))
@@ -197,9 +197,9 @@ def mean_squared_displacement(
         groups = groups_of(run, chosen=selected(run, species, particles))
         number = _lags(groups, lags)
         axes = [slice(k, k + 1) for k in range(run.dimension)] if per_axis else [slice(None)]
-        found = np.array([[squared_displacement(path[..., k], number) for k in axes] for path in groups])
+        curves = np.array([[squared_displacement(path[..., k], number) for k in axes] for path in groups])
         time = groups.interval * np.arange(number)
-        values, errors = means_of(found if per_axis else found[:, 0], groups.sizes)
+        values, errors = means_of(curves if per_axis else curves[:, 0], groups.sizes)
         return _displacement(run, time, values, errors)
 
 
@@ -261,8 +261,8 @@ def velocity_autocorrelation(
             return _autocorrelation(run, time, values / run.dimension, errors / run.dimension)
         groups = groups_of(run, paths=False, chosen=selected(run, species, particles))
         number = _lags(groups, lags)
-        found = np.array([autocorrelation(velocity, number) for velocity in groups])
-        return _autocorrelation(run, groups.interval * np.arange(number), *means_of(found, groups.sizes))
+        curves = np.array([autocorrelation(velocity, number) for velocity in groups])
+        return _autocorrelation(run, groups.interval * np.arange(number), *means_of(curves, groups.sizes))
 
 
 def _accumulates(
@@ -272,8 +272,8 @@ def _accumulates(
 
     The gas must not flow.
     """
-    whole = lags is None and species is None and particles is None
-    if not (name in run.data and whole and run.about == FLOW):
+    covers_all = lags is None and species is None and particles is None
+    if not (name in run.data and covers_all and run.about == FLOW):
         return False
     return not (run.scene.flow_axes if run.is_subset else run.flow_axes)  # some particles show no wind
 

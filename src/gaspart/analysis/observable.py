@@ -37,12 +37,12 @@ class ByFace(xr.Dataset):
 
     __slots__ = ()
 
-    def sel(self, *given: Any, **named: Any) -> Self:
+    def sel(self, *indexers: Any, **named: Any) -> Self:
         """Select as from a Dataset, a face by either of its names, `x_low` or `x low`.
 
         Parameters
         ----------
-        *given
+        *indexers
             Arguments of `xarray.Dataset.sel`.
         **named
             Keyword arguments of `xarray.Dataset.sel`.
@@ -52,10 +52,10 @@ class ByFace(xr.Dataset):
         ByFace
             The selection.
         """
-        for places in (*(one for one in given if isinstance(one, dict)), named):
-            if "face" in places:
-                places["face"] = wall_of(places["face"])
-        return super().sel(*given, **named)
+        for selection in (*(item for item in indexers if isinstance(item, dict)), named):
+            if "face" in selection:
+                selection["face"] = wall_of(selection["face"])
+        return super().sel(*indexers, **named)
 
 
 class Observable(ByFace):
@@ -194,8 +194,8 @@ class Observable(ByFace):
     def _repr_html_(self) -> str:
         """Return the `summary`, a plot of a curve, and the data set, folded."""
         text = html.escape(self.summary).replace("\n", "<br>")
-        shown = self.estimate.size > _FEW and len(_cells(self)) <= _PLANE
-        drawn = f'<br><img src="{_plotted(self)}" alt="{text}">' if shown else ""
+        is_plotted = self.estimate.size > _FEW and len(_cells(self)) <= _PLANE
+        drawn = f'<br><img src="{_plotted(self)}" alt="{text}">' if is_plotted else ""
         return f"<b>{text}</b>{drawn}<details><summary>data set</summary>{super()._repr_html_()}</details>"
 
     def plot(self, theory: bool = False, axis: Axes | None = None) -> Axes:  # type: ignore[override]
@@ -235,62 +235,62 @@ class Observable(ByFace):
 
         if axis is None:
             axis = plt.figure(layout="constrained").add_subplot()
-        known = theory and self.theory is not None
+        has_theory = theory and self.theory is not None
         cells = _cells(self)
         if len(cells) > 1:
             _plot_field(self, axis, cells)
             return axis
         if self.estimate.ndim:
-            _plot_curve(self, axis, known)
+            _plot_curve(self, axis, has_theory)
         else:
-            _plot_scalar(self, axis, known)
-        if theory and not known:
+            _plot_scalar(self, axis, has_theory)
+        if theory and not has_theory:
             axis.plot([], [], " ", label="no theory for this scene")
         axis.set_ylabel(label_of(self.estimate))
         axis.legend(frameon=False)
         return axis
 
 
-def _values(found: Observable, name: str) -> list[str]:
+def _values(result: Observable, name: str) -> list[str]:
     """Return each value with its uncertainty and, where it is known, theory."""
-    estimate, lines = found.estimate, []
-    errors = np.broadcast_to(found.error.values, estimate.shape)
-    theory = np.full(estimate.shape, np.nan) if found.theory is None else found.theory.values
+    estimate, lines = result.estimate, []
+    errors = np.broadcast_to(result.error.values, estimate.shape)
+    theory = np.full(estimate.shape, np.nan) if result.theory is None else result.theory.values
     for index in np.ndindex(estimate.shape):
-        places = zip(estimate.dims, index, strict=True)
-        words = [name, *(str(found[dim].values[n]) for dim, n in places if dim in found.coords)]
+        indices = zip(estimate.dims, index, strict=True)
+        words = [name, *(str(result[dim].values[n]) for dim, n in indices if dim in result.coords)]
         expected = f", theory {theory[index]:.4g}" if np.isfinite(theory[index]) else ""
         value = concise(float(estimate.values[index]), float(errors[index]))
         lines.append(f"{', '.join(words)} = {value}{expected}")
     return lines
 
 
-def _plotted(found: Observable) -> str:
+def _plotted(result: Observable) -> str:
     """Return a plot of a curve as the address of a picture that contains it."""
     from matplotlib.figure import Figure
 
     figure, content = Figure(figsize=(4.8, 3.0), layout="constrained"), io.BytesIO()
-    found.plot(found.theory is not None, figure.add_subplot())
+    result.plot(result.theory is not None, figure.add_subplot())
     figure.savefig(content, format="png", dpi=100)
     return f"data:image/png;base64,{base64.b64encode(content.getvalue()).decode()}"
 
 
-def _plot_scalar(found: Observable, axis: Axes, theory: bool) -> None:
-    value, error = float(found.estimate), float(found.error)
-    label = found["stretches"].attrs.get("long_name", "stretches of the run")
-    axis.plot(found["time"], found["stretches"], "o", markersize=3, label=label)
+def _plot_scalar(result: Observable, axis: Axes, theory: bool) -> None:
+    value, error = float(result.estimate), float(result.error)
+    label = result["stretches"].attrs.get("long_name", "stretches of the run")
+    axis.plot(result["time"], result["stretches"], "o", markersize=3, label=label)
     axis.axhspan(value - error, value + error, alpha=0.3, label=f"measured, {value:.5g} ± {error:.1g}")
     if theory:
-        assert found.theory is not None
-        axis.axhline(float(found.theory), color="black", label=f"theory, {float(found.theory):.5g}")
-    axis.set_xlabel(label_of(found["time"]))
+        assert result.theory is not None
+        axis.axhline(float(result.theory), color="black", label=f"theory, {float(result.theory):.5g}")
+    axis.set_xlabel(label_of(result["time"]))
 
 
-def _plot_curve(found: Observable, axis: Axes, theory: bool) -> None:
-    name = found.estimate.dims[-1]
-    x = found[name]
-    names = found[found.estimate.dims[0]].values if found.estimate.ndim > 1 else ["measured"]
-    parts, errors = (one.values.reshape(-1, x.size) for one in (found.estimate, found.error))
+def _plot_curve(result: Observable, axis: Axes, theory: bool) -> None:
+    name = result.estimate.dims[-1]
+    x = result[name]
+    names = result[result.estimate.dims[0]].values if result.estimate.ndim > 1 else ["measured"]
+    parts, errors = (variable.values.reshape(-1, x.size) for variable in (result.estimate, result.error))
     for part, error, label in zip(parts, errors, names, strict=True):
         if x.dtype.kind in "US":  # names, such as those of faces
             axis.errorbar(np.arange(x.size), part, error, fmt="o", capsize=2, label=label)
@@ -298,31 +298,31 @@ def _plot_curve(found: Observable, axis: Axes, theory: bool) -> None:
         else:
             axis.errorbar(x, part, error, fmt="o", markersize=3, label=label)
     if theory:
-        assert found.theory is not None
-        places = np.arange(x.size) if x.dtype.kind in "US" else x
-        marker = "" if found.theory.notnull().sum() > 2 else "x"  # of few values, as at contact
-        curves = np.unique(found.theory.values.reshape(-1, x.size), axis=0).T  # one, where all have the same
-        lines = axis.plot(places, curves, color="black", marker=marker, zorder=3)
+        assert result.theory is not None
+        positions = np.arange(x.size) if x.dtype.kind in "US" else x
+        marker = "" if result.theory.notnull().sum() > 2 else "x"  # of few values, as at contact
+        curves = np.unique(result.theory.values.reshape(-1, x.size), axis=0).T  # one, where all have the same
+        lines = axis.plot(positions, curves, color="black", marker=marker, zorder=3)
         lines[0].set_label("theory")
     axis.set_xlabel(label_of(x))
 
 
-def _cells(found: Observable) -> list[str]:
+def _cells(result: Observable) -> list[str]:
     """Return the axes of a field."""
-    return [name for name in found.estimate.dims if name in ("x", "y", "z")]
+    return [name for name in result.estimate.dims if name in ("x", "y", "z")]
 
 
-def _plot_field(found: Observable, axis: Axes, cells: list[str]) -> None:
+def _plot_field(result: Observable, axis: Axes, cells: list[str]) -> None:
     """Draw a scalar field as a map of colours, a flow as arrows along both axes."""
     if len(cells) > _PLANE:
         raise SceneError("axes", "".join(cells), "a plot has two; choose a layer: .isel(z=0)")
-    x, y = (found[name] for name in cells)
-    if "component" in found.estimate.dims:
-        u, v = (found.estimate.sel(component=name).transpose(*reversed(cells)) for name in cells)
+    x, y = (result[name] for name in cells)
+    if "component" in result.estimate.dims:
+        u, v = (result.estimate.sel(component=name).transpose(*reversed(cells)) for name in cells)
         axis.quiver(x, y, u, v, np.hypot(u, v), pivot="mid")
     else:
-        axis.pcolormesh(x, y, found.estimate.transpose(*reversed(cells)), shading="nearest")
-    text = "speed of the flow (length / time)" if "component" in found.dims else label_of(found.estimate)
+        axis.pcolormesh(x, y, result.estimate.transpose(*reversed(cells)), shading="nearest")
+    text = "speed of the flow (length / time)" if "component" in result.dims else label_of(result.estimate)
     axis.figure.colorbar(axis.collections[-1], ax=axis, label=text)
     axis.set(aspect="equal", xlabel=label_of(x), ylabel=label_of(y))
 
@@ -361,14 +361,14 @@ def scalar(
     if len(series) < LEAST_INTERVALS:
         raise SceneError("frames", len(series) + 1, f"an error needs {LEAST_INTERVALS + 1} or more")
     plain = correlated_mean(series, LEAST_INTERVALS).estimate
-    found = slow_mean(series, LEAST_INTERVALS) if slow else plain
-    error = found.error if np.ptp(series) > _ROUNDING * abs(found.value) else 0.0
+    estimate = slow_mean(series, LEAST_INTERVALS) if slow else plain
+    error = estimate.error if np.ptp(series) > _ROUNDING * abs(estimate.value) else 0.0
     stretches = [part.mean() for part in np.array_split(series, min(STRETCHES, len(series)))]
     ends = [part[[0, -1]].mean() for part in np.array_split(0.5 * (edges[1:] + edges[:-1]), len(stretches))]
-    result = observable(name, {}, found.value, error, **about)
+    result = observable(name, {}, estimate.value, error, **about)
     result["stretches"] = ("time", np.array(stretches), {"units": about["units"]})
     result["time"] = ("time", np.array(ends), {"units": "time", "long_name": "time"})
-    result.attrs["freedom"] = found.freedom
+    result.attrs["freedom"] = estimate.freedom
     return result.set_coords("time")
 
 
@@ -395,6 +395,6 @@ def observable(
         parts[f"{name}_theory_error"] = np.broadcast_to(theory[1], shape), "uncertainty of theory"
     return Observable(
         {key: (dims, value, {"units": units, "long_name": text}) for key, (value, text) in parts.items()},
-        coords={key: (key, place, attributes) for key, (place, attributes) in along.items()},
+        coords={key: (key, coordinate, attributes) for key, (coordinate, attributes) in along.items()},
         attrs={"quantity": name} | ({"source": source} if source else {}),
     )

@@ -46,7 +46,7 @@ OBSERVABLES: dict[str, Named] = {
         definition="compressibility factor PV/(N k_B T), periodic",
         units="1",
         function="compressibility_factor",
-        whole="unless fluxes",
+        needs_all_particles="unless fluxes",
         conditions=(
             where.unsheared,
             where.periodic_virial,
@@ -69,7 +69,7 @@ OBSERVABLES: dict[str, Named] = {
         function="wall_pressure",
         of_impulses=True,
         varying=True,
-        whole="never",
+        needs_all_particles="never",
         along=("face",),
         conditions=(where.walled, where.unsheared),
         theory="equilibrium.wall_pressure",
@@ -84,7 +84,7 @@ OBSERVABLES: dict[str, Named] = {
         function="wall_force",
         of_impulses=True,
         varying=True,
-        whole="never",
+        needs_all_particles="never",
         along=("face",),
         conditions=(where.walled, where.unsheared),
         theory="equilibrium.wall_force",
@@ -97,7 +97,7 @@ OBSERVABLES: dict[str, Named] = {
         definition="heat given to each face at a temperature, per area, in a steady state",
         units="energy / (length^(d-1) time)",
         function="heat_flux",
-        whole="never",
+        needs_all_particles="never",
         along=("face",),
         conditions=(where.unsheared, where.thermal_walls),
         theory="flows.heat_flux",
@@ -112,7 +112,7 @@ OBSERVABLES: dict[str, Named] = {
         definition="shear stress on each face that is dragged along itself, in a steady state",
         units="energy / length^d",
         function="wall_shear",
-        whole="never",
+        needs_all_particles="never",
         along=("face", "component"),
         needs="shear",
         conditions=(where.unsheared, where.dragged_walls),
@@ -141,7 +141,7 @@ OBSERVABLES: dict[str, Named] = {
         definition="collision rate of each pair of species",
         units="1 / time",
         function="pair_collision_rates",
-        whole="never",
+        needs_all_particles="never",
         along=("pair",),
         needs="pairs",
         conditions=(where.unsheared, where.of_species),
@@ -259,7 +259,7 @@ OBSERVABLES: dict[str, Named] = {
         definition="radial distribution function, periodic",
         units="1",
         function="rdf",
-        whole="never",
+        needs_all_particles="never",
         along=("distance",),
         conditions=(where.unsheared, where.homogeneous, where.a_pair),
         theory="places.radial_distribution",
@@ -305,7 +305,7 @@ OBSERVABLES: dict[str, Named] = {
         definition="density along an axis, by default the last",
         units="1 / length^d",
         function="profile",
-        whole="mixed",
+        needs_all_particles="mixed",
         arguments={"of": "density"},
         varying=True,
         along=("position",),
@@ -352,7 +352,7 @@ OBSERVABLES: dict[str, Named] = {
         definition="mean number of particles inside, between open faces",
         units="1",
         function="particle_number",
-        whole="never",
+        needs_all_particles="never",
         varying=True,
         conditions=(where.unsheared, where.opened),
         ends_runs=True,
@@ -377,7 +377,7 @@ OBSERVABLES: dict[str, Named] = {
         units="mass length^(2-d) / time",
         function="shear_viscosity",
         selections=("lag",),
-        whole="never",
+        needs_all_particles="never",
         conditions=(where.shears, where.tallied, where.thermal),
         theory="transport.shear_viscosity",
         bulk="shear_viscosity",
@@ -394,7 +394,7 @@ OBSERVABLES: dict[str, Named] = {
         units="mass length^(2-d) / time",
         function="bulk_viscosity",
         selections=("lag",),
-        whole="never",
+        needs_all_particles="never",
         conditions=(where.unsheared, where.tallied, where.thermal),
         nothing={"boltzmann": "is 0 of particles without extent; a run shows that of its cells"},
         theory="transport.bulk_viscosity",
@@ -411,7 +411,7 @@ OBSERVABLES: dict[str, Named] = {
         units="1 / (length^(d-2) time)",
         function="thermal_conductivity",
         selections=("lag",),
-        whole="mixed",
+        needs_all_particles="mixed",
         conditions=(where.unsheared, where.in_species, where.tallied, where.thermal),
         theory="transport.thermal_conductivity",
         bulk="thermal_conductivity",
@@ -425,7 +425,7 @@ OBSERVABLES: dict[str, Named] = {
         definition="components of the pressure tensor",
         units="mass / (length^(d-2) time^2)",
         function="pressure_tensor",
-        whole="never",
+        needs_all_particles="never",
         along=("component",),
         conditions=(where.tallied,),
         theory="equilibrium.pressure_tensor",
@@ -482,25 +482,25 @@ def having(**traits: Any) -> tuple[str, ...]:
     """Return the names of the observables whose traits have these values."""
     return tuple(
         name
-        for name, one in OBSERVABLES.items()
-        if all(getattr(one, trait) == value for trait, value in traits.items())
+        for name, declared in OBSERVABLES.items()
+        if all(getattr(declared, trait) == value for trait, value in traits.items())
     )
 
 
 def selecting(key: str) -> tuple[str, ...]:
     """Return the names of the observables that have a selection."""
-    return tuple(name for name, one in OBSERVABLES.items() if key in one.selections)
+    return tuple(name for name, declared in OBSERVABLES.items() if key in declared.selections)
 
 
 def selections() -> tuple[str, ...]:
     """Return all keys of selections."""
-    return tuple(dict.fromkeys(key for one in OBSERVABLES.values() for key in one.selections))
+    return tuple(dict.fromkeys(key for declared in OBSERVABLES.values() for key in declared.selections))
 
 
 def about(name: str, dimension: int) -> dict[str, str]:
     """Return units and label of an observable, the attributes of the variable that holds it."""
-    one = OBSERVABLES[name]
-    return {"units": units_in(one.units, dimension), "long_name": one.label}
+    declared = OBSERVABLES[name]
+    return {"units": units_in(declared.units, dimension), "long_name": declared.label}
 
 
 def name_of(function: str) -> str:
@@ -508,7 +508,7 @@ def name_of(function: str) -> str:
 
     A function without one has its own name.
     """
-    return next((name for name, one in OBSERVABLES.items() if one.function == function), function)
+    return next((name for name, declared in OBSERVABLES.items() if declared.function == function), function)
 
 
 def require_selection(name: str, selection: Mapping[str, Any]) -> None:
@@ -526,11 +526,11 @@ def require_defined(name: str, scene: Scene, **selection: Any) -> None:
     No run of the scene has it, however long. Raises SceneError too for a selection that the observable or the
     scene does not have.
     """
-    one = OBSERVABLES[known(name)]
+    declared = OBSERVABLES[known(name)]
     require_selection(name, selection)
-    if not one.varying:
+    if not declared.varying:
         refuse_open(scene, where.VARYING)
-    for condition in one.conditions:
+    for condition in declared.conditions:
         condition(scene, selection)
 
 
@@ -541,8 +541,12 @@ def require_run(name: str, scene: Scene, kept: Collection[str] = (), follow: int
     follow : number of particles in the file, the argument of `gaspart.run`; None for all.
     """
     require_defined(name, scene)
-    whole = {"mixed": len(scene.kinds) > 1, "unless fluxes": "fluxes" not in kept, "never": False}
-    if follow is not None and follow < scene.count and whole.get(OBSERVABLES[name].whole, True):
+    required = {"mixed": len(scene.kinds) > 1, "unless fluxes": "fluxes" not in kept, "never": False}
+    if (
+        follow is not None
+        and follow < scene.count
+        and required.get(OBSERVABLES[name].needs_all_particles, True)
+    ):
         raise SceneError("follow", follow, f"needs all {scene.count} particles in the file")
     require_kept(name, kept)
 
@@ -580,14 +584,14 @@ def require_modelled(name: str, scene: Scene, engine: Engine) -> None:
     """
     from gaspart.state.optional_tallies import StressTally, WallShearTally  # which load numpy
 
-    one = OBSERVABLES[known(name)]
-    if engine.equation in one.nothing:
-        raise SceneError("observable", name, one.nothing[engine.equation])
-    if one.needs == "fluxes":
+    declared = OBSERVABLES[known(name)]
+    if engine.equation in declared.nothing:
+        raise SceneError("observable", name, declared.nothing[engine.equation])
+    if declared.needs == "fluxes":
         engine.check_tally(StressTally(), scene)
-    if one.needs == "shear" and WallShearTally.name not in engine.tallies:
+    if declared.needs == "shear" and WallShearTally.name not in engine.tallies:
         raise SceneError("observable", name, "needs an engine that tallies momentum along faces")
-    if one.needs == "pairs" and not engine.records_events:
+    if declared.needs == "pairs" and not engine.records_events:
         raise SceneError("observable", name, "needs an engine that records events")
 
 

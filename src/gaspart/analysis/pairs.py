@@ -194,9 +194,9 @@ def mixed_g(counted: np.ndarray, parts: np.ndarray, volumes: np.ndarray) -> np.n
 
     The shells have these volumes (bins,).
     """
-    contacts, found = parts[0].mean(axis=0), parts.sum(axis=0)
-    missing = ((counted - found) @ volumes) / (contacts @ volumes)
-    impulses = found + missing[:, None] * contacts
+    contacts, total = parts[0].mean(axis=0), parts.sum(axis=0)
+    missing = ((counted - total) @ volumes) / (contacts @ volumes)
+    impulses = total + missing[:, None] * contacts
     return counted + mixture(counted, impulses, periodic=False) * (impulses - counted)
 
 
@@ -283,8 +283,8 @@ def rdf(
         along = {"distance": (distance, {"units": "length", "long_name": "distance"})}
         about = described("rdf", run, distance, end / bins)
         result = observable("rdf", along, values, errors, **about)
-        asked = PairImpulseTally(float(end), 200, 0.1)
-        result.attrs |= estimator(run, "counts", "counts and impulses", parts is not None, asked)
+        tally = PairImpulseTally(float(end), 200, 0.1)
+        result.attrs |= estimator(run, "counts", "counts and impulses", parts is not None, tally)
         return result
 
 
@@ -428,8 +428,8 @@ def contact_values(source: Source, start: float | None = None) -> Observable:
     3
     """
     with open_run(source, start, pairs=True) as run:
-        found = estimates_of(run, contact_scales(run))
-        return _of_pairs("contact_values", "contact_value", run, found)
+        estimates = estimates_of(run, contact_scales(run))
+        return _of_pairs("contact_values", "contact_value", run, estimates)
 
 
 def rate_scales(run: Run) -> np.ndarray:
@@ -472,10 +472,10 @@ def contact_scales(run: Run) -> np.ndarray:
     scene, d = run.scene, run.dimension
     scales = []
     for i, j in pairs_of(scene):
-        one, other = scene.species[i], scene.species[j]
-        number = one.count * other.count if i != j else one.count * (one.count - 1) / 2.0
-        speed = math.sqrt(run.temperature * (1.0 / one.mass + 1.0 / other.mass) / (2.0 * math.pi))
-        between = (one.radius + other.radius) ** (d - 1)
+        first, second = scene.species[i], scene.species[j]
+        number = first.count * second.count if i != j else first.count * (first.count - 1) / 2.0
+        speed = math.sqrt(run.temperature * (1.0 / first.mass + 1.0 / second.mass) / (2.0 * math.pi))
+        between = (first.radius + second.radius) ** (d - 1)
         scales.append(number * unit_sphere_surface(d) * between * speed / scene.container.volume)
     return np.array(scales) * mean_speed_factor(run.freedom)
 
@@ -510,12 +510,13 @@ def estimates_of(run: Run, scales: np.ndarray) -> list[Estimate]:
         series = (rates / scales).T
     nothing = Estimate(math.nan, math.nan)
     return [
-        correlated_mean(one, LEAST_INTERVALS).estimate if np.ptp(one) > 0.0 else nothing for one in series
+        correlated_mean(values, LEAST_INTERVALS).estimate if np.ptp(values) > 0.0 else nothing
+        for values in series
     ]
 
 
-def _of_pairs(observed: str, name: str, run: Run, found: list[Estimate]) -> Observable:
+def _of_pairs(observed: str, name: str, run: Run, estimates: list[Estimate]) -> Observable:
     """Return the result of an observable of pairs, `observed`, whose variable has a name."""
     along = {"pair": (np.array(pair_names(run.scene)), {"long_name": "numbers of two species, from 0"})}
-    values, errors = np.array([[one.value, one.error] for one in found]).T
+    values, errors = np.array([[estimate.value, estimate.error] for estimate in estimates]).T
     return observable(name, along, values, errors, **described(observed, run))

@@ -48,10 +48,10 @@ class Means:
         return Means(factor * self.values, factor * self.errors, self.freedoms)
 
 
-def with_freedom(result: Observable, found: Means) -> Observable:
+def with_freedom(result: Observable, means: Means) -> Observable:
     """Add the degrees of freedom of its errors to a result, by the suffix _freedom."""
     about = {"units": "1", "long_name": "degrees of freedom of the uncertainty"}
-    result[f"{result.attrs['quantity']}_freedom"] = result.estimate.dims, found.freedoms, about
+    result[f"{result.attrs['quantity']}_freedom"] = result.estimate.dims, means.freedoms, about
     return result
 
 
@@ -66,17 +66,17 @@ def ratio(above: np.ndarray, below: np.ndarray, still: bool = False) -> Means:
     freedoms = np.where(total > 0.0, filled - 1.0, np.nan)
     with np.errstate(invalid="ignore"):
         rest = (above - values * below) / np.where(total > 0.0, total, np.nan) * len(below)
-    known = values[total > 0.0]
-    exact = still or bool((np.abs(known - known[:1]) <= _ROUNDING * np.abs(known)).all())
+    defined = values[total > 0.0]
+    exact = still or bool((np.abs(defined - defined[:1]) <= _ROUNDING * np.abs(defined)).all())
     for cell in np.argwhere(filled > _LEAST_FREEDOM):
         at = tuple(cell)
         series = rest[(slice(None), *at)]
         if np.ptp(series) <= _ROUNDING * abs(values[at]):
             errors[at], freedoms[at] = (0.0, freedoms[at]) if exact else (np.nan, 0.0)
             continue
-        found = correlated_mean(series, LEAST_FRAMES).estimate
-        freedoms[at] = min(found.freedom, freedoms[at])
-        errors[at] = found.error if freedoms[at] >= _LEAST_FREEDOM else np.nan
+        estimate = correlated_mean(series, LEAST_FRAMES).estimate
+        freedoms[at] = min(estimate.freedom, freedoms[at])
+        errors[at] = estimate.error if freedoms[at] >= _LEAST_FREEDOM else np.nan
     return Means(values, errors, freedoms)
 
 
@@ -181,7 +181,7 @@ class Cells:
 
         count, *sums = self.sums(components)
         parts = [ratio(each, count, self._still) for each in sums]
-        return Means(*(np.stack([getattr(one, name) for one in parts]) for name in vars(parts[0])))
+        return Means(*(np.stack([getattr(part, name) for part in parts]) for name in vars(parts[0])))
 
     def temperature(self, local: bool) -> Means:
         """Compute k_B T: twice the kinetic energy about the mean motion per degree of freedom.

@@ -256,12 +256,12 @@ class Run:
         container.
         """
         moving = int(self.moving.sum())
-        found = np.full(len(self.time), self.dimension * moving - int(self.conserved.sum()), dtype=float)
+        values = np.full(len(self.time), self.dimension * moving - int(self.conserved.sum()), dtype=float)
         if self.flow_axes:
-            found = self._energies[2]
-        if not found.min() >= 1.0:
+            values = self._energies[2]
+        if not values.min() >= 1.0:
             raise SceneError("count", moving, "too few moving particles for a temperature")
-        return found
+        return values
 
     @property
     def freedom(self) -> float:
@@ -282,13 +282,13 @@ class Run:
             return self._of_all
         freedoms, masses, scene = self.freedoms, self.masses[self.moving], self.scene
         if self.flow_axes or scene.rough or scene.thermostat or scene.shear_rate is not None:
-            energies, whole, _ = self._energies
+            energies, total, _ = self._energies
         else:  # the energy is in double precision, and the momentum that of any frame
-            whole = 2.0 * self.data["kinetic_energy"].values
+            total = 2.0 * self.data["kinetic_energy"].values
             first = self.frame("velocities", 0)[self.moving]
             momentum = np.where(self.conserved, masses @ first, 0.0)
-            energies = whole - (momentum @ momentum) / (masses.sum() or 1.0)
-        moves = energies.mean() > _AT_REST * whole.mean()
+            energies = total - (momentum @ momentum) / (masses.sum() or 1.0)
+        moves = energies.mean() > _AT_REST * total.mean()
         return np.asarray(energies / freedoms) if moves else np.zeros(len(self.time))
 
     @cached_property
@@ -315,8 +315,8 @@ class Run:
             raise SceneError("count", count, "too few moving particles for a temperature")
         drift = self.data["flux_velocity"].values[-1] if "flux_velocity" in self.data else np.zeros(d)
         drift = drift * (self.about == FLOW)
-        whole = self.masses.sum() * (drift @ drift)
-        return np.asarray((2.0 * self.data["kinetic_energy"].values - whole) / freedom)
+        drift_energy = self.masses.sum() * (drift @ drift)
+        return np.asarray((2.0 * self.data["kinetic_energy"].values - drift_energy) / freedom)
 
     @cached_property
     def temperature(self) -> float:
@@ -400,10 +400,10 @@ def selected(run: Run, species: int | None, particles: Sequence[int] | None) -> 
             raise SceneError("species", species, f"there are {kinds}, numbered from 0")
         chosen = np.flatnonzero(run.species[moving] == species)
     if particles is not None:
-        wanted = [count_of("particles", one) for one in particles]
-        if any(one >= run.count for one in wanted):
-            raise SceneError("particles", max(wanted), f"there are {run.count}, numbered from 0")
-        chosen = np.flatnonzero(np.isin(moving, wanted))
+        indices = [count_of("particles", index) for index in particles]
+        if any(index >= run.count for index in indices):
+            raise SceneError("particles", max(indices), f"there are {run.count}, numbered from 0")
+        chosen = np.flatnonzero(np.isin(moving, indices))
     if not chosen.size:
         key, value = ("species", species) if particles is None else ("particles", list(particles))
         raise SceneError(key, value, "none of them moves")
@@ -496,9 +496,9 @@ def repeated(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
 def frame_of(simulation: Simulation) -> dict[str, Any]:
     """Return the variables of a frame: those of a simulation now."""
     state, scene = simulation.state, simulation.scene
-    places = {"coordinates": state.positions, "velocities": state.velocities}
-    places["displacements"] = state.unwrapped
-    row = {name: by_number(state, values, scene.capacity) for name, values in places.items()}
+    vectors = {"coordinates": state.positions, "velocities": state.velocities}
+    vectors["displacements"] = state.unwrapped
+    row = {name: by_number(state, values, scene.capacity) for name, values in vectors.items()}
     if state.piston is not None:
         row["piston_position"] = state.piston[0]
     row = {**vars(simulation.tally), **row, "time": simulation.time, "kinetic_energy": state.kinetic_energy}

@@ -164,10 +164,10 @@ def plateau(
     value, ends = _equal_areas(volume, pressure)
     noise = error * np.random.default_rng(0).standard_normal((REPEATS, error.size))
     redrawn = np.array([_equal_areas(volume, pressure + shift)[0] for shift in noise])
-    found = redrawn[np.isfinite(redrawn)]
-    if math.isnan(value) or found.size < REPEATS / 2:
+    finite = redrawn[np.isfinite(redrawn)]
+    if math.isnan(value) or finite.size < REPEATS / 2:
         return math.nan, math.nan, (math.nan, math.nan)
-    return value, float(0.5 * np.diff(np.percentile(found, [15.87, 84.13]))[0]), ends
+    return value, float(0.5 * np.diff(np.percentile(finite, [15.87, 84.13]))[0]), ends
 
 
 def _equal_areas(volume: np.ndarray, pressure: np.ndarray) -> tuple[float, tuple[float, float]]:

@@ -86,7 +86,7 @@ def by_species(source: Source, start: float | None = None, about: str = FLOW) ->
         table = table.merge(
             _column(name, [row.get(name) for row in rows]), join="outer", compat="no_conflicts"
         )
-    reasons = "; ".join(f"{what}: {reason}" for what, reason in missing.items())
+    reasons = "; ".join(f"{subject}: {reason}" for subject, reason in missing.items())
     return table.assign_attrs(not_measured=reasons)
 
 
@@ -105,10 +105,10 @@ def _of_velocities(run: Run, kind: int) -> dict[str, Observable]:
         # in the order of C, in which sums have the same bits for any number of frames
         velocities, free = (each.take(chosen, axis=1) for each in (motion.velocities, free))
         energies = (masses[chosen] * (velocities**2).sum(axis=2)).sum(axis=1)
-        known = (free > 0.0).all(axis=2)  # not alone in its cell of a flow
+        is_known = (free > 0.0).all(axis=2)  # not alone in its cell of a flow
         squares = np.divide(velocities**2, free, out=np.zeros(free.shape), where=free > 0.0).sum(axis=2)
-        speeds = (np.sqrt(squares) * known).sum(axis=1)
-        rows.append([energies, free.sum(axis=(1, 2)), speeds, known.sum(axis=1)])
+        speeds = (np.sqrt(squares) * is_known).sum(axis=1)
+        rows.append([energies, free.sum(axis=(1, 2)), speeds, is_known.sum(axis=1)])
     energies, freedoms, speeds, numbers = np.concatenate(rows, axis=1)
     if not freedoms.any():
         raise SceneError("count", len(masses), "a single particle keeps its velocity")
@@ -124,24 +124,24 @@ def _of_velocities(run: Run, kind: int) -> dict[str, Observable]:
     }
 
 
-def _column(name: str, found: list[Observable | None]) -> xr.Dataset:
+def _column(name: str, results: list[Observable | None]) -> xr.Dataset:
     """Join one observable of all species with its uncertainty.
 
     The result is empty if it was measured for no species.
     """
-    known = [one for one in found if one is not None]
-    if not known:
+    available = [result for result in results if result is not None]
+    if not available:
         return xr.Dataset()
-    blank = xr.full_like(known[0].estimate, np.nan)
+    blank = xr.full_like(available[0].estimate, np.nan)
     parts = {
-        name: [blank if one is None else one.estimate for one in found],
-        f"{name}_error": [blank if one is None else one.error for one in found],
+        name: [blank if result is None else result.estimate for result in results],
+        f"{name}_error": [blank if result is None else result.error for result in results],
     }
     columns = {}
     for key, values in parts.items():
         plain = [value.drop_vars("time", errors="ignore") for value in values]
         column = xr.concat(plain, "species", join="outer", compat="equals")  # few particles have fewer lags
         columns[key] = column.rename(key).assign_attrs(values[0].attrs)
-    columns[name].attrs.update(known[0].estimate.attrs)
-    columns[f"{name}_error"].attrs.update(known[0].error.attrs)
+    columns[name].attrs.update(available[0].estimate.attrs)
+    columns[f"{name}_error"].attrs.update(available[0].error.attrs)
     return xr.Dataset(columns)

@@ -111,13 +111,13 @@ def _speeds(run: Run, grid: Grid) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     for frames, part in run.parts():
         motion = about(part)
         squares, free = motion.velocities**2, motion.freedom
-        known = np.broadcast_to((free > 0.0).all(axis=2), squares.shape[:2])  # not alone in its cell
+        is_known = np.broadcast_to((free > 0.0).all(axis=2), squares.shape[:2])  # not alone in its cell
         energy[frames] = squares.sum(axis=(1, 2))
         squares /= np.where(free > 0.0, free, 1.0)
         speeds = np.sqrt(squares.sum(axis=2))
-        cells = np.where(known, grid.cells(speeds[..., None]), -1).T
+        cells = np.where(is_known, grid.cells(speeds[..., None]), -1).T
         counts += grid.sums(cells, None, group)
-        sizes += np.bincount(group, known.sum(axis=0), STRETCHES).astype(int)
+        sizes += np.bincount(group, is_known.sum(axis=0), STRETCHES).astype(int)
     return counts, sizes, energy
 
 
@@ -195,17 +195,17 @@ def profile(
         by_impulses = None
         if of == "density":
             by_impulses = mixed_density(run, k, bins, species)
-            found = by_impulses or _density(run, k, bins, species)
+            means = by_impulses or _density(run, k, bins, species)
         else:
             members = np.flatnonzero(run.moving)[selected(run, species, None)]
-            found = Cells(run, members, (k,), (bins,)).temperature(local=False)
+            means = Cells(run, members, (k,), (bins,)).temperature(local=False)
         middle = 0.5 * (edges[1:] + edges[:-1])
         attributes = described(of, run, *((k, edges, species) if of == "density" else ()))
         along = {"position": (middle, {"units": "length", "long_name": names[k]})}
-        result = observable(of, along, found.values, found.errors, **attributes)
+        result = observable(of, along, means.values, means.errors, **attributes)
         if of == "density":
             result.attrs |= described_density(run, k, bins, by_impulses is not None)
-        return with_freedom(result, found)
+        return with_freedom(result, means)
 
 
 def density(source: Source, start: float | None = None, **selection: Any) -> Observable:
@@ -340,13 +340,13 @@ def _density(run: Run, axis: int, bins: int, species: int | None) -> Means:
     if np.isfinite(run.masses).all():
         return cells.density().times(run.count / stored)
     edges, radii = cells.grid.edges[0], run.radii[members]  # fixed particles leave less room to larger ones
-    left = {radius: left_by_obstacles(run, radius, axis, edges) for radius in np.unique(radii)}
-    shares = np.array([left[radius] for radius in radii])  # (n, bins)
+    fractions = {radius: left_by_obstacles(run, radius, axis, edges) for radius in np.unique(radii)}
+    shares = np.array([fractions[radius] for radius in radii])  # (n, bins)
 
     def per_share(here: np.ndarray) -> np.ndarray:
         part = np.take_along_axis(shares.T, here, axis=0)
         return np.divide(1.0, part, out=np.zeros(here.shape), where=part > 0.0)
 
-    found = cells.density(per_share)
+    means = cells.density(per_share)
     closed = ~shares.any(axis=0)
-    return Means(*(np.where(closed, np.nan, one) for one in vars(found).values()))
+    return Means(*(np.where(closed, np.nan, values) for values in vars(means).values()))

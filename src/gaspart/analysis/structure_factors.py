@@ -61,7 +61,7 @@ def shells_of(
         waves, size = admitted(np.asarray(lengths) / step, high)
         parts.append((step * waves[size > low], size[size > low]))
         low, step = high, 2 * step
-    waves, size = (np.concatenate(one) for one in zip(*parts, strict=True))
+    waves, size = (np.concatenate(values) for values in zip(*parts, strict=True))
     bin_of = np.minimum((size * (bins / highest)).astype(int), bins - 1)
     kept = []
     for members in np.split(np.arange(len(size)), np.flatnonzero(np.diff(bin_of)) + 1):
@@ -199,9 +199,9 @@ def structure_factor(
     with open_run(source, start) as run:
         require_defined("structure_factor", run.scene)
         lengths = run.scene.container.lengths
-        found, along = _measured(run, bins, highest, lambda frames, waves: factors(frames, lengths, waves))
+        means, along = _measured(run, bins, highest, lambda frames, waves: factors(frames, lengths, waves))
         about = described("structure_factor", run, along["wave_number"][0])
-        return observable("structure_factor", along, *means_of(found), **about)
+        return observable("structure_factor", along, *means_of(means), **about)
 
 
 def partial_structure_factors(
@@ -262,13 +262,16 @@ def partial_structure_factors(
         lengths, pairs = run.scene.container.lengths, pairs_of(run.scene)
 
         def of_pairs(frames: np.ndarray, waves: np.ndarray) -> np.ndarray:
-            each = [amplitudes(frames[:, one], lengths, waves) / max(1.0, len(one)) ** 0.5 for one in members]
+            each = [
+                amplitudes(frames[:, indices], lengths, waves) / max(1.0, len(indices)) ** 0.5
+                for indices in members
+            ]
             return np.stack([(each[a] * each[b].conj()).real for a, b in pairs], axis=1)
 
-        found, along = _measured(run, bins, highest, of_pairs)
+        means, along = _measured(run, bins, highest, of_pairs)
         names = np.array(pair_names(run.scene)), {"long_name": "numbers of two species, from 0"}
         about = described("partial_structure_factors", run, along["wave_number"][0])
-        return observable("partial_structure_factors", {"pair": names, **along}, *means_of(found), **about)
+        return observable("partial_structure_factors", {"pair": names, **along}, *means_of(means), **about)
 
 
 def _measured(
@@ -292,11 +295,11 @@ def _measured(
     waves, shell, k = shells_of(lengths, end, bins, _WAVES)
     stretches = stretches_of(run)
     most = max(1, _WORK // (run.count * len(waves) * STRETCHES))
-    found = []
+    means = []
     for part in stretches:
         fewer = -(-len(run.time[part]) // most)
         part = slice(part.start, part.stop, part.step * fewer)
         blocks = run.blocks("coordinates", part)
         total = sum(products(block, waves).sum(axis=0) for block in blocks)
-        found.append(np.apply_along_axis(in_shells, -1, total / len(run.time[part]), shell))
-    return np.array(found), {"wave_number": (k, {"units": "1 / length", "long_name": "wave number"})}
+        means.append(np.apply_along_axis(in_shells, -1, total / len(run.time[part]), shell))
+    return np.array(means), {"wave_number": (k, {"units": "1 / length", "long_name": "wave number"})}

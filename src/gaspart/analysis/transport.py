@@ -96,7 +96,7 @@ def _passed(run: Run) -> np.ndarray:
     return np.array([paths[:, run.species == kind].sum(axis=1) for kind in kinds])
 
 
-def _products(one: np.ndarray, other: np.ndarray, lags: int) -> np.ndarray:
+def _products(flux: np.ndarray, other_flux: np.ndarray, lags: int) -> np.ndarray:
     """Compute products of changes of two sets of time integrals of fluxes.
 
     The integrals have the shapes (A, T, d) and (B, T, d), the products (A, B, T - 1 - lags). The change of
@@ -110,7 +110,7 @@ def _products(one: np.ndarray, other: np.ndarray, lags: int) -> np.ndarray:
         later = second[:, lags + 1 :] - 0.5 * (second[:, :origins] + second[:, 1 : origins + 1])
         return np.einsum("atd,btd->abt", now, later) / first.shape[2]
 
-    return 0.5 * (half(one, other) + half(other, one).swapaxes(0, 1))
+    return 0.5 * (half(flux, other_flux) + half(other_flux, flux).swapaxes(0, 1))
 
 
 _SLIGHT = 1e-6  # of k_B T: an energy of the motion as a whole that changes no coefficient
@@ -293,7 +293,7 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
         d, volume = run.dimension, math.prod(run.scene.container.lengths)
         rates = run.increments("stress_sum") / (volume * np.diff(run.time))[:, None, None]
         series = rates.reshape(len(rates), d * d).T
-        means = [correlated_mean(one).estimate for one in series]
+        means = [correlated_mean(values).estimate for values in series]
         names = np.array([a + b for a in "xyz"[:d] for b in "xyz"[:d]])
         return observable(
             "pressure_tensor",

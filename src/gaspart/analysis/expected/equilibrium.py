@@ -87,9 +87,9 @@ def scale_of_number(run: Run, mixture: Mixture) -> float | None:
     not known for equal ones.
     """
     eta, d = mixture.packing_fraction, mixture.dimension
-    if run.count < LEAST_OF_MIXTURE or (found := contact_of_number(run, eta, d)) is None:
+    if run.count < LEAST_OF_MIXTURE or (contact := contact_of_number(run, eta, d)) is None:
         return None
-    return found[0] / float(theory.contact_value(eta, d))
+    return contact[0] / float(theory.contact_value(eta, d))
 
 
 _SANTOS = "Santos, Yuste and Lopez de Haro 2002, an approximation"
@@ -166,8 +166,8 @@ def contact_values(run: Run) -> Expected | None:
     mixture = _mixture_of_species(run)
     if mixture is None or (scale := scale_of_number(run, mixture)) is None:
         return None
-    found = theory.mixture_contact_values(*mixture.sizes) * scale
-    return [found[pair] for pair in pairs_of(run.scene)], np.nan, f"contact values of {_SANTOS}"
+    values = theory.mixture_contact_values(*mixture.sizes) * scale
+    return [values[pair] for pair in pairs_of(run.scene)], np.nan, f"contact values of {_SANTOS}"
 
 
 def pair_rates(run: Run) -> Expected | None:
@@ -178,10 +178,10 @@ def pair_rates(run: Run) -> Expected | None:
     mixture = None if run.is_subset else _mixture_of_species(run)
     if mixture is None or (scale := scale_of_number(run, mixture)) is None:
         return None
-    found = theory.mixture_collision_rates(*mixture.sizes, temperature=run.temperature, masses=mixture.masses)
-    found = found * (1.0 - np.diag(1.0 / np.array(mixture.counts)))
-    found *= scale * mean_speed_factor(run.freedom)
-    return [found[pair] for pair in pairs_of(run.scene)], np.nan, f"contact values of {_SANTOS}"
+    rates = theory.mixture_collision_rates(*mixture.sizes, temperature=run.temperature, masses=mixture.masses)
+    rates = rates * (1.0 - np.diag(1.0 / np.array(mixture.counts)))
+    rates *= scale * mean_speed_factor(run.freedom)
+    return [rates[pair] for pair in pairs_of(run.scene)], np.nan, f"contact values of {_SANTOS}"
 
 
 def _mixture_of_species(run: Run) -> Mixture | None:
@@ -221,11 +221,11 @@ def wall_pressure(run: Run, touched: np.ndarray) -> Expected | None:
 def wall_force(run: Run) -> Expected | None:
     """Compute the expected pressure times the area of each face."""
     touched = np.subtract(*run.scene.reach(run.scene.largest_moving_radius)[::-1])
-    found = wall_pressure(run, touched)
-    if found is None:
+    pressure = wall_pressure(run, touched)
+    if pressure is None:
         return None
     areas = np.array([np.delete(touched, axis).prod() for axis in run.scene.walled_axes]).repeat(2)
-    return found[0] * areas, found[1] * areas, found[2]
+    return pressure[0] * areas, pressure[1] * areas, pressure[2]
 
 
 def pressure_tensor(run: Run, temperature: float) -> Expected | None:
@@ -264,11 +264,11 @@ def speeds(run: Run, edges: np.ndarray, mass: float | None, fixed: bool) -> Expe
 # An observable of a run as its result states it: units, label, and what theory expects.
 
 
-def described(name: str, run: Run, *places: Any, **given: Any) -> dict[str, Any]:
+def described(name: str, run: Run, *arguments: Any, **keywords: Any) -> dict[str, Any]:
     """Return units and label of an observable, and its theory for a run.
 
-    The theory, if there is one, has values, their uncertainties, and a source. `places` and `given` are the
-    arguments of its function of theory in addition to the run.
+    The theory, if there is one, has values, their uncertainties, and a source. `arguments` and `keywords` are
+    the arguments of its function of theory in addition to the run.
     """
     about: dict[str, Any] = dict(observables.about(name, run.dimension))
     stated = observables.OBSERVABLES[name].theory
@@ -276,7 +276,7 @@ def described(name: str, run: Run, *places: Any, **given: Any) -> dict[str, Any]
         return about
     module, function = stated.split(".")
     expect = getattr(import_module(f"gaspart.analysis.expected.{module}"), function)
-    if (found := expect(run, *places, **given)) is None:
+    if (expected := expect(run, *arguments, **keywords)) is None:
         return about
-    value, error, source = found
+    value, error, source = expected
     return {**about, "theory": (value, error), "source": source}

@@ -104,10 +104,10 @@ def heat_flux(run: Run, faces: np.ndarray) -> Expected | None:
         return None
     if plates.slide.any():
         return _friction(plates, run)
-    found = _conducted(plates, equation_of(run) == BOLTZMANN)
-    if found is None:
+    conduction = _conducted(plates, equation_of(run) == BOLTZMANN)
+    if conduction is None:
         return None
-    flux, error, source = found
+    flux, error, source = conduction
     towards_high = 1.0 if plates.temperatures[0] > plates.temperatures[1] else -1.0
     return np.where(faces % 2 == 1, towards_high, -towards_high) * flux, error, source
 
@@ -117,8 +117,8 @@ def wall_shear(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None
 
     The components are along these axes; the state is steady.
     """
-    if found := _driven(run, faces, axes):
-        return found
+    if driven := _driven(run, faces, axes):
+        return driven
     plates = plates_of(run)
     if plates is None or not plates.equal or not plates.slide.any():
         return None
@@ -188,10 +188,10 @@ def _in_equilibrium(run: Run) -> bool:
     faces = [face for _, face in scene.faces_of(Thermal)]
     still = len(faces) == len(scene.faces) and not any(face.slides for face in faces)
     temperatures = scene.face_temperatures
-    one = max(temperatures, default=0.0) - min(temperatures, default=0.0) <= _EQUAL * max(
+    is_isothermal = max(temperatures, default=0.0) - min(temperatures, default=0.0) <= _EQUAL * max(
         temperatures, default=0.0
     )
-    return still and one and not (run.dissipates or scene.thermostat or scene.driven_axes)
+    return still and is_isothermal and not (run.dissipates or scene.thermostat or scene.driven_axes)
 
 
 def _conducted(plates: Plates, points: bool) -> tuple[float, float, str] | None:
@@ -204,8 +204,8 @@ def _conducted(plates: Plates, points: bool) -> tuple[float, float, str] | None:
     at = f"Knudsen number {plates.knudsen:.2g}"
     if plates.freedom > FREE:
         return float(free), float(free) * _FIRST / plates.freedom, f"free flight between plates, {at}"
-    whole = plates.components == "all" and plates.accommodating
-    if plates.dimension == 2 or not whole or not plates.knudsen > 0.0:
+    is_full = plates.components == "all" and plates.accommodating
+    if plates.dimension == 2 or not is_full or not plates.knudsen > 0.0:
         return None
     unit, scale = 1.0 / math.sqrt(plates.mass), _POINTS if points else 1.0
     gap = (plates.length, plates.density / scale**2, hot, cold, plates.diameter * scale)
@@ -216,8 +216,8 @@ def _conducted(plates: Plates, points: bool) -> tuple[float, float, str] | None:
         flux = unit * scale**2 * theory.conducting_slab(*gap).flux
     except ValueError:  # its own estimate of the Knudsen number is a little larger
         return None
-    known = points or plates.filled < _DILUTE
-    error = flux * plates.knudsen**2 if known else math.nan
+    is_known = points or plates.filled < _DILUTE
+    error = flux * plates.knudsen**2 if is_known else math.nan
     return flux, error, f"Fourier's law with Enskog's conductivity and temperature jumps, {at}"
 
 
@@ -255,8 +255,8 @@ def heating_of(plates: Plates) -> float:
     return plates.mass * square / (30.0 * max(plates.temperatures))
 
 
-def _between(what: str) -> str:
-    limits = {"heat": "free flight and Fourier's law", "stress": "free flight and Newton's law"}[what]
+def _between(quantity: str) -> str:
+    limits = {"heat": "free flight and Fourier's law", "stress": "free flight and Newton's law"}[quantity]
     return f"interpolation (Sherman) of {limits}, for Knudsen numbers from {FLUID:g} to {FREE:g}"
 
 
@@ -289,22 +289,22 @@ _ROUNDING = 1e-6
 """Relative drift that rounding of the frames can cause: a fraction of the largest velocity."""
 
 
-def velocity(run: Run, axis: int, places: np.ndarray) -> Expected | None:
+def velocity(run: Run, axis: int, positions: np.ndarray) -> Expected | None:
     """Compute the velocity (component, position) at positions (P,) along an axis, in a steady state."""
     scene = run.scene
     if scene.shear_rate is not None:
-        middle = np.tile(0.5 * np.array(scene.container.lengths), (len(places), 1))
-        middle[:, axis] = places
+        middle = np.tile(0.5 * np.array(scene.container.lengths), (len(positions), 1))
+        middle[:, axis] = positions
         return flow(scene, middle).T + _drift(run), 0.0, "the flow of sheared images"
     if plates := plates_of(run):
-        return _between_plates(plates, run, axis, places)
+        return _between_plates(plates, run, axis, positions)
     if plates := plates_of(run, driven=True):
-        return _pushed(plates, run, axis, places)
+        return _pushed(plates, run, axis, positions)
     if scene.faces or scene.thermostat or run.dissipates or scene.driven_axes or scene.walls:
         return None
     if not run.moving.all():
         return None
-    return np.repeat(_drift(run), len(places), axis=1), 0.0, "equilibrium"
+    return np.repeat(_drift(run), len(positions), axis=1), 0.0, "equilibrium"
 
 
 def _drift(run: Run) -> np.ndarray:
@@ -321,13 +321,13 @@ def _drift(run: Run) -> np.ndarray:
     return np.where(run.conserved & seen, drift, 0.0)[:, None]
 
 
-def _between_plates(plates: Plates, run: Run, axis: int, places: np.ndarray) -> Expected | None:
+def _between_plates(plates: Plates, run: Run, axis: int, positions: np.ndarray) -> Expected | None:
     """Compute the velocity between plates of one temperature, or that do not slide."""
     velocities = dict(run.scene.sliding_faces)
     ends = [velocities.get(2 * plates.axis + side) for side in (0, 1)]
     rest = (0.0,) * run.dimension
     low, high = (np.array(face.velocity if face else rest) for face in ends)
-    mean = np.repeat(0.5 * (low + high)[:, None], len(places), axis=1)
+    mean = np.repeat(0.5 * (low + high)[:, None], len(positions), axis=1)
     if not plates.slide.any():
         return mean, 0.0, "the gas is at rest between the plates"
     if not plates.equal or len(set(plates.accommodation)) > 1:
@@ -343,13 +343,13 @@ def _between_plates(plates: Plates, run: Run, axis: int, places: np.ndarray) -> 
     path = plates.knudsen * plates.length
     gap = plates.length + 2.0 * theory.VELOCITY_SLIP * path
     middle = 0.5 * run.scene.container.lengths[axis]
-    values = mean + np.multiply.outer(plates.slide, (places - middle) / gap)
+    values = mean + np.multiply.outer(plates.slide, (positions - middle) / gap)
     wrong = np.abs(plates.slide)[:, None] * (plates.knudsen**2 + heating_of(plates))
-    near = np.abs(places - middle) > 0.5 * plates.length - 2.0 * path  # the layer that no fluid describes
+    near = np.abs(positions - middle) > 0.5 * plates.length - 2.0 * path  # the layer that no fluid describes
     return np.where(near, np.nan, values), wrong, "linear flow with slip"
 
 
-def _pushed(plates: Plates, run: Run, axis: int, places: np.ndarray) -> Expected | None:
+def _pushed(plates: Plates, run: Run, axis: int, positions: np.ndarray) -> Expected | None:
     """Compute the velocity that a force drives along plates of one temperature at rest.
 
     The uncertainty is the next order of the slip, the packing fraction, and half of the heating of the gas by
@@ -360,7 +360,7 @@ def _pushed(plates: Plates, run: Run, axis: int, places: np.ndarray) -> Expected
     if not slow or plates.dimension == 2 or not 0.0 < plates.knudsen <= FLUID or not dilute(plates, run):
         return None
     length, temperature = plates.length, plates.temperatures[0]
-    from_middle = places - 0.5 * run.scene.container.lengths[axis]
+    from_middle = positions - 0.5 * run.scene.container.lengths[axis]
     near = np.abs(from_middle) > 0.5 * length - 2.0 * plates.knudsen * length
     heights = np.append(np.where(near, 0.0, from_middle), 0.0) + 0.5 * length  # and in the middle
     speeds = theory.channel_velocity(heights, length, plates.density, 1.0, plates.diameter)
@@ -374,7 +374,7 @@ def _pushed(plates: Plates, run: Run, axis: int, places: np.ndarray) -> Expected
     return np.where(near, np.nan, values[:, :-1]), wrong, "Poiseuille's flow with slip"
 
 
-def flux(run: Run, axis: int, place: float, members: np.ndarray, beyond: np.ndarray) -> Expected | None:
+def flux(run: Run, axis: int, position: float, members: np.ndarray, beyond: np.ndarray) -> Expected | None:
     """Compute the number of particles (component,) that pass the plane across an axis per time.
 
     members : (n,), the particles that count.
@@ -384,7 +384,7 @@ def flux(run: Run, axis: int, place: float, members: np.ndarray, beyond: np.ndar
     if not scene.walls:
         return _closed(run)
     masses, radii = run.masses[members], run.radii[members]
-    area = opening(scene, axis, place, float(radii.max()))
+    area = opening(scene, axis, position, float(radii.max()))
     moved = scene.thermostat or run.dissipates or run.has_gravity or scene.moving_wall
     plain = not (scene.faces or scene.face_temperatures or moved)
     alike = np.ptp(masses) == 0.0 and np.ptp(radii) == 0.0 and run.moving.all()
@@ -392,7 +392,7 @@ def flux(run: Run, axis: int, place: float, members: np.ndarray, beyond: np.ndar
         return None
     lower, upper = (np.array(ends) for ends in scene.reach(float(radii.max())))
     across = np.delete(upper - lower, axis).prod()
-    sides = across * np.array([place - lower[axis], upper[axis] - place])
+    sides = across * np.array([position - lower[axis], upper[axis] - position])
     numbers = np.array([len(members) - beyond.mean(), beyond.mean()])
     speed = math.sqrt(run.temperature / (2.0 * math.pi * masses[0]))
     rates = numbers / sides * speed * area
@@ -422,7 +422,7 @@ def _path(run: Run) -> float:
     return float(theory.mean_free_path(filled, run.dimension, 2.0 * run.scene.largest_radius))
 
 
-def opening(scene: Scene, axis: int, place: float, radius: float) -> float | None:
+def opening(scene: Scene, axis: int, position: float, radius: float) -> float | None:
     """Compute the area of a plane that interior walls in it leave to particle centres.
 
     In two dimensions it is a length. None if no wall lies in the plane, or if a plate is not along the axes.
@@ -432,7 +432,7 @@ def opening(scene: Scene, axis: int, place: float, radius: float) -> float | Non
     shadows = []
     for wall in scene.walls:
         corners = np.array(list(wall.corners.values()))
-        if np.abs(corners[:, axis] - place).max() > near:
+        if np.abs(corners[:, axis] - position).max() > near:
             continue
         if isinstance(wall, Plate) and any(np.count_nonzero(edge) > 1 for edge in wall.edges):
             return None
@@ -449,12 +449,12 @@ def _uncovered(shadows: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> flo
         np.unique(np.clip(np.append(shadows[:, :, k], [lower[k], upper[k]]), lower[k], upper[k]))
         for k in range(len(lower))
     ]
-    left = np.ones([len(edge) - 1 for edge in edges], dtype=bool)
+    is_open = np.ones([len(edge) - 1 for edge in edges], dtype=bool)
     for low, high in shadows:
         covered = [
             (edge[:-1] >= a - 1e-12) & (edge[1:] <= b + 1e-12)
             for edge, a, b in zip(edges, low, high, strict=True)
         ]
-        left &= ~reduce(np.logical_and.outer, covered)
+        is_open &= ~reduce(np.logical_and.outer, covered)
     widths = reduce(np.multiply.outer, [np.diff(edge) for edge in edges])
-    return float((widths * left).sum())
+    return float((widths * is_open).sum())

@@ -72,13 +72,13 @@ def partial_structure_factors(run: Run, wave_number: np.ndarray) -> Expected | N
         return None
     counts = np.array([kind.count for kind in species])
     if run.scene.alike:
-        whole = structure_factor(run, wave_number)
-        assert whole is not None
+        total = structure_factor(run, wave_number)
+        assert total is not None
         parts = np.sqrt(counts / counts.sum())
-        return same + np.array([[parts[a] * parts[b]] for a, b in pairs]) * (whole[0] - 1.0), *whole[1:]
+        return same + np.array([[parts[a] * parts[b]] for a, b in pairs]) * (total[0] - 1.0), *total[1:]
     diameters = [2.0 * kind.radius for kind in species]
-    found = theory.percus_yevick_partial_factors(wave_number, mixture.packing_fraction, diameters, counts)
-    return np.array([found[:, a, b] for a, b in pairs]), np.nan, "Percus and Yevick, Lebowitz"
+    factors = theory.percus_yevick_partial_factors(wave_number, mixture.packing_fraction, diameters, counts)
+    return np.array([factors[:, a, b] for a, b in pairs]), np.nan, "Percus and Yevick, Lebowitz"
 
 
 def chemical_potential(run: Run) -> Expected | None:
@@ -93,8 +93,8 @@ def chemical_potential(run: Run) -> Expected | None:
         return None
     eta, d, diameters, counts = mixture.sizes[0], mixture.dimension, mixture.diameters, mixture.counts
     if equation == BOLTZMANN:
-        found = _into_points(run, np.array(diameters), np.array(counts))
-        return None if found is None else (found, 0.0, "insertion among independent places")
+        potential = _into_points(run, np.array(diameters), np.array(counts))
+        return None if potential is None else (potential, 0.0, "insertion among independent places")
     if run.scene.alike:
         side = min(run.scene.container.lengths) / diameters[0]
         try:
@@ -113,12 +113,14 @@ def chemical_potential(run: Run) -> Expected | None:
 def _into_points(run: Run, diameters: np.ndarray, counts: np.ndarray) -> Any | None:
     """Compute the chemical potential of independent positions, if no image counts twice."""
     between = 0.5 * np.add.outer(diameters, diameters)
-    covered = np.array([theory.particle_volume(run.dimension, 2.0 * one) for one in between.ravel()])
+    covered = np.array(
+        [theory.particle_volume(run.dimension, 2.0 * diameter) for diameter in between.ravel()]
+    )
     chance = 1.0 - covered.reshape(between.shape) / run.scene.container.volume
     if not (chance > 0.0).all() or 2.0 * diameters.max() > min(run.scene.container.lengths):
         return None
-    found = -np.log(chance) @ counts
-    return float(found[0]) if run.scene.alike else found
+    potential = -np.log(chance) @ counts
+    return float(potential[0]) if run.scene.alike else potential
 
 
 def temperature(run: Run) -> Expected | None:
@@ -137,8 +139,8 @@ def density(run: Run, axis: int, edges: np.ndarray, species: int | None) -> Expe
     scene, kinds = run.scene, run.scene.kinds
     field = 0.0 if scene.gravity is None else scene.gravity[axis]
     across = scene.gravity is not None and any(g for n, g in enumerate(scene.gravity) if n != axis)
-    whole = species is None or run.count == len(np.flatnonzero(run.species == species))
-    equal = whole and scene.alike and not any(kind.fixed for kind in kinds)
+    covers_all = species is None or run.count == len(np.flatnonzero(run.species == species))
+    equal = covers_all and scene.alike and not any(kind.fixed for kind in kinds)
     if not equal or scene.walls or scene.faces or across or not (field or run.periodic[axis]):
         return None
     if field and (run.dissipates or run.is_subset or not run.temperature > 0.0):
@@ -157,17 +159,17 @@ def _stratified(run: Run, axis: int, edges: np.ndarray, field: float) -> Expecte
     area = scene.container.volume / scene.container.lengths[axis]
     weight = kind.mass * abs(field) / run.temperature
     if equation_of(run) == BOLTZMANN:
-        found = run.count / area * theory.ideal_profile(z - z[0], z[-1] - z[0], weight)
+        profile = run.count / area * theory.ideal_profile(z - z[0], z[-1] - z[0], weight)
         source = "Boltzmann equation, barometric law"
     else:
         try:
-            found = theory.hydrostatic_profiles(
+            profile = theory.hydrostatic_profiles(
                 z, [run.count / area], [weight], run.dimension, 2.0 * kind.radius
             )[0]
         except ValueError:  # denser than theory goes
             return None
         source = "hydrostatics, local equation of state"
-    total = np.concatenate([[0.0], np.cumsum(0.5 * (found[1:] + found[:-1]) * np.diff(z))])
+    total = np.concatenate([[0.0], np.cumsum(0.5 * (profile[1:] + profile[:-1]) * np.diff(z))])
     if field > 0.0:
         total = total[-1] - total[::-1]
     share = np.diff(np.interp(edges, z, total))

@@ -65,8 +65,11 @@ def diffusion(
     window : (2,), collisions of a particle between which the slope is taken as D.
     """
     if ends is not None:
-        found = mean_squared_displacement(run, ends, axes=True)
-        return found and (0.5 * float(np.diff(found[0])[0] / np.diff(ends)[0]), *found[1:])
+        displacement = mean_squared_displacement(run, ends, axes=True)
+        return displacement and (
+            0.5 * float(np.diff(displacement[0])[0] / np.diff(ends)[0]),
+            *displacement[1:],
+        )
     gas, sides = run.moving_fluid, run.scene.container.lengths
     if gas is None or np.ptp(sides) > 1e-6 * sides[0]:
         return None

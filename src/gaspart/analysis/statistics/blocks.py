@@ -183,9 +183,9 @@ def _spectrum(series: np.ndarray) -> tuple[float, float]:
     changes = count_changes(series)
     if not changes:
         return 0.0, 1.0
-    found = np.array([centred[: number - lag] @ centred[lag:] for lag in range(order + 1)]) / number
-    first, _ = _autoregression(found)
-    total, variance = _autoregression(found + first / number)
+    covariances = np.array([centred[: number - lag] @ centred[lag:] for lag in range(order + 1)]) / number
+    first, _ = _autoregression(covariances)
+    total, variance = _autoregression(covariances + first / number)
     return total, min(number / (1.0 + 2.0 * variance), float(changes))
 
 
@@ -201,13 +201,13 @@ def _autoregression(covariances: np.ndarray) -> tuple[float, float]:
     unpredicted, rest, inverse = float(covariances[0]), 1.0, 0.0
     for order in range(1, covariances.size):
         inverse += rest**2 / unpredicted
-        known = coefficients @ covariances[order - 1 : 0 : -1]
-        partial = (covariances[order] - known) / unpredicted
-        left = unpredicted * (1.0 - partial**2)
-        if left <= 1e-12 * covariances[0]:  # to rounding, the earlier values predict all
+        predicted = coefficients @ covariances[order - 1 : 0 : -1]
+        partial = (covariances[order] - predicted) / unpredicted
+        remaining = unpredicted * (1.0 - partial**2)
+        if remaining <= 1e-12 * covariances[0]:  # to rounding, the earlier values predict all
             break
         coefficients = np.append(coefficients - partial * coefficients[::-1], partial)
-        unpredicted, rest = left, rest * (1.0 - partial)
+        unpredicted, rest = remaining, rest * (1.0 - partial)
     return unpredicted / rest**2, unpredicted * inverse / rest**2
 
 

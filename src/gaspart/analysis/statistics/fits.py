@@ -16,10 +16,11 @@ from gaspart.analysis.statistics.blocks import positive_errors, positive_freedom
 
 @dataclass(frozen=True)
 class Fit:
-    """Parameters of a linear least-squares fit. Without errors given there is no test: p_value is NaN.
+    """Parameters of a linear least-squares fit.
 
-    freedoms: degrees of freedom of the parameters' errors. chi_square over degrees_of_freedom follows
-    Fisher's distribution with degrees_of_freedom and error_freedom.
+    `freedoms` are the degrees of freedom of the parameters' errors. `chi_square` divided by
+    `degrees_of_freedom` follows Fisher's distribution with `degrees_of_freedom` and `error_freedom`. If the
+    caller gives no errors, there is no test: `p_value` is NaN.
     """
 
     values: np.ndarray
@@ -99,9 +100,9 @@ def fit_linear(
     lengths = np.linalg.norm(weighted, axis=0)
     if np.any(lengths == 0.0) or np.linalg.matrix_rank(weighted / lengths) < design.shape[1]:
         raise ValueError("design: its columns are not independent")
-    left, singular, right = np.linalg.svd(weighted / lengths, full_matrices=False)
+    basis, singular, right = np.linalg.svd(weighted / lengths, full_matrices=False)
     inverse = (right.T / singular) / lengths[:, None]
-    values = inverse @ (left.T @ (y / scale))
+    values = inverse @ (basis.T @ (y / scale))
     covariance = inverse @ inverse.T
     residuals = y - design @ values
     chi_square = float(np.sum((residuals / scale) ** 2))
@@ -109,7 +110,7 @@ def fit_linear(
         covariance, own = covariance * chi_square / freedom, np.full(values.size, float(freedom))
         return Fit(values, covariance, own, math.nan, freedom, math.inf, math.nan, residuals)
     few = 1.0 / positive_freedoms(freedoms, y.size)
-    covariance, own, factor, error_freedom = _of_estimated_errors(inverse @ left.T, left, covariance, few)
+    covariance, own, factor, error_freedom = _of_estimated_errors(inverse @ basis.T, basis, covariance, few)
     chi_square /= factor
     p_value = math.nan
     if freedom:
@@ -126,21 +127,24 @@ def _with_errors(y: Values, errors: ArrayLike | None, freedoms: ArrayLike) -> tu
 
 
 def _of_estimated_errors(
-    shares: np.ndarray, left: np.ndarray, covariance: np.ndarray, few: np.ndarray
+    shares: np.ndarray, basis: np.ndarray, covariance: np.ndarray, few: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, float, float]:
-    """The covariance of a fit whose errors are estimates, its degrees of freedom, the factor by which
-    chi-square is too large, and its second degrees of freedom.
+    """Return the covariance of a fit whose errors are estimates, and what its test needs.
 
-    shares (parameters, points): the part of each point's error in each parameter's; left (points,
-    parameters): orthonormal columns that span those of the weighted design; few (points,): one over the
-    degrees of freedom of the errors. To first order in it, a point whose error is underestimated counts too
-    much and makes the covariance too small, each by the part 2 few (1 - leverage) of its share (for the
-    weighted mean: Meier, Biometrics 9, 59 (1953)). With f - 2 for f, as in the mean of 1 / chi-square, this
-    is good to some per cent of the errors from f = 3 on, and f / 3 below. The degrees of freedom are those
-    of Welch and Satterthwaite; the test is that of Welch, Biometrika 38, 330 (1951), for linear models
-    Johansen, Biometrika 67, 85 (1980).
+    The results are the covariance, the degrees of freedom of the parameters, the factor by which chi-square
+    is too large, and the second degrees of freedom of the test.
+
+    - shares : (parameters, points), the contribution of the error of each point to each parameter.
+    - basis : (points, parameters), orthonormal columns that span the columns of the weighted design.
+    - few : (points,), reciprocal degrees of freedom of the errors.
+
+    To first order in `few`, a point whose error is underestimated counts too much and makes the covariance
+    too small, each by the part 2 few (1 - leverage) of its share (for the weighted mean: Meier, Biometrics 9,
+    59 (1953)). With f - 2 for f, as in the mean of 1 / chi-square, this is good to some per cent of the
+    errors from f = 3 on, and f / 3 below. The degrees of freedom are those of Welch and Satterthwaite; the
+    test is that of Welch, Biometrika 38, 330 (1951), for linear models Johansen, Biometrika 67, 85 (1980).
     """
-    free = 1.0 - np.clip((left**2).sum(axis=1), 0.0, 1.0)
+    free = 1.0 - np.clip((basis**2).sum(axis=1), 0.0, 1.0)
     with np.errstate(divide="ignore"):
         freedoms = 1.0 / ((shares**2 / np.diag(covariance)[:, None]) ** 2 @ few)
         weight = 1.0 / np.maximum(1.0 / few - 2.0, 1.0 / (3.0 * few))
@@ -222,10 +226,10 @@ def fit_curve(
     from scipy.optimize import curve_fit
 
     errors = positive_errors(y.error, np.size(y.value))
-    found = curve_fit(
+    solution = curve_fit(
         function, x, y.value, start, sigma=errors, absolute_sigma=True, bounds=bounds, check_finite=True
     )
-    return found[0], found[1]
+    return solution[0], solution[1]
 
 
 # Means of independent numbers, and functions of means by resampling.
@@ -284,7 +288,7 @@ def means_of(samples: ArrayLike, sizes: ArrayLike | None = None) -> tuple[np.nda
 
 
 def steady_mean(series: ArrayLike, *changes: ArrayLike) -> Estimate:
-    """Compute the mean of a current into and out of a store, from averages in K blocks of time.
+    """Compute the mean current into and out of a store from averages in K blocks.
 
     Each of `changes` (K,) is the change of a bounded quantity, such as the energy stored, during each block.
     Energy that a block stores, another one gives back: blocks anticorrelate, and their scatter exceeds the
@@ -323,8 +327,8 @@ def combine_estimates(estimates: Estimate | Sequence[Estimate]) -> Estimate:
 
     The estimates may be the elements of one.
     """
-    one = estimates if isinstance(estimates, Estimate) else Estimate.stack(estimates)
-    return combine(one).estimate if one else Estimate(math.nan, math.nan)
+    stacked = estimates if isinstance(estimates, Estimate) else Estimate.stack(estimates)
+    return combine(stacked).estimate if stacked else Estimate(math.nan, math.nan)
 
 
 def bootstrap(function: Callable[..., float], samples: ArrayLike, repeats: int = 1000) -> Estimate:
@@ -396,7 +400,7 @@ class Optimum:
 
 
 def optimum(x: ArrayLike, cost: ArrayLike, within: float = 3.0) -> Optimum:
-    """Find the minimum of a cost a + b / x + c x, at sqrt(b / c).
+    """Find the minimum sqrt(b / c) of a cost a + b/x + c x.
 
     The cost falls steeply and rises slowly. The three parts are fitted to the points near the minimum, whose
     cost is below `within` times the least one (at least four, the cheapest first). The interval follows from

@@ -107,14 +107,14 @@ def chosen(settings: dict, scene: Scene, where: str) -> dict:
     The choice is made for the table's machine, so that a config means the same everywhere. A length is set
     only if none is given. Raises SceneError.
     """
-    from gaspart.accuracy.plan import tabulated
+    from gaspart.accuracy.plan import plan_from_table
     from gaspart.accuracy.table import EQUILIBRATION
 
     if "accuracy" not in settings:
         raise SceneError(f"{where}.accuracy", None, "is required with engine: auto")
     observable, accuracy = settings.get("observable", "Z"), settings["accuracy"]
     try:
-        advice = tabulated(scene, observable, accuracy)
+        advice = plan_from_table(scene, observable, accuracy)
     except SceneError as error:
         raise error.inside(where) from None
     made = {key: value for key, value in settings.items() if key not in point_keys.ENGINE_KEYS["auto"]}
