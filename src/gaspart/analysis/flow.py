@@ -372,7 +372,7 @@ def about_the_flow(run: Run) -> Peculiar:
 def mean_motion(
     run: Run, along: Mapping[int, int] | None = None, local: bool = False
 ) -> Callable[[Run], Peculiar]:
-    """Return the function that computes velocities about the mean motion in a part of the frames.
+    """Return a function that computes velocities about the mean motion in some frames.
 
     They are about rest if the run is, about the local flow of mass, in cells along `flow_axes`, if the gas
     can have one, and otherwise about the whole. `along` maps an axis to its number of cells, where these are
@@ -406,9 +406,10 @@ def _number(run: Run, axes: list[int], changes: bool) -> int:
 
 
 class FlowCells:
-    """Cells of a flow, `numbers` of them along each axis, with the mass and momentum of a steady flow.
+    """Cells of a flow, with the mass and momentum of a steady flow.
 
-    Without these the flow changes: it is the mean of mass in the cells of each frame.
+    `numbers` maps an axis to its number of cells. Without mass and momentum the flow changes: it is the mean
+    of mass in the cells of each frame.
     """
 
     def __init__(self, run: Run, numbers: Mapping[int, int]) -> None:
@@ -424,9 +425,9 @@ class FlowCells:
     def sum(
         self, cells: np.ndarray, masses: np.ndarray, velocities: np.ndarray, before: list | None
     ) -> list[np.ndarray]:
-        """Sum mass and momentum in cells (C,), or of each frame (T, C) if the flow changes.
+        """Sum mass and momentum in cells (C,), or in each frame (T, C).
 
-        They continue the sums of the frames before, if there are any.
+        The sums are of each frame if the flow changes; otherwise they continue the sums of the frames before.
         """
         blocks = np.arange(len(cells)) if before is None else None
         weights = [masses, *(masses * velocities[..., k] for k in range(velocities.shape[-1]))]
@@ -435,7 +436,7 @@ class FlowCells:
 
 
 def steady_cells(run: Run, numbers: Mapping[int, int]) -> FlowCells:
-    """Return cells of a flow with the mass and momentum of all frames, which are read in parts."""
+    """Return cells of a flow with the mass and momentum of all frames."""
     flow_cells = FlowCells(run, numbers)
     sums = [np.zeros(flow_cells.grid.numbers) for _ in range(1 + run.dimension)]
     for _, part in run.parts():
@@ -445,7 +446,7 @@ def steady_cells(run: Run, numbers: Mapping[int, int]) -> FlowCells:
 
 
 def about_cells(run: Run, cells: FlowCells) -> Peculiar:
-    """Compute velocities about the mean of mass in cells: of a steady flow, or in each frame."""
+    """Compute velocities about the mean of mass in cells, of a steady flow or per frame."""
     numbers, velocities, masses = cells.cells(run), _about_known(run), run.masses[run.moving]
     sums, groups = cells.sums, numbers
     if sums is None:
@@ -460,5 +461,5 @@ def about_cells(run: Run, cells: FlowCells) -> Peculiar:
 
 
 def _chosen(values: np.ndarray, moving: np.ndarray) -> np.ndarray:
-    """Return the values (T, M, d) of the moving particles in the order of C, without a copy if all move."""
+    """Return the values (T, M, d) of the moving particles, contiguous in memory."""
     return values if moving.all() else values.compress(moving, axis=1)

@@ -108,11 +108,11 @@ class Cells:
         return np.arange(frames) * min(BLOCKS, frames) // frames
 
     def cells_of(self, part: Run) -> np.ndarray:
-        """Return the cell (T, n) of each particle in the frames of a part of the run."""
+        """Return the cell (T, n) of each particle in a part of the run."""
         return self.grid.cells(self._values(part.positions)[..., self.axes], inside=True)
 
     def _values(self, values: np.ndarray) -> np.ndarray:
-        """Return the values (T, n, ...) of the particles that count, without a copy if all do."""
+        """Return the values (T, n, ...) of the particles that count."""
         return values if len(self.members) == values.shape[1] else values[:, self.members]
 
     @cached_property
@@ -121,7 +121,7 @@ class Cells:
         return not any(self._values(part.velocities).any() for _, part in self.run.parts())
 
     def sums(self, weigh: Callable[[Run, np.ndarray], Sequence[np.ndarray | None]]) -> list[np.ndarray]:
-        """Sum weights, or count particles, in each cell over the frames of each block.
+        """Sum weights in each cell over the frames of each block.
 
         The frames are read in parts. `weigh` returns arrays of weights (T, n) for a part and the cells of
         the particles there, or None to count. The shape of each sum is (K, *cells).
@@ -167,7 +167,7 @@ class Cells:
         return np.array(total)
 
     def density(self, weigh: Callable[[np.ndarray], np.ndarray] | None = None) -> Means:
-        """Compute the number of particles, or their weights by cells (T, n), per volume in the container."""
+        """Compute the number of particles, or weights (T, n) by cells, per volume."""
         (sums,) = self.sums(lambda part, cells: [None if weigh is None else weigh(cells)])
         return ratio(sums, self.room(), self._still)
 

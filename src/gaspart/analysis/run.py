@@ -172,7 +172,7 @@ class Run:
         frames : slice
             Frames of the part.
         part : Run
-            These frames. Properties that depend on all frames, such as `flow_axes`, are those of the part.
+            These frames. Properties that depend on all frames, such as `flow_axes`, hold for the part only.
         """
         for frames in self._blocks(len(self.time)):
             yield frames, replace(self, time=self.time[frames], data=self.data.isel(frame=frames))
@@ -293,7 +293,7 @@ class Run:
 
     @cached_property
     def _energies(self) -> np.ndarray:
-        """Twice the kinetic energy about the mean motion and about rest, and degrees of freedom, (3, T)."""
+        """Twice the kinetic energy about the flow and about rest, and degrees of freedom (3, T)."""
         masses, about, rows = self.masses[self.moving], mean_motion(self), []
         for _, part in self.parts():
             motion = about(part)

@@ -281,7 +281,7 @@ def _write_data(path: Path, snapshots: Iterator[Snapshot]) -> None:
 
 
 def _rows(template: str, *columns: np.ndarray) -> Iterator[str]:
-    """Format the rows of a table, many at once: a row at a time takes five times as long."""
+    """Format the rows of a table in blocks, in a fifth of the time of single rows."""
     for first in range(0, len(columns[0]), _ROWS):
         block = [column[first : first + _ROWS].tolist() for column in columns]
         yield template * len(block[0]) % tuple(chain.from_iterable(zip(*block, strict=True)))
