@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import gaspart as gp
-from gaspart.cli import main
+from gaspart.cli import commands, main
 from gaspart.scene.faces import FACE_KINDS
 from gaspart.yaml_text import parse_yaml
 
@@ -121,6 +121,16 @@ def test_links_between_pages_lead_somewhere():
         for target in re.findall(r"\]\(([^)#:]+)\)", path.read_text(encoding="utf-8")):
             made = target.startswith("generated/")  # by `make docs`, which fails for a link to nothing
             assert made or (path.parent / target).exists(), (path.name, target)
+
+
+def test_the_guide_explains_every_option_of_a_run():
+    guide = " ".join(
+        path.read_text(encoding="utf-8") for path in [*DOCS.glob("*.md"), DOCS.parent / "README.md"]
+    )
+    words = set(re.findall(r"(?<![\w-])--?[a-z][a-z-]*", guide))
+    options = [one.option_strings for one in commands()["run"]._actions if one.option_strings]
+    assert len(options) > 30
+    assert not [names for names in options if not words.intersection(names)]
 
 
 def test_the_scenes_of_the_page_on_scene_files_are_valid():

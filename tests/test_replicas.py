@@ -9,7 +9,7 @@ from gaspart.cli import main
 from gaspart.trajectory import run as trajectory
 from gaspart.trajectory.opening import partial_path
 from gaspart.trajectory.recipe import Recipe
-from gaspart.trajectory.replicas import in_replicas, reached
+from gaspart.trajectory.replicas import find_replicas, in_replicas
 from gaspart.trajectory.run import WriteOptions, examination
 from gaspart.trajectory.until import Until
 
@@ -61,14 +61,14 @@ def test_they_wait_for_the_one_that_is_behind_and_count_no_other_run(tmp_path, w
     files = gp.replica_paths(tmp_path / "run.nc", 2)
     wanted = list(zip(files, RECIPES, strict=True))
     files[0].write_bytes(whole[0])
-    assert reached(wanted, 64) is None
+    assert find_replicas(wanted, 64) is None
     gp.run(GAS, gp.EventDriven(), 7, 40.0, 0.4, files[1])
-    assert reached(wanted, 64) is None
+    assert find_replicas(wanted, 64) is None
     partial_path(files[1]).write_bytes(whole[1])
-    assert reached(wanted, 64) == [files[0], partial_path(files[1])]
+    assert find_replicas(wanted, 64) == [files[0], partial_path(files[1])]
     with gp.open_trajectory(files[0]) as run:
         most = run.sizes["frame"]
-    assert reached(wanted, most) and reached(wanted, most + 1) is None
+    assert find_replicas(wanted, most) and find_replicas(wanted, most + 1) is None
 
 
 def test_a_replica_that_is_cut_while_it_is_read_is_waited_for(tmp_path, whole):

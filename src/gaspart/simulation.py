@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import gaspart
-from gaspart.engines import Engine, chosen
+from gaspart.engines import Engine, resolve_engine
 from gaspart.engines.checkpoint_identity import check_identity, checkpoint_identity
 from gaspart.engines.event_log import EventLog
 from gaspart.errors import SceneError, SimulationError
@@ -109,7 +109,7 @@ class Simulation:
         tallies: Iterable[OptionalTally] = (),
     ) -> None:
         require_scene(scene)
-        self.scene, self.engine, self.seed = scene, chosen(engine), seed
+        self.scene, self.engine, self.seed = scene, resolve_engine(engine), seed
         self._asked, self._given = self.engine, initial
         self.tallies: tuple[OptionalTally, ...] = (*tallies, *([StressTally()] if stress else []))
         self._log: EventLog | None = None
@@ -464,7 +464,7 @@ class Simulation:
         (10,)
         """
         if not any(optional_tally.name == tally for optional_tally in self.tallies):
-            raise SceneError(tally, False, "was not asked for when the simulation was made")
+            raise SceneError(tally, False, "was not requested; name the tally when the simulation is made")
         return self._dynamics.sums_of(tally)
 
     def reset_tally(self) -> None:

@@ -66,7 +66,7 @@ def test_the_heat_flux_to_one_face_is_advised():
         (COLD, "heat_flux", "have one temperature: the heat flux is 0 on average"),
         (COLD, "velocity", "nothing drives a flow"),
         (SLIDING, "flux", "the net flux between walls is 0 in a steady state"),
-        (HEATED, "heat_flux:x low", "the walls are y low, y high"),
+        (HEATED, "heat_flux:x low", "must be one of the walls, y low, y high"),
     ],
 )
 def test_what_vanishes_is_refused(scene, observable, reason):

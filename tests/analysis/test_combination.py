@@ -60,6 +60,9 @@ def test_speeds_of_runs_of_other_energies_are_in_joint_bins(tmp_path):
     width = float(found["speed"][1] - found["speed"][0])
     assert float(found.estimate.sum()) * width == pytest.approx(1.0, abs=1e-3)
     assert found.theory is not None
+    empty = found.estimate.values == 0.0  # in all runs, which says nothing of the error
+    assert empty.any() and np.isnan(found.error.values[empty]).all()
+    assert (found.error.values[~empty] > 0.0).all()
 
 
 def test_what_are_no_replicas_is_refused(paths, tmp_path):

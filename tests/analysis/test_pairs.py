@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from scenes import gas
 from scipy.spatial import cKDTree
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.analysis.insertion import _covered, insertions
+from gaspart.analysis.insertion import _covered, _is_sampled, insertions
 from gaspart.analysis.structure_factors import admitted, shells_of
 
 A = gp.analysis
@@ -81,6 +82,26 @@ def test_the_chemical_potential_agrees_with_theory(fluid):
     assert float(found["resolution"]) < 1e-4 < float(found["probability"])
     assert int(found["frames_with_success"]) <= int(found["successes"])
     assert found.plot(theory=True).get_ylabel()
+
+
+def test_a_chemical_potential_has_no_error_without_the_frames_that_contribute_most(tmp_path):
+    """100 spheres at 0.48, where 15.2 is known: 3 of 193 frames have a free place, and 21.8(7) was stated."""
+    scene = gas(3, 100, 0.48, arrangement="compressed", exact_temperature=True)
+    path = gp.run(scene, gp.EventDriven(), 3, 34.1, 34.1 / 256.0, tmp_path / "a.nc")
+    found = A.chemical_potential(path)
+    assert 0 < int(found["frames_with_success"]) < 8
+    assert np.isnan(float(found.error)) and np.isnan(float(found["probability_error"]))
+    assert "probably too large" in found.attrs["note"] and found.summary
+
+
+@pytest.mark.parametrize(
+    ("deviation", "frames", "sampled"),
+    [(0.3, 200, True), (1.0, 200, True), (3.0, 200, False), (2.0, 2000, True), (4.0, 2000, False)],
+)
+def test_lognormal_probabilities_need_many_frames_or_little_scatter(deviation, frames, sampled):
+    values = np.exp(deviation * np.random.default_rng(4).standard_normal(frames))
+    error = float(values.std() / values.mean()) / np.sqrt(frames)
+    assert _is_sampled(values, error) == sampled
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -36,6 +36,17 @@ def test_the_radial_distribution_of_few_spheres(twenty):
     assert abs(float(near.mean()) - contact) < 4.0 * error < 0.2
 
 
+def test_empty_bins_state_no_error_but_where_hard_particles_would_overlap(twenty):
+    speeds = A.speed_distribution(twenty, bins=80, fastest=10.0)
+    g = A.rdf(twenty, bins=2000)
+    overlap = g["distance"] + 0.5 * (g["distance"][1] - g["distance"][0]) <= 1.0
+    assert (g.error[overlap] == 0.0).all() and not g.estimate[overlap].any()
+    for found in (speeds, g[{"distance": ~overlap}]):
+        empty = found.estimate.values == 0.0
+        assert empty.any() and np.isnan(found.error.values[empty]).all()
+        assert (found.error.values[~empty] > 0.0).all()
+
+
 def test_a_pair_in_an_ideal_gas_has_g_of_one():
     scene = gp.Scene(gp.Container((8.0, 8.0), "periodic"), [gp.Species(2, 0.05, temperature=1.0)])
     simulation = gp.Simulation(scene, gp.EventDriven("direct"), 1)

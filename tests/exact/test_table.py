@@ -19,7 +19,7 @@ ELSEWHERE = {
     "contact_duration": "dissipates: in no equilibrium",
     "thermostat": "drives the gas: in no equilibrium",
     "thermal_walls": "a plate at a temperature: statics are those of a hard plate (kind plate)",
-    "sticky": "bodies on a face: tests/engines/test_event_driven.py",
+    "sticky": "bodies on a face: tests/kernels/obstacles/test_well.py",
     "vibrating": "drives the gas: in no equilibrium",
     "vibrations": "energy of its own: tests/engines/test_vibration.py",
     "ramp": "heat flows: in no equilibrium",
@@ -77,6 +77,13 @@ def test_every_feature_has_a_kind_of_scene():
     assert present | set(ELSEWHERE) == set(FEATURES)
     assert not present & set(ELSEWHERE)
     assert set(FACE_KINDS) <= set(FEATURES)
+
+
+def test_tests_elsewhere_exist():
+    named = [text.rpartition(": ")[2] for text in ELSEWHERE.values() if "tests/" in text]
+    assert len(named) == 2
+    for path in named:
+        assert "def test_" in (Path(__file__).parents[2] / path).read_text(encoding="utf-8")
 
 
 def test_every_observable_has_a_value_somewhere():

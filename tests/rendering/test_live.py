@@ -1,6 +1,7 @@
 """A gas in a notebook: what its sliders change, and that it runs."""
 
 import asyncio
+import dataclasses
 import sys
 
 import nbformat
@@ -78,10 +79,12 @@ def test_the_film_runs_until_it_is_stopped_and_follows_its_sliders(scene):
 def test_what_does_not_fit_is_said_in_a_line_and_changes_nothing(scene):
     image, _, sliders, note = parts(live(scene, size=(80, 60)))
     sliders["packing fraction"].max = 0.9
-    before = image.value
+    before, value = image.value, sliders["packing fraction"].value
     sliders["packing fraction"].value = 0.88
     assert "does not fit by random insertion" in note.value and "\n" not in note.value
-    assert image.value == before
+    assert image.value == before and sliders["packing fraction"].value == value
+    sliders["packing fraction"].value = 0.05
+    assert image.value != before and note.value == ""
 
 
 def test_sliders_that_would_mean_nothing_are_left_out():
@@ -124,6 +127,10 @@ def test_thermal_faces_of_the_scene_keep_their_ratio():
     assert (now["x_low"].temperature, now["x_high"].temperature) == (5.0, 2.5)
     gas.heat(0.0)
     assert gas.simulation.scene.faces == faces
+    gas.push(10.0)
+    gas.heat(5.0)  # the piston stays one
+    now = gas.simulation.scene.faces
+    assert now["x_low"].temperature == 5.0 and isinstance(now["x_high"], gp.Piston)
 
 
 def test_a_piston_does_work_and_an_expansion_into_a_vacuum_does_none():
@@ -185,6 +192,79 @@ def test_a_wall_that_is_removed_lets_gases_mix():
     assert gas.collisions > collisions and gas.time > time
 
 
+@pytest.fixture(scope="module")
+def effusion():
+    """A gas between a reservoir, whose sides are open, and a vacuum."""
+    faces = {"x_low": gp.Open(activity=0.1, temperature=1.0), "x_high": gp.Open()}
+    container = gp.Container((20.0, 10.0), ("wall", "periodic"))
+    species = [gp.Species(16, 0.4, temperature=1.0)]
+    return gp.Scene(container, species, faces=faces, centres_to_walls=True)
+
+
+def test_open_faces_let_particles_in_and_out_and_go_on_with_those_inside(effusion):
+    gas = LiveGas(effusion, size=(80, 60))
+    for _ in range(100):
+        gas.step()
+    before = gas.simulation.state
+    assert not np.array_equal(before.numbers, np.arange(16))
+    gas.supply(0.3)
+    gas.heat(2.0)
+    after = gas.simulation.state
+    assert np.array_equal(before.positions, after.positions)
+    assert np.array_equal(before.velocities, after.velocities)
+    assert gas.simulation.scene.faces == {"x_low": gp.Open(0.3, 2.0), "x_high": gp.Open()}
+    for _ in range(400):
+        gas.step()
+    names, values, errors, theories = zip(*gas.gauges(), strict=True)
+    assert names == ("temperature", "particles", "pressure, x low", "pressure, x high")
+    counts = [np.isfinite(row["velocities"][:, 0]).sum() for row in gas._rows]
+    assert values[1] == pytest.approx(np.mean(counts)) and 0.0 < errors[1] < 0.5 * values[1]
+    assert theories == (None,) * 4
+    edges, density, _ = gas.speeds()
+    assert (density * np.diff(edges)).sum() == pytest.approx(1.0, abs=0.01)
+    gas.heat(0.0)
+    assert gas.simulation.scene.faces["x_low"] == gp.Open(0.3, 1.0)
+
+
+def test_reservoirs_on_both_sides_give_their_temperature_and_the_number_of_their_density(effusion):
+    reservoir = gp.Open(activity=0.02, temperature=2.0)
+    scene = dataclasses.replace(effusion, faces={"x_low": reservoir, "x_high": reservoir})
+    gas = LiveGas(scene, size=(80, 60))
+    gas.interval *= 20.0
+    for _ in range(20):
+        gas.step()
+    gas.observe()
+    for _ in range(300):
+        gas.step()
+    temperature, particles, *_ = gas.gauges()
+    assert temperature[3] == 2.0 and abs(temperature[1] - 2.0) < 4.0 * temperature[2] < 0.6
+    ideal = 0.02 * 200.0 / (np.pi * 0.4**2)  # of which the excluded area takes twice the packing fraction
+    assert abs(particles[1] - ideal * (1.0 - 4.0 * 0.02)) < 4.0 * particles[2] + 0.02 * ideal
+
+
+def test_an_empty_container_is_shown_and_refuses_changes_in_a_line():
+    scene = gp.Scene(
+        gp.Container((5.0, 5.0)),
+        particles=(),
+        species=[gp.Species(3, 0.2, speed=1.0)],
+        faces={f"{axis}_{end}": gp.Open() for axis in "xy" for end in ("low", "high")},
+        centres_to_walls=True,
+    )
+    gas = LiveGas(scene, size=(80, 60))
+    gas.simulation.advance(duration=100.0)
+    gas.observe()
+    for _ in range(40):
+        gas.advance()
+    assert gas.simulation.state.count == 0
+    assert gas.gauges()[1][:2] == ("particles", 0.0)
+    with pytest.raises(gp.SceneError, match="all particles have left"):
+        gas.heat(1.0)
+
+
+def test_sliders_of_open_faces_are_those_of_their_reservoirs(effusion):
+    assert list(parts(live(effusion, size=(80, 60)))[2]) == ["activity of reservoirs", "temperature of walls"]
+
+
 def test_gauges_agree_with_the_observables_of_the_library():
     scene = gp.Scene(gp.Container((20.0, 20.0)), [gp.Species(60, 0.3, temperature=1.0)])
     gas = LiveGas(scene, size=(80, 60))
@@ -206,6 +286,15 @@ def test_gauges_agree_with_the_observables_of_the_library():
     for values in (density, expected):
         assert (values * widths).sum() == pytest.approx(1.0, abs=0.01)
         assert (middles**2 * values * widths).sum() == pytest.approx(2.0 * temperature[1], rel=0.02)
+
+
+def test_colours_of_speeds_are_those_of_a_picture_of_the_same_gas(monkeypatch):
+    gas = LiveGas(gp.Scene(gp.Container((20.0, 20.0)), [gp.Species(60, 0.3, speed=1.0)]), size=(80, 60))
+    ends = []
+    monkeypatch.setattr(
+        "gaspart.rendering.live_gas.draw_labelled", lambda *given, **_: ends.append(given[-1])
+    )
+    assert gas.picture is None and ends == [pytest.approx(2.0)]  # twice the root-mean-square speed
 
 
 def test_the_tracer_is_a_line_where_its_particle_has_been():

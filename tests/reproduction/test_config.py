@@ -255,6 +255,16 @@ def test_a_config_may_lie_anywhere_and_its_scenes_beside_it(tmp_path, monkeypatc
             command(own)
 
 
+def test_a_config_in_the_folder_of_the_project_is_merged_over_its_default(tmp_path):
+    """As Snakemake does with `--configfile my_gas.yaml`."""
+    (tmp_path / "config").mkdir()
+    (tmp_path / "config/config.yaml").write_text(dump_yaml(GOOD))
+    own = tmp_path / "my_gas.yaml"
+    own.write_text(dump_yaml({"experiments": {"mine": GOOD["experiments"]["gas"]}}))
+    (config_check,) = judge_config(own)
+    assert str(config_check) == "ok    config: 2 experiments of 4 points, up to 100 particles; 1 figures"
+
+
 def test_a_key_that_stands_twice_in_a_file_is_refused(tmp_path):
     own = tmp_path / "own.yaml"
     own.write_text("seed: 1\nseed: 2\n")

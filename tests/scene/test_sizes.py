@@ -59,7 +59,7 @@ def test_what_a_scene_has_follows_from_the_radii():
     assert np.array_equal(per_particle(gas, "radius"), kind.radii)
     mixture = gas.mixture
     assert len(mixture.diameters) == 300 and sum(mixture.counts) == 300
-    assert len(mixture.thinned(64).diameters) <= 64
+    assert len(mixture.thin(64).diameters) <= 64
     assert gp.Scene.from_dict(gas.to_dict()) == gas
     assert scene(polydispersity=0.0) == scene(polydispersity=None)
     assert "radius_distribution" not in scene(polydispersity=None).to_dict()["species"][0]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.engines.engine import ENGINES, engine_from_dict, required
+from gaspart.engines.engine import ENGINES, engine_from_dict, required_settings
 from gaspart.state.optional_tallies import ASKED, ImpulseTally, PairImpulseTally, StressTally
 
 DISCS = gp.Scene(gp.Container((12.0, 12.0), "periodic"), [gp.Species(20, 0.5, temperature=1.0)])
@@ -119,7 +119,7 @@ OPTIONAL = {
 def one_of_each():
     """One of every engine that is known, with what it needs, and others that keep more in a checkpoint."""
     for name, kind in ENGINES.items():
-        yield engine_from_dict({"name": name, **dict.fromkeys(required(kind), 0.01)})
+        yield engine_from_dict({"name": name, **dict.fromkeys(required_settings(kind), 0.01)})
     yield from (gp.EventDriven(search="lists"), STEPS[1], gp.DSMC(model="enskog"))
 
 

@@ -16,7 +16,7 @@ from gaspart.accuracy.estimates import Component
 from gaspart.accuracy.target import Target
 from gaspart.analysis.observables import OBSERVABLES, require_modelled
 from gaspart.analysis.run import EQUILIBRATION
-from gaspart.engines import Engine, offered
+from gaspart.engines import Engine, candidate_engines
 from gaspart.engines.engine import Asked, Candidate
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
@@ -135,7 +135,7 @@ def suitable_engines(target: Target) -> tuple[list[Engine], dict[str, str]]:
     For every other engine the reason is returned, by its name in the table.
     """
     suitable, refused = [], {}
-    for engine in offered():
+    for engine in candidate_engines():
         try:
             engine.check_features(target.scene)
             require_modelled(target.observable, target.scene, engine)

@@ -9,7 +9,7 @@ from functools import cache
 
 from gaspart import theory
 from gaspart.accuracy import table
-from gaspart.engines import Engine, offered
+from gaspart.engines import Engine, candidate_engines
 from gaspart.scene.container import Container
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
@@ -49,4 +49,4 @@ def factor(dimension: int, engine: str, precision: str, count: int) -> float:
 
 def _find_engine(name: str) -> Engine:
     """Return an engine by its name in the table."""
-    return next(engine for engine in offered() if engine.timed_as == name)
+    return next(engine for engine in candidate_engines() if engine.timed_as == name)

@@ -20,7 +20,7 @@ from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.flow import Grid
 from gaspart.analysis.observable import Observable, observable
-from gaspart.analysis.statistics import mean_of, means_of
+from gaspart.analysis.statistics import histogram_means, mean_of, means_of
 from gaspart.engines import EventDriven
 from gaspart.errors import SceneError, SimulationError
 from gaspart.files import FileKind, begins_with, open_regular, writing
@@ -341,7 +341,7 @@ def free_flight_times(simulation: Simulation, bins: int = 40) -> Observable:
 
     Notes
     -----
-    Uncertainties are the scatter of 16 groups of particles. Theory, for equal particles:
+    Uncertainties are the scatter of 16 groups of particles, NaN in an empty bin. Theory, for equal particles:
     `theory.free_time_pdf`, for independent collisions; means exact in equilibrium, to the accuracy of the
     contact value, and corrected for the number of particles.
 
@@ -382,7 +382,7 @@ def free_flight_times(simulation: Simulation, bins: int = 40) -> Observable:
     grid = Grid.line(0.0, _LONGEST * mean, count_of("bins", bins, least=2))
     (edges,), (middle,) = grid.edges, grid.middles
     densities = [grid.sums(grid.cells(time[:, None])) / grid.volume / len(time) for time, _ in members]
-    values, errors = means_of(densities, sizes)
+    values, errors = histogram_means(densities, sizes)
     means, scatter = means_of([(time.mean(), path.mean()) for time, path in members], sizes)
     about: dict[str, Any] = {"units": "1 / time", "long_name": "probability density of free times"}
     along = {"free_time": (middle, {"units": "time", "long_name": "time between collisions"})}

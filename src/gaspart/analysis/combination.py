@@ -270,6 +270,8 @@ def _mean(measurements: list[Observable], recipes: list[_Recipe]) -> Observable:
             raise _other_coordinate(first, measurement, recipes[0].name, recipe.name)
     each = np.array([measurement.estimate.values for measurement in measurements])
     values, errors = means_of(each)
+    unknown = np.isnan([single.error.values for single in measurements]).all(axis=0)
+    errors = np.where(unknown & (errors == 0.0), np.nan, errors)  # as of bins that are empty in all runs
     parts = {"": values, "_error": errors}
     if all(measurement.theory is not None for measurement in measurements):
         for part in ("_theory", "_theory_error"):

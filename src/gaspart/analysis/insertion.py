@@ -13,6 +13,7 @@ same average, exactly.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -39,6 +40,11 @@ _CELLS = 65536
 _PER_DISTANCE = 8
 """Cells of that grid in the distance within which a particle covers, at most."""
 _MOST_CELLS = 2048  # after a division
+_MARGIN = 1.5
+"""Minimum number of standard deviations of ln P, by frame, between the frames that contribute most to the
+mean of P and the best frame, for an error."""
+_TWO_SIGMA = 0.9772
+"""Probability that a normal variable is at most two standard deviations above its mean."""
 _WORTH = 0.6
 """Fraction of cells left by a division above which no further division follows."""
 
@@ -227,8 +233,11 @@ def chemical_potential(source: Source, places: int = PLACES, start: float | None
 
     Notes
     -----
-    The error applies to the mean over frames, to first order: it is not to be trusted if few frames have a
-    success. Theory: by the equation of state, for these numbers of particles.
+    The error applies to the mean over frames, to first order. In a dense fluid ln P of a frame has a large
+    standard deviation s: the frames around s deviations above the median contribute most to P. Among n
+    independent frames the best one is about sqrt(2 ln n) deviations above the median. If this is not s + 1.5
+    at least, the frames that contribute most are missing: the result is too large, its error is NaN, and a
+    note states it. Theory: by the equation of state, for these numbers of particles.
 
     Examples
     --------
@@ -256,7 +265,10 @@ def chemical_potential(source: Source, places: int = PLACES, start: float | None
         tried = [_inserted(run, frames, hosts, trials) for hosts in _hosts(run)]
         if run.scene.alike:
             series, counts = tried[0]
-            return scalar("chemical_potential", series, edges, **about).assign(_variables((), counts))
+            result = scalar("chemical_potential", series, edges, **about)
+            if np.isnan(counts["probability_error"]):
+                result["chemical_potential_error"][()] = np.nan
+            return _with_note(result.assign(_variables((), counts)))
         return _of_species(run, tried, about)
 
 
@@ -283,6 +295,8 @@ def _inserted(run: Run, frames: slice, hosts: Hosts, trials: int) -> tuple[np.nd
         raise SceneError("packing_fraction", run.scene.packing_fraction, rule)
     series = -np.log(chance) - (result.probability / chance - 1.0)  # to first order
     error = correlated_mean(series, LEAST_INTERVALS).estimate.error
+    if not _is_sampled(result.probability, error):
+        error = np.nan
     counts = {
         "probability": chance,
         "probability_error": chance * error,
@@ -293,15 +307,42 @@ def _inserted(run: Run, frames: slice, hosts: Hosts, trials: int) -> tuple[np.nd
     return series, counts
 
 
+def _is_sampled(probability: np.ndarray, error: float) -> bool:
+    """Return True if the frames that contribute most to the mean probability (T,) are known.
+
+    error : standard error of the mean over the mean, with the correlation of the frames.
+    """
+    free = probability[probability > 0.0]
+    if error == 0.0:
+        return True
+    median, high = np.quantile(free, (0.5, _TWO_SIGMA))
+    deviation = 0.5 * math.log(high / median)
+    independent = float(probability.var()) / (error * float(probability.mean())) ** 2
+    best = math.sqrt(2.0 * math.log(max(1.0, min(independent, len(free)))))
+    return deviation + _MARGIN <= best
+
+
+def _with_note(result: Observable) -> Observable:
+    """Add a note to a result whose error is not known."""
+    if np.isnan(result.error).any():
+        frames = int(np.min(result["frames_with_success"].values))
+        result.attrs["note"] = (
+            f"probably too large, by an unknown error: a place was free in {frames} frames, and rarer frames "
+            "contribute most to the mean: a longer run has some"
+        )
+    return result
+
+
 def _of_species(run: Run, tried: list[tuple[np.ndarray, dict[str, float]]], about: dict) -> Observable:
     """Return the result of a mixture."""
     means = [correlated_mean(series, LEAST_INTERVALS).estimate for series, _ in tried]
     values, errors, freedoms = np.array([[mean.value, mean.error, mean.freedom] for mean in means]).T
+    errors[[np.isnan(each["probability_error"]) for _, each in tried]] = np.nan
     along = {"species": (np.unique(run.species), {"long_name": "number of the species"})}
     result = observable("chemical_potential", along, values, errors, **about)
     result = with_freedom(result, Means(values, errors, freedoms))
     counts = {name: np.array([each[name] for _, each in tried]) for name in tried[0][1]}
-    return result.assign(_variables(("species",), counts))
+    return _with_note(result.assign(_variables(("species",), counts)))
 
 
 _MEANINGS = {

@@ -221,6 +221,11 @@ class Observable(ByFace):
         SceneError
             For a field along three axes.
 
+        Notes
+        -----
+        A notebook shows the Axes. A script writes them by ``plot().figure.savefig("z.png")``, or opens a
+        window by ``matplotlib.pyplot.show()``.
+
         Examples
         --------
         >>> import gaspart as gp

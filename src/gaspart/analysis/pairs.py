@@ -10,13 +10,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from gaspart.analysis.bulk import EXACT
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.expected.equilibrium import described
+from gaspart.analysis.expected.equilibrium import described, equation_of
 from gaspart.analysis.impulses import estimator, mixture
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable
 from gaspart.analysis.observables import KEPT, require_defined
 from gaspart.analysis.run import Run, Source, open_run, require_collisions
-from gaspart.analysis.statistics import correlated_mean, means_of
+from gaspart.analysis.statistics import correlated_mean, histogram_means
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number
 from gaspart.scene.impulses import FURTHEST
@@ -241,7 +242,8 @@ def rdf(
 
     Impulses of pairs, in shells of which each bin has as many, make g(r) more accurate than counts
     (`gaspart.analysis.pairs`); the attribute `estimator` says so. Theory: the value at contact that
-    belongs to the pressure of N particles, at the first bins beyond the diameter only.
+    belongs to the pressure of N particles, at the first bins beyond the diameter only. The error of an empty
+    bin is NaN, but 0 where hard particles would overlap.
 
     References
     ----------
@@ -278,8 +280,11 @@ def rdf(
         parts = g_by_impulses(run, np.array([part.start for part in stretches]), bins, end)
         if parts is not None:
             each = mixed_g(each, parts, shell_volumes(bins, run.dimension))
-        values, errors = means_of(each)
+        values, errors = histogram_means(each)
         distance = (np.arange(bins) + 0.5) * (end / bins)
+        if equation_of(run) == EXACT:  # the centres of hard particles are never nearer than this
+            within = distance + 0.5 * end / bins <= 2.0 * run.radii[:stored].min()
+            errors[within & (values == 0.0)] = 0.0
         along = {"distance": (distance, {"units": "length", "long_name": "distance"})}
         about = described("rdf", run, distance, end / bins)
         result = observable("rdf", along, values, errors, **about)

@@ -17,7 +17,7 @@ from gaspart.analysis.observables import having, require_defined
 from gaspart.analysis.pairs import STRETCHES, chosen_frames
 from gaspart.analysis.profiles import Cells, Means, with_freedom
 from gaspart.analysis.run import Run, Source, open_run, selected
-from gaspart.analysis.statistics import means_of
+from gaspart.analysis.statistics import histogram_means
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
 
@@ -62,9 +62,9 @@ def speed_distribution(
     Notes
     -----
     Velocities about the flow (see `gaspart.analysis.flow`) are multiplied by sqrt(M / (M - m)), M the mass of
-    the particles whose mean is subtracted. The error is the scatter of groups of particles. Theory:
-    Maxwell's, of the run's own temperature; of one species at a constant kinetic energy the exact
-    distribution for their number; no theory where the gas flows and has no single temperature.
+    the particles whose mean is subtracted. The error is the scatter of groups of particles, NaN in an empty
+    bin. Theory: Maxwell's, of the run's own temperature; of one species at a constant kinetic energy the
+    exact distribution for their number; no theory where the gas flows and has no single temperature.
 
     Examples
     --------
@@ -87,7 +87,7 @@ def speed_distribution(
         grid = Grid.line(0.0, end, bins)
         edges = grid.edges[0]
         counts, sizes, energy = _speeds(run, grid)
-        values, errors = means_of(counts / sizes[:, None] / grid.volume, sizes)
+        values, errors = histogram_means(counts / sizes[:, None] / grid.volume, sizes)
         fixed = np.ptp(energy) <= _CONSTANT * energy.mean()
         alike = np.ptp(masses) == 0.0 and not run.flow_axes
         attributes = described("speeds", run, edges, masses[0] if alike else None, fixed)

@@ -17,6 +17,7 @@ from gaspart.cli.arguments import (
 )
 from gaspart.cli.progress import waiting
 from gaspart.errors import SceneError
+from gaspart.yaml_text import read_yaml
 
 _EXAMPLES = """examples:
   gaspart archive results -o archive.zip       # the full reproduction
@@ -112,5 +113,9 @@ def add_budget(parser: Parser) -> None:
 def _budget(options: argparse.Namespace) -> None:
     if Path(options.config).suffix not in (".yaml", ".yml"):
         rule = "must be a config of the workflow (.yaml); gaspart info reports on a run"
+        raise SceneError("config", options.config, rule)
+    content = read_yaml(options.config)
+    if isinstance(content, dict) and "container" in content:
+        rule = "is a scene, and must be a config of the workflow; gaspart advise predicts the cost of a scene"
         raise SceneError("config", options.config, rule)
     print_lines(config_command("budget")(options.config, options.output))

@@ -31,13 +31,13 @@ def _info(options: argparse.Namespace) -> None:
     from gaspart.cli.conventions import conventions
     from gaspart.cli.stated_run import run_options
     from gaspart.inspection.energy import certificate
-    from gaspart.trajectory.opening import PARTIAL, check_frames, opened, partial_path
+    from gaspart.trajectory.opening import PARTIAL, check_frames, open_netcdf_file, partial_path
     from gaspart.trajectory.recipe import read_recipe
 
     path = Path(run_files(options.trajectory)[0])
     stored_at = path if path.exists() or not partial_path(path).exists() else partial_path(path)
     recipe = read_recipe(stored_at)
-    with opened(stored_at) as file:
+    with open_netcdf_file(stored_at) as file:
         stored, frames = file.__dict__, len(file.dimensions["frame"])
     if options.scene:
         print_lines(_lines_of(stored["scene"]))

@@ -52,12 +52,12 @@ def _starts(reached: AccuracyStatus) -> str:
 
 def _why_ended(path: Path, reached: list[AccuracyStatus]) -> str:
     """Return the reason why a run with --until ended before it was accurate."""
-    from gaspart.trajectory.replicas import found
+    from gaspart.trajectory.replicas import find_run
 
     if limited := [status for status in reached if status.excess <= 1.0 and not status.met]:
         remedy = f"no longer run makes the mean of {limited[0].replicas} replicas as accurate"
         return f"{remedy}: the energies of their starts scatter; exact_temperature: true, or more replicas"
-    until = found(path)[1].until
+    until = find_run(path)[1].until
     if until is not None and until.at_most is None:
         return "the run was given up: nothing that could be measured has happened; --at-most makes it longer"
     return "the longest duration (--at-most) ended the run before all were reached"

@@ -5,12 +5,12 @@ from __future__ import annotations
 from gaspart.engines.engine import (
     ENGINES,
     Engine,
-    chosen,
+    candidate_engines,
     engine_from_dict,
     engine_to_dict,
-    offered,
     reference_engine,
     register,
+    resolve_engine,
 )
 from gaspart.engines.event.settings import EventDriven
 from gaspart.engines.step.settings import TimeStepped
@@ -23,10 +23,10 @@ __all__ = [
     "Engine",
     "EventDriven",
     "TimeStepped",
-    "chosen",
+    "candidate_engines",
     "engine_from_dict",
     "engine_to_dict",
-    "offered",
     "reference_engine",
     "register",
+    "resolve_engine",
 ]

@@ -50,25 +50,25 @@ def _text(value: object) -> str:
     return json.dumps(value, sort_keys=True, default=int)  # a seed may be an integer of numpy
 
 
-def check_identity(checkpoint: Any, wanted: Mapping[str, np.ndarray]) -> None:
-    """Raise SceneError, which names the difference, unless a checkpoint has the `wanted` identity."""
-    if not isinstance(checkpoint, Mapping) or not all(key in checkpoint for key in wanted):
+def check_identity(checkpoint: Any, identity: Mapping[str, np.ndarray]) -> None:
+    """Raise SceneError, which names the difference, unless a checkpoint has this `identity`."""
+    if not isinstance(checkpoint, Mapping) or not all(key in checkpoint for key in identity):
         raise SceneError("checkpoint", checkpoint, "must be what Simulation.checkpoint has returned")
-    for key, text in wanted.items():
+    for key, text in identity.items():
         if str(checkpoint[key]) != str(text):
-            what = key.removeprefix("of_")
-            this = "" if what == "scene" else f", which has {text}"
-            rule = f"is of another {what} than this simulation{this}"
+            subject = key.removeprefix("of_")
+            this = "" if subject == "scene" else f", which has {text}"
+            rule = f"is of another {subject} than this simulation{this}"
             raise SceneError("checkpoint", str(checkpoint[key]), rule)
 
 
-def check_parts(parts: Mapping[str, np.ndarray], wanted: Mapping[str, np.ndarray]) -> None:
-    """Raise SceneError unless a checkpoint has all `wanted` arrays.
+def check_parts(parts: Mapping[str, np.ndarray], expected: Mapping[str, np.ndarray]) -> None:
+    """Raise SceneError unless a checkpoint has all `expected` arrays.
 
-    Each array must have the shape and the kind of number of the wanted one.
+    Each array must have the shape and the kind of number of the expected array.
     """
-    for key, array in wanted.items():
-        found = parts.get(key)
-        alike = isinstance(found, np.ndarray) and found.shape == np.shape(array)
-        if not alike or found.dtype.kind != np.asarray(array).dtype.kind:  # type: ignore[union-attr]
+    for key, array in expected.items():
+        value = parts.get(key)
+        alike = isinstance(value, np.ndarray) and value.shape == np.shape(array)
+        if not alike or value.dtype.kind != np.asarray(array).dtype.kind:  # type: ignore[union-attr]
             raise SceneError("checkpoint", key, "is missing or of another form: the checkpoint is damaged")

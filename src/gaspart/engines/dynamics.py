@@ -84,7 +84,7 @@ class Dynamics(ABC):
 
     def checkpoint(self) -> dict[str, np.ndarray]:
         """Return copies of all data needed to continue to the same bits."""
-        return {key: np.array(value) for key, value in self._kept().items()}
+        return {key: np.array(value) for key, value in self._checkpoint_data().items()}
 
     def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
         """Continue from a checkpoint of the same scene and engine, to the same bits.
@@ -92,10 +92,10 @@ class Dynamics(ABC):
         Settings that change no bit may differ. Raises SceneError, with nothing changed, for a checkpoint that
         lacks an array.
         """
-        needed = self._needed(checkpoint)
-        check_parts(checkpoint, needed)
+        required = self._required_arrays(checkpoint)
+        check_parts(checkpoint, required)
         for key, array in self._arrays().items():
-            if key in needed:
+            if key in required:
                 array[...] = checkpoint[key]
         for key in self.numbers:
             setattr(self, f"_{key}", checkpoint[key].item())
@@ -105,11 +105,11 @@ class Dynamics(ABC):
         """Return the arrays, by name, that a run changes and that a checkpoint stores unchanged."""
         return arrays_of(self._parts)
 
-    def _kept(self) -> dict[str, Any]:
+    def _checkpoint_data(self) -> dict[str, Any]:
         """Return all data of a checkpoint."""
         return {**{key: getattr(self, f"_{key}") for key in self.numbers}, **self._arrays()}
 
-    def _needed(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    def _required_arrays(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         """Return arrays of the shapes that `restore` needs from this checkpoint.
 
         Raises SceneError for a damaged checkpoint.

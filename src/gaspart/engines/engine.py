@@ -221,14 +221,16 @@ class Engine:
         together = [pair for pair in self.excludes if set(pair) <= present]
         missing += [(name, f"none together with {FEATURES[other].meaning}") for name, other in together]
         if missing:
-            name, what = missing[0]
+            name, support = missing[0]
             others = (engine for engine in ENGINES.values() if name in engine.models)
             able = [
                 f'"{engine.name}"'
                 for engine in others
                 if not any(set(pair) <= present for pair in engine.excludes) and engine.name != self.name
             ]
-            raise FEATURES[name].refuse(scene, f"needs the {' or '.join(able)} engine; this one has {what}")
+            raise FEATURES[name].refuse(
+                scene, f"needs the {' or '.join(able)} engine; this one has {support}"
+            )
 
     def draws(self, scene: Scene) -> bool:
         """Return True if random numbers are drawn after the start.
@@ -290,7 +292,7 @@ def reference_engine() -> Engine:
     return next(engine for engine in ENGINES.values() if engine.reference)()
 
 
-def chosen(engine: Engine | str | None) -> Engine:
+def resolve_engine(engine: Engine | str | None) -> Engine:
     """Return the engine that a user gives, or the reference engine for None.
 
     A name gives the engine with default settings. Raises SceneError for other values, and for an engine that
@@ -305,14 +307,15 @@ def chosen(engine: Engine | str | None) -> Engine:
     return engine
 
 
-def offered() -> list[Engine]:
+def candidate_engines() -> list[Engine]:
     """Return the engines among which advice chooses, the reference first."""
     return sorted(
-        (one for engine in ENGINES.values() for one in engine.offered()), key=lambda one: not one.reference
+        (variant for engine in ENGINES.values() for variant in engine.offered()),
+        key=lambda variant: not variant.reference,
     )
 
 
-def required(engine: type[Engine]) -> list[str]:
+def required_settings(engine: type[Engine]) -> list[str]:
     """Return the names of the settings without default."""
     return [item.name for item in fields(engine) if item.default is MISSING]
 
@@ -322,7 +325,9 @@ def constructors() -> str:
 
     They include the settings without default.
     """
-    *others, last = (f"{engine.__name__}({', '.join(required(engine))})" for engine in ENGINES.values())
+    *others, last = (
+        f"{engine.__name__}({', '.join(required_settings(engine))})" for engine in ENGINES.values()
+    )
     return f"{', '.join(others)} or {last}"
 
 

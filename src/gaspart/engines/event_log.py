@@ -27,10 +27,10 @@ class EventLog:
 
     def _copy(self, count: int) -> tuple[np.ndarray, ...]:
         """Copy the first events of the kernel's record; in 2D, spins normal to the plane."""
-        found = {key: getattr(self.room, key)[:count] for key in self._keys}
-        if "spins" in found and self._dimension == 2:
-            found["spins"] = found["spins"][..., 2]
-        return tuple(array.copy() for array in found.values())
+        record = {key: getattr(self.room, key)[:count] for key in self._keys}
+        if "spins" in record and self._dimension == 2:
+            record["spins"] = record["spins"][..., 2]
+        return tuple(array.copy() for array in record.values())
 
     def take(self, start: float) -> None:
         """Empty the kernel's record, whose times count from `start`."""

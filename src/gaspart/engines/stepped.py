@@ -118,9 +118,9 @@ class SteppedDynamics(Dynamics):
 
     def _by_particle(self, values: np.ndarray, dtype: DTypeLike | None = None) -> np.ndarray:
         """Convert values (d, N) by slot to values (N, d) in the order of the particles."""
-        found = np.empty(values.shape[::-1], dtype or values.dtype)
-        found[self._slots] = values.T
-        return found
+        result = np.empty(values.shape[::-1], dtype or values.dtype)
+        result[self._slots] = values.T
+        return result
 
     @property
     def time(self) -> float:
@@ -139,12 +139,12 @@ class SteppedDynamics(Dynamics):
         Raises SceneError for limits or records of events, which need the event-driven engine, and for a time
         that is not within 2^53 steps; SimulationError if the particles are too fast for a step.
         """
-        wanted = {
+        limits = {
             "max_events": max_events,
             "max_work": max_work,
             "record_events": None if log is None else True,
         }
-        for key, value in wanted.items():
+        for key, value in limits.items():
             if value is not None:
                 raise SceneError(key, value, 'needs the "event" engine; this one makes whole steps only')
         steps = (until - self._start) / self.time_step
@@ -213,14 +213,14 @@ class SteppedDynamics(Dynamics):
         """Return the arrays (threads, ...) with counts, including the arrays of parts."""
         return {**self._sums(), **sums_of(self._parts)}
 
-    def _joined(self, sums: np.ndarray) -> np.ndarray:
+    def _sum_threads(self, sums: np.ndarray) -> np.ndarray:
         """Return the sum over threads of an array (threads, ...) with counts."""
         return np.asarray(sums.sum(axis=0))
 
-    def _kept(self) -> dict[str, Any]:
+    def _checkpoint_data(self) -> dict[str, Any]:
         return {
-            **super()._kept(),
-            **{key: self._joined(sums) for key, sums in self._all_sums().items()},
+            **super()._checkpoint_data(),
+            **{key: self._sum_threads(sums) for key, sums in self._all_sums().items()},
             "slots": self._slots,
             "positions": self._by_particle(self._positions),
             "velocities": self._by_particle(self._velocities),

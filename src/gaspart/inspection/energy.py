@@ -14,7 +14,7 @@ from gaspart.scene.faces import Sticky, Well
 from gaspart.scene.scene import Scene
 from gaspart.state.initial import places_in_wells, well_energies
 from gaspart.state.insertion import per_particle
-from gaspart.trajectory.opening import opened
+from gaspart.trajectory.opening import open_netcdf_file
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import read_recipe
 
@@ -101,7 +101,7 @@ def _potential(scene: Scene, data: xr.Dataset) -> np.ndarray:
 def certificate(path: Path) -> list[str]:
     """Return lines on the drift of the energy, the worst contact, and the independent samples."""
     scene = read_recipe(path).scene
-    with opened(path) as file:
+    with open_netcdf_file(path) as file:
         if not len(file.dimensions["frame"]):
             return ["no frame yet"]
         names = ["collisions", "virial_sum", "worst_contact", "time"]

@@ -22,7 +22,7 @@ from gaspart.inspection.contents import Contents, Overrides
 from gaspart.scene.open_faces import refuse_open
 from gaspart.state.insertion import per_particle
 from gaspart.trajectory.amber import BOOKKEEPING
-from gaspart.trajectory.opening import check_frames, open_descriptor, opened
+from gaspart.trajectory.opening import check_frames, open_descriptor, open_netcdf_file
 from gaspart.trajectory.recipe import read_recipe
 
 # The size of a netCDF-3 file by its header: of a shorter file, the library reads zeros without a word.
@@ -145,7 +145,7 @@ def read_netcdf(path: Path, overrides: Overrides) -> Contents:
     if by_gaspart:
         check_frames(path)
         refuse_open(read_recipe(path).scene, "changes the particles: frames are those of particles that stay")
-    with opened(path) if by_gaspart else _foreign(path) as file:
+    with open_netcdf_file(path) if by_gaspart else _foreign(path) as file:
         _check_convention(file, path)
         contents = _contents(file, overrides, path)
     if by_gaspart:

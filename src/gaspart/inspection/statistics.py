@@ -300,6 +300,8 @@ def why_not(frames: Frames) -> str | None:
     cubic = np.ptp(frames.lengths) <= 1e-6 * frames.lengths[0]
     if not cubic or frames.packing_fraction > theory.ERPENBECK_WOOD_HIGHEST:
         return "needs a fluid in a cube"
+    if diffusion_in_cube(_gas(frames), float(frames.lengths[0]), frames.engine, frames.scene) is None:
+        return "no theory states it in so short a cube, whose images order the fluid"
     interval = np.diff(frames.time)
     if len(interval) == 0 or np.ptp(interval) > 1e-3 * interval.mean():
         return "needs frames at even times"

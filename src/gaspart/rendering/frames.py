@@ -218,7 +218,7 @@ def particles_of(source: State | Simulation | Scene | xr.Dataset, frame: int = -
         return _of_state(initial_state(source, 0), source)
     frames = source.sizes["frame"]
     if not -frames <= count_of("frame", frame, least=-frames) < frames:
-        raise SceneError("frame", frame, f"the trajectory has {frames}, counted from 0")
+        raise SceneError("frame", frame, f"must be one of {frames} frames, counted from 0")
     names = ("coordinates", "velocities", "time", "piston_position")
     # Of these alone: xarray takes milliseconds for a frame of the whole.
     variables = {name: source.variables[name][frame].values for name in names if name in source.variables}
@@ -306,7 +306,7 @@ def _walls(scene: Scene, time: float, piston: float | np.ndarray | None) -> np.n
             corner, second, third, fourth = wall.corners.values()
             segments += pairwise((corner, second, fourth, third, corner))
     lengths = np.array(scene.container.lengths)
-    positions = [(moving.axis, moving.place if piston is None else float(piston))] if moving else []
+    positions = [(moving.axis, moving.position if piston is None else float(piston))] if moving else []
     for name, face in scene.faces.items():
         axis, upper = "xyz".index(name[0]), "high" in name
         if isinstance(face, Vibrating):

@@ -58,8 +58,7 @@ def live(
     Raises
     ------
     SceneError
-        If nothing moves at the start, the number of particles is not fixed, the engine cannot model the
-        scene, or ipywidgets is not installed.
+        If nothing moves at the start, the engine cannot model the scene, or ipywidgets is not installed.
 
     Notes
     -----
@@ -95,13 +94,16 @@ def live(
         if change.new:
             running.task = asyncio.get_running_loop().create_task(play())  # which must be referred to
 
-    def changing(change: Callable[..., None], *values: float) -> None:
+    def changing(change: Callable[..., None], *values: float) -> bool:
+        """Return False if the gas refuses a change."""
         note.value = "one moment: kernels of a new kind of scene are compiled"
         try:
             change(*values)
-            image.value, note.value, meters.value = gas.picture._repr_png_(), "", meters_of(gas)
         except SceneError as error:
             note.value = str(error)
+            return False
+        image.value, note.value, meters.value = gas.picture._repr_png_(), "", meters_of(gas)
+        return True
 
     def trace(event: Any) -> None:
         gas.traced = event.new
@@ -114,7 +116,7 @@ def live(
     running.observe(start, "value")
     tracer = widgets.ToggleButton(description="tracer")
     tracer.observe(trace, "value")
-    buttons = [running, tracer] if scene.dimension == 2 else [running]
+    buttons = [running, tracer] if gas.traceable else [running]
     if scene.walls:
         opening = widgets.Button(description="remove walls")
         opening.on_click(remove_walls)
@@ -130,13 +132,23 @@ def _slider(
     name: str,
     range_: tuple[float, float, float],
     change: Callable[[float], None],
-    changing: Callable[..., None],
+    changing: Callable[..., bool],
 ) -> Any:
-    """Return a slider of a name and a range (least, value, most) that changes a gas."""
+    """Return a slider of a name and a range (least, value, most) that changes a gas.
+
+    It goes back from a value that the gas refuses.
+    """
     least, value, most = range_
     slider = widgets.FloatSlider(value, min=least, max=most, step=(most - least) / 50.0, description=name)
     slider.continuous_update, slider.style.description_width = False, "initial"
-    slider.observe(lambda event: changing(change, event.new), "value")
+
+    def move(event: Any) -> None:
+        if not changing(change, event.new):
+            slider.unobserve(move, "value")
+            slider.value = event.old
+            slider.observe(move, "value")
+
+    slider.observe(move, "value")
     return slider
 
 
@@ -144,14 +156,16 @@ def _ranges(gas: LiveGas) -> list[tuple[str, tuple[float, float, float], Callabl
     """Return the name, the range and the effect of each slider that suits a gas."""
     scene = gas.simulation.scene
     ranges: list[tuple[str, tuple[float, float, float], Callable[[float], None]]] = []
-    if gas.emptiest < scene.packing_fraction:
+    if gas.richest:
+        ranges.append(("activity of reservoirs", (0.1 * gas.activity, gas.activity, gas.richest), gas.supply))
+    if not scene.is_open and gas.emptiest < scene.packing_fraction:
         ranges.append(("packing fraction", (gas.emptiest, scene.packing_fraction, gas.densest), gas.fill))
     if gas.strongest:
         ranges.append(("gravity", (0.0, gas.gravity, gas.strongest), gas.pull))
     if gas.hottest:
         ranges.append(("temperature of walls", (0.0, gas.temperature, gas.hottest), gas.heat))
     normal = scene.restitution.normal if scene.restitution else 1.0
-    if scene.count > 1:
+    if scene.count > 1 and not scene.is_open:
         ranges.append(("restitution", (min(0.5, normal), normal, 1.0), gas.damp))
     if gas.shortest:
         length = scene.container.lengths[0]

@@ -17,8 +17,7 @@ from gaspart.errors import SceneError
 from gaspart.rendering.films import pieces
 from gaspart.rendering.frames import Picture, draw_labelled, particles_of
 from gaspart.rendering.particles import FASTEST
-from gaspart.scene.faces import Piston, Thermal
-from gaspart.scene.open_faces import refuse_open
+from gaspart.scene.faces import Open, Piston, Thermal
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.scene import Scene, require_scene
 from gaspart.simulation import Simulation
@@ -31,6 +30,8 @@ _WEIGHTS = 8.0
 """The strongest gravity of the slider: of a fall through the container, in units of m v^2 of a particle."""
 _HOTTEST = 4.0
 """Highest temperature of the walls, divided by the temperature of the gas at the start."""
+_RICHEST = 4.0
+"""Highest activity of reservoirs, divided by the activity at the start."""
 _SMALLEST = 0.4
 """Least distance of the piston from the other side, as a fraction of the length."""
 _SPEED = 0.25
@@ -51,7 +52,7 @@ class LiveGas:
     traced : True if the path of the first moving particle is drawn.
 
     Other arguments are those for `Simulation`, and `colour` is explained in `render`. Raises SceneError as
-    `Simulation`, for open faces, and for a scene in which nothing moves or falls.
+    `Simulation`, and for a scene in which nothing moves or falls.
     """
 
     def __init__(
@@ -63,7 +64,6 @@ class LiveGas:
         colour: str = "speed",
     ) -> None:
         require_scene(scene)
-        refuse_open(scene, "changes the particles, whose packing fraction a slider would state")
         self.interval = scales(scene).crossing_time / _PICTURES
         if self.interval == float("inf"):
             raise SceneError("scene", scene, "nothing moves at the start, and nothing falls")
@@ -79,14 +79,19 @@ class LiveGas:
         self.collisions, self._counted = 0, 0
         self._target: float | None = None
         self._path: list[np.ndarray] = []
-        self._moving = int(np.argmax(np.isfinite(self.simulation.state.masses)))
+        self._moving = int(np.argmax(np.isfinite(self.simulation.state.masses))) if self.traceable else None
         self.observe()
 
     def _go_on(self, scene: Scene, **state: Any) -> None:
         """Continue in another scene from the present state, of which values may be replaced."""
-        simulation = Simulation(
-            scene, self._engine, self._seed, initial=replace(self.simulation.state, **state)
-        )
+        present = replace(self.simulation.state, **state)
+        if scene.is_open:
+            if not present.count:
+                raise SceneError(
+                    "scene", "empty", "all particles have left: change it after some have entered"
+                )
+            scene = replace(scene, species=[replace(scene.species[0], count=present.count)])
+        simulation = Simulation(scene, self._engine, self._seed, initial=present)
         self._clock += self.simulation.time
         self.simulation, self._counted = simulation, 0
         self.observe()
@@ -104,8 +109,8 @@ class LiveGas:
     def picture(self) -> Picture:
         """Picture of the particles now, with the parameters of the scene."""
         particles = particles_of(self.simulation)
-        paths = pieces(self._path, particles.lengths) if self.traced and len(particles.lengths) == 2 else ()
-        fastest = FASTEST * self._thermal_speed or None
+        paths = pieces(self._path, particles.lengths) if self.traced and self.traceable else ()
+        fastest = FASTEST * np.sqrt(self._first.dimension) * self._thermal_speed or None
         return draw_labelled(particles, self.time, self.size, self.colour, fastest, paths=paths)
 
     def advance(self) -> Picture:
@@ -125,7 +130,8 @@ class LiveGas:
         tally = self.simulation.tally
         self.collisions += tally.collisions - self._counted
         self._counted = tally.collisions
-        self._path = [*self._path[1 - _TRAIL :], self.simulation.state.positions[self._moving]]
+        if self._moving is not None:
+            self._path = [*self._path[1 - _TRAIL :], self.simulation.state.positions[self._moving]]
         self._record()
         if arrives:
             self._settle()
@@ -178,8 +184,8 @@ class LiveGas:
     def heat(self, temperature: float) -> None:
         """Continue between walls at another temperature.
 
-        Thermal faces of the first scene keep the ratios of their temperatures; if it has none, all faces that
-        reflect become thermal.
+        Thermal faces and reservoirs of the first scene keep the ratios of their temperatures; if it has none,
+        all faces that reflect become thermal.
 
         Parameters
         ----------
@@ -188,15 +194,34 @@ class LiveGas:
         """
         first, faces = self._first.faces, dict(self.simulation.scene.faces)
         warm = self._warm
+        scale = temperature / self.temperature if warm and temperature > 0.0 else 1.0
         for name in warm or self._hard:
-            if temperature <= 0.0:
+            face = faces.get(name)
+            if isinstance(face, Piston):  # on its way
+                continue
+            if warm:
+                assert isinstance(face, Open | Thermal)
+                faces[name] = replace(face, temperature=scale * warm[name].temperatures[0])
+            elif temperature <= 0.0:
                 faces.pop(name, None)
                 faces |= {name: first[name]} if name in first else {}
-            elif warm:
-                scale = temperature / self.temperature
-                faces[name] = replace(warm[name], temperature=scale * warm[name].temperatures[0])
-            elif not isinstance(faces.get(name), Piston):
+            else:
                 faces[name] = Thermal(temperature)
+        self._go_on(replace(self.simulation.scene, faces=faces))
+
+    def supply(self, activity: float) -> None:
+        """Continue with reservoirs of another activity, which keep their ratios.
+
+        Parameters
+        ----------
+        activity : float, [1]
+            Activity of the richest reservoir.
+        """
+        faces = dict(self.simulation.scene.faces)
+        for name, reservoir in self._reservoirs.items():
+            face, share = faces[name], (reservoir.activity or 0.0) / self.activity
+            assert isinstance(face, Open)
+            faces[name] = replace(face, activity=activity * share)
         self._go_on(replace(self.simulation.scene, faces=faces))
 
     def damp(self, normal: float) -> None:
@@ -253,23 +278,25 @@ class LiveGas:
     def gauges(self) -> list[tuple[str, float, float, float | None]]:
         """Name, mean since the last change, standard error and theory of temperature and pressures.
 
-        The pressure on each wall; of a gas without walls Z. Empty until there are enough frames. Where
-        no theory of this container is known, it is the equation of state of a gas without walls.
+        The pressure on each wall; of a gas without walls Z; with open faces the number of particles, too.
+        Empty until there are enough frames. Where no theory of this container is known, it is the equation of
+        state of a gas without walls.
         """
         if len(self._rows) < LEAST_FRAMES:
             return []
         data, scene = with_frames(self.simulation, self._rows), self.simulation.scene
-        masses = self.simulation.state.masses
-        moving = np.isfinite(masses)
-        degrees = self._first.dimension * (int(moving.sum()) - scene.is_periodic)
-        flights = np.array([row["velocities"][moving] for row in self._rows])
-        temperatures = (masses[moving] * (flights**2).sum(axis=2)).sum(axis=1) / max(degrees, 1)
-        walls = {face.temperatures for face in scene.faces.values() if isinstance(face, Thermal)}
+        energies = 2.0 * np.array([row["kinetic_energy"] for row in self._rows])
+        counts = np.isfinite(self._flights).all(axis=2).sum(axis=1) - scene.is_periodic
+        temperatures = energies / np.maximum(self._first.dimension * counts, 1)
+        walls = {face.temperatures for face in scene.faces.values() if isinstance(face, Open | Thermal)}
         bath = walls.pop() if len(walls) == 1 and scene.restitution is None else ()
         mean = correlated_mean(temperatures).estimate
         readings = [("temperature", mean.value, mean.error, bath[0] if len(set(bath)) == 1 else None)]
         if self._target is not None:  # the volume changes
             return readings
+        if scene.is_open:
+            mean = correlated_mean(counts.astype(float)).estimate
+            readings.append(("particles", mean.value, mean.error, None))
         try:
             result = measure(data, "Z" if scene.is_periodic else "pressure")
         except SceneError:  # not defined in this scene
@@ -288,7 +315,7 @@ class LiveGas:
     def _bulk(self, temperature: float) -> float | None:
         """Return the pressure, or Z, of the gas without walls; None for other scenes."""
         scene = self.simulation.scene
-        gas = replace(scene, faces={}).gas
+        gas = None if scene.is_open else replace(scene, faces={}).gas
         try:
             z = float(theory.compressibility_factor(gas.packing_fraction, gas.dimension)) if gas else None
         except ValueError:  # denser than the fluid
@@ -304,17 +331,31 @@ class LiveGas:
         None.
         """
         masses, d = self.simulation.state.masses, self._first.dimension
-        moving = np.isfinite(masses)
-        velocities = np.array([row["velocities"] for row in self._rows])[:, moving]
-        speeds = np.sqrt((velocities**2).sum(axis=2)).ravel()
-        edges = np.linspace(0.0, max(2.5 * float(np.sqrt((speeds**2).mean())), 1e-30), _BINS + 1)
-        density = np.histogram(speeds, edges)[0] / (speeds.size * np.diff(edges))
-        if np.ptp(masses[moving]) > 0.0 or not speeds.any():
+        masses = masses[np.isfinite(masses)]
+        speeds = np.sqrt((self._flights**2).sum(axis=2)).ravel()
+        speeds = speeds[np.isfinite(speeds)]
+        fastest = 2.5 * float(np.sqrt((speeds**2).sum() / max(speeds.size, 1)))
+        edges = np.linspace(0.0, max(fastest, 1e-30), _BINS + 1)
+        density = np.histogram(speeds, edges)[0] / (max(speeds.size, 1) * np.diff(edges))
+        if len(set(masses.tolist())) != 1 or not speeds.any():
             return edges, density, None
-        mass = float(masses[moving][0])
+        mass = float(masses[0])
         temperature = mass * float((speeds**2).mean()) / d
         middles = 0.5 * (edges[1:] + edges[:-1])
         return edges, density, np.asarray(theory.maxwell_pdf(middles, d, temperature, mass))
+
+    @property
+    def _flights(self) -> np.ndarray:
+        """(T, N, d) velocities of particles that move, since the last change; NaN for vacant numbers."""
+        velocities = np.array([row["velocities"] for row in self._rows])
+        if self._first.is_open:
+            return velocities
+        return velocities[:, np.isfinite(self.simulation.state.masses)]
+
+    @property
+    def traceable(self) -> bool:
+        """True if a path can be drawn: in the plane, of particles that stay."""
+        return self._first.dimension == 2 and not self._first.is_open
 
     @property
     def emptiest(self) -> float:
@@ -329,8 +370,8 @@ class LiveGas:
 
     @property
     def strongest(self) -> float | None:
-        """Strongest gravity to choose; None without a floor."""
-        if self._first.container.periodic[-1]:
+        """Strongest gravity to choose; None without a floor, and with reservoirs, on which nothing acts."""
+        if self._first.container.periodic[-1] or self._first.is_open:
             return None
         height = self._first.container.lengths[-1]
         return max(_WEIGHTS * scales(self._first).thermal_speed ** 2 / height, 2.0 * self.gravity)
@@ -343,9 +384,20 @@ class LiveGas:
 
     @property
     def temperature(self) -> float:
-        """Temperature of the hottest wall of the first scene; 0 without thermal walls."""
+        """Temperature of the hottest wall or reservoir of the first scene; 0 without one."""
         faces = self._first.faces.values()
-        return max((max(item.temperatures) for item in faces if isinstance(item, Thermal)), default=0.0)
+        warm = [item.temperatures for item in faces if isinstance(item, Open | Thermal)]
+        return max((max(item) for item in warm if item), default=0.0)
+
+    @property
+    def activity(self) -> float:
+        """Highest activity of the reservoirs of the first scene; 0 without one."""
+        return max((item.activity or 0.0 for item in self._reservoirs.values()), default=0.0)
+
+    @property
+    def richest(self) -> float:
+        """Highest activity to choose; 0 without reservoirs."""
+        return _RICHEST * self.activity
 
     @property
     def hottest(self) -> float | None:
@@ -359,6 +411,8 @@ class LiveGas:
     def shortest(self) -> float | None:
         """Least coordinate of the side x high to choose; None if it cannot be moved."""
         first = self._first
+        if first.is_open:
+            return None
         fixed = bool(self.emptiest) or any(item.fixed for item in first.particles)
         bound = first.walls or first.pistons or (first.gravity and first.gravity[0])
         if bound or fixed or "x_high" not in (*self._hard, *self._warm):
@@ -366,10 +420,19 @@ class LiveGas:
         return first.container.lengths[0] * max(_SMALLEST, first.packing_fraction / self.densest)
 
     @property
-    def _warm(self) -> dict[str, Thermal]:
-        """Thermal faces of the first scene, of one temperature each."""
+    def _warm(self) -> dict[str, Thermal | Open]:
+        """Thermal faces of the first scene, of one temperature each, and reservoirs."""
         faces = self._first.faces.items()
-        return {name: item for name, item in faces if isinstance(item, Thermal) and item.varies_along is None}
+        walls = {
+            name: item for name, item in faces if isinstance(item, Thermal) and item.varies_along is None
+        }
+        return walls | self._reservoirs
+
+    @property
+    def _reservoirs(self) -> dict[str, Open]:
+        """Open faces of the first scene through which particles enter."""
+        faces = self._first.faces.items()
+        return {name: item for name, item in faces if isinstance(item, Open) and item.activity is not None}
 
     @property
     def _hard(self) -> list[str]:

@@ -25,7 +25,7 @@ from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.state import State
-from gaspart.trajectory.opening import no_run
+from gaspart.trajectory.opening import not_a_trajectory
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -134,7 +134,7 @@ def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order:
     count_of("frames", frames, least=1)
     with open_source(source) as opened:
         if isinstance(opened, Scene):
-            raise no_run(opened)
+            raise not_a_trajectory(opened)
         if isinstance(opened, State):
             raise SceneError(
                 "source",

@@ -34,12 +34,13 @@ if TYPE_CHECKING:
 def merged_with_default(path: Path, base: Path | None = None) -> tuple[dict[str, Any], list[Path]]:
     """Merge a config over another, as in the workflow, and return it with its files.
 
-    The other config is `base`, by default the `config.yaml` in the same folder. Raises SceneError for a file
-    that cannot be read.
+    The other config is `base`, by default the `config.yaml` in the same folder, else `config/config.yaml` in
+    it, as for the workflow in that folder. Raises SceneError for a file that cannot be read.
     """
     path = resolve_path(path)
-    base = path.parent / "config.yaml" if base is None else resolve_path(base)
-    files = [base, path] if base.exists() and base != path else [path]
+    defaults = (path.parent / "config.yaml", path.parent / "config/config.yaml")
+    bases = [resolve_path(base)] if base else [file for file in defaults if file.exists()]
+    files = [*(file for file in bases[:1] if file.exists() and file != path), path]
     merged: dict[str, Any] = {}
     for file in files:
         content = read_yaml(file)

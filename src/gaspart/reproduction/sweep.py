@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from gaspart.analysis.observables import OBSERVABLES
-from gaspart.engines import Engine, chosen, engine_to_dict
+from gaspart.engines import Engine, engine_to_dict, resolve_engine
 from gaspart.errors import SceneError, unknown_word
 from gaspart.keys.values import count_of, number
 from gaspart.reproduction.config import check_point, gridded_points
@@ -144,7 +144,7 @@ def sweep(
     (('packing_fraction',), array([1.11, 1.23]))
     """
     require_scene(scene)
-    engine = chosen(engine)
+    engine = resolve_engine(engine)
     axes = axes_of(over)
     names = names_of(observables, axes)
     length = _length(duration, until, at_most, samples, equilibration)

@@ -70,7 +70,7 @@ class Accuracy(Requirement):
             raise error.inside("until") from None
         able = having(ends_runs=True)
         if name not in able:
-            rule = f"ends no run: those that do are {', '.join(able)}; give a duration, and measure {name}"
+            rule = f"does not end a run; use {', '.join(able)}, or give a duration and measure {name}"
             raise SceneError("until.observable", self.observable, rule)
         object.__setattr__(self, "observable", name)
         super().__post_init__()
@@ -146,7 +146,7 @@ def require_measurable(
     except SceneError as error:
         raise SceneError("until", requirement.name, f"{error.key}: {error.rule}") from None
     if requirement.face not in (None, *walls):
-        raise SceneError("until", requirement.name, f"the walls are {', '.join(walls)}")
+        raise SceneError("until", requirement.name, f"must be one of the walls, {', '.join(walls)}")
 
 
 def require_end(requirement: Requirement, scene: Scene, at_most: float | None, from_state: bool) -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from gaspart.accuracy.reached import AccuracyStatus, Examiner
 from gaspart.analysis.observables import OBSERVABLES
-from gaspart.engines import Engine, chosen
+from gaspart.engines import Engine, resolve_engine
 from gaspart.errors import SceneError
 from gaspart.files import is_same_file, output_path
 from gaspart.keys.values import count_of
@@ -32,7 +32,7 @@ from gaspart.trajectory.last_state import last_state
 from gaspart.trajectory.opening import partial_path
 from gaspart.trajectory.recipe import MOST_REPLICAS, Recipe
 from gaspart.trajectory.recording import Progress
-from gaspart.trajectory.replicas import found, in_replicas, replica_paths
+from gaspart.trajectory.replicas import find_run, in_replicas, replica_paths
 from gaspart.trajectory.run import WriteOptions
 from gaspart.trajectory.run_options import recipe_fields
 from gaspart.trajectory.until import Until
@@ -175,12 +175,12 @@ def run(
 
 
 def _engine_of(scene: object, engine: Engine | str | None) -> Engine:
-    """Return the engine of a run (`chosen`).
+    """Return the engine of a run (`resolve_engine`).
 
     Raises SceneError for an unknown engine, and for a value that is no scene.
     """
     require_scene(scene)
-    return chosen(engine)
+    return resolve_engine(engine)
 
 
 def _useful_impulses(request: Until, scene: Scene, engine: Engine) -> str | None:
@@ -365,6 +365,6 @@ def resume(
 def _replica(path: str | Path) -> tuple[Path, Recipe] | None:
     """Return a file of the replicas at a path and its recipe; None without replicas."""
     with suppress(SceneError):
-        file, recipe = found(path)
+        file, recipe = find_run(path)
         return (file, recipe) if recipe.replica else None
     return None

@@ -47,7 +47,7 @@ class Ball(NamedTuple):
         """Lowest and highest coordinates, (d,) each."""
         return self.centre - self.radius, self.centre + self.radius
 
-    def moved(self, shift: np.ndarray) -> Ball:
+    def translate(self, shift: np.ndarray) -> Ball:
         """Return a copy at another position."""
         return Ball(self.centre + shift, self.radius)
 
@@ -84,7 +84,7 @@ class Slab(NamedTuple):
         )
         return self.start + sums.min(axis=0) - self.distance, self.start + sums.max(axis=0) + self.distance
 
-    def moved(self, shift: np.ndarray) -> Slab:
+    def translate(self, shift: np.ndarray) -> Slab:
         """Return a copy at another position."""
         return Slab(self.start + shift, self.edges, self.distance)
 
@@ -103,7 +103,7 @@ class Slab(NamedTuple):
         for edge in self.edges:
             square = edge @ edge
             part, slope = from_start @ edge / square, edge[axis] / square
-            low, high = _between(part, slope, 0.0, 1.0)
+            low, high = _interval(part, slope, 0.0, 1.0)
             lower, upper = np.maximum(lower, low), np.minimum(upper, high)
             from_start = from_start - np.multiply.outer(part, edge)
             along = along - slope * edge
@@ -112,20 +112,20 @@ class Slab(NamedTuple):
             inside = (from_start**2).sum(axis=1) < self.distance**2
             return np.where(inside, lower, np.inf), np.where(inside, upper, -np.inf)
         middle = -(from_start @ along) / square
-        left = self.distance**2 - (from_start**2).sum(axis=1) + square * middle**2
-        half = np.sqrt(np.maximum(left, 0.0) / square)
+        discriminant = self.distance**2 - (from_start**2).sum(axis=1) + square * middle**2
+        half = np.sqrt(np.maximum(discriminant, 0.0) / square)
         lower, upper = np.maximum(lower, middle - half), np.minimum(upper, middle + half)
-        hit = (left > 0.0) & (lower < upper)
+        hit = (discriminant > 0.0) & (lower < upper)
         return np.where(hit, lower, np.inf), np.where(hit, upper, -np.inf)
 
 
-def _between(part: np.ndarray, slope: float, low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
+def _interval(part: np.ndarray, slope: float, low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
     """Return the t for which low <= part + slope t <= high."""
     if slope == 0.0:
         inside = (part >= low) & (part <= high)
         return np.where(inside, -np.inf, np.inf), np.where(inside, np.inf, -np.inf)
-    one, other = (low - part) / slope, (high - part) / slope
-    return np.minimum(one, other), np.maximum(one, other)
+    first, second = (low - part) / slope, (high - part) / slope
+    return np.minimum(first, second), np.maximum(first, second)
 
 
 class Body(NamedTuple):
@@ -142,9 +142,9 @@ class Body(NamedTuple):
 
     def is_apart(self, other: Body) -> bool:
         """Return True if it is known to have no point in common with another body."""
-        one, two = self.parts[0], other.parts[0]
-        if isinstance(one, Ball) and isinstance(two, Ball):
-            return bool(((one.centre - two.centre) ** 2).sum() >= (one.radius + two.radius) ** 2)
+        first, second = self.parts[0], other.parts[0]
+        if isinstance(first, Ball) and isinstance(second, Ball):
+            return bool(((first.centre - second.centre) ** 2).sum() >= (first.radius + second.radius) ** 2)
         (low, high), (least, most) = self.bounds, other.bounds
         return bool(((low >= most) | (high <= least)).any())
 
@@ -157,8 +157,8 @@ def grown_wall(wall: Wall | Plate, radius: float) -> Body:
     slabs = [Slab(corners[0], edges, radius)]
     volume = ball_volume(d, radius) + 2.0 * radius * float(sides.prod())
     if d == 3:
-        one, other = edges
-        rim = (corners[0], one), (corners[0], other), (corners[2], one), (corners[1], other)
+        first, second = edges
+        rim = (corners[0], first), (corners[0], second), (corners[2], first), (corners[1], second)
         slabs += [Slab(start, edge[None], radius) for start, edge in rim]
         volume += ball_volume(2, radius) * float(sides.sum())
     return Body([*slabs, *(Ball(corner, radius) for corner in corners)], volume)
@@ -179,8 +179,11 @@ class Accessible:
             rule = "has positions in a run only: the accessible volume of the scene alone is not known"
             raise SceneError("species.fixed", True, rule)
         if fixed is None:
-            single = [one for one in scene.particles if one.fixed]
-            fixed = np.array([one.position for one in single]), np.array([one.radius for one in single])
+            single = [particle for particle in scene.particles if particle.fixed]
+            fixed = (
+                np.array([particle.position for particle in single]),
+                np.array([particle.radius for particle in single]),
+            )
         self._fixed = list(zip(*fixed, strict=True))
         self._found: dict[tuple[float, int | None], Measure] = {}
 
@@ -204,43 +207,43 @@ class Accessible:
     def _bodies(self, radius: float) -> list[Body]:
         """Return all bodies grown by a radius, and their periodic images."""
         bodies = [
-            Body([Ball(place, size + radius)], ball_volume(len(place), size + radius))
-            for place, size in self._fixed
+            Body([Ball(centre, size + radius)], ball_volume(len(centre), size + radius))
+            for centre, size in self._fixed
         ]
         bodies += [grown_wall(wall, radius) for wall in self._scene.walls]
         lengths, periodic = np.array(self._scene.container.lengths), self._scene.container.periodic
         shifts = [
-            np.array(one) * lengths
-            for one in product(*((-1.0, 0.0, 1.0) if around else (0.0,) for around in periodic))
+            np.array(image) * lengths
+            for image in product(*((-1.0, 0.0, 1.0) if around else (0.0,) for around in periodic))
         ]
         return [
-            Body([part.moved(shift) for part in body.parts], body.volume)
+            Body([part.translate(shift) for part in body.parts], body.volume)
             for body in bodies
             for shift in shifts
         ]
 
     def _measure(self, radius: float, face: int | None) -> Measure:
         if (radius, face) not in self._found:
-            self._found[radius, face] = self._computed(radius, face)
+            self._found[radius, face] = self._compute(radius, face)
         return self._found[radius, face]
 
-    def _computed(self, radius: float, face: int | None) -> Measure:
+    def _compute(self, radius: float, face: int | None) -> Measure:
         """Compute the volume, or the area of a face."""
         lower, upper = (np.array(ends) for ends in self._scene.reach(radius))
         axes = [axis for axis in range(len(lower)) if face is None or axis != face // 2]
         if face is not None:  # the plane in which centres touch it
             lower[face // 2] = upper[face // 2] = (lower, upper)[face % 2][face // 2]
-        whole = float((upper - lower)[axes].prod())
+        full = float((upper - lower)[axes].prod())
         near = [body for body in self._bodies(radius) if _meets(body, lower, upper)]
-        if not near or not whole > 0.0:
-            return Measure(whole, 0.0)
+        if not near or not full > 0.0:
+            return Measure(full, 0.0)
         if face is None and (covered := _apart(near, lower, upper, self._scene)) is not None:
-            return Measure(whole - covered, 0.0)
+            return Measure(full - covered, 0.0)
         parts = [part for body in near for part in body.parts]
         if len(axes) == 1:
             return Measure(float(free_lengths(parts, lower[None], axes[0], (lower, upper))[0]), 0.0)
         means = [free_fraction(parts, axes, (lower, upper), shift) for shift in range(SETS)]
-        return Measure(whole * float(np.mean(means)), whole * float(np.std(means, ddof=1)) / SETS**0.5)
+        return Measure(full * float(np.mean(means)), full * float(np.std(means, ddof=1)) / SETS**0.5)
 
 
 def _meets(body: Body, lower: np.ndarray, upper: np.ndarray) -> bool:
@@ -280,8 +283,8 @@ def free_fraction(
     steps = SPREADING[len(across)] ** -np.arange(1.0, len(across) + 1)
     random = np.random.default_rng(shift).random(len(across))
     points = np.tile(lower, (LINES, 1))
-    places = (np.multiply.outer(np.arange(LINES), steps) + random) % 1.0
-    points[:, across] += places * (upper - lower)[across]
+    coordinates = (np.multiply.outer(np.arange(LINES), steps) + random) % 1.0
+    points[:, across] += coordinates * (upper - lower)[across]
     return float(free_lengths(parts, points, axes[0], ends).mean() / (upper - lower)[axes[0]])
 
 

@@ -57,10 +57,10 @@ class Container:
 
     def __post_init__(self) -> None:
         validate(self)
-        given = self.boundary
-        boundary = (given,) * self.dimension if isinstance(given, str) else given
+        value = self.boundary
+        boundary = (value,) * self.dimension if isinstance(value, str) else value
         if not isinstance(boundary, (tuple, list)) or len(boundary) != self.dimension:
-            raise SceneError("boundary", given, f"must be one of {BOUNDARIES}, or a list of one per axis")
+            raise SceneError("boundary", value, f"must be one of {BOUNDARIES}, or a list of one per axis")
         for kind in boundary:
             one_of("boundary", kind, BOUNDARIES)
         set_fields(self, boundary=tuple(boundary))

@@ -22,14 +22,14 @@ def check_driven(scene: Scene) -> None:
     Both the momentum and the energy of the force need a sink.
     """
     for axis in scene.driven_axes:
-        for taken, what, by in (
+        for has_sink, quantity, by in (
             (_takes_momentum(scene, axis), "momentum", _MOMENTUM),
             (_takes_energy(scene), "energy", _ENERGY),
         ):
-            if not taken:
+            if not has_sink:
                 rule = (
                     f"gives energy without limit along {'xyz'[axis]}, a periodic axis, where nothing takes "
-                    f"the {what}: {by} would"
+                    f"the {quantity}: {by} would"
                 )
                 raise SceneError("gravity", scene.gravity, rule)
 

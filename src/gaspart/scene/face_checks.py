@@ -29,20 +29,20 @@ def check_faces(scene: Scene) -> None:
     """Raise SceneError for faces that are impossible in this scene."""
     if not isinstance(scene.faces, dict):
         raise SceneError("faces", scene.faces, "must be a mapping of faces to their kinds")
-    known = FACES[: 2 * scene.dimension]
+    names = FACES[: 2 * scene.dimension]
     for name, surface in scene.faces.items():
-        if name not in known:
+        if name not in names:
             value = getattr(surface, "kind", surface)
-            raise SceneError(f"faces.{name}", value, unknown_word(name, known, "face"))
+            raise SceneError(f"faces.{name}", value, unknown_word(name, names, "face"))
         if type(surface) not in FACE_KINDS.values():
             *others, last = (kind.__name__ for kind in FACE_KINDS.values())
             raise SceneError(f"faces.{name}", surface, f"must be {', '.join(others)} or {last}")
-        axis = known.index(name) // 2
+        axis = names.index(name) // 2
         if isinstance(surface, LeesEdwards):
             _check_sheared(scene, name, surface)
             continue
         if scene.container.periodic[axis]:
-            raise SceneError(f"faces.{name}", surface.kind, "a periodic axis has no faces")
+            raise SceneError(f"faces.{name}", surface.kind, "needs walls; a periodic axis has no faces")
         if isinstance(surface, Thermal) and surface.velocity is not None:
             _check_velocity(scene, name, surface.velocity)
         if isinstance(surface, Thermal) and surface.varies_along is not None:
@@ -51,7 +51,7 @@ def check_faces(scene: Scene) -> None:
             raise SceneError(f"faces.{name}", surface.kind, "needs an axis without gravity")
         if isinstance(surface, Well):
             low, high = scene.reach(scene.largest_radius)
-            both = (scene.faces.get(known[2 * axis + side]) for side in (0, 1))
+            both = (scene.faces.get(names[2 * axis + side]) for side in (0, 1))
             if sum(face.width for face in both if isinstance(face, Well)) >= high[axis] - low[axis]:
                 rule = "leaves no room outside the wells of this axis for the largest particle"
                 raise SceneError(f"faces.{name}.width", surface.width, rule)
@@ -65,7 +65,9 @@ def check_faces(scene: Scene) -> None:
 def _check_sheared(scene: Scene, name: str, surface: LeesEdwards) -> None:
     """Raise SceneError for a sheared face that is not y_high, and a container with walls."""
     if name != FACES[2 * GRADIENT + 1]:
-        rule = "state it of y_high: the flow is along x, with a gradient along y, and y_low is its other side"
+        rule = (
+            "must be stated for y_high, which includes y_low; the flow is along x, with its gradient along y"
+        )
         raise SceneError(f"faces.{name}", surface.kind, rule)
     if not scene.is_periodic:
         raise SceneError(f"faces.{name}", surface.kind, "needs a container that is periodic along all axes")
@@ -95,17 +97,17 @@ def _check_piston(scene: Scene, name: str, surface: Piston) -> None:
     The same holds for a prescribed speed that is too high.
     """
     if len(scene.pistons) > 1:
-        raise SceneError("faces", [FACES[n] for n, _ in scene.pistons], "only one may be a piston")
+        raise SceneError("faces", [FACES[n] for n, _ in scene.pistons], "must include at most one piston")
     size(f"faces.{name}.mass", surface.acceleration(scene, FACES.index(name) // 2))
     size(f"faces.{name}.speed", surface.speed or 0.0)
 
 
-def piston_end(scene: Scene, place: float | None = None) -> float:
+def piston_end(scene: Scene, position: float | None = None) -> float:
     """Return the time at which a piston of prescribed speed compresses the particles to closest packing.
 
     Without such a piston it is infinite.
 
-    place : position along its axis at time 0, by default at its side
+    position : position along its axis at time 0, by default at its side
     """
     for number, face in scene.pistons:
         if face.speed is not None:
@@ -113,16 +115,16 @@ def piston_end(scene: Scene, place: float | None = None) -> float:
             low, high = scene.reach(scene.largest_radius)
             packed = length * scene.packing_fraction / closest_packing(scene)
             least = max(length - (high[axis] - low[axis]), packed)
-            begin = 0.0 if place is None else length - place if number % 2 else place
+            begin = 0.0 if position is None else length - position if number % 2 else position
             return max(0.0, length - begin - least) / face.speed
     return math.inf
 
 
-def check_piston_end(scene: Scene, key: str, until: float, place: float | None = None) -> None:
+def check_piston_end(scene: Scene, key: str, until: float, position: float | None = None) -> None:
     """Raise SceneError, with the key of an end of a run, if it is after `piston_end`."""
-    end = piston_end(scene, place)
+    end = piston_end(scene, position)
     if end < until:
-        rule = f"the piston leaves no room for the particles at {end:.6g}: end before"
+        rule = f"must be before {end:.6g}, when the piston leaves no room for the particles"
         raise SceneError(key, until, rule)
 
 
@@ -131,8 +133,8 @@ def _check_vibrating(scene: Scene, name: str, surface: Vibrating) -> None:
     axis, upper = FACES.index(name) // 2, FACES.index(name) % 2 == 1
     length = scene.container.lengths[axis]
     clear = 2.0 * (surface.amplitude + scene.largest_radius)
-    for n, thing in enumerate(scene.species):
-        if thing.fixed and thing.count:
+    for n, species in enumerate(scene.species):
+        if species.fixed and species.count:
             rule = f"must not be true where {name} vibrates: give fixed particles positions, in `particles`"
             raise SceneError(f"species[{n}].fixed", True, rule)
     for n, particle in enumerate(scene.particles):
@@ -161,7 +163,7 @@ def _check_room(scene: Scene) -> None:
     """Raise SceneError where vibrating faces leave too little room."""
     moving = {name: face for name, face in scene.faces.items() if isinstance(face, Vibrating)}
     low, high = scene.reach(scene.largest_radius)
-    left = 1.0
+    fraction = 1.0
     for axis in range(scene.dimension):
         own = {name: face for name, face in moving.items() if FACES.index(name) // 2 == axis}
         stroke = sum(2.0 * face.amplitude for face in own.values())
@@ -169,7 +171,7 @@ def _check_room(scene: Scene) -> None:
             name, face = next(iter(own.items()))
             rule = "leaves no room for the largest particle"
             raise SceneError(f"faces.{name}.amplitude", face.amplitude, rule)
-        left *= 1.0 - stroke / scene.container.lengths[axis]
-    if moving and scene.packing_fraction > left * closest_packing(scene):
+        fraction *= 1.0 - stroke / scene.container.lengths[axis]
+    if moving and scene.packing_fraction > fraction * closest_packing(scene):
         rule = "exceeds close packing where the faces have moved inwards"
         raise SceneError("packing_fraction", scene.packing_fraction, rule)

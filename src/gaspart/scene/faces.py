@@ -84,7 +84,9 @@ def _check_temperature(key: str, value: Any) -> float | dict[str, float]:
     """Return a temperature, or the temperatures at two opposite faces, the low face first."""
     if not isinstance(value, Mapping):
         return positive_number(key, value)
-    ends = {key_of(face): positive_number(f"{key}.{face}", one) for face, one in value.items()}
+    ends = {
+        key_of(face): positive_number(f"{key}.{face}", temperature) for face, temperature in value.items()
+    }
     if sorted(ends, reverse=True) not in ([f"{axis}_low", f"{axis}_high"] for axis in "xyz"):
         rule = "must be of two opposite faces, such as {y_low: 1.0, y_high: 2.0}"
         raise SceneError(key, value, rule)
@@ -170,7 +172,7 @@ class Thermal(Surface):
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.components == "normal" and self.slides:
-            raise SceneError("velocity", self.velocity, 'needs components "all": no other drags particles')
+            raise SceneError("velocity", self.velocity, 'requires components "all"')
         if self.accommodation == 1.0:  # absent everywhere, so that no other place has to ask
             set_fields(self, accommodation=None)
 
@@ -457,7 +459,7 @@ class Vibrating(Surface):
 
 @dataclass(frozen=True)
 class Piston(Surface):
-    """A smooth wall of finite mass under an external pressure, or one that moves at a constant speed.
+    """A smooth wall that moves by its mass and an external pressure, or at constant speed.
 
     Particles are smooth and elastic, and the container has only particles inside.
 
@@ -517,7 +519,7 @@ class Piston(Surface):
         loaded = [value is not None for value in (self.mass, self.pressure)]
         if any(loaded) if self.speed is not None else not all(loaded):
             stated = {key: value for key, value in vars(self).items() if value is not None}
-            raise SceneError("speed", stated, "a piston has a mass and a pressure, or a speed alone")
+            raise SceneError("speed", stated, "must be mass and pressure, or speed alone")
 
     def acceleration(self, scene: Scene, axis: int) -> float:
         """Return the inward acceleration due to the load; 0 if the speed is prescribed.
@@ -629,7 +631,7 @@ class Open(Surface):
     def __post_init__(self) -> None:
         super().__post_init__()
         if (self.activity is None) != (self.temperature is None):
-            raise SceneError("temperature", self.temperature, "a reservoir has an activity and a temperature")
+            raise SceneError("temperature", self.temperature, "must be given together with activity")
 
     @property
     def smooth(self) -> bool:
@@ -658,7 +660,9 @@ class Open(Surface):
 
 @dataclass(frozen=True)
 class LeesEdwards(Surface):
-    """Periodic faces with sliding images: a gas without walls in shear flow u_x = shear_rate (y - L_y / 2).
+    """Periodic faces whose images slide, for shear flow without walls.
+
+    The mean velocity of the gas is u_x = shear_rate (y - L_y / 2).
 
     Parameters
     ----------
@@ -783,7 +787,7 @@ def wall_of(face: Any) -> Any:
         The name, or the list of names.
     """
     if isinstance(face, list | tuple):
-        return [wall_of(one) for one in face]
+        return [wall_of(name) for name in face]
     return face.strip().replace("_", " ") if isinstance(face, str) else face
 
 

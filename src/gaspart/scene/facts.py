@@ -108,10 +108,10 @@ class Facts:
     @cached_property
     def _faces_by_kind(self) -> dict[type[Surface], list[tuple[int, Surface]]]:
         """Faces of each kind, with their numbers."""
-        found: dict[type[Surface], list[tuple[int, Surface]]] = {}
+        faces: dict[type[Surface], list[tuple[int, Surface]]] = {}
         for number, face in self.numbered_faces:
-            found.setdefault(type(face), []).append((number, face))
-        return found
+            faces.setdefault(type(face), []).append((number, face))
+        return faces
 
     def faces_of(self, kind: type[S]) -> list[tuple[int, S]]:
         """Return the faces of a kind, with their numbers."""

@@ -156,7 +156,7 @@ EXCLUDED: dict[tuple[str, str], str] = {
     ("fixed", "lees_edwards"): "the images of fixed particles would slide",
     ("restitution", "vibrations"): "energy would be lost twice",
     ("centres_to_walls", "roughness"): "rough particles touch walls with their surfaces",
-    **{(name, "open"): why for why, names in _CLOSED.items() for name in names},
+    **{(name, "open"): reason for reason, names in _CLOSED.items() for name in names},
 }
 """Pairs of features that no scene may have, and why."""
 
@@ -164,6 +164,6 @@ EXCLUDED: dict[tuple[str, str], str] = {
 def check_features(scene: Scene) -> None:
     """Raise SceneError for two features that exclude each other."""
     present = scene.features
-    for (name, other), why in EXCLUDED.items():
+    for (name, other), reason in EXCLUDED.items():
         if name in present and other in present:
-            raise FEATURES[name].refuse(scene, f"excludes {FEATURES[other].meaning}: {why}")
+            raise FEATURES[name].refuse(scene, f"excludes {FEATURES[other].meaning}: {reason}")

@@ -71,7 +71,7 @@ class Mixture:
         """Packing fraction, dimension, diameters and numbers for functions in `gaspart.theory`."""
         return self.packing_fraction, self.dimension, self.diameters, self.counts
 
-    def thinned(self, most: int) -> Mixture:
+    def thin(self, most: int) -> Mixture:
         """Return the mixture with every k-th size only, at most `most` sizes.
 
         The limit holds for sizes of one species.

@@ -48,26 +48,26 @@ def check_packing(scene: Scene) -> None:
         raise SceneError("packing_fraction", scene.packing_fraction, "exceeds close packing")
 
 
-def check_room(container: Container, centres_to_walls: bool, key: str, thing: Particle | Species) -> None:
+def check_room(container: Container, centres_to_walls: bool, key: str, particle: Particle | Species) -> None:
     """Raise SceneError, with `key`, if a particle does not fit into the container.
 
     The same holds for a particle that cannot move in it though it is not fixed, or that is so small that its
     contacts are lost in rounding.
     """
-    radius = thing.largest_radius
+    radius = particle.largest_radius
     shortest, longest = min(container.lengths), max(container.lengths)
     if not centres_to_walls:
         if 2 * radius > shortest:
-            rule = f"a particle must fit into the container, whose shortest side is {shortest:g}"
+            rule = f"is too large for the container, whose shortest side is {shortest:g}"
             raise SceneError(key, radius, rule)
         walled = zip(container.lengths, container.periodic, strict=True)
         narrow = any(2 * radius * (1.0 + _ROOM) > length for length, periodic in walled if not periodic)
-        if narrow and not thing.fixed:
+        if narrow and not particle.fixed:
             rule = "leaves no room between two walls, which it would hit infinitely often in no time"
             raise SceneError(key, radius, rule)
-    if 2 * thing.smallest_radius * _RESOLVED < longest:
-        radius = thing.smallest_radius
-        rule = f"too small to resolve its contacts, in a container whose longest side is {longest:g}"
+    if 2 * particle.smallest_radius * _RESOLVED < longest:
+        radius = particle.smallest_radius
+        rule = f"is too small to resolve contacts in a container whose longest side is {longest:g}"
         raise SceneError(key, radius, rule)
 
 
@@ -109,7 +109,7 @@ class Nearby:
         """Put number `n` at a position (d,) inside the container."""
         self._members.setdefault(self._cell(position), []).append(n)
 
-    def around(self, position: tuple[float, ...]) -> list[int]:
+    def neighbours(self, position: tuple[float, ...]) -> list[int]:
         """Return all numbers within the reach of a position, and some others, in ascending order."""
         axes = []
         for at, side, periodic in zip(

@@ -16,7 +16,7 @@ class MovingWall(NamedTuple):
     """Axis along which a wall moves, its position there at time 0, and its mass."""
 
     axis: int
-    place: float
+    position: float
     mass: float
 
 
@@ -36,9 +36,9 @@ def moving_wall_among(walls: Sequence[Wall | Plate], lengths: tuple[float, ...])
 def crossed_axis(wall: Wall | Plate, lengths: tuple[float, ...]) -> int:
     """Return the axis perpendicular to a wall that spans a container, or -1."""
     for axis, _ in enumerate(lengths):
-        places = [{corner[k] for corner in wall.corners.values()} for k in range(len(lengths))]
-        whole = all(places[k] == {0.0, length} for k, length in enumerate(lengths) if k != axis)
-        if whole and len(places[axis]) == 1:
+        coordinates = [{corner[k] for corner in wall.corners.values()} for k in range(len(lengths))]
+        is_spanning = all(coordinates[k] == {0.0, length} for k, length in enumerate(lengths) if k != axis)
+        if is_spanning and len(coordinates[axis]) == 1:
             return axis
     return -1
 
@@ -50,9 +50,11 @@ def check_moving_wall(scene: Scene) -> None:
             continue
         key, lengths = f"walls[{n}].mass", scene.container.lengths
         if len(scene.walls) > 1:
-            raise SceneError(key, wall.mass, "a wall that moves must be the only interior wall")
+            raise SceneError(key, wall.mass, "must be the only interior wall, since it moves")
         if wall.temperature is not None:
-            raise SceneError(key, wall.mass, "a wall that moves has no temperature: it is smooth and elastic")
+            raise SceneError(
+                key, wall.mass, "excludes a temperature; a wall that moves is smooth and elastic"
+            )
         axis = crossed_axis(wall, lengths)
         if axis < 0:
             rule = "a wall that moves must reach across the whole container, at right angles to an axis"

@@ -154,7 +154,7 @@ class Scene(Facts):
         if isinstance(self.faces, dict):
             set_fields(self, faces={key_of(name): face for name, face in self.faces.items()})
         if self.count > MOST_PARTICLES:
-            raise SceneError("count", self.count, f"there may be {MOST_PARTICLES} particles")
+            raise SceneError("count", self.count, f"must be at most {MOST_PARTICLES}")
         self._check_gravity()
         check_walls(self)
         check_faces(self)
@@ -220,9 +220,9 @@ class Scene(Facts):
                     return f"walls[{n}]"
         return None
 
-    def _fits(self, key: str, thing: Particle | Species) -> None:
+    def _fits(self, key: str, particle: Particle | Species) -> None:
         """Raise SceneError if particles are larger than the container."""
-        check_room(self.container, self.centres_to_walls, key, thing)
+        check_room(self.container, self.centres_to_walls, key, particle)
 
     def _check_particle(self, n: int, particle: Particle, earlier: Nearby) -> None:
         """Raise SceneError for a particle that is outside, or overlaps a wall or another particle.
@@ -242,7 +242,7 @@ class Scene(Facts):
                 )
         if wall := self.wall_at(particle.position, particle.radius):
             raise SceneError(f"{where}.position", particle.position, f"overlaps {wall}")
-        for m in earlier.around(particle.position):
+        for m in earlier.neighbours(particle.position):
             other = self.particles[m]
             contact = particle.radius + other.radius
             slack = rounding((*particle.position, *other.position), contact)

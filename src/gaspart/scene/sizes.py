@@ -60,11 +60,11 @@ def _log(x: np.ndarray) -> np.ndarray:
     import numpy as np
 
     mantissa, exponent = np.frexp(x)
-    found = exponent * _LN2 + 2.0 * (mantissa - 1.0) / (mantissa + 1.0)
+    logarithm = exponent * _LN2 + 2.0 * (mantissa - 1.0) / (mantissa + 1.0)
     for _ in range(3):
-        power = _exp(found)
-        found = found + 2.0 * (x - power) / (x + power)
-    return found
+        power = _exp(logarithm)
+        logarithm = logarithm + 2.0 * (x - power) / (x + power)
+    return logarithm
 
 
 def normal_quantile(p: np.ndarray) -> np.ndarray:
@@ -95,13 +95,13 @@ def relative_radii(count: int, polydispersity: float, distribution: str) -> np.n
 
     p = (np.arange(count - 1, -1, -1) + 0.5) / max(count, 1)
     if distribution == "uniform":
-        found = 1.0 + math.sqrt(3.0) * polydispersity * (2.0 * p - 1.0)
+        radii = 1.0 + math.sqrt(3.0) * polydispersity * (2.0 * p - 1.0)
     else:
         square = polydispersity * polydispersity
         more = 1.0 + square
         # ln(1 + s^2), also for an s^2 that rounding loses in 1 + s^2
         variance = float(_log(np.array(more))) * square / (more - 1.0) if more > 1.0 else square
-        found = _exp(math.sqrt(variance) * normal_quantile(p))
-    found = found * (count / math.fsum(found)) if count else found
-    found.setflags(write=False)
-    return found
+        radii = _exp(math.sqrt(variance) * normal_quantile(p))
+    radii = radii * (count / math.fsum(radii)) if count else radii
+    radii.setflags(write=False)
+    return radii

@@ -159,13 +159,13 @@ class Plate:
 
     def __post_init__(self) -> None:
         validate(self)
-        one, other = self.edges
-        sizes = math.hypot(*one), math.hypot(*other)
+        first, second = self.edges
+        sizes = math.hypot(*first), math.hypot(*second)
         if not min(sizes) > 0.0:
             raise SceneError("edges", self.edges, "a plate must have a length and a width")
         for length in sizes:
             positive_number("edges", length)
-        if abs(sum(x * y for x, y in zip(one, other, strict=True))) > 1e-9 * sizes[0] * sizes[1]:
+        if abs(sum(x * y for x, y in zip(first, second, strict=True))) > 1e-9 * sizes[0] * sizes[1]:
             raise SceneError("edges", self.edges, "must be at right angles")
 
     @property
@@ -179,8 +179,8 @@ class Plate:
         >>> plate.corners["edges"]
         (2.0, 4.0, 4.0)
         """
-        one, other = self.edges
-        ends = {"edges[0]": (one,), "edges[1]": (other,), "edges": (one, other)}
+        first, second = self.edges
+        ends = {"edges[0]": (first,), "edges[1]": (second,), "edges": (first, second)}
         far = {key: tuple(map(sum, zip(self.corner, *edges, strict=True))) for key, edges in ends.items()}
         return {"corner": self.corner, **far}
 
@@ -273,7 +273,9 @@ def check_walls(scene: Scene) -> None:
         if not isinstance(wall, wall_kind(scene.container)):
             raise SceneError(f"walls[{n}]", wall, WALL_RULE)
         if scene.centres_to_walls:
-            raise SceneError("centres_to_walls", True, "interior walls stop the surfaces of particles")
+            raise SceneError(
+                "centres_to_walls", True, "excludes interior walls, which stop surfaces of particles"
+            )
         for key, point in wall.corners.items():
             inside = zip(point, scene.container.lengths, strict=True)
             if not all(0.0 <= x <= length for x, length in inside):

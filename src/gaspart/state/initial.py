@@ -212,7 +212,7 @@ def _piston(scene: Scene) -> tuple[str | None, np.ndarray | None]:
         start = scene.container.lengths[n // 2] if n % 2 else 0.0
         return FACES[n], np.array([start, face.initial_velocity(n)])
     wall = scene.moving_wall
-    return (None, None) if wall is None else (MOVING_WALL, np.array([wall.place, 0.0]))
+    return (None, None) if wall is None else (MOVING_WALL, np.array([wall.position, 0.0]))
 
 
 def _on_lattice(scene: Scene, rng: np.random.Generator, arrangement: str) -> np.ndarray:

@@ -8,8 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
+from gaspart.errors import SceneError
 from gaspart.theory.brownian import langevin_msd
 from gaspart.theory.enskog import collision_rate, enskog_diffusion, enskog_viscosity, mean_free_path
+from gaspart.theory.finite_size import LARGEST_REMAINDER, finite_size_remainder
 from gaspart.theory.geometry import (
     Numbers,
     Values,
@@ -29,6 +31,9 @@ VISCOSITY_RATIO_UNCERTAINTY = 0.02
 _SHIFT = 0.05  # of the shift in a long container, see `diffusion_in_cube`
 _DENSE = 0.45, 0.03
 # Packing fraction from which on the uncertainty is larger, and which; the difference is 2 % at 0.487.
+_ORDERED = 2.0
+"""Relative remainder of D in a short cube, divided by the relative remainder of the contact value there: by
+the rows of `data/small_systems.csv` (tested)."""
 _VELOCITY_DECAY = {
     2: (
         (0.846023, 1.076378, 1.483431, 2.029232, 2.713878),
@@ -239,14 +244,17 @@ def diffusion_in_cube(
     Raises
     ------
     SceneError
-        If an argument is out of range.
+        If an argument is out of range, or if the cube is so short that the images of a particle change the
+        contact value by more than a tenth.
 
     Notes
     -----
     `erpenbeck_wood_diffusion` minus `yeh_hummer`, of modes that decay with nu + D, with the viscosity of
     `viscosity_ratio`. The shift is uncertain by a fraction of 5 % plus two mean free paths divided by the
     side, but at most by a half. The second term counts in containers that are not much longer than a mean
-    free path. (Tested with 49 values of 1372 to 530604 spheres by another program.)
+    free path. (Tested with 49 values of 1372 to 530604 spheres by another program.) In a short cube the
+    images of a particle order the fluid about it. The relative change of D is twice `finite_size_remainder`.
+    (Tested with 44 rows of `small_systems` in longer cubes; D is about the centre of mass there.)
 
     Examples
     --------
@@ -256,6 +264,13 @@ def diffusion_in_cube(
     (0.1878, 0.0018)
     """
     infinite = float(erpenbeck_wood_diffusion(packing_fraction, diameter, temperature, mass))
+    remainder = float(finite_size_remainder(packing_fraction, 3, length / diameter))
+    if remainder > LARGEST_REMAINDER:
+        rule = (
+            f"images of a particle, {length / diameter:.3g} diameters away, order the fluid about it: nothing"
+            f" is stated where they change the contact value by more than {100.0 * LARGEST_REMAINDER:g} %"
+        )
+        raise SceneError("length", length, rule)
     viscosity = float(enskog_viscosity(packing_fraction, 3, diameter, temperature, mass))
     viscosity *= float(viscosity_ratio(packing_fraction))
     carried = mass * float(number_density(packing_fraction, 3, diameter)) * infinite
@@ -263,7 +278,8 @@ def diffusion_in_cube(
     dense, large = _DENSE
     relative = ERPENBECK_WOOD_UNCERTAINTY if packing_fraction <= dense else large
     paths = float(mean_free_path(packing_fraction, 3, diameter)) / length
-    return infinite - shift, math.hypot(relative * infinite, min(0.5, _SHIFT + 2.0 * paths) * shift)
+    of_shift = min(0.5, _SHIFT + 2.0 * paths) * shift
+    return infinite - shift, math.hypot(math.hypot(relative, _ORDERED * remainder) * infinite, of_shift)
 
 
 @check_ranges

@@ -86,14 +86,14 @@ def cell(scene: Scene, lengths: np.ndarray, piston: np.ndarray | None) -> dict[s
     """
     sides, origin = np.full(3, float(np.max(lengths))), np.zeros(3)
     sides[: len(lengths)] = lengths
-    found = {"cell_lengths": sides, "cell_angles": np.full(3, 90.0)}
+    variables = {"cell_lengths": sides, "cell_angles": np.full(3, 90.0)}
     if piston is None:
-        return found
+        return variables
     for number, _ in scene.pistons:
         axis, high = divmod(number, 2)
         sides[axis] = piston[0] if high else sides[axis] - piston[0]
         origin[axis] = 0.0 if high else piston[0]
-    return found | {_ORIGIN: origin}
+    return variables | {_ORIGIN: origin}
 
 
 def face_names(dimension: int, walls: int = 0) -> list[str]:
@@ -331,9 +331,9 @@ def damaged_frame(file: int, header: bytes, numbers: range) -> int | None:
     size, header_checksum = frame_bytes(header), zlib.crc32(header)
     at_once = max(1, _CHUNK // size)
     for first in range(numbers.start, numbers.stop, at_once):
-        wanted = min(at_once, numbers.stop - first)
-        data = memoryview(read_at(file, wanted * size, len(header) + first * size))
-        for n in range(wanted):
+        count = min(at_once, numbers.stop - first)
+        data = memoryview(read_at(file, count * size, len(header) + first * size))
+        for n in range(count):
             frame = data[n * size : (n + 1) * size]
             if len(frame) < size or frame[-WORD:] != _frame_checksum(frame, first + n, header_checksum):
                 return first + n
@@ -355,7 +355,7 @@ class CheckedFrames:
         self._file = os.dup(file.fileno())
         self.close = weakref.finalize(self, os.close, self._file)
 
-    def damaged(self, numbers: np.ndarray) -> int | None:
+    def find_damage(self, numbers: np.ndarray) -> int | None:
         """Return the first of these frames that is damaged, or None. May raise OSError."""
         new = np.zeros_like(self._checked)
         new[numbers] = True
@@ -402,10 +402,10 @@ class Frames:
         Vectors have 2 or 3 components.
         """
         for name in self._frame.dtype.names[:-1]:
-            given = np.asarray(values[name])
+            array = np.asarray(values[name])
             there = self._frame[name]
-            components = there[..., : given.shape[-1]] if given.ndim else there  # 2D leaves z = 0
-            components[...] = given
+            components = there[..., : array.shape[-1]] if array.ndim else there  # 2D leaves z = 0
+            components[...] = array
         self.append_bytes(self._frame.reshape(1).view(np.uint8).data)
 
     def append_bytes(self, data: memoryview) -> None:

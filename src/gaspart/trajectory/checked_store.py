@@ -36,7 +36,7 @@ class CheckedStore(NetCDF4DataStore):
 
     def require(self, numbers: np.ndarray) -> None:
         """Raise SceneError if one of these frames is damaged."""
-        damaged = self._frames.damaged(numbers)
+        damaged = self._frames.find_damage(numbers)
         if damaged is not None:
             raise SceneError("file", str(self._path), damage(damaged))
 

@@ -21,7 +21,7 @@ from gaspart.keys.values import count_of
 from gaspart.state.insertion import per_particle
 from gaspart.system import descriptor_path
 from gaspart.trajectory import amber
-from gaspart.trajectory.opening import check_frames, opened, run_path
+from gaspart.trajectory.opening import check_frames, open_netcdf_file, run_path
 from gaspart.trajectory.recipe import read_recipe
 
 ALL = "all"
@@ -152,12 +152,12 @@ def _snapshots(path: Path, frame: int | str) -> Iterator[Snapshot]:
     """
     recipe = read_recipe(path)
     recipe.require_all(path)
-    with opened(path) as file:
+    with open_netcdf_file(path) as file:
         there = len(file.dimensions["frame"])
     if frame == ALL:
         numbers = range(there)
     elif not -there <= count_of("frame", frame, least=-there) < there:
-        raise SceneError("frame", frame, f"the trajectory has {there}")
+        raise SceneError("frame", frame, f"must be one of {there} frames")
     else:
         frame = int(frame) % there  # netCDF counts -1 from the allocated frames of an unfinished file
         numbers = range(frame, frame + 1)
@@ -168,17 +168,17 @@ def _snapshots(path: Path, frame: int | str) -> Iterator[Snapshot]:
 def _read(path: Path, numbers: range) -> Iterator[Snapshot]:
     """Yield the frames of a trajectory with these numbers."""
     scene = read_recipe(path).scene
-    with opened(path) as file:
+    with open_netcdf_file(path) as file:
         diameters, types = 2.0 * np.asarray(file["radius"][:]), np.asarray(file["type"][:])
         masses = np.resize(per_particle(scene, "mass"), scene.capacity)[: len(types)].astype(float)
         for n in numbers:
-            places = np.asarray(file["coordinates"][n], dtype=float)
-            inside = np.isfinite(places).all(axis=1)  # False for absent numbers in scenes with open faces
+            positions = np.asarray(file["coordinates"][n], dtype=float)
+            inside = np.isfinite(positions).all(axis=1)  # False for absent numbers in scenes with open faces
             piston = np.asarray(file["piston"][n]) if scene.has_piston else None
             # not read: files of early versions have the whole container, and discs in cells of their diameter
             cell = amber.cell(scene, np.array(scene.container.lengths), piston)
             yield Snapshot(
-                positions=places[inside],
+                positions=positions[inside],
                 velocities=np.asarray(file["velocities"][n], dtype=float)[inside],
                 numbers=np.flatnonzero(inside),
                 diameters=diameters[inside],
@@ -241,16 +241,18 @@ def _write_xyz(path: Path, snapshots: Iterator[Snapshot]) -> None:
     """Write extended XYZ, with the container's boundary, and the ids of particles."""
     columns = "species:S:1:pos:R:3:velo:R:3:radius:R:1:masses:R:1:id:I:1"
     with path.open("w", encoding="ascii") as file:
-        for one in snapshots:
-            cell = " ".join(repr(x) for x in np.diag(one.lengths).ravel().tolist())
-            origin = " ".join(repr(x) for x in one.origin.tolist())
-            pbc = " ".join("T" if along else "F" for along in one.periodic)
-            comment = f'Lattice="{cell}" Origin="{origin}" pbc="{pbc}" Properties={columns} Time={one.time!r}'
-            file.write(f"{len(one.positions)}\n{comment} Program=gaspart\n")
-            kinds = [_SYMBOLS[kind % len(_SYMBOLS)] for kind in one.types.tolist()]
-            numbers = (*one.positions.T, *one.velocities.T, 0.5 * one.diameters, one.masses)
+        for snapshot in snapshots:
+            cell = " ".join(repr(x) for x in np.diag(snapshot.lengths).ravel().tolist())
+            origin = " ".join(repr(x) for x in snapshot.origin.tolist())
+            pbc = " ".join("T" if along else "F" for along in snapshot.periodic)
+            comment = (
+                f'Lattice="{cell}" Origin="{origin}" pbc="{pbc}" Properties={columns} Time={snapshot.time!r}'
+            )
+            file.write(f"{len(snapshot.positions)}\n{comment} Program=gaspart\n")
+            kinds = [_SYMBOLS[kind % len(_SYMBOLS)] for kind in snapshot.types.tolist()]
+            numbers = *snapshot.positions.T, *snapshot.velocities.T, 0.5 * snapshot.diameters, snapshot.masses
             template = f"%s {' '.join(['%.9g'] * len(numbers))} %d\n"
-            file.writelines(_rows(template, np.array(kinds, dtype=object), *numbers, one.numbers + 1))
+            file.writelines(_rows(template, np.array(kinds, dtype=object), *numbers, snapshot.numbers + 1))
 
 
 def _write_data(path: Path, snapshots: Iterator[Snapshot]) -> None:

@@ -14,7 +14,7 @@ from gaspart.scene.open_faces import refuse_open
 from gaspart.state.given import state_from_arrays
 from gaspart.state.state import State
 from gaspart.trajectory.checkpoint import kept_beside
-from gaspart.trajectory.opening import checked, run_path
+from gaspart.trajectory.opening import open_verified, run_path
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import Recipe, read_recipe
 from gaspart.trajectory.run import simulation_of
@@ -59,7 +59,7 @@ def last_state(path: str | Path) -> State:
     """
     path = run_path(path)
     recipe = read_recipe(path)
-    with checked(path) as (_, header, frames):
+    with open_verified(path) as (_, header, frames):
         checkpoint = kept_beside(path, header, "to start from the last frame, in single precision")
     if checkpoint and checkpoint.frames == frames:
         simulation = simulation_of(recipe)
@@ -79,7 +79,7 @@ def last_state(path: str | Path) -> State:
 def _of_frame(recipe: Recipe, frame: xr.Dataset) -> State:
     """Return the state of a frame that has all particles."""
     scene, time = recipe.scene, float(frame["time"])
-    places, velocities = (frame[name].values.astype(float) for name in ("coordinates", "velocities"))
+    positions, velocities = (frame[name].values.astype(float) for name in ("coordinates", "velocities"))
     spins, vibrations = (
         frame[name].values.astype(float) if name in frame else None for name in ("spins", "vibrations")
     )
@@ -90,5 +90,5 @@ def _of_frame(recipe: Recipe, frame: xr.Dataset) -> State:
         begun = recipe.initial.displaced if recipe.initial else None
         displaced = (begun or 0.0) + scene.shear_rate * scene.container.lengths[GRADIENT] * time
     return replace(
-        state_from_arrays(scene, places, velocities, spins, piston, displaced, vibrations), time=time
+        state_from_arrays(scene, positions, velocities, spins, piston, displaced, vibrations), time=time
     )

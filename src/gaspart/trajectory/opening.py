@@ -60,7 +60,7 @@ def writing(path: Path) -> Iterator[None]:
 
 
 @contextmanager
-def locked(partial: Path) -> Iterator[BinaryIO]:
+def open_locked(partial: Path) -> Iterator[BinaryIO]:
     """Open the partial file to read and write, without a buffer, locked by this process.
 
     It may be closed within the block, as before it is renamed; the lock stays. Raises SceneError for a file
@@ -109,23 +109,23 @@ def replica_path(path: Path, number: int) -> Path:
 # Opening the file of a trajectory; its header and its number of frames are checked against its size.
 
 
-def run_path(given: object) -> Path:
+def run_path(value: object) -> Path:
     """Return the path of a trajectory that a user gives. Raises SceneError for other values."""
-    if isinstance(given, str | os.PathLike):
-        return Path(given)
-    raise no_run(given)
+    if isinstance(value, str | os.PathLike):
+        return Path(value)
+    raise not_a_trajectory(value)
 
 
-def no_run(given: object) -> SceneError:
+def not_a_trajectory(value: object) -> SceneError:
     """Return the error for a value that is no trajectory."""
     rule = "must be the path of a trajectory, which gaspart.run writes"
-    if isinstance(given, Scene):
+    if isinstance(value, Scene):
         rule = "this is a scene: run it first, gaspart.run(scene, duration=..., path=...)"
-    return SceneError("trajectory", f"a {type(given).__name__}", rule)
+    return SceneError("trajectory", f"a {type(value).__name__}", rule)
 
 
 @contextmanager
-def checked(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
+def open_verified(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
     """Open a trajectory: the file, its header and its number of frames.
 
     These are checked against the file. Raises SceneError for a file of another kind, truncated, or damaged in
@@ -137,12 +137,12 @@ def checked(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
             if path.suffix == PARTIAL and amber.is_blank(file):
                 raise ValueError("nothing was written to it yet; start the run again with `gaspart run`")
             header, frames = amber.stored_header(file), frame_count(file)
-            needed = len(header) + frames * amber.frame_bytes(header)
-            if status.st_size < needed:
-                rule = f"is truncated: {status.st_size} bytes, where {frames} frames need {needed}"
+            expected = len(header) + frames * amber.frame_bytes(header)
+            if status.st_size < expected:
+                rule = f"is truncated: {status.st_size} bytes, where {frames} frames need {expected}"
                 raise ValueError(rule)
-            if status.st_size > needed and path.suffix != PARTIAL:  # a partial file may end within a frame
-                rule = f"is damaged: {status.st_size} bytes, where {frames} frames need {needed}"
+            if status.st_size > expected and path.suffix != PARTIAL:  # a partial file may end within a frame
+                rule = f"is damaged: {status.st_size} bytes, where {frames} frames need {expected}"
                 raise ValueError(rule)
             yield file, header, frames
     except OSError as error:
@@ -172,7 +172,7 @@ def open_checked(path: Path) -> tuple[netCDF4.Dataset, CheckedFrames]:
 
     The caller closes both.
     """
-    with checked(path) as (file, header, frames):
+    with open_verified(path) as (file, header, frames):
         return open_descriptor(file), CheckedFrames(file, header, frames)
 
 
@@ -184,7 +184,7 @@ def open_descriptor(file: BinaryIO) -> netCDF4.Dataset:
 
 
 @contextmanager
-def opened(path: Path) -> Iterator[netCDF4.Dataset]:
+def open_netcdf_file(path: Path) -> Iterator[netCDF4.Dataset]:
     """Open a trajectory like `open_netcdf`, and close it after the block."""
     with open_netcdf(path) as file:
         yield file
@@ -192,9 +192,9 @@ def opened(path: Path) -> Iterator[netCDF4.Dataset]:
 
 def check_frames(path: Path, numbers: range | None = None) -> None:
     """Read some frames of a trajectory, or all. Raises SceneError if one is damaged."""
-    with checked(path) as (file, header, frames):
-        wanted = range(frames) if numbers is None else range(numbers.start, min(numbers.stop, frames))
-        damaged = damaged_frame(file.fileno(), header, wanted)
+    with open_verified(path) as (file, header, frames):
+        selection = range(frames) if numbers is None else range(numbers.start, min(numbers.stop, frames))
+        damaged = damaged_frame(file.fileno(), header, selection)
         if damaged is not None:
             raise ValueError(damage(damaged))
 

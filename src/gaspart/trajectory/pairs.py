@@ -20,7 +20,7 @@ def pairs_of(scene: Scene) -> list[tuple[int, int]]:
     """
     if scene.particles:
         raise SceneError(
-            "particles", len(scene.particles), "pairs are those of species: there are single particles"
+            "particles", len(scene.particles), "excludes pairs, which are counted for species only"
         )
     return list(combinations_with_replacement(range(len(scene.species)), 2))
 
@@ -51,8 +51,8 @@ class PairCounter:
         """Count the events since the last call, and forget them."""
         particles = self._simulation.events["particles"]
         species = self._species[particles[particles[:, 1] >= 0]]  # without hits of faces and walls
-        found = self._number[species[:, 0], species[:, 1]]
-        self.counts += np.bincount(found, minlength=len(self.counts))
+        numbers = self._number[species[:, 0], species[:, 1]]
+        self.counts += np.bincount(numbers, minlength=len(self.counts))
         self._simulation.record_events = True  # a new, empty list
 
     def checkpoint(self) -> dict[str, np.ndarray]:

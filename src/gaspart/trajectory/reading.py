@@ -137,16 +137,16 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
 def _following(recipe: Recipe) -> dict[str, float]:
     """Return the attributes that follow from a scene and its start."""
     scene = recipe.scene
-    given = {GIVEN_START: 1} if recipe.initial is not None else {}
+    start = {GIVEN_START: 1} if recipe.initial is not None else {}
     names = ("dimension", *(() if scene.is_open else ("count", "packing_fraction", "number_density")))
-    return {name: getattr(scene, name) for name in names} | given
+    return {name: getattr(scene, name) for name in names} | start
 
 
 def _with_piston(data: xr.Dataset) -> xr.Dataset:
     """Return a dataset with the motion of a piston as two variables with units."""
-    place, velocity = (data["piston"].isel(motion=n, drop=True) for n in (0, 1))
-    place.attrs, velocity.attrs = (
+    position, velocity = (data["piston"].isel(motion=n, drop=True) for n in (0, 1))
+    position.attrs, velocity.attrs = (
         {"units": unit, "long_name": f"{name} of the piston along its axis"}
         for unit, name in (("length", "place"), ("length/time", "velocity"))
     )
-    return data.drop_vars("piston").assign(piston_position=place, piston_velocity=velocity)
+    return data.drop_vars("piston").assign(piston_position=position, piston_velocity=velocity)

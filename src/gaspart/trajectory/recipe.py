@@ -30,7 +30,7 @@ from gaspart.state.random import stream
 from gaspart.state.state import State
 from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.correlator import Correlations, sum_names
-from gaspart.trajectory.opening import opened
+from gaspart.trajectory.opening import open_netcdf_file
 from gaspart.trajectory.pairs import pair_names, pairs_of
 from gaspart.trajectory.run_options import OPTIONS
 from gaspart.trajectory.until import Until
@@ -112,7 +112,9 @@ class Recipe:
             if (value := getattr(self, key, None)) is not None:
                 object.__setattr__(self, key, kind.check(key, value))
         if self.follow is not None and self.follow > self.scene.count:
-            raise SceneError("follow", self.follow, f"there are {self.scene.count} particles")
+            raise SceneError(
+                "follow", self.follow, f"must be at most {self.scene.count}, the number of particles"
+            )
         if self.keep and self.until:
             raise SceneError("keep", self.keep, "has no meaning with until, which measures what is there")
         for key in ("follow", "correlations", "displacements", "pairs"):
@@ -139,19 +141,20 @@ class Recipe:
             if not self.engine.records_events:
                 raise SceneError("pairs", True, 'collisions of pairs are counted by the "event" engine')
 
-    def _check_correlations(self, asked: Correlations) -> None:
+    def _check_correlations(self, correlations: Correlations) -> None:
         """Raise SceneError for correlations that this run cannot have."""
-        if not asked.stress:
+        if not correlations.stress:
             refuse_sheared(self.scene, "carries particles along: correlations need stress")
-        interval = "correlations.interval", asked.interval
+        interval = "correlations.interval", correlations.interval
         if self.engine.quantum:
             multiple(*interval, "time_step", self.engine.quantum)
-        if asked.start > 0.0:
-            multiple("correlations.start", asked.start, *interval)
-        samples = (self.frames - 1) * self.samples_per_frame - asked.first
-        if asked.lags > samples:
-            rule = f"there are {max(0, samples)} intervals of {asked.interval:g} from {asked.start:g} on"
-            raise SceneError("correlations.lags", asked.lags, rule)
+        if correlations.start > 0.0:
+            multiple("correlations.start", correlations.start, *interval)
+        samples = (self.frames - 1) * self.samples_per_frame - correlations.first
+        if correlations.lags > samples:
+            rule = f"must be at most {max(0, samples)}, the number of intervals "
+            rule += f"of {correlations.interval:g} from {correlations.start:g} on"
+            raise SceneError("correlations.lags", correlations.lags, rule)
 
     @property
     def samples_per_frame(self) -> int:
@@ -186,14 +189,14 @@ class Recipe:
     @property
     def asked(self) -> tuple[OptionalTally, ...]:
         """Optional tallies that its simulation must make."""
-        needed = self.correlations.tallies if self.correlations else ()
-        return tuple(dict.fromkeys((*self.tallies, *needed)))
+        tallies = self.correlations.tallies if self.correlations else ()
+        return tuple(dict.fromkeys((*self.tallies, *tallies)))
 
     @property
     def tallied(self) -> tuple[OptionalTally, ...]:
         """All optional tallies of its frames, including the tallies of its scene."""
-        made = (tally for tally in tallies_of(self.scene) if tally.name in self.engine.tallies)
-        return (*made, *self.asked)
+        scene_tallies = (tally for tally in tallies_of(self.scene) if tally.name in self.engine.tallies)
+        return (*scene_tallies, *self.asked)
 
     @property
     def layout(self) -> amber.Layout:
@@ -295,7 +298,7 @@ def _is_numbered(seed: int | tuple[int, ...], replica: int, replicas: int) -> bo
 def read_recipe(path: str | Path) -> Recipe:
     """Read the recipe of a trajectory, finished or not. Raises SceneError if it has no recipe."""
     path = Path(path)
-    with opened(path) as file:
+    with open_netcdf_file(path) as file:
         return stored_recipe(file, path)
 
 
@@ -340,7 +343,7 @@ def _part(name: str) -> str:
 
 def stored_revision(path: Path) -> str:
     """Return the git revision at which a trajectory was begun; "" outside of a checkout."""
-    with opened(path) as file:
+    with open_netcdf_file(path) as file:
         return getattr(file, "git_revision", "")
 
 

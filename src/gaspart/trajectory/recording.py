@@ -61,8 +61,8 @@ class Recording:
         self._recipe, self._simulation, self._frames = recipe, simulation, frames
         self._path, self._every, self._progress = path, every, progress
         self._origin = simulation.initial_state.unwrapped
-        asked = recipe.correlations
-        self._correlator = asked and correlator_for(asked, simulation, recipe.displacements)
+        correlations = recipe.correlations
+        self._correlator = correlations and correlator_for(correlations, simulation, recipe.displacements)
         self._pairs = PairCounter(simulation) if recipe.pairs else None
         self._examine = examine
         self._duration = recipe.longest if examine is None else self._estimate(0, math.inf)
@@ -132,8 +132,8 @@ class Recording:
 
         excess : present error divided by the required error
         """
-        needed = frames * excess**2 if math.isfinite(excess) else 0.0
-        expected = examined_from(min(max(needed, frames + 1.0), self._recipe.frames))
+        required_frames = frames * excess**2 if math.isfinite(excess) else 0.0
+        expected = examined_from(min(max(required_frames, frames + 1.0), self._recipe.frames))
         return min((expected - 1) * self._recipe.sample_interval, self._recipe.longest)
 
     def _estimate_again(self) -> None:

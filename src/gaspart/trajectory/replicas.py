@@ -59,19 +59,19 @@ def in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
     return [replace(recipe, seed=_seed(recipe, k), replica=(k, replicas)) for k in range(1, replicas + 1)]
 
 
-def differ(scene: Scene, engine: Engine, given: bool = False) -> bool:
+def differ(scene: Scene, engine: Engine, has_initial: bool = False) -> bool:
     """Return True if runs with other seeds are other runs.
 
     Random numbers are then drawn for the first state, unless it is given, or later.
     """
-    drawn = not given and (scene.vibrates or any(kind.count for kind in scene.species))
+    drawn = not has_initial and (scene.vibrates or any(kind.count for kind in scene.species))
     return drawn or engine.draws(scene)
 
 
 def _seed(recipe: Recipe, number: int) -> tuple[int, ...]:
     """Return the seed of one of the replicas of a run."""
-    given = recipe.seed if isinstance(recipe.seed, tuple | list) else (recipe.seed,)
-    return (*given, number)
+    seed = recipe.seed if isinstance(recipe.seed, tuple | list) else (recipe.seed,)
+    return (*seed, number)
 
 
 def of_all(recipe: Recipe) -> tuple[Recipe, int]:
@@ -157,14 +157,14 @@ def beside(path: Path, recipe: Recipe) -> list[tuple[Path, Recipe]]:
     list of tuple of Path and Recipe
         Paths and recipes.
     """
-    whole, replicas = of_all(recipe)
+    common, replicas = of_all(recipe)
     if replicas == 1:
         return [(path, recipe)]
     paths = replica_paths(path_of_all(path, recipe), replicas)
-    return list(zip(paths, in_replicas(whole, replicas), strict=True))
+    return list(zip(paths, in_replicas(common, replicas), strict=True))
 
 
-def found(path: str | Path) -> tuple[Path, Recipe]:
+def find_run(path: str | Path) -> tuple[Path, Recipe]:
     """Return a file of the run at a path, finished or not, and its recipe.
 
     It is the file at the path itself, or, of several replicas, the first.
@@ -186,8 +186,10 @@ def found(path: str | Path) -> tuple[Path, Recipe]:
     """
     path = Path(path)
     first = replica_paths(path, 2)[0] if path.name else path
-    place = next((one for one in (path, partial_path(path), *_places(first)) if one.exists()), path)
-    return place, read_recipe(place)
+    file = next(
+        (candidate for candidate in (path, partial_path(path), *_places(first)) if candidate.exists()), path
+    )
+    return file, read_recipe(file)
 
 
 def files_of(path: str | Path) -> list[Path]:
@@ -208,15 +210,19 @@ def files_of(path: str | Path) -> list[Path]:
     SceneError
         If a file is missing or of another run, and as `read_recipe`.
     """
-    first, recipe = found(path)
+    first, recipe = find_run(path)
     if recipe.replica is None:
         return [first]
     files = []
-    for place, wanted in beside(first, recipe):
-        there = [one for one in _places(place) if one.exists() and read_recipe(one) == wanted]
+    for target, target_recipe in beside(first, recipe):
+        there = [
+            candidate
+            for candidate in _places(target)
+            if candidate.exists() and read_recipe(candidate) == target_recipe
+        ]
         if not there:
             rule = f"is not there: it is one of {recipe.replica[1]} replicas, which are one run"
-            raise SceneError("file", str(place), rule)
+            raise SceneError("file", str(target), rule)
         files.append(there[0])
     return files
 
@@ -226,7 +232,7 @@ def _places(path: Path) -> tuple[Path, Path]:
     return path, partial_path(path)
 
 
-def reached(files: Sequence[tuple[Path, Recipe]], frames: int) -> list[Path] | None:
+def find_replicas(files: Sequence[tuple[Path, Recipe]], frames: int) -> list[Path] | None:
     """Return the files of all replicas of a run with at least a number of frames.
 
     Parameters
@@ -244,28 +250,28 @@ def reached(files: Sequence[tuple[Path, Recipe]], frames: int) -> list[Path] | N
     """
     if len(files) == 1:
         return [files[0][0]]
-    places = [_with_frames(path, recipe, frames) for path, recipe in files]
-    return [place for place in places if place] if all(places) else None
+    available = [_with_frames(path, recipe, frames) for path, recipe in files]
+    return [item for item in available if item] if all(available) else None
 
 
 def _with_frames(path: Path, recipe: Recipe, frames: int) -> Path | None:
     """Return the file of a replica that has this number of frames; None without one."""
-    for place in _places(path):
+    for candidate in _places(path):
         with suppress(SceneError, OSError, struct.error):  # not there yet, or empty
-            with open_regular(place) as file:
+            with open_regular(candidate) as file:
                 enough = frame_count(file) >= frames
-            if enough and begun_as(place, recipe):
-                return place
+            if enough and begun_as(candidate, recipe):
+                return candidate
     return None
 
 
 @contextmanager
-def opened_together(places: Sequence[Path]) -> Iterator[list[xr.Dataset]]:
+def opened_together(paths: Sequence[Path]) -> Iterator[list[xr.Dataset]]:
     """Open several trajectories.
 
     Parameters
     ----------
-    places : sequence of Path
+    paths : sequence of Path
         The files.
 
     Yields
@@ -279,4 +285,4 @@ def opened_together(places: Sequence[Path]) -> Iterator[list[xr.Dataset]]:
         As `open_trajectory`.
     """
     with ExitStack() as stack:
-        yield [stack.enter_context(open_trajectory(place)) for place in places]
+        yield [stack.enter_context(open_trajectory(path)) for path in paths]

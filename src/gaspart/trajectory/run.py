@@ -35,16 +35,16 @@ from gaspart.trajectory.opening import (
     TRAJECTORY,
     UNFINISHED,
     check_frames,
-    checked,
     is_blank,
-    locked,
+    open_locked,
+    open_verified,
     partial_path,
     run_path,
     writing,
 )
 from gaspart.trajectory.recipe import Recipe, begun_as, read_recipe, stored_revision
 from gaspart.trajectory.recording import Examine, Progress, Recording
-from gaspart.trajectory.replicas import beside, opened_together, reached
+from gaspart.trajectory.replicas import beside, find_replicas, opened_together
 from gaspart.trajectory.until import Until, is_examined
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ def longer(path: Path, duration: float) -> Recipe:
         rule = "was made by another version of gaspart, Python or a package: it could go on otherwise"
         raise SceneError("path", str(path), rule)
     check_frames(path)
-    with checked(path) as (_, _, frames):
+    with open_verified(path) as (_, _, frames):
         reached = (frames - 1) * recipe.sample_interval
     rule = f"must be longer than the {reached:g} that {path.name} has"
     duration = number("duration", duration, rule, above=reached)
@@ -80,31 +80,31 @@ def longer(path: Path, duration: float) -> Recipe:
     return extended
 
 
-def is_beginning(path: Path, wanted: Recipe) -> bool:
+def is_beginning(path: Path, recipe: Recipe) -> bool:
     """Return True if the file at `path` is the beginning of a wanted run.
 
     The two runs then differ only by the shorter duration of the file.
     """
     try:
-        recipe, revision = read_recipe(path), stored_revision(path)
-        with checked(path) as (_, _, frames):
-            shorter = frames < wanted.frames
-        same = replace(recipe, duration=wanted.duration, until=wanted.until)
+        stored, revision = read_recipe(path), stored_revision(path)
+        with open_verified(path) as (_, _, frames):
+            shorter = frames < recipe.frames
+        same = replace(stored, duration=recipe.duration, until=recipe.until)
     except SceneError:  # for example, a duration that is no multiple of its interval
         return False
-    return shorter and begun_as(path, recipe) and same.header(revision) == wanted.header(revision)
+    return shorter and begun_as(path, stored) and same.header(revision) == recipe.header(revision)
 
 
-def take_over(path: Path, wanted: Recipe, frames: Frames) -> Checkpoint | None:
+def take_over(path: Path, recipe: Recipe, frames: Frames) -> Checkpoint | None:
     """Copy the frames and the last state of a shorter run to the longer one.
 
     The shorter run is at `path`, the longer one is begun in `frames`. Returns None, with nothing changed, if
     there is no such run, or its last state was not kept. The checkpoint of the shorter run is replaced last:
     after a kill before that, the copy is repeated. Raises SceneError for a damaged file, and OSError.
     """
-    if not (path.exists() and is_beginning(path, wanted)):
+    if not (path.exists() and is_beginning(path, recipe)):
         return None
-    with checked(path) as (source, header, count):
+    with open_verified(path) as (source, header, count):
         kept = read_checkpoint(checkpoint_path(path), header)
         if kept is None or kept.frames != count:
             return None
@@ -162,35 +162,35 @@ _ACTIONS: dict[Content, Action | dict[Content, Action]] = {
 """Action by the content at the path, and where that does not decide, by the content of the partial file."""
 
 
-def is_finished(wanted: Recipe, path: Path, examiner: Examiner | None, overwrite: bool) -> bool:
+def is_finished(recipe: Recipe, path: Path, examiner: Examiner | None, overwrite: bool) -> bool:
     """Return True if a run is complete at `path`.
 
     Raises SceneError if it may not be begun or continued.
     """
-    partial, content = partial_path(path), _content(path, wanted, examiner)
+    partial, content = partial_path(path), _content(path, recipe, examiner)
     action = _ACTIONS[content]
     if isinstance(action, dict):
-        action = action[_partial_content(partial, wanted)]
+        action = action[_partial_content(partial, recipe)]
     if action is Action.REPLACE and not overwrite:
         there = partial if content is Content.NOTHING else path
-        rule = f"exists{_difference(there, wanted, content)}; move it away, or {OVERWRITE}"
+        rule = f"exists{_difference(there, recipe, content)}; move it away, or {OVERWRITE}"
         raise SceneError("path", str(there), rule)
     return action is Action.NONE
 
 
-def _difference(path: Path, wanted: Recipe, content: Content) -> str:
+def _difference(path: Path, recipe: Recipe, content: Content) -> str:
     """Return the difference between the file of a run and the wanted run, as text."""
     try:
         stored = read_recipe(path)
     except SceneError:
         return " and is damaged"
-    if content is Content.SHORTER and stored.until is None and wanted.until is None:
-        return f", with a shorter duration; continue it: gaspart resume {path} --duration {wanted.duration:g}"
+    if content is Content.SHORTER and stored.until is None and recipe.until is None:
+        return f", with a shorter duration; continue it: gaspart resume {path} --duration {recipe.duration:g}"
     keys = [item.name for item in fields(Recipe) if item.compare]
-    changed = [key for key in keys if getattr(stored, key) != getattr(wanted, key)]
+    changed = [key for key in keys if getattr(stored, key) != getattr(recipe, key)]
     texts = [
-        f"{key} {short_repr(getattr(stored, key))}, not {short_repr(getattr(wanted, key))}"
-        if isinstance(getattr(wanted, key), int | float | str | tuple)
+        f"{key} {short_repr(getattr(stored, key))}, not {short_repr(getattr(recipe, key))}"
+        if isinstance(getattr(recipe, key), int | float | str | tuple)
         else key
         for key in changed
     ]
@@ -199,68 +199,68 @@ def _difference(path: Path, wanted: Recipe, content: Content) -> str:
     return f", of another run, which differs in {'; '.join(texts)}"
 
 
-def _content(path: Path, wanted: Recipe, examiner: Examiner | None) -> Content:
+def _content(path: Path, recipe: Recipe, examiner: Examiner | None) -> Content:
     """Return the content at the path of a run.
 
     Raises SceneError for a file of another kind.
     """
     if not may_replace(path, TRAJECTORY, overwrite=True):
         return Content.NOTHING
-    if begun_as(path, wanted):
+    if begun_as(path, recipe):
         with suppress(SceneError), open_regular(path) as file:
             check_frames(path)
-            if is_complete(wanted, path, frame_count(file), examiner):
+            if is_complete(recipe, path, frame_count(file), examiner):
                 return Content.COMPLETE
-    return Content.SHORTER if is_beginning(path, wanted) else Content.OTHER
+    return Content.SHORTER if is_beginning(path, recipe) else Content.OTHER
 
 
-def _partial_content(partial: Path, wanted: Recipe) -> Content:
+def _partial_content(partial: Path, recipe: Recipe) -> Content:
     """Return the content of the partial file of a run.
 
     Raises SceneError for a file of another kind.
     """
     with suppress(FileNotFoundError):  # another process has finished it just now
         if may_replace(partial, UNFINISHED, overwrite=True) and not is_blank(partial):
-            if begun_as(partial, wanted):
+            if begun_as(partial, recipe):
                 return Content.BEGUN
             return Content.OTHER if partial.exists() else Content.NOTHING
     return Content.NOTHING
 
 
-def is_complete(wanted: Recipe, path: Path, frames: int, examiner: Examiner | None) -> bool:
+def is_complete(recipe: Recipe, path: Path, frames: int, examiner: Examiner | None) -> bool:
     """Return True if a trajectory with this number of frames is complete.
 
     Waits for other replicas.
     """
-    examine = examination(wanted, path, examiner)
-    if frames == wanted.frames or examine is None or not is_examined(frames):
-        return frames == wanted.frames
+    examine = examination(recipe, path, examiner)
+    if frames == recipe.frames or examine is None or not is_examined(frames):
+        return frames == recipe.frames
     while (excess := examine(frames)) is None:
         time.sleep(_LOOK)
     return excess <= 1.0
 
 
-def examination(wanted: Recipe, path: Path, examiner: Examiner | None) -> Examine | None:
+def examination(recipe: Recipe, path: Path, examiner: Examiner | None) -> Examine | None:
     """Return the examination of the first frames of a run until it is accurate.
 
     Returns None for other runs. A run of several replicas is examined with the others.
     """
-    until = wanted.until
+    until = recipe.until
     if until is None:
         return None
     if examiner is None:
         raise ValueError("examiner: None (a run that ends when it is accurate needs one)")
-    files = beside(path, wanted)
+    files = beside(path, recipe)
 
     def examine(frames: int) -> float | None:
-        places = reached(files, frames)
-        if places is None:
+        paths = find_replicas(files, frames)
+        if paths is None:
             return None
         try:
-            with opened_together(places) as runs:
+            with opened_together(paths) as runs:
                 return examiner(runs, until, frames)
         except SceneError:
-            if reached(files, frames) == places:
+            if find_replicas(files, frames) == paths:
                 raise
             return None  # the process of another one has just renamed it, or cut it to its checkpoint
 
@@ -292,7 +292,7 @@ class WriteOptions:
         number("checkpoint_seconds", self.checkpoint_seconds, "must not be negative", least=0.0)
 
 
-def record(wanted: Recipe, path: str | Path, options: WriteOptions) -> Path:
+def record(recipe: Recipe, path: str | Path, options: WriteOptions) -> Path:
     """Make the trajectory of a recipe at `path`; return `path`.
 
     The exceptions are explained in `gaspart.run` (`gaspart.runs`).
@@ -300,7 +300,7 @@ def record(wanted: Recipe, path: str | Path, options: WriteOptions) -> Path:
     path = output_path(path)
     if path.suffix != ".nc" and not path.is_dir():  # `gaspart check` knows the format by it
         raise SceneError("path", str(path), "must end in .nc: a trajectory is a netCDF file")
-    return _carry_out(wanted, path, options)
+    return _carry_out(recipe, path, options)
 
 
 def resume(path: str | Path, options: WriteOptions) -> Path:
@@ -313,7 +313,7 @@ def resume(path: str | Path, options: WriteOptions) -> Path:
     partial = partial_path(path)
     try:
         with writing(path):
-            wanted = begun(partial)
+            recipe = begun(partial)
     except SceneError:
         if partial.exists():
             raise
@@ -321,13 +321,13 @@ def resume(path: str | Path, options: WriteOptions) -> Path:
         rule = f"there is no {partial.name} to continue"
         if path.exists():
             check_frames(path)  # raises SceneError for a damaged file, and one of another program
-            wanted = read_recipe(path)
+            recipe = read_recipe(path)
             with open_regular(path) as file:
                 frames = frame_count(file)
-            missing = f"has {frames} of {'more' if wanted.until else wanted.frames} frames, and {rule}"
-            rule = "is already complete" if is_complete(wanted, path, frames, options.examiner) else missing
+            missing = f"has {frames} of {'more' if recipe.until else recipe.frames} frames, and {rule}"
+            rule = "is already complete" if is_complete(recipe, path, frames, options.examiner) else missing
         raise SceneError("path", str(path), rule) from None
-    return _carry_out(wanted, path, options)
+    return _carry_out(recipe, path, options)
 
 
 def begun(partial: Path) -> Recipe:
@@ -335,11 +335,11 @@ def begun(partial: Path) -> Recipe:
 
     Raises SceneError if another version began it.
     """
-    wanted = read_recipe(partial)
-    if not begun_as(partial, wanted):
+    recipe = read_recipe(partial)
+    if not begun_as(partial, recipe):
         rule = "was begun by another version of gaspart, Python or a package: start it anew"
         raise SceneError("path", str(partial), rule)
-    return wanted
+    return recipe
 
 
 def extend(path: str | Path, duration: float, options: WriteOptions) -> Path:
@@ -356,19 +356,19 @@ def extend(path: str | Path, duration: float, options: WriteOptions) -> Path:
     if not path.exists() and partial.exists():
         rule = f"is unfinished: resume it without a duration, which {partial.name} has, before it is extended"
         raise SceneError("path", str(path), rule)
-    wanted = longer(path, duration)
+    recipe = longer(path, duration)
     if not partial.exists():
-        with checked(path) as (_, header, _):
+        with open_verified(path) as (_, header, _):
             kept_beside(path, header, "to run it again from its start")  # named here, if it is damaged
     with writing(path):
         kept = options.keep_checkpoint or checkpoint.exists()
-        with locked(partial) as file:
+        with open_locked(partial) as file:
             if amber.is_blank(file):  # this file states what is under way, whenever it is cut short
-                Frames(file, wanted.layout, wanted.header(stored_revision(path)))
-            elif not begun_as(partial, wanted):
+                Frames(file, recipe.layout, recipe.header(stored_revision(path)))
+            elif not begun_as(partial, recipe):
                 rule = "is of another unfinished run, or to another duration; resume it or move it away"
                 raise SceneError("path", str(partial), rule)
-    return _carry_out(wanted, path, replace(options, keep_checkpoint=kept))
+    return _carry_out(recipe, path, replace(options, keep_checkpoint=kept))
 
 
 def simulation_of(recipe: Recipe) -> Simulation:
@@ -376,24 +376,24 @@ def simulation_of(recipe: Recipe) -> Simulation:
     return Simulation(recipe.scene, recipe.engine, recipe.seed, initial=recipe.initial, tallies=recipe.asked)
 
 
-def _carry_out(wanted: Recipe, path: Path, options: WriteOptions) -> Path:
+def _carry_out(recipe: Recipe, path: Path, options: WriteOptions) -> Path:
     """Finish a trajectory from its present state."""
     partial, checkpoint = partial_path(path), checkpoint_path(path)
     with writing(path):
         if path.is_dir() or not os.access(path.parent, os.W_OK | os.X_OK):
             raise SceneError("path", str(path), "must be a file in an existing folder that can be written to")
-        if is_finished(wanted, path, options.examiner, options.overwrite):
+        if is_finished(recipe, path, options.examiner, options.overwrite):
             if not partial.exists() and not options.keep_checkpoint:
                 remove_checkpoint(checkpoint)
             return path
         may_replace(checkpoint, CHECKPOINT, overwrite=True)  # before the work; each checkpoint asks it again
-        simulation = simulation_of(wanted)
-        with locked(partial) as file:
+        simulation = simulation_of(recipe)
+        with open_locked(partial) as file:
             # again: another process may have finished or begun a run before the lock
-            if not is_finished(wanted, path, options.examiner, options.overwrite):
-                _record(wanted, simulation, file, path, options)
+            if not is_finished(recipe, path, options.examiner, options.overwrite):
+                _record(recipe, simulation, file, path, options)
                 file.close()  # Windows renames no open file
-                place(partial, path, TRAJECTORY, options.overwrite or is_beginning(path, wanted))
+                place(partial, path, TRAJECTORY, options.overwrite or is_beginning(path, recipe))
                 if not options.keep_checkpoint:
                     remove_checkpoint(checkpoint)
     return path
@@ -415,7 +415,7 @@ def _can_keep(partial: Path, frames: int, overwrite: bool) -> bool:
 
 
 def _record(
-    wanted: Recipe,
+    recipe: Recipe,
     simulation: Simulation,
     file: BinaryIO,
     path: Path,
@@ -423,18 +423,18 @@ def _record(
 ) -> None:
     """Write all missing frames to the open partial file."""
     partial = partial_path(path)
-    continued = begun_as(partial, wanted)
-    header = wanted.header(stored_revision(partial) if continued else provenance.git_revision())
+    continued = begun_as(partial, recipe)
+    header = recipe.header(stored_revision(partial) if continued else provenance.git_revision())
     checkpoint = read_checkpoint(checkpoint_path(path), header) if continued else None
     if checkpoint and (
         checkpoint.frames > frame_count(file) or not _can_keep(partial, checkpoint.frames, options.overwrite)
     ):
         checkpoint = None
-    frames = Frames(file, wanted.layout, header, kept=checkpoint.frames if checkpoint else 0)
-    checkpoint = checkpoint or take_over(path, wanted, frames)
-    examine = examination(wanted, partial, options.examiner)
+    frames = Frames(file, recipe.layout, header, kept=checkpoint.frames if checkpoint else 0)
+    checkpoint = checkpoint or take_over(path, recipe, frames)
+    examine = examination(recipe, partial, options.examiner)
     recording = Recording(
-        wanted, simulation, frames, path, options.checkpoint_seconds, options.progress, examine
+        recipe, simulation, frames, path, options.checkpoint_seconds, options.progress, examine
     )
     if checkpoint:
         recording.restore(checkpoint.arrays)

@@ -60,12 +60,14 @@ class Until:
     at_most: float | None = None
 
     def __post_init__(self) -> None:
-        if not self.accuracies or not all(isinstance(one, Requirement) for one in self.accuracies):
+        if not self.accuracies or not all(
+            isinstance(requirement, Requirement) for requirement in self.accuracies
+        ):
             raise SceneError("until", self.accuracies, "must be a gaspart.Accuracy, or several")
-        names = [one.name for one in self.accuracies]
+        names = [requirement.name for requirement in self.accuracies]
         for name in names:
             if names.count(name) > 1:
-                raise SceneError("until", name, "is asked for twice")
+                raise SceneError("until", name, "must be requested only once")
         if self.at_most is not None:
             longest = number("at_most", self.at_most, "must be positive", above=0.0)
             object.__setattr__(self, "at_most", longest)
@@ -85,15 +87,16 @@ class Until:
 
     def to_json(self) -> str:
         """Return the accuracies for the attributes of a file."""
-        asked = [
-            {key: value for key, value in asdict(one).items() if value is not None} for one in self.accuracies
+        entries = [
+            {key: value for key, value in asdict(requirement).items() if value is not None}
+            for requirement in self.accuracies
         ]
-        return json.dumps(asked)
+        return json.dumps(entries)
 
     @classmethod
     def from_dict(cls, values: dict) -> Until:
         """Convert a mapping, the inverse of `dataclasses.asdict`. Raises SceneError."""
-        return cls(tuple(Requirement(**one) for one in values["accuracies"]), values["at_most"])
+        return cls(tuple(Requirement(**entry) for entry in values["accuracies"]), values["at_most"])
 
     @classmethod
     def from_json(cls, text: str, at_most: float | None) -> Until:
@@ -101,7 +104,7 @@ class Until:
 
         Raises SceneError, and TypeError or ValueError for another text.
         """
-        return cls(tuple(Requirement(**one) for one in json.loads(text)), at_most)
+        return cls(tuple(Requirement(**entry) for entry in json.loads(text)), at_most)
 
 
 def examined_frames() -> Iterator[int]:

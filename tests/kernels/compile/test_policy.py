@@ -4,7 +4,9 @@ import math
 import os
 import subprocess
 import sys
+from pathlib import Path
 
+import numba
 import numpy as np
 from numba.core.runtime import _nrt_python, rtsys
 
@@ -107,3 +109,44 @@ def test_what_one_process_translates_another_loads_for_another_kernel(tmp_path):
         command = [sys.executable, program, name]
         done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
         assert done.stdout == f"True\n{hits}\n"
+
+
+PROJECT = Path(__file__).parents[3]
+OLDEST = Path(__file__).parent / "oldest_numba.txt"
+SIMULATION = """
+import hashlib, warnings
+warnings.simplefilter("error")
+import numba
+import gaspart as gp
+scene = gp.Scene(gp.Container((8.0, 8.0), "periodic"), [gp.Species(20, 0.5, temperature=1.0)])
+simulation = gp.Simulation(scene, gp.EventDriven(), 1)
+simulation.advance(5.0)
+parts = simulation.state.positions, simulation.state.velocities
+print(numba.__version__, *(hashlib.sha256(part.tobytes()).hexdigest() for part in parts))
+"""
+
+
+def simulated(*others, cache=None):
+    """What a process prints that finds packages in other folders first, and when each kernel of a cache was
+    written."""
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(map(str, others))}
+    environment |= {"GASPART_CACHE": str(cache)} if cache else {}
+    command = [sys.executable, "-c", SIMULATION]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    kept = {path: path.stat().st_mtime_ns for path in cache.rglob("*.nbc")} if cache else {}
+    return done.stdout.split(), kept
+
+
+def test_the_oldest_numba_that_is_allowed_gives_the_same_bits_and_keeps_its_kernels(tmp_path):
+    """The locked release is the newest one: the upper bound of pyproject.toml."""
+    release = OLDEST.read_text().partition("\nnumba==")[2].split()[0]
+    assert f'"numba>={release.removesuffix(".0")},<' in (PROJECT / "pyproject.toml").read_text()
+    oldest, cache = tmp_path / "oldest", tmp_path / "cache"
+    command = [sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check", "install", "--no-deps"]
+    command += ["--no-compile", "--require-hashes", "--target", oldest, "--requirement", OLDEST]
+    subprocess.run(command, check=True)
+    (locked, *bits), _ = simulated()
+    assert locked == numba.__version__ != release
+    first, kept = simulated(oldest, cache=cache)
+    assert first == [release, *bits] and kept
+    assert simulated(oldest, cache=cache) == (first, kept)

@@ -28,7 +28,7 @@ ADDRESSES = [
 FORMS = [
     "**a** `x <{}>`_",
     "**a** `x <{}>`__",
-    "**a** x_\n\n*What is seen.* b\n\n.. _x: {}\n\nx_",
+    "**a** x_\n\n*Panels.* b\n\n.. _x: {}\n\nx_",
     "**`x <{}>`_**",
     "**a**\n\n.. image:: {}",
     "**a**\n\n.. figure:: {}",

@@ -89,12 +89,16 @@ def diffusion_in_cube(
     Yeh and Hummer, and less what modes of the container add after the slope was taken, half of which is
     uncertain. By a kinetic equation it is D of this equation, and the contribution of the flow in the
     container, which its cells resolve. Half of shift and addition, and the bias of the engine, are its
-    uncertainty. None for discs, and for spheres denser than the fluid.
+    uncertainty. None for discs, for spheres denser than the fluid, and in a cube so short that its images
+    order the fluid.
     """
     if gas.dimension == 2 or gas.packing_fraction > theory.ERPENBECK_WOOD_HIGHEST:
         return None
     if engine is None or scene is None or engine.equation == EXACT:
-        value, error = theory.diffusion_in_cube(gas.packing_fraction, side, **gas.particle)
+        try:
+            value, error = theory.diffusion_in_cube(gas.packing_fraction, side, **gas.particle)
+        except ValueError:  # the images of a particle order the fluid
+            return None
         late = _after_window(gas, window)
         return value + late, math.hypot(error, 0.5 * late), "Erpenbeck and Wood, Yeh and Hummer"
     value = bulk.diffusion(gas, engine.equation)

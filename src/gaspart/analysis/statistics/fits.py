@@ -287,6 +287,18 @@ def means_of(samples: ArrayLike, sizes: ArrayLike | None = None) -> tuple[np.nda
     return mean, np.sqrt(variance)
 
 
+def histogram_means(samples: ArrayLike, sizes: ArrayLike | None = None) -> tuple[np.ndarray, np.ndarray]:
+    """Compute means of N histograms (N, bins), with NaN for errors that are not known.
+
+    A bin with the same value in all samples, such as an empty bin, has no scatter. This states nothing about
+    its error, unless no bin has any scatter: then nothing changes, and all errors are 0.
+    """
+    means, errors = means_of(samples, sizes)
+    if errors.any():
+        errors = np.where(errors > 0.0, errors, np.nan)
+    return means, errors
+
+
 def steady_mean(series: ArrayLike, *changes: ArrayLike) -> Estimate:
     """Compute the mean current into and out of a store from averages in K blocks.
 

@@ -39,33 +39,33 @@ In the Enskog model the contact value too is taken at the mean density of a cell
 """
 
 
-def candidate(engine: DSMC, asked: Asked) -> Candidate:
+def candidate(engine: DSMC, request: Asked) -> Candidate:
     """Choose cells and step of the engine, and bound its errors.
 
     Raises SceneError if the cells or the step are too coarse for the local conditions, and if the gas is too
     dense for the Enskog model.
     """
-    conditions, dense = asked.conditions, engine.model == "enskog"
+    conditions, dense = request.conditions, engine.model == "enskog"
     filled = float(conditions.filled.max())
     if dense and filled > DENSEST:
         rule = f"the Enskog model is known up to {DENSEST:g}, also where the gas is densest"
         raise SceneError("packing_fraction", round(filled, 4), rule)
-    resolved = engine.resolved(asked.scene)
+    resolved = engine.resolved(request.scene)
     require_resolved(resolved, conditions)
-    model = enskog_error(asked, cells_of(resolved, conditions)) if dense else boltzmann_error(asked)
-    return Candidate(engine, model, cell_error(resolved, asked))
+    model = enskog_error(request, cells_of(resolved, conditions)) if dense else boltzmann_error(request)
+    return Candidate(engine, model, cell_error(resolved, request))
 
 
-def boltzmann_error(asked: Asked) -> float:
+def boltzmann_error(request: Asked) -> float:
     """Bound the relative error of the Boltzmann equation, in which particles are points."""
-    conditions, scene = asked.conditions, asked.scene
-    error = (asked.memory if asked.transported else 0.0) + _layers(asked)
-    if asked.observable != "pressure":
+    conditions, scene = request.conditions, request.scene
+    error = (request.memory if request.transported else 0.0) + _layers(request)
+    if request.observable != "pressure":
         lost = _NORMAL[scene.dimension] * conditions.surfaces
         error += lost / (1.0 - lost) if lost < 1.0 else math.inf
     few = float((conditions.contact_of_few / conditions.contact).max()) - 1.0
-    if asked.points is not None:
-        return float(error + few + asked.points)
+    if request.points is not None:
+        return float(error + few + request.points)
     virial = float(conditions.virial.max())
     if math.isinf(virial):
         return math.inf
@@ -73,37 +73,37 @@ def boltzmann_error(asked: Asked) -> float:
     return float(error + max(excess, virial if scene.gravity else virial / (1.0 + virial)))
 
 
-def enskog_error(asked: Asked, cells: tuple[int, ...] | None = None) -> float:
+def enskog_error(request: Asked, cells: tuple[int, ...] | None = None) -> float:
     """Bound the relative error of the Enskog equation.
 
     Pairs collide a diameter apart, with the contact value of their density.
 
     cells : number of cells along each axis; by default narrow cells
     """
-    conditions = asked.conditions
-    error = _STATIC + _layers(asked)
-    if asked.transported:
-        error += asked.memory
+    conditions = request.conditions
+    error = _STATIC + _layers(request)
+    if request.transported:
+        error += request.memory
     error += float((conditions.contact_of_few / conditions.contact).max()) - 1.0
     error += _AT_WALLS * float(conditions.filled.max()) * conditions.surfaces
-    if asked.observable == "pressure" and cells is not None:
+    if request.observable == "pressure" and cells is not None:
         virial = float(conditions.virial.max())
-        periodic = asked.scene.container.periodic
+        periodic = request.scene.container.periodic
         walled = [n for n, around in zip(cells, periodic, strict=True) if not around]
         error += sum(virial / (1.0 + virial) / n for n in walled)
     return float(error)
 
 
-def cell_error(engine: DSMC, asked: Asked) -> float:
+def cell_error(engine: DSMC, request: Asked) -> float:
     """Bound the relative error due to cells and steps.
 
     The error is in the viscosity, and in observables that depend on it, by the shortest free path; in a rate
     by the mean over a cell, of a density that changes by e over the scale; in the Enskog model by the
     collisions that are lost among few particles in a cell.
     """
-    conditions, error = asked.conditions, 0.0
-    if asked.transported:
-        error += engine.predictions(asked.scene)["viscosity_error"] * conditions.contrast**2
+    conditions, error = request.conditions, 0.0
+    if request.transported:
+        error += engine.predictions(request.scene)["viscosity_error"] * conditions.contrast**2
     dense = engine.model == "enskog"
     if conditions.axis is not None:
         half = 0.5 * cell_widths(engine, conditions)[conditions.axis] / conditions.scale
@@ -133,8 +133,8 @@ def require_resolved(engine: DSMC, conditions: Layers) -> None:
         ("time_step", step, step, time, "the shortest local free time"),
     ):
         if size > limit:
-            what = "cells are" if key == "cells_per_side" else "particles move" if size is moved else "is"
-            raise SceneError(key, value, f"{what} {size:.2g}, more than {limit:.2g}, {name}")
+            text = "cells are" if key == "cells_per_side" else "particles move" if size is moved else "is"
+            raise SceneError(key, value, f"{text} {size:.2g}, more than {limit:.2g}, {name}")
 
 
 def cell_widths(engine: DSMC, conditions: Layers) -> np.ndarray:
@@ -155,13 +155,13 @@ def cells_of(engine: DSMC, conditions: Layers) -> tuple[int, ...]:
     return tuple(np.broadcast_to(np.array(engine.cells_per_side or 1), conditions.free.shape).tolist())
 
 
-def _layers(asked: Asked) -> float:
+def _layers(request: Asked) -> float:
     """Return the relative error of a density due to the layers of particles at walls.
 
     In these layers the density is Z times the density of the middle, over about a diameter.
     """
-    conditions, scene = asked.conditions, asked.scene
-    if asked.observable != "density" or scene.container.periodic[-1]:
+    conditions, scene = request.conditions, request.scene
+    if request.observable != "density" or scene.container.periodic[-1]:
         return 0.0
     sigma, free = 2.0 * scene.largest_radius, float(conditions.free[-1])
     length = min(free, conditions.scale) if conditions.axis == scene.dimension - 1 else free

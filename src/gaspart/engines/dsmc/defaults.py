@@ -46,7 +46,7 @@ class Rates:
     speed: float
     path: float
 
-    def crowded(self, times: float) -> Rates:
+    def at_density(self, times: float) -> Rates:
         """Return the rates at a density multiplied by `times`."""
         return Rates(times * self.frequency, self.speed, self.path / times)
 
@@ -251,7 +251,7 @@ def may_speed_up(scene: Scene) -> bool:
     return highest_speed(scene) > ROOM * rates(scene, False).speed
 
 
-def is_hotter(state: State, found: Rates) -> bool:
+def is_hotter(state: State, gas_rates: Rates) -> bool:
     """Return True if a given state is so fast that steps must follow its speeds.
 
     Its speeds relative to its mean velocity are compared with the speeds of the scene's own state.
@@ -260,7 +260,7 @@ def is_hotter(state: State, found: Rates) -> bool:
     if not len(velocities):
         return False
     apart = velocities - velocities.mean(axis=0)
-    return float(np.sqrt((apart**2).sum(axis=1)).mean()) > _HOTTER * found.speed
+    return float(np.sqrt((apart**2).sum(axis=1)).mean()) > _HOTTER * gas_rates.speed
 
 
 def levels(reach: Reach, step: float, divided: bool) -> tuple[np.ndarray, np.ndarray]:
@@ -290,14 +290,14 @@ def pace_for(scene: Scene, reach: Reach, step: float, divided: bool) -> Pace:
 _TOO_LONG = f"lets particles fly more than {MOST:g} mean free paths, or {MOST:g} times from wall to wall"
 
 
-def check_step(reach: Reach, step: float, found: Rates) -> None:
+def check_step(reach: Reach, step: float, gas_rates: Rates) -> None:
     """Raise SceneError for a step in which particles fly too far.
 
     This is so if they would collide with more than `MOST` others, or cross the container between walls more
     often.
     """
-    if reach.way(found.speed, step) > reach.most:
-        fit = reach.longest(found.speed, reach.most)
+    if reach.way(gas_rates.speed, step) > reach.most:
+        fit = reach.longest(gas_rates.speed, reach.most)
         raise SceneError("time_step", step, f"{_TOO_LONG}: {fit:.2g} at most")
 
 
@@ -336,21 +336,21 @@ a cell lose 3 % at a packing fraction of 0.1, 6 % at 0.4).
 """
 
 
-def cells_for(engine: DSMC, scene: Scene, found: Rates, crowding: float = 1.0) -> tuple[int, ...]:
+def cells_for(engine: DSMC, scene: Scene, gas_rates: Rates, crowding: float = 1.0) -> tuple[int, ...]:
     """Return the number of cells along each axis (d,): the engine's, or the recommended ones.
 
     crowding : ratio of the density around the particles to the mean density
     """
-    given, d = engine.cells_per_side, scene.dimension
-    if given is not None and not (engine.adapts_cells and crowding > 1.0):
-        sides = tuple(given) if isinstance(given, (tuple, list)) else (given,) * d
+    prescribed, d = engine.cells_per_side, scene.dimension
+    if prescribed is not None and not (engine.adapts_cells and crowding > 1.0):
+        sides = tuple(prescribed) if isinstance(prescribed, (tuple, list)) else (prescribed,) * d
         if len(sides) != d:
-            raise SceneError("cells_per_side", given, f"must be one number, or one for each of {d} axes")
+            raise SceneError("cells_per_side", prescribed, f"must be one number, or one for each of {d} axes")
         return sides
-    return recommended_cells(engine.model, scene, found.crowded(crowding), crowding * scene.count)
+    return recommended_cells(engine.model, scene, gas_rates.at_density(crowding), crowding * scene.count)
 
 
-def recommended_cells(model: str, scene: Scene, found: Rates, number: float) -> tuple[int, ...]:
+def recommended_cells(model: str, scene: Scene, gas_rates: Rates, number: float) -> tuple[int, ...]:
     """Return the recommended number of cells along each axis (d,), for a number of particles.
 
     Where particles fall there are `LAYERS` cells along the fall, if there are enough particles; the remaining
@@ -358,37 +358,37 @@ def recommended_cells(model: str, scene: Scene, found: Rates, number: float) -> 
     """
     lower, upper = accessible(scene)
     lengths = tuple(float(length) for length in upper - lower)
-    fit, axis = _fitting(lengths, found, number, model), falling_axis(scene)
+    fit, axis = _fitting(lengths, gas_rates, number, model), falling_axis(scene)
     layers = min(LAYERS, math.floor(number / FEWEST[model]))
     if axis is None or layers <= fit[axis]:
         return fit
-    others = _fitting(lengths[:axis] + lengths[axis + 1 :], found, number / layers, model)
+    others = _fitting(lengths[:axis] + lengths[axis + 1 :], gas_rates, number / layers, model)
     return (*others[:axis], layers, *others[axis:])
 
 
-def _fitting(lengths: tuple[float, ...], found: Rates, number: float, model: str) -> tuple[int, ...]:
+def _fitting(lengths: tuple[float, ...], gas_rates: Rates, number: float, model: str) -> tuple[int, ...]:
     """Return the cells along axes of these lengths for a number of particles."""
-    width = min(WIDEST * found.path, cube_side(lengths, number / USUAL))
+    width = min(WIDEST * gas_rates.path, cube_side(lengths, number / USUAL))
     width = max(width, cube_side(lengths, number / FEWEST[model]))
     return tuple(max(1, math.floor(length / width + 1e-9)) for length in lengths)
 
 
-def step_for(engine: DSMC, scene: Scene, found: Rates) -> float:
+def step_for(engine: DSMC, scene: Scene, gas_rates: Rates) -> float:
     """Return the length of a step: the engine's, or the recommended one.
 
     Raises SceneError if nothing moves.
     """
     if engine.time_step is not None:
         return engine.time_step
-    reach = reach_of(scene, found.path)
+    reach = reach_of(scene, gas_rates.path)
     if reach.steady():
-        if not found.speed > 0.0:
+        if not gas_rates.speed > 0.0:
             raise SceneError("time_step", None, "must be given for particles that start at rest, and stay")
-        crossing = min(scene.container.lengths) / found.speed
-        free = 1.0 / found.frequency if found.frequency > 0.0 else math.inf
+        crossing = min(scene.container.lengths) / gas_rates.speed
+        free = 1.0 / gas_rates.frequency if gas_rates.frequency > 0.0 else math.inf
         longest = min(LONGEST * free, CROSSED * crossing)
     else:
-        longest = reach.longest(found.speed, reach.recommended)
+        longest = reach.longest(gas_rates.speed, reach.recommended)
     fraction, exponent = math.frexp(longest)
     return math.ldexp(round(fraction * _DIGITS) / _DIGITS, exponent)
 
@@ -399,7 +399,7 @@ def widths_of(cells: tuple[int, ...], scene: Scene) -> np.ndarray:
     return (upper - lower) / np.array(cells)
 
 
-def predicted_error(cells: tuple[int, ...], step: float, scene: Scene, found: Rates) -> float:
+def predicted_error(cells: tuple[int, ...], step: float, scene: Scene, gas_rates: Rates) -> float:
     """Return the relative error of the shear viscosity due to cells and step.
 
     The viscosity is too high. For spheres the error is 16/(45 pi) (w/l)^2 + 16/(75 pi) (c dt/l)^2, with w the
@@ -408,21 +408,28 @@ def predicted_error(cells: tuple[int, ...], step: float, scene: Scene, found: Ra
     (2000). For discs the first term is pi/24 (w/l)^2, by the same argument, and the second equals the term
     for spheres, an estimate. An axis with one cell between periodic faces has no profile to distort.
     """
-    if not found.path < math.inf:
+    if not gas_rates.path < math.inf:
         return 0.0
     d, widths = scene.dimension, widths_of(cells, scene)
     flat = [n == 1 and around for n, around in zip(cells, scene.container.periodic, strict=True)]
-    width = max((float(w) for w, one in zip(widths, flat, strict=True) if not one), default=0.0)
-    return _VISCOSITY[d] * (width / found.path) ** 2 + _VISCOSITY_IN_TIME * _moved(step, d, found) ** 2
+    width = max((float(w) for w, is_flat in zip(widths, flat, strict=True) if not is_flat), default=0.0)
+    return (
+        _VISCOSITY[d] * (width / gas_rates.path) ** 2
+        + _VISCOSITY_IN_TIME * _thermal_step(step, d, gas_rates) ** 2
+    )
 
 
-def diffusion_error(step: float, scene: Scene, found: Rates) -> float:
+def diffusion_error(step: float, scene: Scene, gas_rates: Rates) -> float:
     """Return the relative error of the diffusion coefficient due to a step; it is too high.
 
     For spheres it is 4/(27 pi) (c dt/l)^2, see `predicted_error`; for discs the same, an estimate. Cells have
     no effect.
     """
-    return _DIFFUSION_IN_TIME * _moved(step, scene.dimension, found) ** 2 if found.path < math.inf else 0.0
+    return (
+        _DIFFUSION_IN_TIME * _thermal_step(step, scene.dimension, gas_rates) ** 2
+        if gas_rates.path < math.inf
+        else 0.0
+    )
 
 
 def lost_collisions(engine: DSMC, cells: tuple[int, ...], scene: Scene) -> float:
@@ -431,26 +438,26 @@ def lost_collisions(engine: DSMC, cells: tuple[int, ...], scene: Scene) -> float
     return CELL_LOSS * number / scene.count if engine.model == "enskog" and number > 1 else 0.0
 
 
-def _moved(step: float, dimension: int, found: Rates) -> float:
+def _thermal_step(step: float, dimension: int, gas_rates: Rates) -> float:
     """Return c dt / l."""
     mean = math.sqrt(8.0 / math.pi) if dimension == 3 else math.sqrt(math.pi / 2.0)
-    return math.sqrt(2.0) * found.speed / mean * step / found.path
+    return math.sqrt(2.0) * gas_rates.speed / mean * step / gas_rates.path
 
 
 def coarse(
-    engine: DSMC, cells: tuple[int, ...], step: float, scene: Scene, found: Rates, crowding: float = 1.0
+    engine: DSMC, cells: tuple[int, ...], step: float, scene: Scene, gas_rates: Rates, crowding: float = 1.0
 ) -> dict[str, str]:
     """Return warnings, by setting, about prescribed cells and steps coarser than recommended.
 
     Each warning names a value that is not too coarse.
 
-    found : present rates
+    gas_rates : present rates
     crowding : see `cells_for`
     """
     texts = {}
-    fit = recommended_cells(engine.model, scene, found, crowding * scene.count)
-    effect = f"makes the viscosity {100.0 * predicted_error(cells, step, scene, found):.2g} % too high"
-    wide, met = float(widths_of(cells, scene).max()) / found.path, step * found.frequency
+    fit = recommended_cells(engine.model, scene, gas_rates, crowding * scene.count)
+    effect = f"makes the viscosity {100.0 * predicted_error(cells, step, scene, gas_rates):.2g} % too high"
+    wide, met = float(widths_of(cells, scene).max()) / gas_rates.path, step * gas_rates.frequency
     if not engine.adapts_cells and wide > WIDEST * (1.0 + 1e-9) and any(map(operator.lt, cells, fit)):
         texts["cells_per_side"] = (
             f"gaspart: cells_per_side = {engine.cells_per_side} gives cells of {wide:.2g} mean free paths"

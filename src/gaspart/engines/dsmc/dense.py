@@ -40,8 +40,8 @@ def moved_fields(fields: np.ndarray, before: Grid, after: Grid) -> np.ndarray:
     per_side = tuple(after.per_side)
     centres = np.stack(np.unravel_index(np.arange(len(after.starts) - 1), per_side)) + 0.5
     ratio = (before.per_side / after.per_side)[:, None]
-    places = np.minimum((centres * ratio).astype(np.int64), before.per_side[:, None] - 1)
-    return fields[:, np.ravel_multi_index(tuple(places), tuple(before.per_side))]
+    indices = np.minimum((centres * ratio).astype(np.int64), before.per_side[:, None] - 1)
+    return fields[:, np.ravel_multi_index(tuple(indices), tuple(before.per_side))]
 
 
 def slabs_of(per_side: np.ndarray, reach: np.ndarray) -> tuple[int, np.ndarray]:

@@ -78,7 +78,7 @@ class StressPart(TallyPart):
 
     kernel: Stress
 
-    def __init__(self, asked: OptionalTally, scene: Scene, state: State, threads: int) -> None:
+    def __init__(self, tally: OptionalTally, scene: Scene, state: State, threads: int) -> None:
         d = scene.dimension
         number = 2 * d * d + d
         sums, cell = np.zeros((threads, number, WIDTH), np.int64), np.zeros((threads, number))
@@ -112,12 +112,14 @@ PARTS = {"stress": StressPart}
 """Classes of the parts of optional tallies, by name."""
 
 
-def tally_parts(asked: Iterable[OptionalTally], scene: Scene, state: State, threads: int) -> list[TallyPart]:
+def tally_parts(
+    tallies: Iterable[OptionalTally], scene: Scene, state: State, threads: int
+) -> list[TallyPart]:
     """Return the parts of optional tallies.
 
     state : state at time 0
     """
-    return [PARTS[tally.name](tally, scene, state, threads) for tally in asked]
+    return [PARTS[tally.name](tally, scene, state, threads) for tally in tallies]
 
 
 _WHOLE = 2**FINEST
@@ -263,8 +265,8 @@ class DsmcDynamics(SteppedDynamics):
     def _sums(self) -> dict[str, np.ndarray]:
         return {key: getattr(self._workspace, key) for key in TALLY}
 
-    def _joined(self, sums: np.ndarray) -> np.ndarray:
-        return joined(sums) if sums.shape[-1] == WIDTH else super()._joined(sums)
+    def _sum_threads(self, sums: np.ndarray) -> np.ndarray:
+        return joined(sums) if sums.shape[-1] == WIDTH else super()._sum_threads(sums)
 
     def _counts(self) -> dict[str, Any]:
         """Return the counts, with the number of steps that were made in parts."""
@@ -282,24 +284,24 @@ class DsmcDynamics(SteppedDynamics):
     def _arrays(self) -> dict[str, np.ndarray]:
         return {**super()._arrays(), "clock": self._workspace.clock}
 
-    def _kept(self) -> dict[str, Any]:
+    def _checkpoint_data(self) -> dict[str, Any]:
         """Return the data of a checkpoint, with the level of density and a dense gas's fields."""
         dense = self._resolution.dense
         fields = {"fields": dense.fields} if dense else {}
-        return {**super()._kept(), "crowded": self._resolution.crowded, **fields}
+        return {**super()._checkpoint_data(), "crowded": self._resolution.crowded, **fields}
 
-    def _needed(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    def _required_arrays(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         """Return the data needed from a checkpoint, with fields for its level of density."""
         check_parts(checkpoint, {"crowded": np.array(0)})
         crowded = int(checkpoint["crowded"])
         if not 0 <= crowded <= HIGHEST:
             raise SceneError("checkpoint", crowded, "is no level of density: the checkpoint is damaged")
-        needed = self.checkpoint()
-        if "fields" in needed:
-            needed["fields"] = np.empty(
-                (len(needed["fields"]), math.prod(self._resolution.cells_of(crowded)))
+        required = self.checkpoint()
+        if "fields" in required:
+            required["fields"] = np.empty(
+                (len(required["fields"]), math.prod(self._resolution.cells_of(crowded)))
             )
-        return needed
+        return required
 
     def _place_again(self, checkpoint: dict[str, np.ndarray]) -> None:
         """Place the particles in cells for the density of the checkpoint."""

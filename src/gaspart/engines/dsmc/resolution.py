@@ -63,11 +63,11 @@ def crowding(positions: np.ndarray, cells: tuple[int, ...], scene: Scene) -> flo
     It follows from the pairs in each of some cells, and is 1 in a uniform gas.
     """
     lower, upper = accessible(scene)
-    places = (positions - lower) / (upper - lower) * cells
-    at = np.clip(places.astype(np.int64), 0, np.array(cells) - 1)
-    found = np.bincount(np.ravel_multi_index(tuple(at.T), cells)).astype(float)
+    coordinates = (positions - lower) / (upper - lower) * cells
+    at = np.clip(coordinates.astype(np.int64), 0, np.array(cells) - 1)
+    counts = np.bincount(np.ravel_multi_index(tuple(at.T), cells)).astype(float)
     number = len(positions)
-    return float((found * (found - 1.0)).sum()) * math.prod(cells) / (number * (number - 1.0))
+    return float((counts * (counts - 1.0)).sum()) * math.prod(cells) / (number * (number - 1.0))
 
 
 def next_level(level: int, times: float) -> int:
@@ -119,49 +119,51 @@ class Resolution:
                 dense.fields[...] = moved_fields(self.dense.fields, self.grid, grid)
             self.dense = dense
         self.grid = grid
-        self._reach = reach_of(scene, self._found.crowded(2.0**crowded).path)
+        self._reach = reach_of(scene, self._found.at_density(2.0**crowded).path)
         self.pace: Pace | None = None
         if may_speed_up(scene) or is_hotter(state, self._found):
             self.pace = pace_for(scene, self._reach, self.step, engine.adapts_steps)
 
-    def look(self, places: np.ndarray, time: float) -> None:
+    def look(self, positions: np.ndarray, time: float) -> None:
         """Adapt the cells to the density of particles at these positions (N, d)."""
         scene, times = self._scene, 2.0**self.crowded
-        cells = recommended_cells(self._engine.model, scene, self._found.crowded(times), times * scene.count)
-        crowded = next_level(self.crowded, crowding(places, cells, scene))
+        cells = recommended_cells(
+            self._engine.model, scene, self._found.at_density(times), times * scene.count
+        )
+        crowded = next_level(self.crowded, crowding(positions, cells, scene))
         if crowded != self.crowded:
             self.set(crowded)
-            found = self._found.crowded(2.0**crowded)
-            self._warn(found, f" where most particles are at time {time:g}")
+            gas_rates = self._found.at_density(2.0**crowded)
+            self._warn(gas_rates, f" where most particles are at time {time:g}")
 
-    def level(self, particles: Particles, place: int, time: float) -> int:
+    def level(self, particles: Particles, position: int, time: float) -> int:
         """Return the level of the next part of a step.
 
         It is the level that fits the particles, or a higher one, so that the parts made so far are a whole
         number of its parts. Raises SimulationError if no level fits.
 
-        place : position in the step, in parts of the finest level
+        position : position in the step, in parts of the finest level
         """
         if self.pace is None:
             return 0
         level = fitting_level(particles, self.pace)
         if level == len(self.pace.low):
             raise too_fast(time, self.step, self._reach, self.pace)
-        return max(level, 0 if place == 0 else FINEST + 1 - (place & -place).bit_length())
+        return max(level, 0 if position == 0 else FINEST + 1 - (position & -position).bit_length())
 
     def warn_of_speed(self, time: float) -> None:
         """Warn of a step that is too long for the highest mean speed so far."""
         if self.pace is not None:
             speed = float(self.pace.fastest[0])
-            found = Rates(speed / self._reach.path, speed, self._reach.path)
-            self._warn(found, f" by time {time:g}")
+            gas_rates = Rates(speed / self._reach.path, speed, self._reach.path)
+            self._warn(gas_rates, f" by time {time:g}")
 
-    def _warn(self, found: Rates, when: str) -> None:
+    def _warn(self, gas_rates: Rates, when: str) -> None:
         """Warn once of each prescribed setting that is coarser than recommended.
 
         when : words for the time
         """
-        texts = coarse(self._engine, self.cells, self.step, self._scene, found, 2.0**self.crowded)
+        texts = coarse(self._engine, self.cells, self.step, self._scene, gas_rates, 2.0**self.crowded)
         for key, text in texts.items():
             if key not in self._warned:
                 self._warned.add(key)

@@ -187,11 +187,11 @@ class DSMC(Engine):
         """
         from gaspart.engines.dsmc.defaults import cells_for, rates, step_for
 
-        found = rates(scene, self.model == "enskog")
-        step = step_for(self, scene, found)
+        gas_rates = rates(scene, self.model == "enskog")
+        step = step_for(self, scene, gas_rates)
         if self.time_step is None and interval is not None:
             step = interval / math.ceil(interval / step * (1.0 - 1e-9))
-        cells = cells_for(self, scene, found)
+        cells = cells_for(self, scene, gas_rates)
         return self._with(time_step=step, cells_per_side=cells, adapts=(self.adapts_steps, self.adapts_cells))
 
     def with_step(self, step: float) -> DSMC:
@@ -253,9 +253,9 @@ class DSMC(Engine):
         """
         from gaspart.engines.dsmc.defaults import cells_for, predicted_error, rates, step_for
 
-        found = rates(scene, self.model == "enskog")
-        cells, step = cells_for(self, scene, found), step_for(self, scene, found)
-        return {"viscosity_error": predicted_error(cells, step, scene, found)}
+        gas_rates = rates(scene, self.model == "enskog")
+        cells, step = cells_for(self, scene, gas_rates), step_for(self, scene, gas_rates)
+        return {"viscosity_error": predicted_error(cells, step, scene, gas_rates)}
 
     def cells_along(self, scene: Scene) -> int:
         """Return the largest number of cells along an axis.
@@ -309,12 +309,12 @@ class DSMC(Engine):
         from gaspart.engines.dsmc import defaults
         from gaspart.engines.dsmc.defaults import rates
 
-        found = rates(scene, self.model == "enskog")
-        cells, step = defaults.cells_for(self, scene, found), defaults.step_for(self, scene, found)
+        gas_rates = rates(scene, self.model == "enskog")
+        cells, step = defaults.cells_for(self, scene, gas_rates), defaults.step_for(self, scene, gas_rates)
         lost = defaults.lost_collisions(self, cells, scene)
         if kind == "fluxes":
-            return lost + defaults.predicted_error(cells, step, scene, found)
-        return lost + (defaults.diffusion_error(step, scene, found) if kind == "paths" else 0.0)
+            return lost + defaults.predicted_error(cells, step, scene, gas_rates)
+        return lost + (defaults.diffusion_error(step, scene, gas_rates) if kind == "paths" else 0.0)
 
     @classmethod
     def offered(cls) -> tuple[DSMC, ...]:
@@ -487,12 +487,12 @@ class DSMC(Engine):
         >>> list(gp.DSMC(time_step=2.0).notes(scene, "pressure", paths=False))
         ['boxes', 'time step']
         """
-        found = {"boxes": "cells, whose particles collide by chance: positions of pairs are given up"}
+        remarks = {"boxes": "cells, whose particles collide by chance: positions of pairs are given up"}
         longer = 1.0 if self.time_step is None else self.time_step / self._own_step(scene)
         if longer >= 1.5:
             effect = "which the bias includes" if paths else f"on which {observable} does not depend"
-            found["time step"] = f"{longer:.2g} times the engine's own, {effect}"
-        return found
+            remarks["time step"] = f"{longer:.2g} times the engine's own, {effect}"
+        return remarks
 
     def variant(self, scene: Scene) -> str:
         """Return the name of its compiled kernels for a scene.

@@ -249,11 +249,11 @@ class EventDynamics(Dynamics):
         max_work : number of events, crossings and predictions of a new epoch after which to return as well,
             to within a factor of 2, at the time reached
         """
-        left, work = (
+        remaining, work = (
             np.iinfo(np.int64).max if number is None else number for number in (max_events, max_work)
         )
         many, begun = MANY, self._clock
-        while left > 0 and work > 0:
+        while remaining > 0 and work > 0:
             if self._at_rest:
                 self._stay(until)
                 return
@@ -264,9 +264,9 @@ class EventDynamics(Dynamics):
             ends_epoch = stop > self._epoch
             part, end = min(self._parts, key=attrgetter("next")), min(stop, self._epoch)
             scheduled, end = part.next <= end, min(part.next, end)
-            limits = end, min(left, many, work), min(MANY, work)
+            limits = end, min(remaining, many, work), min(MANY, work)
             reason, done, crossed, last = self._run(log.room if log else None, limits)
-            left -= done
+            remaining -= done
             many -= done
             work -= done + crossed
             self._quiet = 0 if done else self._quiet
@@ -431,29 +431,34 @@ class EventDynamics(Dynamics):
             arrays["centres"] = self._boxes.lists.listed["centre"]
         return arrays
 
-    def _kept(self) -> dict[str, Any]:
+    def _checkpoint_data(self) -> dict[str, Any]:
         """Return particles at their own clocks, predictions, counts, and their search.
 
         Of neighbour lists only the `room` is stored: if it does not suffice all lists are made anew, which
         work counters show.
         """
-        made = self._boxes.lists
-        room = {"room": (made.room, made.per_cell)} if made else {}
-        return {**super()._kept(), **self._searched(), **room}
+        lists = self._boxes.lists
+        room = {"room": (lists.room, lists.per_cell)} if lists else {}
+        return {**super()._checkpoint_data(), **self._search_settings(), **room}
 
-    def _searched(self) -> dict[str, Any]:
+    def _search_settings(self) -> dict[str, Any]:
         """Return the search to which predictions and centres of lists belong."""
         return {"search": self._search, "boxes_per_side": self._grid.per_side}
 
     def _is_of_this_search(self, checkpoint: dict[str, np.ndarray]) -> bool:
-        return all(np.array_equal(checkpoint.get(key, ()), value) for key, value in self._searched().items())
+        return all(
+            np.array_equal(checkpoint.get(key, ()), value) for key, value in self._search_settings().items()
+        )
 
-    def _needed(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    def _required_arrays(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         """Return the arrays needed from a checkpoint: all except the search.
 
         The centres of neighbour lists are not needed from a checkpoint of another search.
         """
-        spared = {*self._searched(), *(() if self._is_of_this_search(checkpoint) else ("centres", "room"))}
+        spared = {
+            *self._search_settings(),
+            *(() if self._is_of_this_search(checkpoint) else ("centres", "room")),
+        }
         return {key: array for key, array in self.checkpoint().items() if key not in spared}
 
     def _go_on(self, checkpoint: dict[str, np.ndarray]) -> None:
@@ -465,8 +470,8 @@ class EventDynamics(Dynamics):
             return
         if self._boxes.lists:
             room = np.clip(checkpoint["room"], 1, 2 * (len(self._flights) + self._boxes.lists.room))
-            made = neighbour_lists(self._scene, *room.tolist())
-            made.listed["centre"] = self._boxes.lists.listed["centre"]
-            self._boxes = self._boxes._replace(lists=made)
+            lists = neighbour_lists(self._scene, *room.tolist())
+            lists.listed["centre"] = self._boxes.lists.listed["centre"]
+            self._boxes = self._boxes._replace(lists=lists)
             self._make_lists()
         self._begin(anew=False)

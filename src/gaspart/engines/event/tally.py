@@ -24,7 +24,7 @@ _OPTIONAL = kernels.Tally._field_defaults  # entries that a part has
 
 
 def tally_parts(
-    asked: Iterable[OptionalTally],
+    tallies: Iterable[OptionalTally],
     flights: np.ndarray,
     model: kernels.Model,
     unit_mass: float,
@@ -36,7 +36,7 @@ def tally_parts(
     flights : (N,), particles
     state : state at time 0
     """
-    return [PARTS[tally.name](tally, flights, model, unit_mass, scene, state) for tally in asked]
+    return [PARTS[tally.name](tally, flights, model, unit_mass, scene, state) for tally in tallies]
 
 
 class EventTally:
@@ -97,8 +97,8 @@ class EventTally:
     @property
     def dissipated(self) -> float:
         """Energy taken by contacts and thermal walls since time 0, minus the energy of kicks."""
-        taken = self.arrays.sums[kernels.LOSS], self.arrays.wall_energy
-        return float(self.lost[0]) + net(*taken) * self._unit_mass - self._given
+        losses = self.arrays.sums[kernels.LOSS], self.arrays.wall_energy
+        return float(self.lost[0]) + net(*losses) * self._unit_mass - self._given
 
     @property
     def exchanged(self) -> float:
@@ -144,7 +144,7 @@ class Epochs:
         square = float((velocities**2).sum(axis=1).mean()) if len(velocities) else 0.0
         return math.sqrt(square + self._gained)
 
-    def _shared(self, velocities: np.ndarray, stored: float) -> float:
+    def _equipartition_speed(self, velocities: np.ndarray, stored: float) -> float:
         """Return the rms speed of particles that share their energy equally.
 
         The few heavy or spinning particles of a gas at rest give their energy to the others within an epoch.
@@ -163,7 +163,7 @@ class Epochs:
         The stored energy is added to the energy of flight. A `present` length is kept as in `length`.
         """
         length = self.length(self.speed(velocities), present)
-        return min(length, self.length(self._shared(velocities, stored), length))
+        return min(length, self.length(self._equipartition_speed(velocities, stored), length))
 
     def flights(self, velocities: np.ndarray, length: float) -> float:
         """Return the number of flights through the container relative to one another in an epoch.
@@ -254,8 +254,8 @@ def check_events(time: float, quiet: int, flights: float) -> None:
     """
     if quiet <= _QUIET or (0.0 < quiet * flights < _FLIGHTS and quiet <= _QUIET_TOGETHER):
         return
-    why = "particles move together" if 0.0 < quiet * flights < _FLIGHTS else "particles miss one another"
-    raise SimulationError(f"no event up to time {time:g} in {quiet} epochs of the clocks: {why}")
+    cause = "particles move together" if 0.0 < quiet * flights < _FLIGHTS else "particles miss one another"
+    raise SimulationError(f"no event up to time {time:g} in {quiet} epochs of the clocks: {cause}")
 
 
 class CollapsePart(Part):

@@ -48,7 +48,7 @@ def with_room(scene: Scene, state: State) -> State:
     return replace(state, **padded)
 
 
-def opened(scene: Scene, state: State) -> kernels.Open | None:
+def open_of(scene: Scene, state: State) -> kernels.Open | None:
     """Return the kernels' `Open` of a state with all numbers; None without open faces."""
     if not scene.is_open:
         return None
@@ -172,10 +172,10 @@ class PistonPart(Part):
         """Write position along its axis and velocity of the piston."""
         piston, motion = self._piston, self._piston.motion.copy()
         advance_piston(motion, piston.push, clock)
-        place, velocity = motion[kernels.PISTON_PLACE], motion[kernels.PISTON_VELOCITY]
+        position, velocity = motion[kernels.PISTON_PLACE], motion[kernels.PISTON_VELOCITY]
         upper = piston.face % 2 == 1
         state.piston = np.array(
-            [self._lengths[piston.face // 2] - place, -velocity] if upper else [place, velocity]
+            [self._lengths[piston.face // 2] - position, -velocity] if upper else [position, velocity]
         )
 
 
@@ -310,7 +310,7 @@ def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_
         sliding=None if velocities is None else Sliding(velocities, np.zeros((velocities.size, 2))),
         accommodation=accommodations(scene),
         ramp=ramp._replace(high=ramp.high / unit_mass) if ramp else None,
-        open=opened(scene, state),
+        open=open_of(scene, state),
     )
 
 

@@ -113,8 +113,8 @@ def largest_terms(scene: Scene, state: State, unit_mass: float) -> tuple[float, 
     if not moving.any():
         return 1.0, 1.0
     masses = state.masses[moving] / unit_mass
-    given = face_energy(scene) + state.vibrational_energy
-    energies = (state.kinetic_energies[moving] + given) / unit_mass
+    gain = face_energy(scene) + state.vibrational_energy
+    energies = (state.kinetic_energies[moving] + gain) / unit_mass
     if scene.gravity is not None:
         energies += masses * sum(
             abs(g) * length for g, length in zip(scene.gravity, state.lengths, strict=True)
@@ -146,19 +146,19 @@ def slowest_that_moves(scene: Scene) -> float:
     return math.sqrt(4.0 * gravity * math.sin(math.atan(_TILT)) * FURTHEST * scene.smallest_radius)
 
 
-def _tilted(gravity: tuple[float, ...]) -> np.ndarray:
+def _tilt(gravity: tuple[float, ...]) -> np.ndarray:
     """Return the accelerations (2, 3) or (4, 3) of gravity tilted to all sides.
 
     A support against all of them is a support against gravity.
     """
-    whole = np.zeros(3)
-    whole[: len(gravity)] = gravity
-    across = [np.array([-whole[1], whole[0], 0.0])]
+    acceleration = np.zeros(3)
+    acceleration[: len(gravity)] = gravity
+    across = [np.array([-acceleration[1], acceleration[0], 0.0])]
     if len(gravity) == 3:
-        one = np.cross(whole, np.eye(3)[np.argmin(np.abs(whole))])
-        across = [one, np.cross(whole, one)]
-    sides = [_TILT * math.hypot(*whole) / math.hypot(*vector) * vector for vector in across]
-    return np.array([whole + sign * side for side in sides for sign in (-1.0, 1.0)])
+        normal = np.cross(acceleration, np.eye(3)[np.argmin(np.abs(acceleration))])
+        across = [normal, np.cross(acceleration, normal)]
+    sides = [_TILT * math.hypot(*acceleration) / math.hypot(*vector) * vector for vector in across]
+    return np.array([acceleration + sign * side for side in sides for sign in (-1.0, 1.0)])
 
 
 class Jams:
@@ -176,13 +176,13 @@ class Jams:
         self._axis, self._most = axis, window / (SHORTEST * scene.contact_duration)
         support = no_support(1, 0.0)._replace(normal=np.zeros((1, _PLANES, 3)))
         least = 2.0 * FURTHEST * math.hypot(*gravity)
-        self._limits = Limits(_tilted(gravity), least, reach, support)
+        self._limits = Limits(_tilt(gravity), least, reach, support)
         self._plain = self._limits._replace(pulls=self._limits.pulls[:2].mean(axis=0, keepdims=True))
 
     def hold(
         self,
         particles: Particles,
-        places: np.ndarray,
+        positions: np.ndarray,
         stays: np.ndarray,
         model: Model,
         tally: Tally,
@@ -215,8 +215,8 @@ class Jams:
         if not (marks[HELD] & marks[PRESSED]).any() and duration.island.max() < len(flights):
             return False
         order = np.flatnonzero(marks[STAYS])
-        order = order[np.argsort(places[order, self._axis], kind="stable")]
-        line = Line(order, places, self._axis)
+        order = order[np.argsort(positions[order, self._axis], kind="stable")]
+        line = Line(order, positions, self._axis)
         keep_stable(flights, line, self._limits, model, marks)
         kept = marks[:2] | (stays & (duration.island >= len(flights)))
         if (kept != marks[:2]).any():  # particles held by a jam before remain unless gravity moves them
@@ -225,7 +225,7 @@ class Jams:
         freed = free_unstable(flights, time, marks, model)
         order = order[marks[HELD][order]]
         parent = np.empty(len(flights), dtype=np.int64)
-        join(flights, order, places, self._axis, self._limits.reach, model.space, parent)
+        join(flights, order, positions, self._axis, self._limits.reach, model.space, parent)
         return jam(flights, order, time, marks, parent, model, tally) or freed
 
 
@@ -326,31 +326,31 @@ class RestWatch(Part):
         """
         from gaspart.kernels.event.jams import MOVES, RESTS, find_resting, stop_all
 
-        flights, places, time = particles.flights, self._before, self.next
+        flights, positions, time = particles.flights, self._before, self.next
         self._next += self._window
         marks = np.empty((3, len(flights)), dtype=bool)
-        find_resting(flights, places, time, self._most, model, marks)
+        find_resting(flights, positions, time, self._most, model, marks)
         if marks[RESTS].all():
             stop_all(flights, time, model, tally)
             self._rests[0] = True
             return False
-        found = self._hold(particles, marks, model, tally, time)
-        return self._jams.hold(particles, places, ~marks[MOVES], model, tally, time) or found
+        any_new = self._hold(particles, marks, model, tally, time)
+        return self._jams.hold(particles, positions, ~marks[MOVES], model, tally, time) or any_new
 
     def _hold(self, particles: Particles, marks: np.ndarray, model: Model, tally: Tally, time: float) -> bool:
         """Hold islands; return whether there are any new ones."""
         from gaspart.kernels.event.jams import RESTS, TOUCHES, hold, join
         from gaspart.kernels.model import NONE
 
-        flights, places, law = particles.flights, self._before, model.law
+        flights, positions, law = particles.flights, self._before, model.law
         assert law is not None and law.duration is not None  # as `rest_watch` requires
         awake = (law.duration.island == NONE) & (law.inverse_mass > 0.0)
         if not (marks[RESTS] & marks[TOUCHES] & awake).any():
             return False
         near = np.flatnonzero(marks.any(axis=0) & awake)  # without sliding particles that touch nothing
-        order = near[np.argsort(places[near, self._axis], kind="stable")]
+        order = near[np.argsort(positions[near, self._axis], kind="stable")]
         parent = np.empty(len(flights), dtype=np.int64)
-        join(flights, order, places, self._axis, self._most, model.space, parent)
+        join(flights, order, positions, self._axis, self._most, model.space, parent)
         return hold(flights, order, time, marks, parent, model, tally)
 
 

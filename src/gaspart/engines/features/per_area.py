@@ -77,5 +77,5 @@ class ThreadedPerAreaPart(Part):
 
     def counts(self, clock: float) -> dict[str, Any]:
         """Return the sums by the fields of `Tally`."""
-        found = self._read(self.sums["per_area"])
-        return per_area_fields(found[:, :-1], found[:, -1], 0)
+        sums = self._read(self.sums["per_area"])
+        return per_area_fields(sums[:, :-1], sums[:, -1], 0)

@@ -101,7 +101,7 @@ class ShearedStressPart(StressPart):
 
 
 def stress_part(
-    asked: OptionalTally, flights: np.ndarray, model: Model, unit_mass: float, scene: Scene, state: State
+    tally: OptionalTally, flights: np.ndarray, model: Model, unit_mass: float, scene: Scene, state: State
 ) -> StressPart:
     """Return the part for a gas that is sheared or not.
 
@@ -169,11 +169,11 @@ class ImpulsesPart(TallyPart):
 
 
 def impulses_part(
-    asked: OptionalTally, flights: np.ndarray, model: Model, unit_mass: float, scene: Scene, state: State
+    tally: OptionalTally, flights: np.ndarray, model: Model, unit_mass: float, scene: Scene, state: State
 ) -> ImpulsesPart:
     """Return the part of an `ImpulseTally`."""
-    assert isinstance(asked, ImpulseTally)
-    return ImpulsesPart(flights, model, unit_mass, scene, "xyz".index(asked.axis), asked.bins)
+    assert isinstance(tally, ImpulseTally)
+    return ImpulsesPart(flights, model, unit_mass, scene, "xyz".index(tally.axis), tally.bins)
 
 
 # Momentum that pairs gain along their separation, from the impulses of contacts.
@@ -208,28 +208,28 @@ class PairImpulsesPart(TallyPart):
 
     def counts(self, clock: float) -> dict[str, Any]:
         """Return the sums by the fields of `Tally`."""
-        found = self.read(clock)
-        return {"contact_impulse_sum": found[MEETING], "other_impulse_sum": found[OTHERS]}
+        sums = self.read(clock)
+        return {"contact_impulse_sum": sums[MEETING], "other_impulse_sum": sums[OTHERS]}
 
 
 def pair_impulses_part(
-    asked: OptionalTally, flights: np.ndarray, model: Model, unit_mass: float, scene: Scene, state: State
+    tally: OptionalTally, flights: np.ndarray, model: Model, unit_mass: float, scene: Scene, state: State
 ) -> PairImpulsesPart:
     """Return the part of a `PairImpulseTally`."""
-    assert isinstance(asked, PairImpulseTally)
+    assert isinstance(tally, PairImpulseTally)
     d, n = scene.dimension, scene.count
     momentum = math.sqrt(2.0 * state.kinetic_energy / n * float(state.masses.max())) / unit_mass
     largest = momentum / (2.0 * scene.smallest_radius) ** (d - 1)
     per_unit = 2.0 ** -round(math.log2(largest * _FINEST)) if largest > 0.0 else 1.0
-    per_volume = 1.0 / np.diff(np.arange(asked.shells + 1.0) ** d)
+    per_volume = 1.0 / np.diff(np.arange(tally.shells + 1.0) ** d)
     kernel = PairImpulses(
-        sums=np.zeros((2, asked.shells + 1), np.int64),
+        sums=np.zeros((2, tally.shells + 1), np.int64),
         impulse=np.zeros(d),
-        furthest=float(asked.furthest),
-        per_length=asked.shells / asked.furthest,
+        furthest=float(tally.furthest),
+        per_length=tally.shells / tally.furthest,
         per_volume=per_volume,
         per_unit=per_unit,
-        share=float(asked.share),
+        share=float(tally.share),
         listed=np.zeros(n + PLACES + WIDTH, np.uint32),
         found=np.zeros((2, WIDTH)),
     )

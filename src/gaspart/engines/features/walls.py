@@ -64,11 +64,11 @@ def moving_wall_of(scene: Scene, state: State, unit_mass: float) -> kernels.Movi
     wall = scene.moving_wall
     if wall is None or state.piston is None:
         return None
-    place, velocity = state.piston
-    side = np.where(state.positions[:, wall.axis] > place, 1.0, -1.0)
+    position, velocity = state.piston
+    side = np.where(state.positions[:, wall.axis] > position, 1.0, -1.0)
     if len(np.unique(side)) < 2:
         raise SceneError(f"{MOVING_WALL}.mass", wall.mass, "a wall that moves needs particles on both sides")
-    return kernels.MovingWall(wall.axis, wall.mass / unit_mass, side, np.array([place, velocity, 0.0]))
+    return kernels.MovingWall(wall.axis, wall.mass / unit_mass, side, np.array([position, velocity, 0.0]))
 
 
 class MovingWallPart(Part):

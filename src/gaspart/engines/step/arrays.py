@@ -86,14 +86,14 @@ def step_tally(
     faces: int,
     threads: int,
     largest: tuple[float, float],
-    asked: Iterable[TallyPart],
+    parts: Iterable[TallyPart],
     areas: tuple[np.ndarray, np.ndarray] | None,
     fixed: bool,
 ) -> StepTally:
     """Return a tally at zero, for a number of faces.
 
     largest : see `largest_terms`
-    asked : parts of optional tallies
+    parts : parts of optional tallies
     areas : `inverse_areas` if they differ
     fixed : True if there are fixed particles
     """
@@ -113,7 +113,7 @@ def step_tally(
         inverse, size = areas
         per_area = np.zeros((threads, faces, 2, 2), dtype=np.int64)
         tally = tally._replace(per_area=per_area, share=inverse / inverse.max(), size=size)
-    for part in asked:
+    for part in parts:
         tally = tally._replace(**part.kernel)
     return tally
 
@@ -187,26 +187,26 @@ class ImpulsesPart(TallyPart):
 
     def __init__(
         self,
-        asked: OptionalTally,
+        tally: OptionalTally,
         particles: StepParticles,
         model: StepModel,
         scene: Scene,
         threads: int,
         units: tuple[float, float],
     ) -> None:
-        assert isinstance(asked, ImpulseTally)
+        assert isinstance(tally, ImpulseTally)
         self._particles, (self._unit_mass, self._largest) = particles, units
-        self._axis, self._rows = "xyz".index(asked.axis), rows_of(scene)
-        self._per_length = asked.bins / scene.container.lengths[self._axis]
+        self._axis, self._rows = "xyz".index(tally.axis), rows_of(scene)
+        self._per_length = tally.bins / scene.container.lengths[self._axis]
         rows = row_count(scene)
-        momenta = np.zeros((rows, asked.bins + 1))
+        momenta = np.zeros((rows, tally.bins + 1))
         sums = np.zeros((threads, *momenta.shape, 2), np.int64)
         kernel = {
             "impulses": sums,
             "axis": self._axis,
             "pull": 0.0 if model.gravity is None else float(model.gravity[self._axis]),
             "per_length": self._per_length,
-            "turns": 1.0 / asked.bins if scene.container.periodic[self._axis] else 0.0,
+            "turns": 1.0 / tally.bins if scene.container.periodic[self._axis] else 0.0,
             "row": self._rows if rows > 1 else None,
         }
         super().__init__("impulses", kernel, {"momenta": momenta}, {"impulses": sums})
@@ -219,14 +219,14 @@ class ImpulsesPart(TallyPart):
         """
         particles = self._particles
         order = np.argsort(particles.index)
-        places = particles.positions[self._axis][order].astype(float) * self._per_length
+        coordinates = particles.positions[self._axis][order].astype(float) * self._per_length
         momenta = particles.masses.astype(float) * particles.velocities[self._axis][order]
-        found = np.zeros_like(self.arrays["momenta"])
-        bins = np.clip(places.astype(np.int64), 0, found.shape[1] - 2)
-        upper = momenta * (places - bins)
-        np.add.at(found, (self._rows, bins), momenta - upper)
-        np.add.at(found, (self._rows, bins + 1), upper)
-        return found
+        binned = np.zeros_like(self.arrays["momenta"])
+        bins = np.clip(coordinates.astype(np.int64), 0, binned.shape[1] - 2)
+        upper = momenta * (coordinates - bins)
+        np.add.at(binned, (self._rows, bins), momenta - upper)
+        np.add.at(binned, (self._rows, bins + 1), upper)
+        return binned
 
     def reset(self, clock: float) -> None:
         """Begin to count from zero."""
@@ -249,7 +249,7 @@ PARTS = {"impulses": ImpulsesPart}
 
 
 def tally_parts(
-    asked: Iterable[OptionalTally],
+    tallies: Iterable[OptionalTally],
     particles: StepParticles,
     model: StepModel,
     scene: Scene,
@@ -261,7 +261,7 @@ def tally_parts(
     particles : particles in their slots at time 0
     units : see `ImpulsesPart`
     """
-    return [PARTS[tally.name](tally, particles, model, scene, threads, units) for tally in asked]
+    return [PARTS[tally.name](tally, particles, model, scene, threads, units) for tally in tallies]
 
 
 # Search of the time-stepped engine: boxes, or the cells and the skin of a neighbour list.

@@ -70,11 +70,11 @@ class StepDynamics(SteppedDynamics):
         self._model = model_for(engine, scene, state, seed, ordinary)
         self._largest = largest_terms(scene, state, unit_mass)
         units = unit_mass, self._largest[0]
-        asked = tally_parts(tallies, self._particles, self._model, scene, engine.threads, units)
-        self._parts = [*parts_for(scene, self._model.rules), *asked]
+        parts = tally_parts(tallies, self._particles, self._model, scene, engine.threads, units)
+        self._parts = [*parts_for(scene, self._model.rules), *parts]
         areas = inverse_areas(scene, state) if scene.has_unequal_areas else None
         self._tally = step_tally(
-            2 * scene.dimension, engine.threads, self._largest, asked, areas, scene.has_fixed
+            2 * scene.dimension, engine.threads, self._largest, parts, areas, scene.has_fixed
         )
         if areas is not None:
             read = partial(self._per_area, float(areas[0].max()))
@@ -125,8 +125,8 @@ class StepDynamics(SteppedDynamics):
         self._run(step - self._steps)
         self._steps = step
         counts = self._tally.counts
-        found = (int(counts[n]) for n in (layout.COLLISIONS, layout.LATE, layout.PASSED))
-        check_late(self._engine, self.time, *found)
+        numbers = (int(counts[n]) for n in (layout.COLLISIONS, layout.LATE, layout.PASSED))
+        check_late(self._engine, self.time, *numbers)
 
     def _run(self, steps: int) -> None:
         """Run the kernel for a number of steps; for 0 steps, make only a list."""
@@ -138,8 +138,8 @@ class StepDynamics(SteppedDynamics):
 
     def _sums(self) -> dict[str, np.ndarray]:
         """Return the arrays with counts; arrays common to all threads get one row."""
-        whole = {key: getattr(self._tally, key)[np.newaxis] for key in _OF_ALL}
-        return whole | {key: getattr(self._tally, key) for key in _BY_THREAD}
+        common = {key: getattr(self._tally, key)[np.newaxis] for key in _OF_ALL}
+        return common | {key: getattr(self._tally, key) for key in _BY_THREAD}
 
     def _per_area(self, most: float, sums: np.ndarray) -> np.ndarray:
         """Return momentum along each axis and heat given to each face per accessible area.
@@ -150,10 +150,10 @@ class StepDynamics(SteppedDynamics):
         """
         d = self._scene.dimension
         units = np.array(self._largest) * (self._unit_mass * most)
-        given = running_sum.whole_parts(sums.sum(axis=0), 1.0).sum(axis=-1) * units
-        found, faces = np.zeros((2 * d, d + 1)), np.arange(2 * d)
-        found[faces, faces // 2], found[:, d] = given.T
-        return found
+        transfers = running_sum.whole_parts(sums.sum(axis=0), 1.0).sum(axis=-1) * units
+        result, faces = np.zeros((2 * d, d + 1)), np.arange(2 * d)
+        result[faces, faces // 2], result[:, d] = transfers.T
+        return result
 
     def _counts(self) -> dict[str, Any]:
         tally = self._tally
@@ -166,11 +166,11 @@ class StepDynamics(SteppedDynamics):
             "virial_sum": running_sum.net(tally.sums[layout.VIRIAL]) * self._unit_mass,
         }
 
-    def _kept(self) -> dict[str, Any]:
+    def _checkpoint_data(self) -> dict[str, Any]:
         """Return the data of a checkpoint, with bounds and origin of the neighbour list."""
-        return {**super()._kept(), "reach": self._particles.bounds, **self._list_parts()}
+        return {**super()._checkpoint_data(), "reach": self._particles.bounds, **self._list_parts()}
 
-    def _needed(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    def _required_arrays(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         """Return the arrays needed from a checkpoint, except the origin of the list.
 
         The list may belong to another search.

@@ -193,18 +193,18 @@ _LONGEST = 0.2
 """Longest step, as a fraction of the mean time between a particle's collisions."""
 
 
-def candidate(engine: TimeStepped, asked: Asked) -> Candidate:
+def candidate(engine: TimeStepped, request: Asked) -> Candidate:
     """Return the engine with the longest step that is accurate enough.
 
     Raises SceneError for a gas without collisions.
     """
-    conditions, initial = asked.conditions, asked.initial
+    conditions, initial = request.conditions, request.initial
     hot = _as_hot(initial, float(conditions.temperature.max())) if initial else None
     missed = missed_contacts(1.0, True, hot) if hot else 0.0
     free = float((conditions.path / np.maximum(conditions.speed, 1e-300)).min())
     if not missed > 0.0 or not math.isfinite(free):
         raise SceneError("time_step", None, "follows from contacts, which particles at rest do not have")
-    longest = min(math.sqrt(_SHARE * asked.accuracy / (_SAFE * missed)), _LONGEST * free)
+    longest = min(math.sqrt(_SHARE * request.accuracy / (_SAFE * missed)), _LONGEST * free)
     step = float(f"{0.95 * longest:.2g}")  # not above the longest, for any rounding
     return Candidate(engine.with_step(step), discretisation=_SAFE * missed * step**2)
 

@@ -12,7 +12,7 @@ from typing import IO
 from zipfile import ZipInfo
 
 from gaspart.errors import SceneError
-from gaspart.trajectory.opening import opened
+from gaspart.trajectory.opening import open_netcdf_file
 
 MOST_BYTES = 1 << 25
 """Maximum size of a manifest, and of a table; the tables of ten thousand points are a tenth of it."""
@@ -154,7 +154,7 @@ def digest_of_numbers(path: Path) -> str:
     is no trajectory of gaspart.
     """
     total = hashlib.sha256()
-    with opened(path) as file:
+    with open_netcdf_file(path) as file:
         file.set_auto_mask(False)
         for name in sorted(file.variables.keys() - {_CHECKSUM}):
             values = file.variables[name][...]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from gaspart import engines
-from gaspart.engines.engine import required
+from gaspart.engines.engine import required_settings
 from gaspart.errors import SceneError
 from gaspart.keys.values import LARGEST, SMALLEST
 from gaspart.reproduction.points import point_keys
@@ -88,7 +88,7 @@ def _made(point: Point, settings: dict) -> Engine:
 
 def _check(point: Point, name: str, settings: dict) -> None:
     """Refuse keys that the engine lacks or does not know."""
-    for key in required(engines.ENGINES[name]):
+    for key in required_settings(engines.ENGINES[name]):
         if key not in settings:
             raise point.refused(key, f"must be given with engine: {name}")
     for key in {key: None for keys in ENGINE_KEYS.values() for key in keys}:
@@ -221,6 +221,6 @@ def _mean_rate(mixture: Mixture) -> float:
     """Compute the mean collision rate of its particles; of many sizes by a part of them."""
     from gaspart import theory
 
-    few = mixture.thinned(_SIZES)
+    few = mixture.thin(_SIZES)
     rates = theory.mixture_collision_rates(*few.sizes, temperature=few.temperature, masses=few.masses)
     return math.fsum(rates.sum(axis=1) * few.counts) / sum(few.counts)  # by BLAS it depends on the processor

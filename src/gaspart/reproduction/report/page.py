@@ -75,7 +75,7 @@ def dots(rows: Iterable[dict[str, Any]]) -> list[Dot]:
 # The parts of a caption: its finding, how to read the figure, and what is folded below.
 #
 # A caption is reStructuredText. Its first words, in bold, are the finding. The rest of that paragraph and
-# the paragraph that begins with *What is seen.* state how to read the figure.
+# the paragraph that begins with *Panels.* state how to read the figure.
 
 
 _FINDING = re.compile(r"\*\*(?=[^\s*])(.+?)\*\*\s*", re.DOTALL)
@@ -90,7 +90,7 @@ _SETTINGS = {
     "halt_level": 5,
 }
 _HTML: dict[str, Any] = {"writer": "html5", "settings_overrides": _SETTINGS}
-_SEEN = "*What is seen.*"
+_SEEN = "*Panels.*"
 
 
 @dataclass(frozen=True)
