@@ -6,7 +6,7 @@ import pytest
 import gaspart as gp
 from gaspart.accuracy.estimates import components
 from gaspart.accuracy.target import Target
-from gaspart.analysis.impulses import controlled, group_count, wall_controls
+from gaspart.analysis.impulses import group_count, subtract_controls, wall_controls
 from gaspart.analysis.run import open_run
 from gaspart.analysis.series import face_pressures
 from gaspart.runs.ending import Accuracy
@@ -25,7 +25,7 @@ def test_planted_controls_are_taken_off_and_leave_the_mean_unbiased():
     rng = np.random.default_rng(1)
     controls, noise = rng.standard_normal((PLANTED, 96, 2)), rng.standard_normal((PLANTED, 96))
     series = 5.0 + controls @ (3.0, -2.0) + 0.5 * noise
-    found = np.array([controlled(*one, 64) for one in zip(series, controls, strict=True)])
+    found = np.array([subtract_controls(*one, 64) for one in zip(series, controls, strict=True)])
     means = found.mean(axis=1)
     assert means.mean() == pytest.approx(5.0, abs=4.0 * means.std() / PLANTED**0.5)
     assert means.std() == pytest.approx(0.5 / 96**0.5, rel=0.1)  # two coefficients from 32 groups
@@ -38,7 +38,7 @@ def test_coefficients_are_those_of_the_other_half():
     controls, series = rng.standard_normal((64, 1)), rng.standard_normal(64)
     other = series.copy()
     other[:32] += 7.0 * controls[:32, 0]
-    before, after = controlled(series, controls, 64), controlled(other, controls, 64)
+    before, after = subtract_controls(series, controls, 64), subtract_controls(other, controls, 64)
     assert after[:32] - before[:32] == pytest.approx(7.0 * controls[:32, 0])  # with the coefficient of before
     assert after[32:] - before[32:] == pytest.approx(-7.0 * controls[32:, 0])
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.analysis.impulses import Carried, mixture, numbers_by_impulses
+from gaspart.analysis.impulses import MomentumFlux, mixture, numbers_by_impulses
 from gaspart.analysis.run import open_run
 from gaspart.cli.stated_run import run_options
 from gaspart.state.optional_tallies import ImpulseTally
@@ -36,7 +36,7 @@ def test_numbers_follow_exactly_from_the_momentum_of_a_known_density(pull, walle
     below = np.cumsum(number) - number + number * above  # the mean over the planes of each bin
     flux = time[:, None] * (number * spread / width - pull * below)
     face = 0.0 if walled else 7.0 * spread / width
-    found = Carried(flux - face, time, 50, spread, above, number > 0, width, pull, walled).numbers()
+    found = MomentumFlux(flux - face, time, 50, spread, above, number > 0, width, pull, walled).numbers()
     assert found == pytest.approx(time[:, None] * number, rel=1e-12)
     assert found.sum(axis=1) == pytest.approx(50.0 * time)
 

@@ -7,8 +7,8 @@ from scipy.spatial import cKDTree
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.analysis.insertion import _covered, _is_sampled, insertions
-from gaspart.analysis.structure_factors import admitted, shells_of
+from gaspart.analysis.insertion import _find_covered_cells, _is_sampled, insertions
+from gaspart.analysis.structure_factors import shells_of, wave_vectors
 
 A = gp.analysis
 SCENES = {
@@ -26,7 +26,7 @@ def fluid(request, tmp_path_factory):
 
 @pytest.mark.parametrize("lengths", [(5.0, 9.0), (4.0, 5.0, 7.0)])
 def test_one_of_each_pair_of_admitted_wave_vectors_is_found(lengths):
-    waves, size = admitted(lengths, 4.0)
+    waves, size = wave_vectors(lengths, 4.0)
     assert size == pytest.approx(np.linalg.norm(2.0 * np.pi * waves / lengths, axis=1))
     assert (np.diff(size) >= 0.0).all() and 0.0 < size[0] == pytest.approx(2.0 * np.pi / max(lengths))
     both = {*map(tuple, waves), *map(tuple, -waves)}
@@ -58,7 +58,7 @@ def test_the_cells_that_particles_cover_are_those_whose_corners_all_are_near_one
     furthest = np.sqrt(((apart + 0.5 * sides) ** 2).sum(axis=-1)).min(axis=2)
     expected = (furthest <= distances).any(axis=1)
     assert 0.1 < expected.mean() < 0.9
-    assert np.array_equal(_covered(groups, sides, number), expected)
+    assert np.array_equal(_find_covered_cells(groups, sides, number), expected)
 
 
 def test_the_structure_factor_is_that_of_the_distribution_and_of_theory(fluid):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.analysis.flow import face_areas, sides, touched
+from gaspart.analysis.flow import accessible_lengths, face_areas, sides
 from gaspart.analysis.run import open_run
 
 A = gp.analysis
@@ -42,7 +42,7 @@ def test_the_area_is_that_of_the_moment():
         sim.advance(duration=20.0)
         with open_run(sim, 0.0) as run:
             fine = np.linspace(run.time[3], run.time[4], 20001)
-            height = (touched(run, fine)[:, 1]).mean()
+            height = (accessible_lengths(run, fine)[:, 1]).mean()
             areas = face_areas(run)
         assert areas.shape == (len(run.time) - 1, 4)
         assert areas[3] == pytest.approx([height, height, 29.8, 29.8], rel=1e-3)

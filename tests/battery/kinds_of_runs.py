@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 import gaspart as gp
-from gaspart.analysis.run import repeated
+from gaspart.analysis.run import repeat_run
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
 from gaspart.state.optional_tallies import ImpulseTally, PairImpulseTally, StressTally
@@ -278,4 +278,4 @@ def repeated_simulation(engine, name, form="frames"):
     simulation = gp.Simulation(start.scene, start.engine, start.seed, initial=start.initial, tallies=tallies)
     quantum = start.engine.quantum or 0.0
     simulation.advance(until=FRAMES * start.interval + 0.5 * quantum)
-    return repeated(simulation, pairs=start.engine.records_events and not start.scene.is_open)
+    return repeat_run(simulation, pairs=start.engine.records_events and not start.scene.is_open)

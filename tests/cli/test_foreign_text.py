@@ -95,9 +95,9 @@ def forge(path, name):
     attributes[name] = old + FAKE.replace("\0", "").encode("utf-8", "replace").decode()
     header = layout.header(attributes, particles)
     from gaspart.trajectory.amber import Frames, frames_of
-    from gaspart.trajectory.opening import checked
+    from gaspart.trajectory.opening import open_verified
 
-    with checked(path) as (source, before, count):
+    with open_verified(path) as (source, before, count):
         parts = list(frames_of(source, before, count))
     with open(path, "r+b", buffering=0) as file:
         made = Frames(file, layout, header)

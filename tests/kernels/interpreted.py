@@ -16,7 +16,7 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart.analysis.pairs import pair_counts
-from gaspart.analysis.structure_factors import admitted, factors
+from gaspart.analysis.structure_factors import factors, wave_vectors
 from gaspart.kernels import insertion, model
 from gaspart.kernels.event import boxes as candidates
 from gaspart.kernels.event import boxes as search
@@ -160,7 +160,10 @@ def pairs_and_waves():
     found = []
     for lengths in ((5.0, 3.0), (3.0, 5.0, 4.0)):
         frames = np.random.default_rng(3).random((2, 70, len(lengths))) * lengths
-        found += [pair_counts(frames, lengths, 9, 1.5), factors(frames, lengths, admitted(lengths, 5.0)[0])]
+        found += [
+            pair_counts(frames, lengths, 9, 1.5),
+            factors(frames, lengths, wave_vectors(lengths, 5.0)[0]),
+        ]
     return np.concatenate([np.ravel(values) for values in found])
 
 

@@ -8,7 +8,7 @@ from scenes import centred, gas
 
 import gaspart as gp
 from gaspart.analysis.correlations import correlate
-from gaspart.analysis.motion import accumulated
+from gaspart.analysis.motion import average_correlations
 from gaspart.trajectory.correlator import SUMS, Correlations, Correlator
 from gaspart.trajectory.opening import partial_path
 from gaspart.trajectory.recipe import read_recipe
@@ -62,7 +62,7 @@ def test_a_run_accumulates_what_its_frames_give(tmp_path, engine):
     """To the rounding of the frames' velocities, which are float32."""
     path = gp.run(**settings(engine=engine, sample_interval=0.25), path=tmp_path / "run.nc")
     with gp.open_trajectory(path) as data:
-        found = accumulated(data)
+        found = average_correlations(data)
         moved, velocities = (
             centred(data[name].values[8:].astype(float)) for name in ("displacements", "velocities")
         )
@@ -88,7 +88,7 @@ def test_frames_and_displacements_change_no_bit(tmp_path):
         assert name not in last[3]
     assert np.array_equal(last[0]["velocity_product_sum"], last[2]["velocity_product_sum"])
     assert "squared_displacement_sum" not in last[2]
-    assert np.isnan(accumulated(last[2].expand_dims("frame")).msd).all()
+    assert np.isnan(average_correlations(last[2].expand_dims("frame")).msd).all()
     for name in ("coordinates", "velocities", "displacements", "collisions"):
         assert np.array_equal(last[0][name], last[1][name])
         assert np.array_equal(last[0][name], last[3][name])

@@ -63,7 +63,7 @@ def shear_viscosity(gas: Gas, equation: str) -> float:
 
     For the exact dynamics of spheres it is multiplied by the ratio that was measured in a dense gas.
     """
-    value = float(theory.enskog_viscosity(**_transported(gas, equation)))
+    value = float(theory.enskog_viscosity(**_enskog_arguments(gas, equation)))
     if equation == EXACT and gas.dimension == 3:
         return value * float(theory.viscosity_ratio(gas.packing_fraction)) if _fluid(gas) else math.nan
     return value
@@ -71,12 +71,12 @@ def shear_viscosity(gas: Gas, equation: str) -> float:
 
 def bulk_viscosity(gas: Gas, equation: str) -> float:
     """Compute Enskog's bulk viscosity; 0 for points."""
-    return float(theory.enskog_bulk_viscosity(**_transported(gas, equation)))
+    return float(theory.enskog_bulk_viscosity(**_enskog_arguments(gas, equation)))
 
 
 def thermal_conductivity(gas: Gas, equation: str) -> float:
     """Compute the thermal conductivity of Chapman and Enskog, or of Enskog."""
-    return float(theory.enskog_conductivity(**_transported(gas, equation)))
+    return float(theory.enskog_conductivity(**_enskog_arguments(gas, equation)))
 
 
 def chemical_potential(gas: Gas, equation: str) -> float:
@@ -91,7 +91,7 @@ def _fluid(gas: Gas) -> bool:
     return gas.packing_fraction <= theory.ERPENBECK_WOOD_HIGHEST
 
 
-def _transported(gas: Gas, equation: str) -> dict[str, Any]:
+def _enskog_arguments(gas: Gas, equation: str) -> dict[str, Any]:
     """Return the arguments of Enskog's transport coefficients.
 
     The coefficients of points do not depend on the density.

@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart import analysis
-from gaspart.analysis.impulses import kept
+from gaspart.analysis.impulses import read_impulses
 from gaspart.analysis.measuring import measure, until_time
 from gaspart.analysis.observable import Observable
 from gaspart.analysis.observables import OBSERVABLES
@@ -88,7 +88,7 @@ def replicas(
     results: list[Observable] = []
     recipes: list[_Recipe] = []
     for number, source in enumerate(sources, 1):
-        with _opened(source) as run:
+        with _open_source(source) as run:
             recipe = _recipe(run, str(source) if isinstance(source, str | Path) else f"run {number}")
             _check_replica(recipe, recipes)
             recipes.append(recipe)
@@ -98,7 +98,7 @@ def replicas(
     return _mean(results, recipes)
 
 
-def _opened(source: Source) -> AbstractContextManager[xr.Dataset | Simulation]:
+def _open_source(source: Source) -> AbstractContextManager[xr.Dataset | Simulation]:
     """Return a context with an open trajectory or a simulation."""
     return open_trajectory(source) if isinstance(source, str | Path) else nullcontext(source)
 
@@ -112,7 +112,7 @@ def _in_joint_bins(
     widest = max(float(middle[-1] + 0.5 * (middle[1] - middle[0])) for middle in middles)
     function, again = getattr(analysis, declared.function), []
     for source in sources:
-        with _opened(source) as run, until_time(run, end) as part:
+        with _open_source(source) as run, until_time(run, end) as part:
             again.append(function(part, start=start, **declared.arguments, **{declared.ends: widest}))
     return again
 
@@ -145,31 +145,31 @@ def _recipe(run: Any, name: str) -> _Recipe:
     if isinstance(run, Simulation):
         settings = {"scene": run.scene.to_dict(), "engine": engine_to_dict(run.engine)}
         times = np.array([0.0, run.time])
-        draws, state = run.engine.draws(run.scene), partial(_simulated, run)
+        draws, state = run.engine.draws(run.scene), partial(_state_at, run)
         tally = next((item for item in run.tallies if isinstance(item, ImpulseTally)), None)
-        return _Recipe(name, settings, str(run.seed), draws, times, True, state, _named(tally))
+        return _Recipe(name, settings, str(run.seed), draws, times, True, state, _describe_tally(tally))
     if not isinstance(run, xr.Dataset) or not {"scene", "engine", "seed"} <= set(run.attrs):
         raise SceneError("sources", type(run).__name__, "must be trajectories, their paths or simulations")
     settings = {"scene": parse_yaml(run.attrs["scene"]), "engine": json.loads(run.attrs["engine"])}
     draws = engine_from_dict(settings["engine"]).draws(Scene.from_dict(settings["scene"]))
     frames = {key: run[key].values for key in ("time", "coordinates", "velocities") if key in run}
-    stored = partial(_stored, frames)
-    seed, impulses = str(run.attrs["seed"]), _named(kept(run))
+    stored = partial(_state_in_frame, frames)
+    seed, impulses = str(run.attrs["seed"]), _describe_tally(read_impulses(run))
     return _Recipe(name, settings, seed, draws, frames["time"], False, stored, impulses)
 
 
-def _named(tally: ImpulseTally | None) -> str:
+def _describe_tally(tally: ImpulseTally | None) -> str:
     """Return the impulses that a run has stored, in the words of its option."""
     return "none" if tally is None else tally.to_text()
 
 
-def _stored(frames: dict[str, np.ndarray], time: float) -> bytes:
+def _state_in_frame(frames: dict[str, np.ndarray], time: float) -> bytes:
     """Return the state of a trajectory in the frame at a time."""
     number = int(np.searchsorted(frames["time"], time))
     return _bits(*(frames[name][number] for name in ("coordinates", "velocities") if name in frames))
 
 
-def _simulated(simulation: Simulation, time: float) -> bytes:
+def _state_at(simulation: Simulation, time: float) -> bytes:
     """Return the state of a simulation at a time until the present one.
 
     For an earlier time the simulation is run again.
@@ -241,14 +241,14 @@ def _other_coordinate(result: Observable, other: Observable, name: str, other_na
         first, second = result[dim].values, other[dim].values
         if not np.array_equal(first, second):
             rule = (
-                f"{_described(first)} in {name}: all runs need the same values of it, as with one "
+                f"{_describe_coordinate(first)} in {name}: all runs need the same values of it, as with one "
                 "sample_interval and duration (--start, --end)"
             )
-            return SceneError(dim, _described(second), rule, other_name)
+            return SceneError(dim, _describe_coordinate(second), rule, other_name)
     raise AssertionError("equal coordinates")
 
 
-def _described(values: np.ndarray) -> str:
+def _describe_coordinate(values: np.ndarray) -> str:
     """Return a coordinate in words."""
     if values.dtype.kind in "US" or not values.size:
         return ", ".join(map(str, values)) or "none"

@@ -30,8 +30,8 @@ DISCS = "discs have no diffusion coefficient: their squared displacement grows l
 _NEIGHBOURHOOD = {2: 7, 3: 13}  # a particle and those around it in a crystal
 
 
-def unsheared(scene: Scene, selection: Selection) -> None:
-    """No sheared faces."""
+def refuse_shear(scene: Scene, selection: Selection) -> None:
+    """Raise SceneError for sheared faces."""
     refuse_sheared(scene, SLIDING)
 
 
@@ -43,8 +43,8 @@ def steady_flow(scene: Scene, selection: Selection) -> None:
         raise SceneError("faces", faces, rule)
 
 
-def opened(scene: Scene, selection: Selection) -> None:
-    """Faces that are open."""
+def require_open_faces(scene: Scene, selection: Selection) -> None:
+    """Raise SceneError unless a face is open."""
     if not scene.is_open:
         raise SceneError(
             "faces", list(scene.faces), f"none is open: there are always {scene.count} particles"
@@ -75,15 +75,15 @@ def _periodic(scene: Scene, rule: str) -> None:
         raise SceneError("container.boundary", scene.container.boundary, rule)
 
 
-def walled(scene: Scene, selection: Selection) -> None:
-    """A wall of the container."""
+def require_walls(scene: Scene, selection: Selection) -> None:
+    """Raise SceneError unless the container has a wall."""
     if not scene.container.walls:
         rule = "has no walls: measure compressibility_factor (Z)"
         raise SceneError("container.boundary", scene.container.boundary, rule)
 
 
 def thermal_walls(scene: Scene, selection: Selection) -> None:
-    """A face at a temperature."""
+    """Raise SceneError unless a face has a temperature."""
     if not scene.thermal_numbers:
         raise SceneError("faces", list(scene.faces), "none is at a temperature, and takes heat")
 
@@ -96,7 +96,10 @@ def dragged_walls(scene: Scene, selection: Selection) -> None:
 
 
 def walled_axis(scene: Scene, selection: Selection) -> None:
-    """A wall at both ends of the selected axis, by default of any, and a plane across it in the container."""
+    """Raise SceneError unless the selected axis, by default any, has walls at both ends.
+
+    A plane across the axis must be in the container.
+    """
     axis = walled_axis_of(scene, selection.get("axis"))
     at = selection.get("at")
     if at is not None:
@@ -152,7 +155,7 @@ def _without_obstacles(scene: Scene, rule: str) -> None:
 
 
 def some_move(scene: Scene, selection: Selection) -> None:
-    """A particle that is not fixed."""
+    """Raise SceneError if all particles are fixed."""
     if not _moving(scene):
         raise SceneError("species.fixed", True, "fixed particles do not collide")
 
@@ -186,8 +189,8 @@ def one_size_each(scene: Scene, selection: Selection) -> None:
             raise SceneError(f"species[{n}].fixed", True, rule)
 
 
-def grouped(scene: Scene, selection: Selection) -> None:
-    """16 particles that move, unless some are selected, of which any must move."""
+def require_particles(scene: Scene, selection: Selection) -> None:
+    """Raise SceneError unless 16 particles move, or any of the selected particles."""
     chosen = {key: selection.get(key) for key in ("species", "particles")}
     if all(value is None for value in chosen.values()):
         _enough(scene)
@@ -221,7 +224,7 @@ def _in_species(scene: Scene, species: Any) -> int:
 
 
 def has_species(scene: Scene, selection: Selection) -> None:
-    """A particle that is not fixed, of a selected species too."""
+    """Raise SceneError if all particles, or all of a selected species, are fixed."""
     some_move(scene, selection)
     species = selection.get("species")
     if species is not None and not _in_species(scene, species):
@@ -229,7 +232,7 @@ def has_species(scene: Scene, selection: Selection) -> None:
 
 
 def free_axis(scene: Scene, selection: Selection) -> None:
-    """A periodic axis."""
+    """Raise SceneError unless an axis is periodic."""
     if not any(scene.container.periodic):
         rule = "has no periodic axis: displacements between walls are bounded, and there is no D"
         raise SceneError("container.boundary", scene.container.boundary, rule)
@@ -282,24 +285,24 @@ def in_species(scene: Scene, selection: Selection) -> None:
 
 
 def has_axis(scene: Scene, selection: Selection) -> None:
-    """The axis that is selected."""
+    """Raise SceneError if the selected axis does not exist."""
     if selection.get("axis") is not None:
         one_of("axis", selection["axis"], tuple("xyz"[: scene.dimension]))
 
 
-def tallied(scene: Scene, selection: Selection) -> None:
-    """A periodic container in which velocities change at contacts alone."""
+def require_elastic_periodic(scene: Scene, selection: Selection) -> None:
+    """Raise SceneError unless the container is periodic and only contacts change velocities."""
     require_tallied(scene)
 
 
 def shears(scene: Scene, selection: Selection) -> None:
-    """A shear rate that is not 0, if there is one."""
+    """Raise SceneError if the shear rate is 0."""
     if scene.shear_rate == 0.0:
         raise SceneError("shear_rate", scene.shear_rate, "gives no response")
 
 
 def heat_flows(scene: Scene, selection: Selection) -> None:
-    """Faces or interior walls at two temperatures, or something that heats the gas or takes its energy."""
+    """Raise SceneError unless two temperatures, moving faces, or sources or sinks of energy drive heat."""
     heated = scene.dissipates or scene.thermostat is not None or _flows(scene)
     if (
         len(scene.face_temperatures) < 2

@@ -111,9 +111,10 @@ def _columns(values: np.ndarray) -> np.ndarray:
 
 
 def _products(columns: np.ndarray, others: np.ndarray | None = None) -> np.ndarray:
-    """Return the sums over columns (T, C) and times s of a(s + t) a(s), or of a(s + t) b(s).
+    """Return sums of products of series at a distance in time t.
 
-    At t = 0, 1 ... T - 1; negative t are counted from the end.
+    The sums are over columns (T, C) and times s, of a(s + t) a(s), or of a(s + t) b(s), at t = 0,
+    1 ... T - 1. Negative t are counted from the end.
     """
     from scipy.fft import irfft, next_fast_len, rfft
 

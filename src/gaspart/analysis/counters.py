@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 
 from gaspart.analysis import series
-from gaspart.analysis.expected.equilibrium import described
-from gaspart.analysis.flow import face_areas, touched
+from gaspart.analysis.expected.equilibrium import describe
+from gaspart.analysis.flow import accessible_lengths, face_areas
 from gaspart.analysis.impulses import (
     USUAL_BINS,
-    controlled,
     engine_class,
     estimator,
     group_count,
     knows_energies,
+    subtract_controls,
     wall_controls,
 )
 from gaspart.analysis.observable import Observable, observable, scalar
@@ -34,7 +34,7 @@ _SLIGHT = 1e-6  # of the weight: rounding of the momentum of single-precision ve
 
 
 def compressibility_factor(source: Source, start: float | None = None) -> Observable:
-    """Measure Z = P V / (N k_B T) of a periodic scene by the virial theorem.
+    """Measure Z = PV/(N k_B T) of a periodic scene by the virial theorem.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def compressibility_factor(source: Source, start: float | None = None) -> Observ
     with open_run(source, start) as run:
         require_defined("Z", run.scene)
         require_collisions(run)
-        return scalar("compressibility_factor", series.compressibility(run), run.time, **described("Z", run))
+        return scalar("compressibility_factor", series.compressibility(run), run.time, **describe("Z", run))
 
 
 def wall_pressure(source: Source, start: float | None = None) -> Observable:
@@ -124,7 +124,7 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
     ['x low', 'x high', 'y low', 'y high']
     """
     with _open_walls(source, start, "pressure") as (run, ends):
-        about = described("pressure", run, touched(run, run.time[:1])[0])
+        about = describe("pressure", run, accessible_lengths(run, run.time[:1])[0])
         return _of_faces("wall_pressure", run, ends, about)
 
 
@@ -163,7 +163,7 @@ def wall_force(source: Source, start: float | None = None) -> Observable:
     'energy / length'
     """
     with _open_walls(source, start, "force") as (run, ends):
-        return _of_faces("wall_force", run, ends, described("force", run))
+        return _of_faces("wall_force", run, ends, describe("force", run))
 
 
 @contextmanager
@@ -220,7 +220,7 @@ def controlled_on_walls(run: Run, name: str) -> dict[int, tuple[str, int, np.nda
     for index, face in enumerate(map(str, faces)) if groups else ():
         controls = wall_controls(run, "xyz".index(face[0]))
         if controls is not None:
-            improved = controlled(each[:, index], controls, groups)
+            improved = subtract_controls(each[:, index], controls, groups)
             by_face[index] = face, controls.shape[1], improved
     return by_face
 
@@ -359,5 +359,5 @@ def collision_rate(source: Source, start: float | None = None) -> Observable:
         require_defined("collision_rate", run.scene)
         refuse_rest(run, "touch others without a collision, so that there is no rate")
         require_collisions(run)
-        about = described("collision_rate", run)
+        about = describe("collision_rate", run)
         return scalar("collision_rate", series.collision_rate(run), run.time, **about)

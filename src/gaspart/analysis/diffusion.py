@@ -13,12 +13,12 @@ import numpy as np
 
 from gaspart.analysis import series
 from gaspart.analysis.conditions import DISCS, GROUPS
-from gaspart.analysis.expected.equilibrium import described
+from gaspart.analysis.expected.equilibrium import describe
 from gaspart.analysis.flow import FLOW
-from gaspart.analysis.motion import Groups, axes_of, groups_of, stride_of, unwrapped
+from gaspart.analysis.motion import Groups, axes_of, groups_of, stride_of, unwrap_positions
 from gaspart.analysis.observable import Observable, observable, scalar
 from gaspart.analysis.observables import require_defined
-from gaspart.analysis.run import Run, Source, open_run, selected
+from gaspart.analysis.run import Run, Source, open_run, select_particles
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.keys.values import number
@@ -101,7 +101,7 @@ def diffusion_coefficient(
     """
     with open_run(source, start, about=about) as run:
         require_defined("D", run.scene, species=species, particles=particles, lag=lag, about=about)
-        chosen = selected(run, species, particles)
+        chosen = select_particles(run, species, particles)
         stride = stride_of(run, len(chosen))
         if lag is not None:  # frames so near that the slope is that at the lag
             stride = min(stride, max(1, int(number("lag", lag, "must be a time") / (4.0 * run.interval))))
@@ -119,13 +119,13 @@ def diffusion_coefficient(
         times = groups.interval * np.array(lags)
         if lag is not None:
             values, errors = means_of(slopes[:, -1], groups.sizes)
-            attributes = described("D", run, times)
+            attributes = describe("D", run, times)
             attributes["long_name"] += f" at the lag {times.mean():.4g}"
             return observable("diffusion_coefficient", along, values, errors, **attributes)
         last, tail = settled_slope(slopes, groups.sizes)
         values, errors = means_of(slopes[:, last], groups.sizes)
         ends, rate = times[last : last + 2], _rate(run)
-        attributes = described("D", run, None, rate * ends)
+        attributes = describe("D", run, None, rate * ends)
         errors = np.hypot(errors, tail)
         result = observable("diffusion_coefficient", along, values, errors, **attributes)
         collisions = " to ".join(f"{rate * end:.3g}" for end in ends)
@@ -352,12 +352,12 @@ def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
         first, second = (kind.count / run.count for kind in run.scene.species)
         series = first * second * run.count / (2.0 * run.dimension * lag) * rise
         edges = run.time[: len(series) + 1]
-        return scalar("mutual_diffusion", series, edges, **described("mutual_diffusion", run))
+        return scalar("mutual_diffusion", series, edges, **describe("mutual_diffusion", run))
 
 
 def _separation(run: Run) -> np.ndarray:
     """Compute X_1 - X_2, the separation of the centres of two species, shape (T, d)."""
-    paths = unwrapped(run)
+    paths = unwrap_positions(run)
     return np.subtract(*(paths[:, run.species == kind].mean(axis=1) for kind in (0, 1)))
 
 

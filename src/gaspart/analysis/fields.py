@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from gaspart.analysis.expected.equilibrium import described
+from gaspart.analysis.expected.equilibrium import describe
 from gaspart.analysis.impulses import described_density, mixed_density
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.profiles import Cells, Means, with_freedom
-from gaspart.analysis.run import Run, Source, open_run, selected
+from gaspart.analysis.run import Run, Source, open_run, select_particles
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, one_of
 
@@ -76,7 +76,7 @@ def field(
     with open_run(source, start, sheared=True, varying=True) as run:
         along = _axes(run, axes)
         numbers = _numbers(cells, len(along))
-        members = np.flatnonzero(run.moving)[selected(run, species, None)]
+        members = np.flatnonzero(run.moving)[select_particles(run, species, None)]
         cells = Cells(run, members, tuple(along), tuple(numbers))
         means, attributes = None, dict[str, str]()
         if of == "density" and len(along) == 1:
@@ -179,6 +179,6 @@ def velocity_profile(
             "component": (result["component"].values, {"long_name": "component"}),
             "position": (positions, {"units": "length", "long_name": name}),
         }
-        about = described("velocity", run, "xyz".index(name), positions)
+        about = describe("velocity", run, "xyz".index(name), positions)
         means = Means(result.estimate.values, result.error.values, result["velocity_freedom"].values)
         return with_freedom(observable("velocity", along, means.values, means.errors, **about), means)

@@ -70,7 +70,7 @@ def sides(run: Run, times: np.ndarray) -> np.ndarray:
     return ends
 
 
-def touched(run: Run, times: np.ndarray) -> np.ndarray:
+def accessible_lengths(run: Run, times: np.ndarray) -> np.ndarray:
     """Return the sides (S, d) of the box that centres of moving particles can reach.
 
     The times have the shape (S,); the largest moving particles count.
@@ -112,7 +112,7 @@ def _mean_areas(run: Run) -> np.ndarray:
     number = int(np.clip(_NUMBERS // intervals, *_INSTANTS))
     parts = (np.arange(number) + np.arange(1, number + 1) * _GOLDEN % 1.0) / number
     times = run.time[:-1, None] + np.diff(run.time)[:, None] * parts
-    areas = _across(touched(run, times.ravel()))
+    areas = _across(accessible_lengths(run, times.ravel()))
     return areas.reshape(intervals, number, run.dimension).mean(axis=1).repeat(2, axis=1)
 
 
@@ -151,7 +151,7 @@ def _across(lengths: np.ndarray) -> np.ndarray:
     return np.stack([np.delete(lengths, axis, axis=-1).prod(axis=-1) for axis in axes], axis=-1)
 
 
-def left_by_obstacles(run: Run, radius: float, axis: int, edges: np.ndarray) -> np.ndarray:
+def accessible_fraction(run: Run, radius: float, axis: int, edges: np.ndarray) -> np.ndarray:
     """Compute the fraction (bins,) of each bin along an axis that is accessible to particle centres.
 
     Fixed particles exclude the rest for particles of this radius. It is the fraction of `_POINTS` points,

@@ -7,12 +7,12 @@ import xarray as xr
 
 from gaspart.analysis.conditions import walled_axis_of
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.expected.equilibrium import described
+from gaspart.analysis.expected.equilibrium import describe
 from gaspart.analysis.flow import per_area
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable, scalar
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.profiles import Means, with_freedom
-from gaspart.analysis.run import Run, Source, open_run, selected
+from gaspart.analysis.run import Run, Source, open_run, select_particles
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
 from gaspart.scene.faces import FACES, Open
@@ -49,7 +49,7 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
     It is the energy that particles lose there in the frame of the wall: of a wall that slides, the energy
     that it is given without the work that it does. The mean is taken in the steady state: the contributions
     of the changes of the energy of the gas and of its first moment across the walls, which are bounded, are
-    subtracted (`_corrected`).
+    subtracted (`_mean_without_stores`).
 
     Theory: 0 in equilibrium; between two plates free flight above a Knudsen number of 100, Fourier's law with
     Enskog's conductivity and temperature jumps below 0.1, and between these an interpolation, good to 8 %
@@ -69,14 +69,14 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
     with open_run(source, start) as run:
         require_defined("heat_flux", run.scene)
         faces = np.array(run.scene.thermal_numbers)
-        heat = _given(run, "wall_energy", "heat_per_area")
+        heat = _amounts_per_area(run, "wall_energy", "heat_per_area")
         for number, face in run.scene.sliding_faces:
-            heat[:, number] -= _given(run, "wall_shear", "momentum_per_area")[:, number] @ np.array(
-                face.velocity
-            )
+            heat[:, number] -= _amounts_per_area(run, "wall_shear", "momentum_per_area")[
+                :, number
+            ] @ np.array(face.velocity)
         means = _steady(run, faces, heat[:, faces], _energies(run))
         along = {"face": (np.array(face_names(run.dimension))[faces], {"long_name": "face of the container"})}
-        about = described("heat_flux", run, faces)
+        about = describe("heat_flux", run, faces)
         return with_freedom(observable("heat_flux", along, means.values, means.errors, **about), means)
 
 
@@ -126,7 +126,7 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
         require_defined("wall_shear", run.scene)
         faces = np.array(run.scene.drawing_numbers)
         axes = np.array([axis for axis in range(run.dimension) if (faces // 2 != axis).any()])
-        momentum = _given(run, "wall_shear", "momentum_per_area")[:, faces][..., axes]
+        momentum = _amounts_per_area(run, "wall_shear", "momentum_per_area")[:, faces][..., axes]
         parts = [_steady(run, faces, momentum[..., n], _momenta(run, axis)) for n, axis in enumerate(axes)]
         across = faces[:, None] // 2 == axes
         columns = {key: np.stack([getattr(part, key) for part in parts], axis=1) for key in vars(parts[0])}
@@ -135,11 +135,11 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
             "face": (np.array(face_names(run.dimension))[faces], {"long_name": "face of the container"}),
             "component": (np.array(list("xyz"))[axes], {"long_name": "axis along the face"}),
         }
-        about = described("wall_shear", run, faces, axes)
+        about = describe("wall_shear", run, faces, axes)
         return with_freedom(observable("wall_shear", along, means.values, means.errors, **about), means)
 
 
-def _given(run: Run, name: str, tallied: str) -> np.ndarray:
+def _amounts_per_area(run: Run, name: str, tallied: str) -> np.ndarray:
     """Return what each face is given in each interval per accessible area.
 
     The shape is (T - 1, 2d, ...). See `per_area`. Raises SceneError for frames without the sum of this name.
@@ -168,12 +168,12 @@ def _steady(run: Run, faces: np.ndarray, amounts: np.ndarray, stored: list[np.nd
     grown = amounts[: blocks * length].reshape(blocks, length, -1).sum(axis=1)
     rates = grown / np.diff(run.time[ends])[:, None]
     changes = [np.diff(values[ends]) for values in stored]
-    estimates = [_corrected(rate, changes) for rate in rates.T]
+    estimates = [_mean_without_stores(rate, changes) for rate in rates.T]
     columns = ([getattr(estimate, name) for estimate in estimates] for name in ("value", "error", "freedom"))
     return Means(*map(np.array, columns))
 
 
-def _corrected(rates: np.ndarray, changes: list[np.ndarray]) -> Estimate:
+def _mean_without_stores(rates: np.ndarray, changes: list[np.ndarray]) -> Estimate:
     """Compute the mean of rates (K,) in consecutive blocks, corrected for changes of bounded sums.
 
     The contribution of the changes (K,) is removed by least squares: a gas gives back what it has stored.
@@ -289,13 +289,13 @@ def particle_flux(
         require_defined("flux", run.scene, axis=axis, at=at, species=species)
         number = walled_axis_of(run.scene, axis)
         position = 0.5 * run.scene.container.lengths[number] if at is None else float(at)
-        members = np.flatnonzero(run.moving)[selected(run, species, None)]
+        members = np.flatnonzero(run.moving)[select_particles(run, species, None)]
         beyond = (run.positions[:, members, number] > position).sum(axis=1) - _entered_beyond(run, number)
         if len(beyond) <= LEAST_INTERVALS:
             raise SceneError("frames", len(beyond), f"an error needs {LEAST_INTERVALS + 1} or more")
         estimate = correlated_mean(np.diff(beyond) / np.diff(run.time), LEAST_INTERVALS).estimate
         along = {"component": (np.array(["xyz"[number]]), {"long_name": "axis"})}
-        about = described("flux", run, number, position, members, beyond)
+        about = describe("flux", run, number, position, members, beyond)
         means = Means(*(np.array([each]) for each in (estimate.value, estimate.error, estimate.freedom)))
         return with_freedom(observable("flux", along, means.values, means.errors, **about), means)
 
@@ -358,7 +358,7 @@ def particle_number(source: Source, start: float | None = None) -> Observable:
 
     Notes
     -----
-    Without collisions, correlations fall as slowly as 1/t: the error is that of
+    Without collisions, correlations fall as slowly as 1/t: the error is computed by
     `gaspart.analysis.statistics.slow_mean`.
 
     Examples
@@ -377,4 +377,4 @@ def particle_number(source: Source, start: float | None = None) -> Observable:
         require_defined("number", run.scene)
         counts = particle_numbers(run.scene, run.data)
         series = counts[1:].astype(float)
-        return scalar("particle_number", series, run.time, slow=True, **described("number", run))
+        return scalar("particle_number", series, run.time, slow=True, **describe("number", run))

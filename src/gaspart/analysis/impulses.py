@@ -86,7 +86,7 @@ _NEIGHBOURS = 0.02
 
 
 @dataclass(frozen=True)
-class Carried:
+class MomentumFlux:
     """Momentum of one species that has flown through the planes of bins, in M intervals.
 
     flux : (M, bins), see `Tally.momentum_flux_sum`.
@@ -117,7 +117,7 @@ class Carried:
         """
         if self.pull > 0.0:  # from the face to which they fall, so that no error grows with the density
             below = self.pull * self.count * self.time[:, None]
-            flipped = Carried(
+            flipped = MomentumFlux(
                 (self.flux + below)[:, ::-1],
                 self.time,
                 self.count,
@@ -154,7 +154,7 @@ class Carried:
         return numbers
 
 
-def kept(data: xr.Dataset) -> ImpulseTally | None:
+def read_impulses(data: xr.Dataset) -> ImpulseTally | None:
     """Read the impulse tallies of a trajectory."""
     return stored_tally(data.attrs, ImpulseTally)
 
@@ -164,18 +164,18 @@ def numbers_by_impulses(run: Run, axis: int, bins: int, species: int | None) -> 
 
     The shape is (T - 1, bins). None if the run has not stored the required data.
     """
-    has = kept(run.data)
+    has = read_impulses(run.data)
     if has is None or has.axis != "xyz"[axis] or has.bins % bins:
         return None
     rows = [n for n in np.unique(run.species) if species is None or n == species]
-    fluxes = [_carried(run, axis, has.bins, int(row)) for row in rows]
+    fluxes = [_momentum_flux(run, axis, has.bins, int(row)) for row in rows]
     if any(flux is None for flux in fluxes):
         return None
     fine = np.asarray(sum(flux.numbers() for flux in fluxes if flux is not None))
     return fine.reshape(len(fine), bins, -1).sum(axis=2)
 
 
-def _carried(run: Run, axis: int, bins: int, row: int) -> Carried | None:
+def _momentum_flux(run: Run, axis: int, bins: int, row: int) -> MomentumFlux | None:
     """Return the momentum carried in one row of the tally.
 
     None for particles of several masses if the result would depend on these, and for a file that lacks the
@@ -198,7 +198,7 @@ def _carried(run: Run, axis: int, bins: int, row: int) -> Carried | None:
     low, high = (side[axis] for side in run.scene.reach(float(run.radii[members].min())))
     edges = width * np.arange(bins + 1)
     reached = (edges[1:] > low) & (edges[:-1] < high)
-    return Carried(flux, time, count, spread, above, reached, width, force, walled)
+    return MomentumFlux(flux, time, count, spread, above, reached, width, force, walled)
 
 
 def _uniform(run: Run, walled: bool) -> bool:
@@ -322,7 +322,7 @@ def default_bins(run: Run, axis: int, of: str) -> int:
 
     A density has the bins of the impulses that the run has stored.
     """
-    has = kept(run.data)
+    has = read_impulses(run.data)
     return has.bins if of == "density" and has is not None and has.axis == "xyz"[axis] else USUAL_BINS
 
 
@@ -331,7 +331,7 @@ def described_density(run: Run, axis: int, bins: int, by_impulses: bool) -> dict
 
     If the bins of a run do not serve, they say so.
     """
-    has, tallies = kept(run.data), useful_impulses(run.scene, engine_tallies(run), axis, 200)
+    has, tallies = read_impulses(run.data), useful_impulses(run.scene, engine_tallies(run), axis, 200)
     lacks = ""
     if has is not None and has.axis == "xyz"[axis] and has.bins % bins:
         lacks = f"impulses are kept in {has.bins} bins, which {bins} do not divide"
@@ -367,7 +367,7 @@ def wall_controls(run: Run, axis: int) -> np.ndarray | None:
     and of sum m x v along it. None unless the run has stored impulses along this axis and the states of all
     particles, and is in equilibrium at a constant kinetic energy.
     """
-    has = kept(run.data)
+    has = read_impulses(run.data)
     if has is None or has.axis != "xyz"[axis] or not run.has_states:
         return None
     if not knows_energies(engine_class(run), run.scene):
@@ -405,7 +405,7 @@ def group_count(run: Run) -> int:
     return number if number >= _LEAST else 0
 
 
-def controlled(series: np.ndarray, controls: np.ndarray, groups: int) -> np.ndarray:
+def subtract_controls(series: np.ndarray, controls: np.ndarray, groups: int) -> np.ndarray:
     """Subtract from a series (K,) its part in common with controls (K, R).
 
     The controls have the mean 0. The coefficients for each half come from a regression of the other half, in

@@ -21,7 +21,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from gaspart.analysis.expected.equilibrium import described
+from gaspart.analysis.expected.equilibrium import describe
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable, scalar
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.pairs import STRETCHES
@@ -162,7 +162,7 @@ def _remaining(
     width = max(narrowest, (np.prod(lengths) / _CELLS) ** (1.0 / dimension))
     number = np.maximum(1, np.round(lengths / width)).astype(int)
     sides = lengths / number
-    open_ones = np.unravel_index(np.flatnonzero(~_covered(groups, sides, number)), number)
+    open_ones = np.unravel_index(np.flatnonzero(~_find_covered_cells(groups, sides, number)), number)
     cells = (np.stack(open_ones, axis=1) + 0.5) * sides
     corners = np.array(list(product((-0.25, 0.25), repeat=dimension)))
     while 0 < len(cells) * len(corners) <= _MOST_CELLS:
@@ -174,7 +174,9 @@ def _remaining(
     return cells, sides
 
 
-def _covered(groups: list[tuple[np.ndarray, float]], sides: np.ndarray, number: np.ndarray) -> np.ndarray:
+def _find_covered_cells(
+    groups: list[tuple[np.ndarray, float]], sides: np.ndarray, number: np.ndarray
+) -> np.ndarray:
     """Find the cells (cells,) of a grid that lie within the distance of one particle.
 
     The grid has the shape (*number); a cell must lie within the distance completely. The cells that differ in
@@ -261,8 +263,8 @@ def chemical_potential(source: Source, places: int = PLACES, start: float | None
         frames = slice(None, None, -(-len(run.time) // MOST_FRAMES))
         time = run.time[frames]
         edges = np.append(time, 2.0 * time[-1] - time[-2])
-        about = described("chemical_potential", run)
-        tried = [_inserted(run, frames, hosts, trials) for hosts in _hosts(run)]
+        about = describe("chemical_potential", run)
+        tried = [_insert(run, frames, hosts, trials) for hosts in _hosts(run)]
         if run.scene.alike:
             series, counts = tried[0]
             result = scalar("chemical_potential", series, edges, **about)
@@ -284,7 +286,7 @@ def _hosts(run: Run) -> list[Hosts]:
     return [[(each, own + radius) for each, radius in zip(numbers, radii, strict=True)] for own in radii]
 
 
-def _inserted(run: Run, frames: slice, hosts: Hosts, trials: int) -> tuple[np.ndarray, dict[str, float]]:
+def _insert(run: Run, frames: slice, hosts: Hosts, trials: int) -> tuple[np.ndarray, dict[str, float]]:
     """Compute the series (T,) of the chemical potential, and the counts of insertions."""
     result = insertions(
         run.vectors("coordinates")[frames].values.astype(float), run.scene.container.lengths, hosts, trials

@@ -133,11 +133,11 @@ def open_frames(source: Source, pairs: bool = False) -> Iterator[xr.Dataset]:
     Dataset
         The frames. A file is closed after the block.
     """
-    from gaspart.analysis.run import repeated
+    from gaspart.analysis.run import repeat_run
     from gaspart.simulation import Simulation
     from gaspart.trajectory.reading import open_trajectory
 
     if isinstance(source, Simulation):
-        source = repeated(source, pairs)
+        source = repeat_run(source, pairs)
     with open_trajectory(source) if isinstance(source, str | Path) else nullcontext(source) as data:
         yield data

@@ -17,11 +17,11 @@ import xarray as xr
 
 from gaspart.analysis.conditions import GROUPS
 from gaspart.analysis.correlations import Curves, autocorrelation, squared_displacement
-from gaspart.analysis.expected.equilibrium import described
+from gaspart.analysis.expected.equilibrium import describe
 from gaspart.analysis.flow import FLOW
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.observables import require_defined
-from gaspart.analysis.run import Run, Source, open_run, selected
+from gaspart.analysis.run import Run, Source, open_run, select_particles
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of
@@ -36,7 +36,7 @@ _PART = 4.0
 """The length of one in longest lags, so that few pairs of samples are on both sides of an edge."""
 
 
-def accumulated(trajectory: xr.Dataset) -> Curves:
+def average_correlations(trajectory: xr.Dataset) -> Curves:
     """Return the averages that a run with correlations has accumulated to its last frame.
 
     At lags in the scene's time, with velocities as they are; msd and running are NaN without displacements.
@@ -109,7 +109,7 @@ _FARTHEST = 0.45  # of a side: the longest way between frames by which a particl
 
 @dataclass(frozen=True)
 class Groups:
-    """Paths or velocities (T, n, d) of groups of moving particles, made one after another on iteration.
+    """Paths or velocities (T, n, d) of groups of moving particles, made on iteration.
 
     Parameters
     ----------
@@ -175,7 +175,7 @@ def mean_squared_displacement(
 
     Notes
     -----
-    Of a run with correlations and displacements the lags are those of the correlations, and all samples
+    A run with correlations and displacements has the lags of the correlations, and all samples
     count, unless lags, species, particles or per_axis are given. About the flow: see `gaspart.analysis.flow`.
     Theory: Enskog's diffusion coefficient and the linear Boltzmann equation.
 
@@ -194,7 +194,7 @@ def mean_squared_displacement(
         if _accumulates(run, _SQUARES, lags, species, particles) and not per_axis:
             time, values, errors = accumulated_mean(run, _SQUARES)
             return _displacement(run, time, values, errors)
-        groups = groups_of(run, chosen=selected(run, species, particles))
+        groups = groups_of(run, chosen=select_particles(run, species, particles))
         number = _lags(groups, lags)
         axes = [slice(k, k + 1) for k in range(run.dimension)] if per_axis else [slice(None)]
         curves = np.array([[squared_displacement(path[..., k], number) for k in axes] for path in groups])
@@ -259,7 +259,7 @@ def velocity_autocorrelation(
         if _accumulates(run, _PRODUCTS, lags, species, particles):
             time, values, errors = accumulated_mean(run, _PRODUCTS)
             return _autocorrelation(run, time, values / run.dimension, errors / run.dimension)
-        groups = groups_of(run, paths=False, chosen=selected(run, species, particles))
+        groups = groups_of(run, paths=False, chosen=select_particles(run, species, particles))
         number = _lags(groups, lags)
         curves = np.array([autocorrelation(velocity, number) for velocity in groups])
         return _autocorrelation(run, groups.interval * np.arange(number), *means_of(curves, groups.sizes))
@@ -280,14 +280,14 @@ def _accumulates(
 
 def _displacement(run: Run, time: np.ndarray, values: np.ndarray, errors: np.ndarray) -> Observable:
     """Return the mean-squared displacement (lag,) or (axis, lag), with theory."""
-    attributes = described("msd", run, time, axes=values.ndim > 1)
+    attributes = describe("msd", run, time, axes=values.ndim > 1)
     along = {**(axes_of(run) if values.ndim > 1 else {}), **_lag(time)}
     return observable("mean_squared_displacement", along, values, errors, **attributes)
 
 
 def _autocorrelation(run: Run, time: np.ndarray, values: np.ndarray, errors: np.ndarray) -> Observable:
     """Return the velocity autocorrelation (lag,), with theory."""
-    about = described("vacf", run, time)
+    about = describe("vacf", run, time)
     return observable("velocity_autocorrelation", _lag(time), values, errors, **about)
 
 
@@ -395,14 +395,14 @@ def _values(run: Run, paths: bool, stride: int) -> np.ndarray:
     """
     moving = run.moving
     if not run.flow_axes:
-        values = unwrapped(run, stride) if paths else run.vectors("velocities")[::stride].values
+        values = unwrap_positions(run, stride) if paths else run.vectors("velocities")[::stride].values
         return values if moving.all() else values[:, moving]
     velocities, peculiar, free_part = run.velocities[:, moving], run.motion.velocities, run.motion.freedom
     if paths:
         from scipy.integrate import cumulative_trapezoid
 
         carried = cumulative_trapezoid(velocities - peculiar, run.time, axis=0, initial=0.0)
-        return np.asarray((unwrapped(run)[:, moving] - carried)[::stride])
+        return np.asarray((unwrap_positions(run)[:, moving] - carried)[::stride])
     velocities = peculiar / np.sqrt(np.where(free_part > 0.0, free_part, 1.0))
     return velocities[::stride]
 
@@ -439,8 +439,8 @@ def stride_of(run: Run, count: int = GROUPS) -> int:
     return -(-len(run.time) // (MOST_FRAMES * (GROUPS if count < GROUPS else 1)))
 
 
-def unwrapped(run: Run, stride: int = 1) -> np.ndarray:
-    """Return positions continued across periodic faces: those of the file, or by the nearest image.
+def unwrap_positions(run: Run, stride: int = 1) -> np.ndarray:
+    """Return positions continued across periodic faces, from the file or by the nearest image.
 
     Parameters
     ----------

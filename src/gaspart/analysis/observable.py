@@ -195,7 +195,7 @@ class Observable(ByFace):
         """Return the `summary`, a plot of a curve, and the data set, folded."""
         text = html.escape(self.summary).replace("\n", "<br>")
         is_plotted = self.estimate.size > _FEW and len(_cells(self)) <= _PLANE
-        drawn = f'<br><img src="{_plotted(self)}" alt="{text}">' if is_plotted else ""
+        drawn = f'<br><img src="{_embed_plot(self)}" alt="{text}">' if is_plotted else ""
         return f"<b>{text}</b>{drawn}<details><summary>data set</summary>{super()._repr_html_()}</details>"
 
     def plot(self, theory: bool = False, axis: Axes | None = None) -> Axes:  # type: ignore[override]
@@ -270,7 +270,7 @@ def _values(result: Observable, name: str) -> list[str]:
     return lines
 
 
-def _plotted(result: Observable) -> str:
+def _embed_plot(result: Observable) -> str:
     """Return a plot of a curve as the address of a picture that contains it."""
     from matplotlib.figure import Figure
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from gaspart.analysis.bulk import EXACT
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.expected.equilibrium import described, equation_of
+from gaspart.analysis.expected.equilibrium import describe, equation_of
 from gaspart.analysis.impulses import estimator, mixture
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable
 from gaspart.analysis.observables import KEPT, require_defined
@@ -153,7 +153,7 @@ _ALIKE = 1e-9
 """Relative difference of two thicknesses of shells that is rounding."""
 
 
-def kept(run: Run) -> PairImpulseTally | None:
+def read_pair_impulses(run: Run) -> PairImpulseTally | None:
     """Return the stored impulses of pairs of a run, or None.
 
     Without them nothing is returned, nor if the file lacks particles, from which the temperature follows.
@@ -173,7 +173,7 @@ def g_by_impulses(run: Run, starts: np.ndarray, bins: int, furthest: float) -> n
     or not in parts of these shells, if a block takes no time, and if no pair has collided: then impulses do
     not determine g(r), which is not 0.
     """
-    has = kept(run)
+    has = read_pair_impulses(run)
     if has is None or starts[-1] == len(run.time) - 1 or furthest > has.furthest * (1.0 + _ALIKE):
         return None
     each = furthest / bins * has.shells / has.furthest
@@ -261,7 +261,7 @@ def rdf(
     """
     with open_run(source, start) as run:
         require_defined("rdf", run.scene)
-        has = kept(run)
+        has = read_pair_impulses(run)
         bins = count_of("bins", bins or (has.shells if has else _BINS), least=2)
         stored, lengths = run.data.sizes["atom"], run.scene.container.lengths
         if stored < 2:
@@ -286,7 +286,7 @@ def rdf(
             within = distance + 0.5 * end / bins <= 2.0 * run.radii[:stored].min()
             errors[within & (values == 0.0)] = 0.0
         along = {"distance": (distance, {"units": "length", "long_name": "distance"})}
-        about = described("rdf", run, distance, end / bins)
+        about = describe("rdf", run, distance, end / bins)
         result = observable("rdf", along, values, errors, **about)
         tally = PairImpulseTally(float(end), 200, 0.1)
         result.attrs |= estimator(run, "counts", "counts and impulses", parts is not None, tally)
@@ -367,8 +367,8 @@ def pair_collision_rates(source: Source, start: float | None = None) -> Observab
 
     Notes
     -----
-    Theory: exact except for the contact values, which are those of an infinite mixture. A particle of N_i has
-    N_i - 1 partners of its own species, and the mean speed is that of a finite number at fixed energy.
+    Theory: exact except for the contact values, which hold for an infinite mixture. A particle of N_i has
+    N_i - 1 partners of its own species, and the mean speed holds for a finite number at fixed energy.
 
     Examples
     --------
@@ -438,7 +438,9 @@ def contact_values(source: Source, start: float | None = None) -> Observable:
 
 
 def rate_scales(run: Run) -> np.ndarray:
-    """Compute the collision rate of a pair of species divided by that of a particle of the first.
+    """Compute the ratio of the collision rates of a pair of species and of a particle.
+
+    The particle is of the first species of the pair.
 
     Parameters
     ----------
@@ -524,4 +526,4 @@ def _of_pairs(observed: str, name: str, run: Run, estimates: list[Estimate]) -> 
     """Return the result of an observable of pairs, `observed`, whose variable has a name."""
     along = {"pair": (np.array(pair_names(run.scene)), {"long_name": "numbers of two species, from 0"})}
     values, errors = np.array([[estimate.value, estimate.error] for estimate in estimates]).T
-    return observable(name, along, values, errors, **described(observed, run))
+    return observable(name, along, values, errors, **describe(observed, run))

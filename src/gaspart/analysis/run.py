@@ -382,7 +382,7 @@ class Run:
         return replace(gas, temperature=self.temperature) if gas and self.temperature > 0.0 else None
 
 
-def selected(run: Run, species: int | None, particles: Sequence[int] | None) -> np.ndarray:
+def select_particles(run: Run, species: int | None, particles: Sequence[int] | None) -> np.ndarray:
     """Return the indices of the selected particles among the moving ones (M,); by default all.
 
     species : number of the species, as in `Run.species`.
@@ -442,7 +442,7 @@ def open_run(
     """
     one_of("about", about, ABOUT)
     if isinstance(source, Simulation):
-        opened = nullcontext(repeated(source, pairs))
+        opened = nullcontext(repeat_run(source, pairs))
     elif isinstance(source, xr.Dataset):
         opened = nullcontext(source)
     else:
@@ -467,7 +467,7 @@ def open_run(
         yield Run(scene, time[chosen], part, about=about)
 
 
-def repeated(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
+def repeat_run(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
     """Run a simulation again from its start and return its frames, at even times.
 
     Raises SceneError for a simulation that has not advanced.
@@ -494,7 +494,7 @@ def repeated(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
 
 
 def frame_of(simulation: Simulation) -> dict[str, Any]:
-    """Return the variables of a frame: those of a simulation now."""
+    """Return the variables of a frame from the present state of a simulation."""
     state, scene = simulation.state, simulation.scene
     vectors = {"coordinates": state.positions, "velocities": state.velocities}
     vectors["displacements"] = state.unwrapped

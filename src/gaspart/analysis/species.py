@@ -13,7 +13,7 @@ from gaspart.analysis.flow import FLOW, mean_motion
 from gaspart.analysis.measuring import measure
 from gaspart.analysis.observable import Observable, scalar
 from gaspart.analysis.observables import having, selecting
-from gaspart.analysis.run import Run, Source, open_run, selected
+from gaspart.analysis.run import Run, Source, open_run, select_particles
 from gaspart.errors import SceneError
 from gaspart.trajectory.reading import open_trajectory
 
@@ -97,7 +97,7 @@ def _of_motion() -> tuple[str, ...]:
 
 def _of_velocities(run: Run, kind: int) -> dict[str, Observable]:
     """Measure the temperature and the mean speed of the moving particles of a species."""
-    chosen, masses = selected(run, kind, None), run.masses[run.moving]
+    chosen, masses = select_particles(run, kind, None), run.masses[run.moving]
     peculiar, rows = mean_motion(run), []
     for _, part in run.parts():
         motion = peculiar(part)

@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from gaspart.analysis.expected.equilibrium import described
-from gaspart.analysis.flow import FLOW, Grid, left_by_obstacles, mean_motion
+from gaspart.analysis.expected.equilibrium import describe
+from gaspart.analysis.flow import FLOW, Grid, accessible_fraction, mean_motion
 from gaspart.analysis.impulses import default_bins, described_density, mixed_density
 from gaspart.analysis.observable import Observable, observable, scalar
 from gaspart.analysis.observables import having, require_defined
 from gaspart.analysis.pairs import STRETCHES, chosen_frames
 from gaspart.analysis.profiles import Cells, Means, with_freedom
-from gaspart.analysis.run import Run, Source, open_run, selected
+from gaspart.analysis.run import Run, Source, open_run, select_particles
 from gaspart.analysis.statistics import histogram_means
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
@@ -90,7 +90,7 @@ def speed_distribution(
         values, errors = histogram_means(counts / sizes[:, None] / grid.volume, sizes)
         fixed = np.ptp(energy) <= _CONSTANT * energy.mean()
         alike = np.ptp(masses) == 0.0 and not run.flow_axes
-        attributes = described("speeds", run, edges, masses[0] if alike else None, fixed)
+        attributes = describe("speeds", run, edges, masses[0] if alike else None, fixed)
         if run.flow_axes:
             attributes["long_name"] += " about the local flow"
         middle = 0.5 * (edges[1:] + edges[:-1])
@@ -143,7 +143,8 @@ def profile(
     axis : {"x", "y", "z"}, optional
         The axis. Default: the last one.
     bins : int, optional
-        Number of bins. Default: 40; of a density that of the impulses that the run has stored along the axis.
+        Number of bins. Default: 40; for a density the number of bins of the impulses that the run has stored
+        along the axis.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
     species : int, optional
@@ -166,7 +167,7 @@ def profile(
 
     Notes
     -----
-    Errors are those of correlated series, of each bin for itself. They are NaN where their degrees of freedom
+    Errors hold for correlated series, for each bin separately. They are NaN where their degrees of freedom
     are fewer than two, of a run that is too short for the correlation there, and where the value of a bin
     does not change (0 if nothing moves, or all bins have one value).
 
@@ -197,10 +198,10 @@ def profile(
             by_impulses = mixed_density(run, k, bins, species)
             means = by_impulses or _density(run, k, bins, species)
         else:
-            members = np.flatnonzero(run.moving)[selected(run, species, None)]
+            members = np.flatnonzero(run.moving)[select_particles(run, species, None)]
             means = Cells(run, members, (k,), (bins,)).temperature(local=False)
         middle = 0.5 * (edges[1:] + edges[:-1])
-        attributes = described(of, run, *((k, edges, species) if of == "density" else ()))
+        attributes = describe(of, run, *((k, edges, species) if of == "density" else ()))
         along = {"position": (middle, {"units": "length", "long_name": names[k]})}
         result = observable(of, along, means.values, means.errors, **attributes)
         if of == "density":
@@ -218,7 +219,7 @@ def density(source: Source, start: float | None = None, **selection: Any) -> Obs
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
     **selection
-        Other arguments as of `profile`.
+        Other arguments of `profile`.
 
     Returns
     -------
@@ -250,7 +251,7 @@ def temperature(source: Source, start: float | None = None, **selection: Any) ->
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
     **selection
-        Other arguments as of `profile`.
+        Other arguments of `profile`.
 
     Returns
     -------
@@ -320,7 +321,7 @@ def order_parameter(source: Source, start: float | None = None) -> Observable:
         else:
             series, name = [global_steinhardt(frame, lengths) for frame in frames], "Q_6"
         edges = np.append(time, 2.0 * time[-1] - time[-2])
-        about = described("order", run)
+        about = describe("order", run)
         about["long_name"] += f" {name}"
         return scalar("order_parameter", np.array(series, dtype=float), edges, **about)
 
@@ -340,7 +341,7 @@ def _density(run: Run, axis: int, bins: int, species: int | None) -> Means:
     if np.isfinite(run.masses).all():
         return cells.density().times(run.count / stored)
     edges, radii = cells.grid.edges[0], run.radii[members]  # fixed particles leave less room to larger ones
-    fractions = {radius: left_by_obstacles(run, radius, axis, edges) for radius in np.unique(radii)}
+    fractions = {radius: accessible_fraction(run, radius, axis, edges) for radius in np.unique(radii)}
     shares = np.array([fractions[radius] for radius in radii])  # (n, bins)
 
     def per_share(here: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from gaspart.analysis.expected.equilibrium import described
+from gaspart.analysis.expected.equilibrium import describe
 from gaspart.analysis.observable import Observable, observable
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.pairs import STRETCHES, stretches_of
@@ -28,8 +28,10 @@ _FEW = 24
 every second one along each axis, and so on."""
 
 
-def admitted(lengths: Sequence[float] | np.ndarray, highest: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the wave vectors k = 2 pi n / L with 0 < |k| <= highest, one of each pair k, -k.
+def wave_vectors(lengths: Sequence[float] | np.ndarray, highest: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the wave vectors with 0 < |k| <= highest, one of each pair k, -k.
+
+    The wave vectors are k = 2 pi n / L.
 
     Both vectors of a pair have one S. The lengths have the shape (d,). Returns the integers n (M, d) and |k|
     (M,), by ascending |k|.
@@ -49,7 +51,9 @@ def admitted(lengths: Sequence[float] | np.ndarray, highest: float) -> tuple[np.
 def shells_of(
     lengths: Sequence[float] | np.ndarray, highest: float, bins: int, most: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Select up to `most` of the `admitted` wave vectors of each of `bins` equal intervals of |k|.
+    """Select up to `most` of the `wave_vectors` of each interval of |k|.
+
+    There are `bins` equal intervals.
 
     They are evenly chosen; where there are many, from every second (fourth, ...) wave along each axis.
     Returns n (M, d), the number of the shell of each (M,), and the mean |k| of each of the S shells that are
@@ -58,7 +62,7 @@ def shells_of(
     parts, low, step = [], 0.0, 1
     while low < highest:
         high = min(highest, step * _FEW * 2.0 * np.pi / max(lengths))
-        waves, size = admitted(np.asarray(lengths) / step, high)
+        waves, size = wave_vectors(np.asarray(lengths) / step, high)
         parts.append((step * waves[size > low], size[size > low]))
         low, step = high, 2 * step
     waves, size = (np.concatenate(values) for values in zip(*parts, strict=True))
@@ -87,7 +91,9 @@ def factors(
 def amplitudes(
     frames: np.ndarray, lengths: Sequence[float] | np.ndarray, waves: np.ndarray, threads: int = 1
 ) -> np.ndarray:
-    """Return sum exp(i k.r) of each frame, at wave vectors k = 2 pi n / L.
+    """Return sum exp(i k.r) of each frame at wave vectors.
+
+    The wave vectors are k = 2 pi n / L.
 
     Parameters
     ----------
@@ -120,7 +126,9 @@ def amplitudes(
 
 
 def _factor_rows(waves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the products that make all factors exp(2 pi i n x / L), and each wave's rows.
+    """Return the products that make all factors, and the rows of each wave.
+
+    The factors are exp(2 pi i n x / L).
 
     As `sum_waves` takes them: (R, 2) and (M, d), for waves (M, d).
     """
@@ -199,8 +207,10 @@ def structure_factor(
     with open_run(source, start) as run:
         require_defined("structure_factor", run.scene)
         lengths = run.scene.container.lengths
-        means, along = _measured(run, bins, highest, lambda frames, waves: factors(frames, lengths, waves))
-        about = described("structure_factor", run, along["wave_number"][0])
+        means, along = _average_products(
+            run, bins, highest, lambda frames, waves: factors(frames, lengths, waves)
+        )
+        about = describe("structure_factor", run, along["wave_number"][0])
         return observable("structure_factor", along, *means_of(means), **about)
 
 
@@ -268,13 +278,13 @@ def partial_structure_factors(
             ]
             return np.stack([(each[a] * each[b].conj()).real for a, b in pairs], axis=1)
 
-        means, along = _measured(run, bins, highest, of_pairs)
+        means, along = _average_products(run, bins, highest, of_pairs)
         names = np.array(pair_names(run.scene)), {"long_name": "numbers of two species, from 0"}
-        about = described("partial_structure_factors", run, along["wave_number"][0])
+        about = describe("partial_structure_factors", run, along["wave_number"][0])
         return observable("partial_structure_factors", {"pair": names, **along}, *means_of(means), **about)
 
 
-def _measured(
+def _average_products(
     run: Run,
     bins: int,
     highest: float | None,

@@ -20,8 +20,8 @@ import math
 import numpy as np
 import xarray as xr
 
-from gaspart.analysis.expected.equilibrium import described
-from gaspart.analysis.motion import unwrapped
+from gaspart.analysis.expected.equilibrium import describe
+from gaspart.analysis.motion import unwrap_positions
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable, scalar
 from gaspart.analysis.observables import KEPT, require_defined
 from gaspart.analysis.run import Run, Source, open_run
@@ -72,25 +72,25 @@ def conductivity_without_diffusion(run: Run, lag: float) -> Observable:
         raise SceneError("frames", len(run.time), rule)
     if not run.temperature > 0.0:
         raise SceneError("temperature", run.temperature, "without motion no flux fluctuates")
-    heat, passed = run.data["heat_sum"].values, _passed(run)
+    heat, passed = run.data["heat_sum"].values, _sum_displacements(run)
     coupling = _products(passed, passed, number).mean(axis=-1)
     with_heat = _products(passed, heat[None], number).mean(axis=-1)
     factors = np.linalg.lstsq(coupling, with_heat[:, 0], rcond=None)[0]
     rest = (heat - np.tensordot(factors, passed, 1))[None]
     scale = 1.0 / (math.prod(run.scene.container.lengths) * run.temperature**2 * run.interval)
     series = scale * _products(rest, rest, number)[0, 0]
-    about = described("thermal_conductivity", run, run.temperature)
+    about = describe("thermal_conductivity", run, run.temperature)
     about["long_name"] += " without diffusion"
     return scalar("thermal_conductivity", series, run.time[: len(series) + 1], **about)
 
 
-def _passed(run: Run) -> np.ndarray:
+def _sum_displacements(run: Run) -> np.ndarray:
     """Sum displacements about the centre of mass over the particles of each species.
 
     The shape is (S - 1, T, d): the sum of the last species follows from the others.
     """
     moving, masses = run.moving, run.masses  # raises SceneError if some are not in the file
-    paths = unwrapped(run)[:, moving]
+    paths = unwrap_positions(run)[:, moving]
     paths = paths - np.einsum("tnd,n->td", paths, masses / masses.sum())[:, None]
     kinds = np.unique(run.species)[:-1]
     return np.array([paths[:, run.species == kind].sum(axis=1) for kind in kinds])
@@ -245,7 +245,7 @@ def thermal_conductivity(source: Source, lag: float | None = None, start: float 
             return _coefficient(run, "thermal_conductivity", "heat", lag)
         require_defined("thermal_conductivity", run.scene)
         run.require_all()
-        settings = _stored(run)
+        settings = _read_settings(run)
         lags = _lags_until(settings, lag)
         return conductivity_without_diffusion(run, lags * settings.interval)
 
@@ -287,7 +287,7 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
     """
     with open_run(source, start, sheared=True) as run:
         require_defined("pressure_tensor", run.scene)
-        _stored(run)
+        _read_settings(run)
         if len(run.time) <= LEAST_INTERVALS:
             raise SceneError("frames", len(run.time), f"an error needs {LEAST_INTERVALS + 1} or more")
         d, volume = run.dimension, math.prod(run.scene.container.lengths)
@@ -300,11 +300,11 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
             {"component": (names, {"long_name": "component"})},
             np.array([mean.value for mean in means]),
             np.array([mean.error for mean in means]),
-            **described("pressure_tensor", run, run.temperature),
+            **describe("pressure_tensor", run, run.temperature),
         )
 
 
-def _stored(run: Run) -> Correlations:
+def _read_settings(run: Run) -> Correlations:
     """Return the settings of a run's correlations of the stress.
 
     Raises SceneError for a run without them. An older version stored fluxes of absolute velocities: such a
@@ -339,14 +339,14 @@ def _initial(run: Run) -> State:
 
 def _response(run: Run, lag: float | None) -> Observable:
     """Measure the shear viscosity of a sheared gas, from the momentum carried across the flow."""
-    _stored(run)
+    _read_settings(run)
     scene, rate = run.scene, run.scene.shear_rate
     if lag is not None:
         raise SceneError("lag", lag, "is that of fluctuations at rest; a sheared gas responds without")
     assert rate, "see `conditions.shears`"
     carried = run.increments("stress_sum")[:, 1, 0]
     viscosity = -carried / (rate * scene.container.volume * np.diff(run.time))
-    about = described("shear_viscosity", run, run.temperature)
+    about = describe("shear_viscosity", run, run.temperature)
     about["long_name"] += ", response"
     return scalar("shear_viscosity", viscosity, run.time, **about)
 
@@ -357,13 +357,13 @@ def _coefficient(run: Run, public: str, name: str, lag: float | None) -> Observa
     The flux is `name` in `trajectory.correlator.STRESS`.
     """
     require_defined(public, run.scene)
-    settings = _stored(run)
+    settings = _read_settings(run)
     lags = _lags_until(settings, lag)
     running, slopes = (
         np.sum([form(run, part) for part in _PARTS.get(name, (name,))], axis=0)
         for form in (green_kubo, helfand)
     )
-    about = described(public, run, run.temperature)
+    about = describe(public, run, run.temperature)
     units = about["units"]
     result = scalar(public, running[:, lags], run.time[-len(running) - 1 :], **about)
     time = settings.interval * np.arange(running.shape[1])
@@ -412,7 +412,7 @@ def green_kubo(run: Run, name: str) -> np.ndarray:
     SceneError
         If the run has no correlations of the stress.
     """
-    interval = _stored(run).interval
+    interval = _read_settings(run).interval
     products, _ = _blocks(run, name)
     return _scale(run, name) * interval * (np.cumsum(products, axis=1) - 0.5 * products[:, :1])
 
@@ -432,7 +432,7 @@ def helfand(run: Run, name: str) -> np.ndarray:
     ndarray, shape (B, lags)
         The coefficient; NaN at the lag 0.
     """
-    interval = _stored(run).interval
+    interval = _read_settings(run).interval
     _, squares = _blocks(run, name)
     time = interval * np.arange(squares.shape[1])
     return 0.5 * _scale(run, name) * squares / np.where(time > 0.0, time, np.nan)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.analysis.bond_order import NEIGHBOURS, hexatic, local_steinhardt
-from gaspart.analysis.run import repeated
+from gaspart.analysis.run import repeat_run
 from gaspart.errors import SceneError
 from gaspart.files import FileKind, output_path, writing
 from gaspart.keys.values import count_of
@@ -156,7 +156,7 @@ def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order:
 
 def _with_names(simulation: Simulation) -> xr.Dataset:
     """Return the frames of a simulation with the variables of a trajectory that pictures need."""
-    data, initial = repeated(simulation), simulation.initial_state
+    data, initial = repeat_run(simulation), simulation.initial_state
     lengths = np.tile(initial.lengths, (data.sizes["frame"], 1))
     looks = (np.resize(values, data.sizes["atom"]) for values in (initial.radii, initial.species))
     radii, species = looks  # of open faces, all alike

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gaspart.analysis.structure_factors import admitted, amplitudes, factors, shells_of
+from gaspart.analysis.structure_factors import amplitudes, factors, shells_of, wave_vectors
 from gaspart.kernels.analysis.waves import BLOCK
 
 CONTAINERS = [(5.0, 9.0), (30.0, 2.0), (4.0, 5.0, 7.0), (2.0, 2.0, 30.0)]
@@ -25,7 +25,7 @@ def random_frames(lengths, count, number=2):
 @pytest.mark.parametrize("lengths", CONTAINERS)
 @pytest.mark.parametrize("count", [1, 2, BLOCK - 1, BLOCK, BLOCK + 1, 300])
 def test_the_sums_are_those_of_the_definition(lengths, count):
-    waves, _ = admitted(lengths, 6.0)
+    waves, _ = wave_vectors(lengths, 6.0)
     frames = random_frames(lengths, count)
     expected = summed(frames, lengths, waves)
     found = amplitudes(frames, lengths, waves)
@@ -51,7 +51,7 @@ def test_waves_of_both_signs_along_each_axis_are_conjugate():
 
 def test_a_crystal_scatters_in_its_reciprocal_lattice_alone():
     sites = np.stack(np.meshgrid(*[np.arange(6.0)] * 3), axis=-1).reshape(1, -1, 3) + 0.3
-    waves, _ = admitted((6.0,) * 3, 7.0)
+    waves, _ = wave_vectors((6.0,) * 3, 7.0)
     found = factors(sites, (6.0,) * 3, waves)[0]
     bragg = (waves % 6 == 0).all(axis=1)
     assert bragg.sum() == 3 and found[bragg] == pytest.approx(216.0)
@@ -61,7 +61,7 @@ def test_a_crystal_scatters_in_its_reciprocal_lattice_alone():
 @pytest.mark.parametrize("threads", [2, 3])
 def test_the_bits_do_not_depend_on_the_number_of_threads(threads):
     lengths = (4.0, 5.0, 7.0)
-    waves, _ = admitted(lengths, 5.0)
+    waves, _ = wave_vectors(lengths, 5.0)
     frames = random_frames(lengths, 150, 7)
     one, shared = (amplitudes(frames, lengths, waves, number) for number in (1, threads))
     assert np.array_equal(one, shared)

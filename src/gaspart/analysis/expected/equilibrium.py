@@ -264,7 +264,7 @@ def speeds(run: Run, edges: np.ndarray, mass: float | None, fixed: bool) -> Expe
 # An observable of a run as its result states it: units, label, and what theory expects.
 
 
-def described(name: str, run: Run, *arguments: Any, **keywords: Any) -> dict[str, Any]:
+def describe(name: str, run: Run, *arguments: Any, **keywords: Any) -> dict[str, Any]:
     """Return units and label of an observable, and its theory for a run.
 
     The theory, if there is one, has values, their uncertainties, and a source. `arguments` and `keywords` are

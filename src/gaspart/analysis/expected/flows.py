@@ -104,7 +104,7 @@ def heat_flux(run: Run, faces: np.ndarray) -> Expected | None:
         return None
     if plates.slide.any():
         return _friction(plates, run)
-    conduction = _conducted(plates, equation_of(run) == BOLTZMANN)
+    conduction = _heat_between_plates(plates, equation_of(run) == BOLTZMANN)
     if conduction is None:
         return None
     flux, error, source = conduction
@@ -117,12 +117,12 @@ def wall_shear(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None
 
     The components are along these axes; the state is steady.
     """
-    if driven := _driven(run, faces, axes):
+    if driven := _weight_on_faces(run, faces, axes):
         return driven
     plates = plates_of(run)
     if plates is None or not plates.equal or not plates.slide.any():
         return None
-    stress = _sheared(plates, run)
+    stress = _stress_between_plates(plates, run)
     if stress is None:
         return None
     value, error, source = stress
@@ -194,7 +194,7 @@ def _in_equilibrium(run: Run) -> bool:
     return still and is_isothermal and not (run.dissipates or scene.thermostat or scene.driven_axes)
 
 
-def _conducted(plates: Plates, points: bool) -> tuple[float, float, str] | None:
+def _heat_between_plates(plates: Plates, points: bool) -> tuple[float, float, str] | None:
     """Compute the heat flux from the hot to the cold plate."""
     hot, cold = max(plates.temperatures), min(plates.temperatures)
     fractions = plates.accommodation if plates.temperatures[0] == hot else plates.accommodation[::-1]
@@ -211,7 +211,7 @@ def _conducted(plates: Plates, points: bool) -> tuple[float, float, str] | None:
     gap = (plates.length, plates.density / scale**2, hot, cold, plates.diameter * scale)
     if plates.knudsen > FLUID:
         flux = unit * scale**2 * theory.interpolated_flux(*gap)
-        return flux, flux * INTERPOLATED, f"{_between('heat')}, {at}"
+        return flux, flux * INTERPOLATED, f"{_describe_interpolation('heat')}, {at}"
     try:
         flux = unit * scale**2 * theory.conducting_slab(*gap).flux
     except ValueError:  # its own estimate of the Knudsen number is a little larger
@@ -221,7 +221,7 @@ def _conducted(plates: Plates, points: bool) -> tuple[float, float, str] | None:
     return flux, error, f"Fourier's law with Enskog's conductivity and temperature jumps, {at}"
 
 
-def _sheared(plates: Plates, run: Run) -> tuple[float, float, str] | None:
+def _stress_between_plates(plates: Plates, run: Run) -> tuple[float, float, str] | None:
     """Compute the shear stress on plates of one temperature that slide."""
     speed, temperature = float(np.hypot.reduce(plates.slide)), plates.temperatures[0]
     gas = plates.density, speed, temperature, plates.mass, plates.accommodation
@@ -235,7 +235,7 @@ def _sheared(plates: Plates, run: Run) -> tuple[float, float, str] | None:
     gap = (plates.length, plates.density, speed, plates.diameter)
     if plates.knudsen > FLUID:
         stress = unit * float(theory.interpolated_stress(*gap))
-        return stress, stress * INTERPOLATED, f"{_between('stress')}, {at}"
+        return stress, stress * INTERPOLATED, f"{_describe_interpolation('stress')}, {at}"
     stress = unit * float(theory.slip_flow_stress(*gap))
     error = stress * (plates.knudsen**2 + heating_of(plates))
     return stress, error, f"Enskog's viscosity with slip, {at}"
@@ -255,21 +255,21 @@ def heating_of(plates: Plates) -> float:
     return plates.mass * square / (30.0 * max(plates.temperatures))
 
 
-def _between(quantity: str) -> str:
+def _describe_interpolation(quantity: str) -> str:
     limits = {"heat": "free flight and Fourier's law", "stress": "free flight and Newton's law"}[quantity]
     return f"interpolation (Sherman) of {limits}, for Knudsen numbers from {FLUID:g} to {FREE:g}"
 
 
 def _friction(plates: Plates, run: Run) -> Expected | None:
     """Compute the heat of friction, half the work of the stress for each plate."""
-    if not plates.equal or (stress := _sheared(plates, run)) is None:
+    if not plates.equal or (stress := _stress_between_plates(plates, run)) is None:
         return None
     value, error, source = stress
     half = 0.5 * float(np.hypot.reduce(plates.slide))
     return np.full(2, half * value), half * error, f"half the work of the stress: {source}"
 
 
-def _driven(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None:
+def _weight_on_faces(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None:
     """Compute the exact weight of the gas along the faces, half on each of two."""
     scene, driven = run.scene, run.scene.driven_axes
     equal = len(faces) == 2 and faces[0] // 2 == faces[1] // 2 and len(scene.faces) == 2
@@ -299,7 +299,7 @@ def velocity(run: Run, axis: int, positions: np.ndarray) -> Expected | None:
     if plates := plates_of(run):
         return _between_plates(plates, run, axis, positions)
     if plates := plates_of(run, driven=True):
-        return _pushed(plates, run, axis, positions)
+        return _channel_velocity(plates, run, axis, positions)
     if scene.faces or scene.thermostat or run.dissipates or scene.driven_axes or scene.walls:
         return None
     if not run.moving.all():
@@ -349,12 +349,12 @@ def _between_plates(plates: Plates, run: Run, axis: int, positions: np.ndarray) 
     return np.where(near, np.nan, values), wrong, "linear flow with slip"
 
 
-def _pushed(plates: Plates, run: Run, axis: int, positions: np.ndarray) -> Expected | None:
+def _channel_velocity(plates: Plates, run: Run, axis: int, positions: np.ndarray) -> Expected | None:
     """Compute the velocity that a force drives along plates of one temperature at rest.
 
     The uncertainty is the next order of the slip, the packing fraction, and half of the heating of the gas by
-    friction: in units of k_B T, with the greatest velocity u, 4/45 m u^2 in the middle, and at the plates
-    32/45 m u^2 times the coefficient of the temperature jump times the Knudsen number.
+    friction. In units of k_B T it is, with the greatest velocity u, 4/45 m u^2 in the middle, and at the
+    plates 32/45 m u^2 times the coefficient of the temperature jump times the Knudsen number.
     """
     slow = not plates.slide.any() and plates.equal and axis == plates.axis
     if not slow or plates.dimension == 2 or not 0.0 < plates.knudsen <= FLUID or not dilute(plates, run):
@@ -382,7 +382,7 @@ def flux(run: Run, axis: int, position: float, members: np.ndarray, beyond: np.n
     """
     scene = run.scene
     if not scene.walls:
-        return _closed(run)
+        return _zero_flux(run)
     masses, radii = run.masses[members], run.radii[members]
     area = opening(scene, axis, position, float(radii.max()))
     moved = scene.thermostat or run.dissipates or run.has_gravity or scene.moving_wall
@@ -401,7 +401,7 @@ def flux(run: Run, axis: int, position: float, members: np.ndarray, beyond: np.n
     return np.array([rates[0] - rates[1]]), float(rates.max()) * spent, source
 
 
-def _closed(run: Run) -> Expected | None:
+def _zero_flux(run: Run) -> Expected | None:
     """Return the flux 0 of a steady state.
 
     None for a start in a region, and in a container with a piston, which moves what it compresses.
@@ -440,10 +440,10 @@ def opening(scene: Scene, axis: int, position: float, radius: float) -> float | 
     if not shadows or not length > 0.0:
         return None
     lower, upper = (np.array(ends)[across] for ends in scene.reach(radius))
-    return _uncovered(np.array(shadows), lower, upper)
+    return _open_area(np.array(shadows), lower, upper)
 
 
-def _uncovered(shadows: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> float:
+def _open_area(shadows: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> float:
     """Compute the measure of a box, from lower to upper, that boxes (W, 2, k) leave."""
     edges = [
         np.unique(np.clip(np.append(shadows[:, :, k], [lower[k], upper[k]]), lower[k], upper[k]))

@@ -148,10 +148,10 @@ def density(run: Run, axis: int, edges: np.ndarray, species: int | None) -> Expe
     if not field:
         bound = equation_of(run) == EXACT and scene.conserved_axes[axis] and run.count < _LEAST_UNIFORM
         return None if bound else (scene.number_density, 0.0, "uniform")
-    return _stratified(run, axis, edges, field)
+    return _barometric_density(run, axis, edges, field)
 
 
-def _stratified(run: Run, axis: int, edges: np.ndarray, field: float) -> Expected | None:
+def _barometric_density(run: Run, axis: int, edges: np.ndarray, field: float) -> Expected | None:
     """Compute the density (bins,) of equal particles under gravity along an axis."""
     scene, kind = run.scene, run.scene.kinds[0]
     lower, upper = scene.reach(kind.radius)

@@ -117,7 +117,7 @@ def correlated_mean(series: ArrayLike, minimum_blocks: int = 16) -> CorrelatedMe
 
 
 def slow_mean(series: ArrayLike, minimum_blocks: int = 16) -> Estimate:
-    """Return the mean of a series whose correlations may fall as 1 / t, with its standard error.
+    """Return the mean and its error of a series whose correlations may fall as 1/t.
 
     Particles of all speeds cross a container, and slow ones stay for long: without collisions the number of
     those inside is correlated over a time t as L / t, whose sum grows as the logarithm of the length of the
@@ -128,16 +128,17 @@ def slow_mean(series: ArrayLike, minimum_blocks: int = 16) -> Estimate:
     Parameters
     ----------
     series : array_like, shape (n,)
-        Samples, at least 4 times `minimum_blocks`; of fewer ones, the result is that of `correlated_mean`.
+        Samples, at least 4 times `minimum_blocks`; of fewer ones, the result is `correlated_mean`'s.
     minimum_blocks : int
         Number of the longest blocks, at least.
 
     Returns
     -------
     Estimate
-        Its degrees of freedom are those of so many blocks at most. Of free particles, deviations over errors
-        are then 1.01 to 1.13 times as wide as Student's in runs of 100 times the crossing and more, 1.2 times
-        in those of 8 (`tests/analysis/test_statistics.py`); by `correlated_mean` 1.2 to 1.65 times.
+        It has at most the degrees of freedom of this number of blocks. Of free particles, deviations over
+        errors are then 1.01 to 1.13 times as wide as Student's in runs of 100 times the crossing and more,
+        1.2 times in runs of 8 times the crossing (`tests/analysis/test_statistics.py`);
+        by `correlated_mean` 1.2 to 1.65 times.
     """
     plain = correlated_mean(series, minimum_blocks)
     squares, own = plain.errors**2, plain.estimate

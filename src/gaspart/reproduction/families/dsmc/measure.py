@@ -17,7 +17,7 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.motion import accumulated
+from gaspart.analysis.motion import average_correlations
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import fit_linear, mean_of
 from gaspart.analysis.transport import green_kubo
@@ -146,7 +146,7 @@ def _running_diffusion(point: Point) -> np.ndarray:
     """
     gas = plain_gas(point.scene)
     dilute = theory.enskog_diffusion(**gas.parameters) * theory.contact_value(gas.packing_fraction, 3)
-    return np.array([accumulated(run.data).running[-1] for run in _runs(point)]) / float(dilute)
+    return np.array([average_correlations(run.data).running[-1] for run in _runs(point)]) / float(dilute)
 
 
 def _paths(point: Point, settings: dict) -> dict[str, Any]:

@@ -13,7 +13,7 @@ import xarray as xr
 
 from gaspart.accuracy.estimates import components
 from gaspart.analysis.flow import Grid
-from gaspart.analysis.impulses import kept, mixture, numbers_by_impulses
+from gaspart.analysis.impulses import mixture, numbers_by_impulses, read_impulses
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import mean_of
 from gaspart.errors import SceneError
@@ -90,7 +90,7 @@ def blocks_of(run: Run, width: float) -> tuple[np.ndarray, np.ndarray]:
 
     Raises SceneError for a width that the bins of the run do not divide.
     """
-    axis, has = run.dimension - 1, kept(run.data)
+    axis, has = run.dimension - 1, read_impulses(run.data)
     length = float(run.scene.container.lengths[axis])
     bins = round(length / width)
     found = numbers_by_impulses(run, axis, bins, None)

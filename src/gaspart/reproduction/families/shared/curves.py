@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from gaspart.analysis.correlations import Curves
-from gaspart.analysis.motion import accumulated
+from gaspart.analysis.motion import average_correlations
 from gaspart.errors import SceneError
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.gas import plain_gas
@@ -26,7 +26,7 @@ def reduced_curves(point: Point, path: str, longest: float) -> Curves:
         raise SceneError(f"experiments.{point.experiment}.lags", None, "is required")
     gas = plain_gas(point.scene)
     with open_trajectory(path) as trajectory:
-        curves = accumulated(trajectory)
+        curves = average_correlations(trajectory)
     thermal_speed = math.sqrt(curves.correlation[0] * gas.count / (gas.count - 1))
     interval = curves.time[1] * thermal_speed / gas.diameter
     lags = min(len(curves.time), math.ceil(longest / interval) + 1)

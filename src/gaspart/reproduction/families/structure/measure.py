@@ -23,7 +23,7 @@ from gaspart.analysis.pairs import radial_distribution
 from gaspart.analysis.run import Run
 from gaspart.analysis.series import Blocks
 from gaspart.analysis.statistics import fit_polynomial, jackknife, means_of
-from gaspart.analysis.structure_factors import admitted, factors, in_shells, shells_of
+from gaspart.analysis.structure_factors import factors, in_shells, shells_of, wave_vectors
 from gaspart.reproduction.families.shared.pressure import series_of
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.families.structure.potential import chemical_potential
@@ -86,7 +86,7 @@ def _row(point: Point, states: dict[int, MeasuredState], settings: dict) -> dict
     gas = plain_gas(point.scene)
     eta, dimension = gas.packing_fraction, gas.dimension
     lengths = np.array(point.scene.container.lengths) / gas.diameter
-    low, size = admitted(lengths, settings["small"])
+    low, size = wave_vectors(lengths, settings["small"])
     waves, shell, k = shells_of(lengths, settings["highest"], SHELLS, WAVES)
     furthest = min(settings["furthest"], 0.499 * float(lengths.min()))
     curves = waves, shell, furthest
