@@ -12,7 +12,7 @@ _MIXTURES, _PROFILES, _STRUCTURE = "analysis.pairs", "analysis.profiles", "analy
 _MOTION, _ORDER, _TRANSPORT = "analysis.motion", "analysis.bond_order", "analysis.transport"
 _LONE = "self.dimension * moving - int(self.conserved.sum())"
 _PAIRS = "counts[i] / (2.0 if i == j else 1.0)"
-_INSIDE = "self.run.positions[:, self.members][..., self.axes]"
+_INSIDE = "self._values(part.positions)[..., self.axes]"
 
 PLANTS = [
     Plant(
@@ -213,7 +213,7 @@ PLANTS = [
         "velocities = velocities / np.sqrt",
         ("masses_slit", "vacf"),
     ),
-    Plant("speeds per bin", _STRUCTURE, "/ n / grid.volume", "/ n", ("wind", "speeds")),
+    Plant("speeds per bin", _STRUCTURE, "sizes[:, None] / grid.volume", "sizes[:, None]", ("wind", "speeds")),
     Plant(
         "speeds by half a bin",
         _STRUCTURE,
@@ -308,15 +308,15 @@ PLANTS = [
     Plant(
         "components of the velocity exchanged",
         _PROFILES,
-        "velocities[..., k]), count",
-        "velocities[..., k - 1]), count",
+        "velocities[..., k] for k in axes",
+        "velocities[..., k - 1] for k in axes",
         ("masses_slit", "velocity"),
     ),
     Plant(
         "sign of the velocity",
         _PROFILES,
-        "self.sums(velocities[..., k]), count",
-        "self.sums(-velocities[..., k]), count",
+        "(velocities[..., k] for k in axes)",
+        "(-velocities[..., k] for k in axes)",
         ("masses_slit", "velocity"),
     ),
     Plant(

@@ -7,9 +7,11 @@ import pytest
 from scenes import gas
 
 import gaspart as gp
+from gaspart.inspection.checks import judge_places
 from gaspart.inspection.frames import Frames
 from gaspart.inspection.readers import read_frames
 from gaspart.inspection.statistics import (
+    contact_values,
     count_collisions,
     decorrelated_frames,
     density_modulation,
@@ -68,3 +70,44 @@ def test_a_wave_is_uneven_and_random_places_are_not():
         assert density_modulation(frames, 0, rng.random(500)) < 12.0
         assert density_modulation(frames, 0, np.where(x[0, :, 0] < 0.5, 1.0, 2.0)) > 100.0
         assert density_modulation(frames, 0, np.ones(500)) == 0.0
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_contact_values_are_those_of_all_pairs(dimension):
+    """Pairs that overlap by rounding count as contacts, deeper ones do not."""
+    rng, lengths = np.random.default_rng(1), np.array([6.0, 7.0, 8.0])[:dimension]
+    positions = rng.random((2, 150, dimension)) * lengths
+    positions[:, 1] = positions[:, 0] + np.eye(dimension)[0] * (1.0 - 1e-7)
+    positions[:, 3] = positions[:, 2] + np.eye(dimension)[1] * (1.0 - 1e-4)
+    frames = Frames(positions % lengths, lengths, np.full(150, 0.5), (True,) * dimension)
+    edges = np.linspace(1.0, 1.3, 16)
+    shells = np.diff(edges**dimension) * {2: np.pi, 3: 4.0 / 3.0 * np.pi}[dimension]
+    edges[0] -= 1e-5
+    means = [
+        [((r ** (dimension - 1)) * (r - 1.0) ** k).mean() / (r ** (dimension - 1)).mean() for k in range(5)]
+        for r in (np.linspace(low, low + 0.02, 20001) for low in np.linspace(1.0, 1.28, 15))
+    ]
+    scale = np.sqrt(shells)
+    weights = np.linalg.pinv(np.array(means) * scale[:, None])[0] * scale
+    for frame, value in zip(frames.positions, contact_values(frames), strict=True):
+        gap = frame[:, None] - frame
+        gap -= lengths * np.round(gap / lengths)
+        distance = np.sqrt((gap**2).sum(axis=2))[~np.eye(150, dtype=bool)]
+        counts = np.histogram(distance, edges)[0]
+        expected = weights @ (counts / (150 * 150 / lengths.prod() * shells))
+        assert value == pytest.approx(expected, rel=1e-4)
+
+
+@pytest.mark.parametrize("gap", [-1e-3, -1e-8, 1e-8])
+def test_many_particles_have_the_verdict_of_few(gap, monkeypatch):
+    """In many frames pairs are counted first, and only overlapping pairs are searched for the deepest."""
+    axes = np.stack(np.meshgrid(*[np.arange(5.0)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    positions = np.repeat(3.0 * axes[None], 3, axis=0)
+    positions[1, 1] = positions[1, 0] - [0.0, 0.0, 1.0 + gap]
+    frames = Frames(positions % 15.0, np.full(3, 15.0), np.full(125, 0.5), (True,) * 3)
+    verdicts = []
+    for many in (0, 10**9):
+        monkeypatch.setattr("gaspart.inspection.checks._MANY", many)
+        verdicts.append(judge_places(frames)[0])
+    assert verdicts[0] == verdicts[1]
+    assert bool(verdicts[0].passed) is (gap > -1e-7)

@@ -9,6 +9,7 @@ from scenes import gas
 import gaspart as gp
 from gaspart.inspection.checks import judge_places
 from gaspart.inspection.readers import read_frames
+from gaspart.trajectory import export as export_module
 
 
 @pytest.fixture(scope="module", params=[(3, 0.55), (2, 0.6)], ids=["spheres", "discs"])
@@ -183,6 +184,14 @@ def test_lammps_data_has_one_frame(state):
     folder, _ = state
     with pytest.raises(gp.SceneError, match=r"give its number, or write \.xyz or \.gsd"):
         gp.export(folder / "run.nc", folder / "all.data", frame="all")
+
+
+def test_rows_of_a_table_have_nine_digits_in_every_block():
+    count = 2 * export_module._ROWS + 1
+    numbers = np.resize([0.0, -0.0, 1.0, 0.1, -1e-12, 123456789.5, 1e22, float(np.float32(0.3))], count)
+    ids = np.arange(1, count + 1)
+    rows = "".join(export_module._rows("%d %.9g\n", ids, numbers)).splitlines()
+    assert rows == [f"{n} {x:.9g}" for n, x in zip(ids, numbers, strict=True)]
 
 
 def test_an_xyz_file_of_another_program_is_not_replaced(state):

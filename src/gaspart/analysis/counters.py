@@ -279,7 +279,8 @@ def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
     if run.scene.walls or not run.moving.all():
         refuse_rest(run, "obstacles may carry particles at rest, whose contacts give no impulse")
         return carried
-    momentum = np.einsum("tnd,n->td", run.velocities[ends], run.masses)
+    velocities = run.vectors("velocities")[ends].values.astype(float)
+    momentum = np.einsum("tnd,n->td", velocities, run.masses)
     weight = run.masses.sum() * np.where(run.periodic, 0.0, np.array(run.scene.gravity))
     if not weight.any():  # it drives a flow along walls, and presses nothing
         return carried
@@ -310,7 +311,10 @@ def refuse_rest(run: Run, rule: str) -> None:
     """
     if run.has_gravity:
         along = np.flatnonzero(run.scene.gravity or ())
-        resting = (run.velocities[1:, run.moving][..., along] == 0.0).any(axis=2).any(axis=0).sum()
+        is_at_rest = np.zeros(int(run.moving.sum()), dtype=bool)
+        for velocities in run.blocks("velocities", slice(1, None)):
+            is_at_rest |= (velocities[:, run.moving][..., along] == 0.0).any(axis=(0, 2))
+        resting = is_at_rest.sum()
         if resting:
             raise SceneError("particles at rest", int(resting), rule)
 

@@ -47,7 +47,7 @@ def _series(run: Run, positions: bool) -> dict[str, np.ndarray]:
     series["the kinetic energy of a particle"] = run.data["kinetic_energy"].values / np.maximum(numbers, 1.0)
     if positions and "coordinates" in run.data and not run.is_subset:
         moving = np.ones(run.count, dtype=bool) if run.scene.is_open else run.moving
-        means = np.nanmean(run.positions[:, moving], axis=1)
+        means = np.concatenate([np.nanmean(part.positions[:, moving], axis=1) for _, part in run.parts()])
         for axis in run.scene.walled_axes:
             series[f"the mean position along {'xyz'[axis]}"] = means[:, axis]
     return series

@@ -24,9 +24,9 @@ About a flow that changes, it is not known from frames.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -165,7 +165,8 @@ def accessible_fraction(run: Run, radius: float, axis: int, edges: np.ndarray) -
     ratio = _RATIOS[run.dimension] ** -np.arange(1.0, run.dimension + 1)
     points = np.outer(np.arange(_POINTS), ratio) % 1.0 * lengths
     across = points[:, axis] / lengths[axis]
-    centres = np.where(run.periodic, run.positions[0] % lengths, run.positions[0])
+    start = run.frame("coordinates", 0)
+    centres = np.where(run.periodic, start % lengths, start)
     period = np.where(run.periodic, lengths, 0.0)
     sizes = np.unique(run.radii[fixed])
     trees = [cKDTree(centres[fixed & (run.radii == size)], boxsize=period) for size in sizes]
@@ -226,18 +227,22 @@ class Grid:
         index, outside = np.zeros(shape, dtype=np.int64), np.zeros(shape, dtype=bool)
         for k, (low, high, number) in enumerate(zip(self.lower, self.upper, self.numbers, strict=True)):
             x = positions[..., k].astype(float)
-            outside |= np.isnan(x)
-            cell = np.floor((np.nan_to_num(x) - low) * (number / (high - low)))
-            if not inside:
-                outside |= (x < low) | (x > high)
-            index = index * number + np.clip(cell, 0, number - 1).astype(np.int64)
-        return np.where(outside, -1, index)
+            outside |= np.isnan(x) if inside else ~((x >= low) & (x <= high))
+            x -= low
+            x *= number / (high - low)
+            np.fmax(x, 0.0, out=x)  # of NaN: 0
+            np.fmin(x, number - 1.0, out=x)
+            index *= number
+            index += x.astype(np.int64)
+        index[outside] = -1
+        return index
 
     def sums(
         self,
         cells: np.ndarray,
         weights: np.ndarray | None = None,
         blocks: np.ndarray | None = None,
+        before: np.ndarray | None = None,
     ) -> np.ndarray:
         """Sum weights, or count particles, in each cell, shape (*numbers).
 
@@ -245,15 +250,26 @@ class Grid:
         weights : array of a shape that extends to the shape of `cells`.
         blocks : number of the block of each row (T,) of cells (T, ...); the sums are then of each block,
             (blocks, *numbers).
+        before : sums of the frames before, of the same shape, which these continue: the result has the bits
+            of the sums of all frames in one piece. It has the number of blocks.
         """
         number = 1 if blocks is None else int(blocks.max(initial=-1)) + 1
-        slot = cells
+        shape = self.numbers if blocks is None else (number, *self.numbers)
+        if before is not None:
+            number, shape = before.size // self.size, before.shape
+        slot = cells + 1  # the first cell of each block has the particles outside
         if blocks is not None:
-            slot = cells + self.size * blocks.reshape(-1, *[1] * (cells.ndim - 1))
-        slot = np.where(cells < 0, number * self.size, slot).ravel()
-        spread = None if weights is None else np.broadcast_to(weights, cells.shape).ravel()
-        totals = np.bincount(slot, spread, minlength=number * self.size + 1)[:-1]
-        return totals.reshape(self.numbers if blocks is None else (number, *self.numbers))
+            slot += (self.size + 1) * blocks.reshape(-1, *[1] * (cells.ndim - 1))
+        slot, spread = slot.ravel(), None
+        if weights is not None:
+            spread = np.broadcast_to(weights, cells.shape).ravel()
+            if before is not None:  # the first number of each sum
+                first = np.arange(number * (self.size + 1)).reshape(number, -1)[:, 1:]
+                slot = np.concatenate([first.ravel(), slot])
+                spread = np.concatenate([before.ravel(), spread])
+        totals = np.bincount(slot, spread, minlength=number * (self.size + 1))
+        totals = totals.reshape(number, -1)[:, 1:].reshape(shape)
+        return totals if before is None or weights is not None else totals + before
 
 
 ABOUT = FLOW, REST = "flow", "rest"
@@ -307,10 +323,10 @@ def about_the_mean(velocities: np.ndarray, masses: np.ndarray, axes: np.ndarray)
 
 def _about_known(run: Run) -> np.ndarray:
     """Return velocities (T, M, d) of the moving particles, of a sheared gas about its flow."""
-    velocities = run.velocities[:, run.moving]
+    velocities = _chosen(run.velocities, run.moving)
     if run.scene.shear_rate is None:
         return velocities
-    return velocities - flow(run.scene, run.positions[:, run.moving])
+    return velocities - flow(run.scene, _chosen(run.positions, run.moving))
 
 
 def flow_axes(run: Run) -> list[int]:
@@ -333,31 +349,53 @@ def wind(run: Run) -> np.ndarray:
     """
     has_flow = np.zeros(run.dimension, dtype=bool)
     masses = run.masses[run.moving]
-    for axis in np.flatnonzero(run.periodic & ~run.conserved & (len(masses) > 1)):
-        velocities = run.velocities[:, run.moving, axis]
-        momentum = velocities @ masses
-        square = (velocities**2 @ masses - momentum**2 / masses.sum()).mean() / len(masses)
-        has_flow[axis] = momentum.mean() ** 2 > _BLOWS**2 * max(square, 0.0) * masses.sum()
+    axes = np.flatnonzero(run.periodic & ~run.conserved & (len(masses) > 1))
+    if not axes.size:
+        return has_flow
+    rows = []
+    for _, part in run.parts():
+        weighted = masses[:, None] * part.velocities[:, run.moving][..., axes]
+        momentum = weighted.sum(axis=1)
+        weighted **= 2
+        weighted /= masses[:, None]
+        rows.append([momentum, weighted.sum(axis=1) - momentum**2 / masses.sum()])
+    momenta, squares = np.concatenate(rows, axis=1).mean(axis=1)
+    has_flow[axes] = momenta**2 > _BLOWS**2 * np.maximum(squares / len(masses), 0.0) * masses.sum()
     return has_flow
 
 
-def about_the_flow(run: Run, along: Mapping[int, int] | None = None) -> Peculiar:
-    """Compute velocities about rest, about the local flow of mass, or `about_the_whole`.
+def about_the_flow(run: Run) -> Peculiar:
+    """Compute velocities of all frames about the mean motion (see `mean_motion`)."""
+    return mean_motion(run)(run)
 
-    They are about rest if the run is, and about the local flow of mass, in cells along `flow_axes`, if the
-    gas can have one. `along` maps an axis to its number of cells, where these are not the default ones;
-    further axes are resolved too, if there is a steady flow.
+
+def mean_motion(
+    run: Run, along: Mapping[int, int] | None = None, local: bool = False
+) -> Callable[[Run], Peculiar]:
+    """Return a function that computes velocities about the mean motion in some frames.
+
+    They are about rest if the run is, about the local flow of mass, in cells along `flow_axes`, if the gas
+    can have one, and otherwise about the whole. `along` maps an axis to its number of cells, where these are
+    not the default ones; further axes are resolved too, if there is a steady flow. If `local`, the motion is
+    about the flow in these cells in any case.
     """
+    across, stated = run.flow_axes, dict(along or {})
+    if not across and local:
+        return partial(about_cells, cells=steady_cells(run, stated))
     if run.about == REST:
-        velocities = run.velocities[:, run.moving]
-        return Peculiar(velocities, np.ones((1, velocities.shape[1], 1)))
-    across = run.flow_axes
+        return _about_rest
     if not across:
-        return about_the_whole(run)
+        return about_the_whole
     changes = run.scene.flow_changes
-    stated = dict(along or {})
     axes = across if changes else sorted({*across, *stated})
-    return about_cells(run, {axis: stated.get(axis, _number(run, axes, changes)) for axis in axes}, changes)
+    numbers = {axis: stated.get(axis, _number(run, axes, changes)) for axis in axes}
+    return partial(about_cells, cells=FlowCells(run, numbers) if changes else steady_cells(run, numbers))
+
+
+def _about_rest(run: Run) -> Peculiar:
+    """Return velocities of the moving particles as they are."""
+    velocities = _chosen(run.velocities, run.moving)
+    return Peculiar(velocities, np.ones((1, velocities.shape[1], 1)))
 
 
 def _number(run: Run, axes: list[int], changes: bool) -> int:
@@ -367,22 +405,61 @@ def _number(run: Run, axes: list[int], changes: bool) -> int:
     return int(np.clip(samples ** (1.0 / len(axes)), 1, _CELLS))
 
 
-def about_cells(run: Run, numbers: Mapping[int, int], changes: bool) -> Peculiar:
-    """Compute velocities about the mean of mass in cells, `numbers` of them along each axis.
+class FlowCells:
+    """Cells of a flow, with the mass and momentum of a steady flow.
 
-    The mean is taken in each frame if the flow `changes`, otherwise over all frames.
+    `numbers` maps an axis to its number of cells. Without mass and momentum the flow changes: it is the mean
+    of mass in the cells of each frame.
     """
-    axes = list(numbers)
-    lengths = np.array(run.scene.container.lengths)[axes]
-    grid = Grid((0.0,) * len(axes), tuple(lengths.tolist()), tuple(numbers.values()))
-    cells = grid.cells(run.positions[:, run.moving][..., axes], inside=True)
-    blocks = np.arange(len(cells)) if changes else None
-    groups = cells + grid.size * np.arange(len(cells))[:, None] if changes else cells
-    velocities, masses = _about_known(run), run.masses[run.moving]
-    weight = grid.sums(cells, masses, blocks).ravel()
+
+    def __init__(self, run: Run, numbers: Mapping[int, int]) -> None:
+        self._axes = list(numbers)
+        lengths = np.array(run.scene.container.lengths)[self._axes]
+        self.grid = Grid((0.0,) * len(self._axes), tuple(lengths.tolist()), tuple(numbers.values()))
+        self.sums: list[np.ndarray] | None = None
+
+    def cells(self, part: Run) -> np.ndarray:
+        """Return the cell (T, M) of each moving particle."""
+        return self.grid.cells(_chosen(part.positions, part.moving)[..., self._axes], inside=True)
+
+    def sum(
+        self, cells: np.ndarray, masses: np.ndarray, velocities: np.ndarray, before: list | None
+    ) -> list[np.ndarray]:
+        """Sum mass and momentum in cells (C,), or in each frame (T, C).
+
+        The sums are of each frame if the flow changes; otherwise they continue the sums of the frames before.
+        """
+        blocks = np.arange(len(cells)) if before is None else None
+        weights = [masses, *(masses * velocities[..., k] for k in range(velocities.shape[-1]))]
+        sums = before or [None] * len(weights)
+        return [self.grid.sums(cells, each, blocks, total) for each, total in zip(weights, sums, strict=True)]
+
+
+def steady_cells(run: Run, numbers: Mapping[int, int]) -> FlowCells:
+    """Return cells of a flow with the mass and momentum of all frames."""
+    flow_cells = FlowCells(run, numbers)
+    sums = [np.zeros(flow_cells.grid.numbers) for _ in range(1 + run.dimension)]
+    for _, part in run.parts():
+        sums = flow_cells.sum(flow_cells.cells(part), part.masses[part.moving], _about_known(part), sums)
+    flow_cells.sums = sums
+    return flow_cells
+
+
+def about_cells(run: Run, cells: FlowCells) -> Peculiar:
+    """Compute velocities about the mean of mass in cells, of a steady flow or per frame."""
+    numbers, velocities, masses = cells.cells(run), _about_known(run), run.masses[run.moving]
+    sums, groups = cells.sums, numbers
+    if sums is None:
+        sums = cells.sum(numbers, masses, velocities, None)
+        groups = numbers + cells.grid.size * np.arange(len(numbers))[:, None]
+    weight, *momenta = (values.ravel() for values in sums)
     means = np.empty_like(velocities)
-    for k in range(run.dimension):
-        momentum = grid.sums(cells, masses * velocities[..., k], blocks).ravel()
+    for k, momentum in enumerate(momenta):
         means[..., k] = np.divide(momentum, weight, out=np.zeros(weight.size), where=weight > 0.0)[groups]
-    shares = np.divide(masses, weight[groups], out=np.ones(cells.shape), where=cells >= 0)
+    shares = np.divide(masses, weight[groups], out=np.ones(numbers.shape), where=numbers >= 0)
     return Peculiar(velocities - means, (1.0 - shares)[..., None])
+
+
+def _chosen(values: np.ndarray, moving: np.ndarray) -> np.ndarray:
+    """Return the values (T, M, d) of the moving particles, contiguous in memory."""
+    return values if moving.all() else values.compress(moving, axis=1)

@@ -227,7 +227,7 @@ def _spread(run: Run, axis: int, bins: int, members: np.ndarray) -> np.ndarray:
     if not run.conserved[axis]:
         return spread
     total_mass, mass = run.masses.sum(), run.masses[members][0]
-    drift = float(run.masses @ run.velocities[0, :, axis]) / total_mass
+    drift = float(run.masses @ run.frame("velocities", 0)[:, axis]) / total_mass
     return spread * (1.0 - mass / total_mass) + mass * drift**2
 
 
@@ -308,7 +308,7 @@ def mixed_density(run: Run, axis: int, bins: int, species: int | None) -> Means 
     volume = cells.grid.volume * np.delete(run.scene.container.lengths, axis).prod()
     impulses = np.add.reduceat(numbers, starts) / (time * volume)
     impulses[np.abs(impulses) < _ROUNDING * impulses.max()] = 0.0
-    counts = cells.grid.sums(cells.cells[1:], None, blocks) * (len(members) / len(stored))
+    counts = cells.grid.sums(cells.cells_of(run)[1:], None, blocks) * (len(members) / len(stored))
     counted = counts / (np.bincount(blocks)[:, None] * volume)
     weights = mixture(counted, impulses, run.periodic[axis])
     mixed = counted + weights * (impulses - counted)

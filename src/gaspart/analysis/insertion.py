@@ -257,7 +257,8 @@ def chemical_potential(source: Source, places: int = PLACES, start: float | None
         run.require_all()
         if len(run.time) <= STRETCHES:
             raise SceneError("frames", len(run.time), f"an error needs {STRETCHES + 1} or more")
-        if (run.positions == run.positions[0]).all():
+        start_positions = run.vectors("coordinates")[0].values
+        if all((block == start_positions).all() for block in run.blocks("coordinates", slice(None))):
             raise SceneError("duration", run.time[-1], "nothing moves: all frames are one configuration")
         frames = slice(None, None, -(-len(run.time) // MOST_FRAMES))
         time = run.time[frames]
@@ -287,7 +288,9 @@ def _hosts(run: Run) -> list[Hosts]:
 
 def _insert(run: Run, frames: slice, hosts: Hosts, trials: int) -> tuple[np.ndarray, dict[str, float]]:
     """Compute the series (T,) of the chemical potential, and the counts of insertions."""
-    result = insertions(run.positions[frames], run.scene.container.lengths, hosts, trials)
+    result = insertions(
+        run.vectors("coordinates")[frames].values.astype(float), run.scene.container.lengths, hosts, trials
+    )
     chance = float(result.probability.mean())
     if chance == 0.0:
         rule = f"of {trials} places in each of {len(result.share)} frames none was free: a fluid too dense"

@@ -8,13 +8,13 @@ cell separately.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from gaspart.analysis.flow import Grid, Peculiar, about_cells, about_the_flow, sides
+from gaspart.analysis.flow import Grid, mean_motion, sides
 from gaspart.analysis.observable import Observable
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import correlated_mean
@@ -107,22 +107,37 @@ class Cells:
             raise SceneError("frames", frames, f"an error needs {LEAST_FRAMES} or more")
         return np.arange(frames) * min(BLOCKS, frames) // frames
 
-    @cached_property
-    def cells(self) -> np.ndarray:
-        """(T, n) the cell of each particle in each frame."""
-        return self.grid.cells(self.run.positions[:, self.members][..., self.axes], inside=True)
+    def cells_of(self, part: Run) -> np.ndarray:
+        """Return the cell (T, n) of each particle in a part of the run."""
+        return self.grid.cells(self._values(part.positions)[..., self.axes], inside=True)
 
-    @property
+    def _values(self, values: np.ndarray) -> np.ndarray:
+        """Return the values (T, n, ...) of the particles that count."""
+        return values if len(self.members) == values.shape[1] else values[:, self.members]
+
+    @cached_property
     def _still(self) -> bool:
         """True if none of the particles moves."""
-        return not self.run.velocities[:, self.members].any()
+        return not any(self._values(part.velocities).any() for _, part in self.run.parts())
 
-    def sums(self, weights: np.ndarray | None = None) -> np.ndarray:
-        """Sum weights (T, n), or count particles, in each cell over the frames of each block.
+    def sums(self, weigh: Callable[[Run, np.ndarray], Sequence[np.ndarray | None]]) -> list[np.ndarray]:
+        """Sum weights in each cell over the frames of each block.
 
-        The shape is (K, *cells).
+        The frames are read in parts. `weigh` returns arrays of weights (T, n) for a part and the cells of
+        the particles there, or None to count. The shape of each sum is (K, *cells).
         """
-        return self.grid.sums(self.cells, weights, self.blocks)
+        shape = int(self.blocks[-1]) + 1, *self.numbers
+        sums: list[np.ndarray] = []
+        for frames, part in self.run.parts():
+            cells = self.cells_of(part)
+            weights = weigh(part, cells)
+            if not sums:
+                sums = [np.zeros(shape, dtype=int if each is None else float) for each in weights]
+            blocks = self.blocks[frames]
+            sums = [
+                self.grid.sums(cells, each, blocks, total) for each, total in zip(weights, sums, strict=True)
+            ]
+        return sums
 
     def room(self) -> np.ndarray:
         """Compute the volume of the cells within the container, summed over the frames, shape (K, *cells)."""
@@ -151,14 +166,21 @@ class Cells:
             total.append(room.sum(axis=0))
         return np.array(total)
 
-    def density(self, weights: np.ndarray | None = None) -> Means:
-        """Compute the number of particles, or of weights (T, n), per volume within the container."""
-        return ratio(self.sums(weights), self.room(), self._still)
+    def density(self, weigh: Callable[[np.ndarray], np.ndarray] | None = None) -> Means:
+        """Compute the number of particles, or weights (T, n) by cells, per volume."""
+        (sums,) = self.sums(lambda part, cells: [None if weigh is None else weigh(cells)])
+        return ratio(sums, self.room(), self._still)
 
     def velocity(self) -> Means:
         """Compute the mean velocity of the particles, shape (d, *cells)."""
-        count, velocities = self.sums(), self.run.velocities[:, self.members]
-        parts = [ratio(self.sums(velocities[..., k]), count, self._still) for k in range(self.run.dimension)]
+        axes = range(self.run.dimension)
+
+        def components(part: Run, cells: np.ndarray) -> list[np.ndarray | None]:
+            velocities = self._values(part.velocities)
+            return [None, *(velocities[..., k] for k in axes)]
+
+        count, *sums = self.sums(components)
+        parts = [ratio(each, count, self._still) for each in sums]
         return Means(*(np.stack([getattr(part, name) for part in parts]) for name in vars(parts[0])))
 
     def temperature(self, local: bool) -> Means:
@@ -167,15 +189,15 @@ class Cells:
         If `local`, the motion is about the flow in these cells in any case; otherwise only if the gas flows,
         see `flow.about_the_flow`.
         """
-        along = dict(zip(self.axes, self.numbers, strict=True))
-        motion = about_the_flow(self.run, along)
-        if local and not self.run.flow_axes:
-            motion = about_cells(self.run, along, changes=False)
-        return self.temperature_of(motion)
-
-    def temperature_of(self, motion: Peculiar) -> Means:
-        """Compute the temperature from these peculiar velocities of all moving particles."""
+        about = mean_motion(self.run, dict(zip(self.axes, self.numbers, strict=True)), local)
         masses = self.run.masses[self.run.moving]
-        chosen = np.searchsorted(np.flatnonzero(self.run.moving), self.members)
-        energies, freedoms = motion.energies(masses), motion.freedoms()
-        return ratio(self.sums(energies[:, chosen]), self.sums(freedoms[:, chosen]), self._still)
+        chosen: np.ndarray | slice = slice(None)
+        if len(self.members) < len(masses):
+            chosen = np.searchsorted(np.flatnonzero(self.run.moving), self.members)
+
+        def energies_and_freedoms(part: Run, cells: np.ndarray) -> list[np.ndarray | None]:
+            motion = about(part)
+            return [motion.energies(masses)[:, chosen], motion.freedoms()[:, chosen]]
+
+        energies, freedoms = self.sums(energies_and_freedoms)
+        return ratio(energies, freedoms, self._still)

@@ -15,7 +15,7 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis.conditions import SLIDING, VARYING
-from gaspart.analysis.flow import ABOUT, FLOW, Peculiar, about_the_flow, flow_axes
+from gaspart.analysis.flow import ABOUT, FLOW, Peculiar, about_the_flow, flow_axes, mean_motion
 from gaspart.engines import engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
@@ -41,7 +41,7 @@ REPEATED = 129
 """Frames of a simulation, which is run again to measure it; fewer of many particles."""
 _AT_REST = 1e-24  # of a kinetic energy: a rounding error, squared
 _MOST = 20_000_000  # numbers that such frames hold
-_BLOCK = 2_000_000  # numbers of a block of frames that are read at once; of one frame, if it has more
+_BLOCK = 500_000  # numbers of a block of frames that are read at once; of one frame, if it has more
 
 
 @dataclass(frozen=True)
@@ -135,6 +135,10 @@ class Run:
             raise SceneError("keep", kept, rule)
         return self.data[name]
 
+    def frame(self, name: str, number: int) -> np.ndarray:
+        """Read the vectors (N, d) of one frame."""
+        return np.asarray(self.vectors(name)[number].values, dtype=float)
+
     def blocks(self, name: str, frames: slice) -> Iterator[np.ndarray]:
         """Read vectors of some frames in blocks of limited memory.
 
@@ -151,9 +155,27 @@ class Run:
             The vectors of the next frames.
         """
         values = self.vectors(name)[frames]
-        length = max(1, _BLOCK // max(1, values[0].size))
-        for first in range(0, len(values), length):
-            yield values[first : first + length].values
+        for part in self._blocks(len(values)):
+            yield values[part].values
+
+    def _blocks(self, frames: int) -> Iterator[slice]:
+        """Divide a number of frames into blocks of limited memory."""
+        length = max(1, _BLOCK // max(1, self.data.sizes["atom"] * self.dimension))
+        for first in range(0, frames, length):
+            yield slice(first, min(first + length, frames))
+
+    def parts(self) -> Iterator[tuple[slice, Run]]:
+        """Divide the run into parts of limited memory, which are read as they are used.
+
+        Yields
+        ------
+        frames : slice
+            Frames of the part.
+        part : Run
+            These frames. Properties that depend on all frames, such as `flow_axes`, hold for the part only.
+        """
+        for frames in self._blocks(len(self.time)):
+            yield frames, replace(self, time=self.time[frames], data=self.data.isel(frame=frames))
 
     @cached_property
     def masses(self) -> np.ndarray:
@@ -206,7 +228,7 @@ class Run:
         if not any(kind.fixed and kind.count for kind in self.scene.species):
             return Accessible(self.scene)
         fixed = ~self.moving
-        return Accessible(self.scene, (self.positions[0, fixed], self.radii[fixed]))
+        return Accessible(self.scene, (self.frame("coordinates", 0)[fixed], self.radii[fixed]))
 
     @cached_property
     def motion(self) -> Peculiar:
@@ -236,7 +258,7 @@ class Run:
         moving = int(self.moving.sum())
         values = np.full(len(self.time), self.dimension * moving - int(self.conserved.sum()), dtype=float)
         if self.flow_axes:
-            values = self.motion.freedoms().sum(axis=1)
+            values = self._energies[2]
         if not values.min() >= 1.0:
             raise SceneError("count", moving, "too few moving particles for a temperature")
         return values
@@ -260,15 +282,25 @@ class Run:
             return self._of_all
         freedoms, masses, scene = self.freedoms, self.masses[self.moving], self.scene
         if self.flow_axes or scene.rough or scene.thermostat or scene.shear_rate is not None:
-            energies = self.motion.energies(masses).sum(axis=1)
-            total = np.einsum("tnd,tnd,n->t", *[self.velocities[:, self.moving]] * 2, masses)
+            energies, total, _ = self._energies
         else:  # the energy is in double precision, and the momentum that of any frame
             total = 2.0 * self.data["kinetic_energy"].values
-            first = self.vectors("velocities")[0].values[self.moving].astype(float)
+            first = self.frame("velocities", 0)[self.moving]
             momentum = np.where(self.conserved, masses @ first, 0.0)
             energies = total - (momentum @ momentum) / (masses.sum() or 1.0)
         moves = energies.mean() > _AT_REST * total.mean()
         return np.asarray(energies / freedoms) if moves else np.zeros(len(self.time))
+
+    @cached_property
+    def _energies(self) -> np.ndarray:
+        """Twice the kinetic energy about the flow and about rest, and degrees of freedom (3, T)."""
+        masses, about, rows = self.masses[self.moving], mean_motion(self), []
+        for _, part in self.parts():
+            motion = about(part)
+            squares = (part.velocities[:, self.moving] ** 2).sum(axis=2)
+            energies = motion.energies(masses).sum(axis=1)
+            rows.append([energies, (masses * squares).sum(axis=1), motion.freedoms().sum(axis=1)])
+        return np.concatenate(rows, axis=1)
 
     @property
     def _of_all(self) -> np.ndarray:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gaspart.analysis.flow import FLOW
+from gaspart.analysis.flow import FLOW, mean_motion
 from gaspart.analysis.measuring import measure
 from gaspart.analysis.observable import Observable, scalar
 from gaspart.analysis.observables import having, selecting
@@ -98,16 +98,22 @@ def _of_motion() -> tuple[str, ...]:
 def _of_velocities(run: Run, kind: int) -> dict[str, Observable]:
     """Measure the temperature and the mean speed of the moving particles of a species."""
     chosen, masses = select_particles(run, kind, None), run.masses[run.moving]
-    shape = run.motion.velocities.shape
-    velocities = run.motion.velocities[:, chosen]
-    free = np.broadcast_to(run.motion.freedom, shape)[:, chosen]
-    if not free.any():
+    peculiar, rows = mean_motion(run), []
+    for _, part in run.parts():
+        motion = peculiar(part)
+        free = np.broadcast_to(motion.freedom, motion.velocities.shape)
+        # in the order of C, in which sums have the same bits for any number of frames
+        velocities, free = (each.take(chosen, axis=1) for each in (motion.velocities, free))
+        energies = (masses[chosen] * (velocities**2).sum(axis=2)).sum(axis=1)
+        is_known = (free > 0.0).all(axis=2)  # not alone in its cell of a flow
+        squares = np.divide(velocities**2, free, out=np.zeros(free.shape), where=free > 0.0).sum(axis=2)
+        speeds = (np.sqrt(squares) * is_known).sum(axis=1)
+        rows.append([energies, free.sum(axis=(1, 2)), speeds, is_known.sum(axis=1)])
+    energies, freedoms, speeds, numbers = np.concatenate(rows, axis=1)
+    if not freedoms.any():
         raise SceneError("count", len(masses), "a single particle keeps its velocity")
-    energies = np.einsum("tnd,tnd,n->t", velocities, velocities, masses[chosen])
-    energies /= free.sum(axis=(1, 2)).mean()
-    is_known = (free > 0.0).all(axis=2)  # not alone in its cell of a flow
-    squares = np.divide(velocities**2, free, out=np.zeros(free.shape), where=free > 0.0).sum(axis=2)
-    speeds = (np.sqrt(squares) * is_known).sum(axis=1) / is_known.sum(axis=1).mean()
+    energies = energies / freedoms.mean()
+    speeds = speeds / numbers.mean()
     edges = np.append(run.time, 2.0 * run.time[-1] - run.time[-2])
     about: dict[str, Any] = {"units": "energy", "long_name": "temperature"}
     temperature = scalar("temperature", energies, edges, **about)

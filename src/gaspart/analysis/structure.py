@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from gaspart.analysis.expected.equilibrium import describe
-from gaspart.analysis.flow import FLOW, Grid, accessible_fraction
+from gaspart.analysis.flow import FLOW, Grid, accessible_fraction, mean_motion
 from gaspart.analysis.impulses import default_bins, described_density, mixed_density
 from gaspart.analysis.observable import Observable, observable, scalar
 from gaspart.analysis.observables import having, require_defined
@@ -81,23 +81,13 @@ def speed_distribution(
         masses, temperature = run.masses[run.moving], run.temperature
         if not temperature > 0.0:
             raise SceneError("temperature", temperature, "particles at rest have no distribution")
-        squares, free = run.motion.velocities**2, run.motion.freedom
-        is_known = np.broadcast_to((free > 0.0).all(axis=2), squares.shape[:2])  # not alone in its cell
         end = FASTEST * np.sqrt(temperature / masses.min())
         if fastest is not None:
             end = number("fastest", fastest, "must be positive and finite", above=0.0)
         grid = Grid.line(0.0, end, bins)
         edges = grid.edges[0]
-        speeds = np.sqrt((squares / np.where(free > 0.0, free, 1.0)).sum(axis=2))
-        cells = np.where(is_known, grid.cells(speeds[..., None]), -1)
-        # every group has a share of each species, which come one after the other
-        groups = [slice(first, None, STRETCHES) for first in range(STRETCHES)]
-        sizes = [int(is_known[:, group].sum()) for group in groups]
-        densities = [
-            grid.sums(cells[:, group]) / n / grid.volume for group, n in zip(groups, sizes, strict=True)
-        ]
-        values, errors = histogram_means(densities, sizes)
-        energy = squares.sum(axis=(1, 2))
+        counts, sizes, energy = _speeds(run, grid)
+        values, errors = histogram_means(counts / sizes[:, None] / grid.volume, sizes)
         fixed = np.ptp(energy) <= _CONSTANT * energy.mean()
         alike = np.ptp(masses) == 0.0 and not run.flow_axes
         attributes = describe("speeds", run, edges, masses[0] if alike else None, fixed)
@@ -106,6 +96,29 @@ def speed_distribution(
         middle = 0.5 * (edges[1:] + edges[:-1])
         along = {"speed": (middle, {"units": "length / time", "long_name": "speed"})}
         return observable("speed_distribution", along, values, errors, **attributes)
+
+
+def _speeds(run: Run, grid: Grid) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Count speeds in bins; the frames are read in parts.
+
+    Returned are the counts (groups, bins) and the numbers (groups,) of speeds of each group of particles,
+    and the sum of squares of velocities in each frame (T,).
+    """
+    about, energy = mean_motion(run), np.zeros(len(run.time))
+    # every group has a share of each species, which come one after the other
+    group = np.arange(int(run.moving.sum())) % STRETCHES
+    counts, sizes = np.zeros((STRETCHES, grid.size), dtype=int), np.zeros(STRETCHES, dtype=int)
+    for frames, part in run.parts():
+        motion = about(part)
+        squares, free = motion.velocities**2, motion.freedom
+        is_known = np.broadcast_to((free > 0.0).all(axis=2), squares.shape[:2])  # not alone in its cell
+        energy[frames] = squares.sum(axis=(1, 2))
+        squares /= np.where(free > 0.0, free, 1.0)
+        speeds = np.sqrt(squares.sum(axis=2))
+        cells = np.where(is_known, grid.cells(speeds[..., None]), -1).T
+        counts += grid.sums(cells, None, group)
+        sizes += np.bincount(group, is_known.sum(axis=0), STRETCHES).astype(int)
+    return counts, sizes, energy
 
 
 def profile(
@@ -301,7 +314,8 @@ def order_parameter(source: Source, start: float | None = None) -> Observable:
         require_defined("order", run.scene)
         run.require_all()
         lengths = run.scene.container.lengths
-        frames, time = chosen_frames(run, run.positions), chosen_frames(run, run.time)
+        time, numbers = chosen_frames(run, run.time), chosen_frames(run, np.arange(len(run.time)))
+        frames = (run.frame("coordinates", number) for number in numbers)
         if run.dimension == 2:
             series, name = [abs(hexatic(frame, lengths).mean()) for frame in frames], "|psi_6|"
         else:
@@ -329,9 +343,11 @@ def _density(run: Run, axis: int, bins: int, species: int | None) -> Means:
     edges, radii = cells.grid.edges[0], run.radii[members]  # fixed particles leave less room to larger ones
     fractions = {radius: accessible_fraction(run, radius, axis, edges) for radius in np.unique(radii)}
     shares = np.array([fractions[radius] for radius in radii])  # (n, bins)
-    here = cells.cells
-    part = np.take_along_axis(shares.T, here, axis=0)
-    weights = np.divide(1.0, part, out=np.zeros(here.shape), where=part > 0.0)
-    means = cells.density(weights)
+
+    def per_share(here: np.ndarray) -> np.ndarray:
+        part = np.take_along_axis(shares.T, here, axis=0)
+        return np.divide(1.0, part, out=np.zeros(here.shape), where=part > 0.0)
+
+    means = cells.density(per_share)
     closed = ~shares.any(axis=0)
     return Means(*(np.where(closed, np.nan, values) for values in vars(means).values()))

@@ -11,6 +11,7 @@ import numpy as np
 from gaspart import theory
 from gaspart.analysis.counters import compressibility_factor
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.pairs import pair_counts
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
 from gaspart.inspection.conserved import judge_conserved
@@ -43,6 +44,8 @@ COARSEST = 0.1
 """Overlap, over the diameter, beyond which it is no rounding, however coarse the file is."""
 MOST_FRAMES = 200
 """Number of frames, evenly spaced, that are searched for overlaps and contact values."""
+_MANY = 100_000  # particles in these frames, from which on loading numba to count pairs pays
+_MARGIN = 1e-9  # of a diameter, by which rounding may change a distance between images
 _LEAST_FRAMES = 16
 _PRESSURE, _DIFFUSION = "pressure Z", "diffusion coefficient D"
 
@@ -85,6 +88,8 @@ def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Chec
     deepest, where = 0.0, 0
     for n in seen:
         frame = frames.at(n)
+        if len(seen) * frames.count > _MANY and _are_apart(frame):
+            continue
         overlap = deepest_overlap(frame.positions[0], frame.radii, frame.lengths, frame.periodic)
         if overlap > deepest:
             deepest, where = overlap, int(n)
@@ -93,6 +98,19 @@ def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Chec
         f"the deepest is {deepest:.2g} of a contact distance, in frame {where} (up to {allowed:.1g} allowed)"
     )
     return Check("overlaps", deepest <= allowed, text)
+
+
+def _are_apart(frame: Frames) -> bool:
+    """Return True if equal particles of a frame in a periodic container do not overlap.
+
+    It counts their pairs, in a tenth of the time of `deepest_overlap`. False in other containers.
+    """
+    if frame.diameter is None or not all(frame.periodic):
+        return False
+    reach = frame.diameter * (1.0 + _MARGIN)
+    if not np.isfinite(frame.positions).all() or reach > 0.5 * float(frame.lengths.min()):
+        return False
+    return not pair_counts(frame.positions, frame.lengths, 1, reach).any()
 
 
 def _inside(frames: Frames, tolerance: float | None) -> Check:

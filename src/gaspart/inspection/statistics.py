@@ -10,13 +10,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from gaspart import theory
 from gaspart.analysis.bulk import EXACT, collision_rate
 from gaspart.analysis.diffusion import linear_lags, settled_slope
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.expected.transport import diffusion_in_cube
+from gaspart.analysis.pairs import pair_counts
 from gaspart.analysis.statistics import histogram_chi_square, mean_of
 from gaspart.inspection.frames import Frames
 from gaspart.inspection.verdict import Check, compare_with_theory
@@ -259,13 +259,15 @@ def contact_values(frames: Frames) -> np.ndarray:
     volumes = ball_volume(d) * np.diff(edges**d)
     coefficients = _at_contact(edges, volumes, d)
     pairs = n * (n / np.prod(frames.lengths / sigma)) * volumes
-    reach = sigma * edges
-    reach[0] *= 1.0 - 1e-5  # pairs that rounding has brought below contact belong to the first shell
+    inner = round(_SHELLS / WIDTH)  # intervals within a diameter, as wide as the shells
     values = []
     for positions in frames.positions:
-        tree = cKDTree(positions, boxsize=frames.lengths)
-        within = tree.count_neighbors(tree, reach)
-        values.append(coefficients @ (np.diff(within) / pairs))
+        counts = pair_counts(positions[None], frames.lengths, inner + _SHELLS, sigma * edges[-1])
+        shells = counts[inner:]
+        # pairs that rounding has brought below contact belong to the first shell
+        if below := counts[:inner].sum():
+            shells[0] += below - pair_counts(positions[None], frames.lengths, 1, sigma * (1.0 - 1e-5))[0]
+        values.append(coefficients @ (2.0 * shells / pairs))
     return np.array(values)
 
 

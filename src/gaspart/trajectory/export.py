@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -59,6 +60,7 @@ _SYMBOLS = (
     "Ar",
 )
 """Names of species in an XYZ file: readers such as ASE accept chemical symbols only."""
+_ROWS = 4096  # of a table that are formatted at once
 
 
 @dataclass(frozen=True)
@@ -247,12 +249,10 @@ def _write_xyz(path: Path, snapshots: Iterator[Snapshot]) -> None:
                 f'Lattice="{cell}" Origin="{origin}" pbc="{pbc}" Properties={columns} Time={snapshot.time!r}'
             )
             file.write(f"{len(snapshot.positions)}\n{comment} Program=gaspart\n")
-            kinds = [_SYMBOLS[kind % len(_SYMBOLS)] for kind in snapshot.types]
-            rows = np.column_stack(
-                [snapshot.positions, snapshot.velocities, 0.5 * snapshot.diameters, snapshot.masses]
-            )
-            for number, kind, row in zip(snapshot.numbers, kinds, rows, strict=True):
-                file.write(f"{kind} " + " ".join(f"{x:.9g}" for x in row) + f" {number + 1}\n")
+            kinds = [_SYMBOLS[kind % len(_SYMBOLS)] for kind in snapshot.types.tolist()]
+            numbers = *snapshot.positions.T, *snapshot.velocities.T, 0.5 * snapshot.diameters, snapshot.masses
+            template = f"%s {' '.join(['%.9g'] * len(numbers))} %d\n"
+            file.writelines(_rows(template, np.array(kinds, dtype=object), *numbers, snapshot.numbers + 1))
 
 
 def _write_data(path: Path, snapshots: Iterator[Snapshot]) -> None:
@@ -274,10 +274,16 @@ def _write_data(path: Path, snapshots: Iterator[Snapshot]) -> None:
     for axis, start, side in zip("xyz", low, snapshot.lengths, strict=True):
         lines.append(f"{float(start)!r} {float(start + side)!r} {axis}lo {axis}hi")
     lines += ["", "Atoms # sphere", ""]
-    for n in range(count):
-        numbers = (snapshot.diameters[n], density[n], *snapshot.positions[n])
-        lines.append(f"{n + 1} {snapshot.types[n] + 1} " + " ".join(f"{x:.9g}" for x in numbers))
-    lines += ["", "Velocities", ""]
-    for n, velocity in enumerate(snapshot.velocities):
-        lines.append(f"{n + 1} " + " ".join(f"{x:.9g}" for x in velocity) + " 0 0 0")
-    path.write_text("\n".join(lines) + "\n", encoding="ascii")
+    ids, numbers = np.arange(1, count + 1), (snapshot.diameters, density, *snapshot.positions.T)
+    with path.open("w", encoding="ascii") as file:
+        file.writelines(f"{line}\n" for line in lines)
+        file.writelines(_rows("%d %d %.9g %.9g %.9g %.9g %.9g\n", ids, snapshot.types + 1, *numbers))
+        file.write("\nVelocities\n\n")
+        file.writelines(_rows("%d %.9g %.9g %.9g 0 0 0\n", ids, *snapshot.velocities.T))
+
+
+def _rows(template: str, *columns: np.ndarray) -> Iterator[str]:
+    """Format the rows of a table in blocks, faster than single rows."""
+    for first in range(0, len(columns[0]), _ROWS):
+        block = [column[first : first + _ROWS].tolist() for column in columns]
+        yield template * len(block[0]) % tuple(chain.from_iterable(zip(*block, strict=True)))
