@@ -18,7 +18,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from urllib.request import urlopen
+from urllib.request import Request, urlopen
 
 import nbformat
 from tornado.websocket import websocket_connect
@@ -133,13 +133,12 @@ class Page:
 
 
 async def opened(port, address, folder):
-    """Return the page of Chromium at an address."""
-    pages = json.loads(urlopen(f"http://127.0.0.1:{port}/json").read())
-    (target,) = [page for page in pages if page["type"] == "page"]
+    """Return a new page of Chromium at an address: a page with a changed notebook asks before it is left."""
+    request = Request(f"http://127.0.0.1:{port}/json/new?{address}", method="PUT")
+    target = json.loads(urlopen(request).read())
     socket = await websocket_connect(target["webSocketDebuggerUrl"], max_message_size=1 << 28)
     page = Page(socket, folder)
     await page.call("Page.enable")
-    await page.call("Page.navigate", url=address)
     return page
 
 
@@ -188,11 +187,11 @@ NOTEBOOKS = {
     "gas": (
         FIVE_HUNDRED,
         [
-            ("gravity", 0.6),
-            ("temperature of walls", 0.8),
             ("piston", 0.1),
-            ("restitution", 0.7),
             ("piston", 1.0),
+            ("gravity", 0.6),  # which excludes pistons
+            ("temperature of walls", 0.8),
+            ("restitution", 0.7),
             ("packing fraction", 0.1),
         ],
         ["tracer"],
