@@ -24,7 +24,7 @@ WITHOUT = """
     import gaspart as gp
     from gaspart.errors import SceneError
     from gaspart.interruption import exit_on_signals
-    from gaspart.reproduction.families.extremes.guard import guarded
+    from gaspart.reproduction.families.extremes.guard import run_guarded
     from gaspart.reproduction.sweep_points import make_all
 
     exit_on_signals()
@@ -36,7 +36,7 @@ WITHOUT = """
     gp.resume("run.nc", duration=2.0)
     gp.view("run.nc").save("view.html")
     print(gp.analysis.collision_rate("run.nc").estimate.item() > 0.0)
-    for refused in (lambda: guarded(print, [1], 1.0), lambda: make_all([], 2, False, print)):
+    for refused in (lambda: run_guarded(print, [1], 1.0), lambda: make_all([], 2, False, print)):
         try:
             refused()
         except SceneError as error:

@@ -28,7 +28,7 @@ spin = "import time\\nwhile time.process_time() < 0.3: pass"
 exec(spin)
 subprocess.run([sys.executable, "-c", spin], check=True)
 print("0.5 of the work is done")
-print(job_time.stated())
+print(job_time.describe())
 """
 
 

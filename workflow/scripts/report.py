@@ -17,7 +17,7 @@ def run_times(results):
     spent, folder = {}, results / "logs"
     for path in sorted(folder.rglob("*.log")):
         rule, *names = path.relative_to(folder).with_suffix("").parts
-        if used := job_time.used(results, rule, *names):
+        if used := job_time.read_used(results, rule, *names):
             spent.setdefault(rule, []).append(used.seconds)
     return [
         {"rule": rule, "jobs": len(times), "total": sum(times), "longest": max(times)}

@@ -5,4 +5,4 @@ import sys
 from _job import function, job_time
 
 function("gaspart.reproduction.points.point", "compile_kernels")(sys.argv[1])
-print(job_time.stated())
+print(job_time.describe())
