@@ -263,7 +263,7 @@ def _contents_settings(
 
 
 def point_keys(engine: Engine) -> set[str]:
-    """Return the config keys that a sweep may vary: keys of a gas and of the engine.
+    """Return the config keys that a sweep may vary: keys of gas and engine.
 
     Parameters
     ----------
