@@ -68,8 +68,8 @@ PLANTS = [
     Plant(
         "force twice",
         _PRESSURE,
-        "given = impulses + resting",
-        "given = 2.0 * impulses + resting",
+        "totals = impulses + resting",
+        "totals = 2.0 * impulses + resting",
         ("masses_walls", "force"),
     ),
     Plant(
@@ -82,15 +82,15 @@ PLANTS = [
     Plant(
         "work of the drag added",
         _FLUXES,
-        "heat[:, number] -= _given",
-        "heat[:, number] += _given",
+        "heat[:, number] -= _amounts_per_area",
+        "heat[:, number] += _amounts_per_area",
         ("plates_free_partial", "heat_flux"),
     ),
     Plant(
         "sign of the wall shear",
         _FLUXES,
-        'given = _given(run, "wall_shear"',
-        'given = -_given(run, "wall_shear"',
+        'momentum = _amounts_per_area(run, "wall_shear"',
+        'momentum = -_amounts_per_area(run, "wall_shear"',
         ("driven_channel", "wall_shear"),
     ),
     Plant(
@@ -125,15 +125,15 @@ PLANTS = [
     Plant(
         "own pairs N^2 / 2",
         _MIXTURES,
-        "one.count * (one.count - 1)",
-        "one.count * one.count",
+        "first.count * (first.count - 1)",
+        "first.count * first.count",
         ("three_periodic", "contact_values"),
     ),
     Plant(
         "mass of the first for both",
         _MIXTURES,
-        "1.0 / one.mass + 1.0 / other.mass",
-        "2.0 / one.mass",
+        "1.0 / first.mass + 1.0 / second.mass",
+        "2.0 / first.mass",
         ("mixture_periodic", "contact_values"),
     ),
     Plant(
@@ -146,8 +146,8 @@ PLANTS = [
     Plant(
         "contact at the diameter of the first",
         _MIXTURES,
-        "one.radius + other.radius",
-        "2.0 * one.radius",
+        "first.radius + second.radius",
+        "2.0 * first.radius",
         ("mixture_periodic", "contact_values"),
     ),
     Plant(
@@ -252,7 +252,7 @@ PLANTS = [
     Plant(
         "partial S(k) per all",
         "analysis.structure_factors",
-        "max(1.0, len(one)) ** 0.5",
+        "max(1.0, len(indices)) ** 0.5",
         "max(1.0, frames.shape[1]) ** 0.5",
         ("mixture_periodic", "partial_structure_factors"),
     ),
