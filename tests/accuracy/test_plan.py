@@ -302,7 +302,7 @@ def test_what_is_stored_falls_faster_than_noise():
             "container.boundary: the stress, viscosity and conductivity need a periodic",
         ),
         (SHEARED, "pressure", "observable = 'pressure': container.boundary: has no walls"),
-        (BOX, "pressure:z low", "there is no such wall; the walls are x low, x high, y low, y high"),
+        (BOX, "pressure:z low", "must be one of the walls, x low, x high, y low, y high"),
         (BOX, "collision_rate:x low", "collision_rate is not of a wall"),
         (SHEARED, "vacf", "not defined where images of the particles slide"),
         (replace(SHEARED, restitution=None), "shear_viscosity", "nothing takes the energy"),

@@ -77,9 +77,10 @@ class Target:
         if scene.count:  # an empty one has no advice at all
             _require_defined(scene, observable, name)
         if colon and face not in walls:
-            of_walls = "face" in OBSERVABLES[observable].along
-            rule = "there is no such wall" if of_walls else f"{observable} is not of a wall"
-            raise SceneError("observable", name, f"{rule}; the walls are {', '.join(walls) or 'none'}")
+            rule = f"must be one of the walls, {', '.join(walls)}" if walls else "has no walls"
+            if "face" not in OBSERVABLES[observable].along:
+                rule = f"{observable} is not of a wall"
+            raise SceneError("observable", name, rule)
         return cls(scene, observable, face or None)
 
     @cached_property
