@@ -14,7 +14,6 @@ from gaspart.cli import main
 from gaspart.inspection.energy import certificate
 from gaspart.inspection.open_runs import judge_open
 from gaspart.inspection.readers import read_frames
-from gaspart.rendering.live import LiveGas
 from gaspart.simulation import Simulation
 from gaspart.trajectory.export import export
 
@@ -224,8 +223,6 @@ def test_what_needs_particles_that_stay_is_refused(trajectory):
             refused(path)
     with pytest.raises(gp.SceneError, match="faces.x_low.*follows particles that stay"):
         analysis.by_species(path)
-    with pytest.raises(gp.SceneError, match="faces.x_low.*a slider would state"):
-        LiveGas(DISCS)
     with pytest.raises(gp.SceneError, match="none is open"):
         closed = gp.Simulation(gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(3, 0.5, temperature=1.0)]))
         closed.advance(duration=1.0)
