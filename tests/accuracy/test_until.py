@@ -306,7 +306,7 @@ def test_the_default_interval_is_the_time_between_collisions(tmp_path):
         ({"duration": 8.0}, "duration = 8.0: excludes until"),
         ({"until": ()}, r"until = \(\): must be a gaspart.Accuracy"),
         ({"until": "Z=0.1"}, "until = \\('Z=0.1',\\): must be a gaspart.Accuracy"),
-        ({"until": (ASKED[0], ASKED[0])}, "until = 'Z': must be requested only once"),
+        ({"until": (ASKED[0], ASKED[0])}, "until = 'Z': is asked for twice"),
         ({"at_most": 0.3}, "at_most = 0.3: must be at least the sample_interval, 0.4"),
         ({"at_most": -1.0}, "at_most = -1.0: must be positive"),
         ({"until": None, "at_most": 8.0}, "at_most = 8.0: needs until"),
@@ -329,7 +329,7 @@ def test_the_default_interval_is_the_time_between_collisions(tmp_path):
         ),
         (
             {"scene": WALLS, "until": gp.Accuracy("pressure", 0.1, face="x_lo")},
-            "until = 'pressure:x lo': must be one of the walls, x low, x high, y low",
+            "until = 'pressure:x lo': the walls are x low, x high, y low",
         ),
         (
             {"until": gp.Accuracy("shear_viscosity", 0.1)},
