@@ -329,7 +329,7 @@ def test_the_default_interval_is_the_time_between_collisions(tmp_path):
         ),
         (
             {"scene": WALLS, "until": gp.Accuracy("pressure", 0.1, face="x_lo")},
-            "until = 'pressure:x lo': the walls are x low, x high, y low",
+            "until = 'pressure:x lo': must be one of the walls, x low, x high, y low",
         ),
         (
             {"until": gp.Accuracy("shear_viscosity", 0.1)},
