@@ -68,8 +68,9 @@ unexport PYTHONDONTWRITEBYTECODE
 	$(PIP) install --no-deps --no-build-isolation --editable .
 	@touch $@
 
+# A test that waits for ever fails by its name, and the others go on. Slow tests and searches have no such limit.
 test: setup
-	.venv/bin/python -m pytest --numprocesses=auto $(OPTIONS)
+	.venv/bin/python -m pytest --numprocesses=auto --timeout=1500 --timeout-method=signal $(OPTIONS)
 
 check-all: lint test
 	.venv/bin/python -m pytest --numprocesses=auto -m hypothesis --hypothesis-profile=search

@@ -8,7 +8,7 @@ from scenes import gas
 from scipy.signal import lfilter
 
 import gaspart as gp
-from gaspart.accuracy.estimates import components, with_stores
+from gaspart.accuracy.estimates import components, with_stores, without_stores
 from gaspart.accuracy.pilot import Pilot
 from gaspart.accuracy.reached import Examiner
 
@@ -40,6 +40,14 @@ def test_a_short_series_predicts_the_error_of_a_long_one(correlation, stored):
         assert predicted == pytest.approx(true, rel=0.12)  # the true one is known to 3.5 %
     kept = np.median([one.stored for one in found])
     assert kept == pytest.approx(2.0 * stored**2, rel=0.05, abs=0.05)
+
+
+def test_a_series_that_controls_explain_to_rounding_has_a_known_error():
+    series = np.tile([1.0, 2.0, 1.5], 20)
+    explained = without_stores(series, np.full(60, 1.5), 1.0, controls=3)
+    assert (explained.error(60.0), explained.freedom) == (0.0, 59.0 - 3.0)
+    unchanged = without_stores(np.ones(60), np.ones(60), 1.0, controls=3)
+    assert (unchanged.error(60.0), unchanged.freedom) == (0.0, 1.0)
 
 
 def test_without_the_store_a_short_series_predicts_too_much():

@@ -256,7 +256,7 @@ def test_a_config_may_lie_anywhere_and_its_scenes_beside_it(tmp_path, monkeypatc
 
 
 def test_a_config_in_the_folder_of_the_project_is_merged_over_its_default(tmp_path):
-    """As Snakemake does with `--configfile my_gas.yaml`."""
+    """Snakemake merges them with `--configfile my_gas.yaml`."""
     (tmp_path / "config").mkdir()
     (tmp_path / "config/config.yaml").write_text(dump_yaml(GOOD))
     own = tmp_path / "my_gas.yaml"

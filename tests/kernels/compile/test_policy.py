@@ -127,8 +127,10 @@ print(numba.__version__, *(hashlib.sha256(part.tobytes()).hexdigest() for part i
 
 
 def simulated(*others, cache=None):
-    """What a process prints that finds packages in other folders first, and when each kernel of a cache was
-    written."""
+    """Return what a simulation prints and the times at which the kernels in the cache were written.
+
+    The process finds packages in the folders `others` first.
+    """
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(map(str, others))}
     environment |= {"GASPART_CACHE": str(cache)} if cache else {}
     command = [sys.executable, "-c", SIMULATION]
