@@ -65,7 +65,7 @@ class Block(NamedTuple):
 
     Attributes
     ----------
-    places : (BLOCK, 3), positions of the trials
+    positions : (BLOCK, 3), positions of the trials
     at : (BLOCK, 3), coordinates of their boxes
     own : (BLOCK, 3), contribution of the trial's box to the index along each axis
     beside : (BLOCK, 3), contribution of its neighbour on the nearer side to the index along each axis
@@ -73,7 +73,7 @@ class Block(NamedTuple):
     box : (BLOCK,), box with which each of these is compared next
     """
 
-    places: np.ndarray
+    positions: np.ndarray
     at: np.ndarray
     own: np.ndarray
     beside: np.ndarray
@@ -102,12 +102,12 @@ class Task(NamedTuple):
 
 def put(placed, box, i):
     """Insert a particle with its position into a box."""
-    place = placed.filled[box]
-    if place < PLACES:
+    slot = placed.filled[box]
+    if slot < PLACES:
         placed.filled[box] += 1
         for k in range(placed.positions.shape[1]):
-            placed.near[box, k, place] = placed.positions[i, k]
-        placed.near[box, 3, place] = placed.radii[i]
+            placed.near[box, k, slot] = placed.positions[i, k]
+        placed.near[box, 3, slot] = placed.radii[i]
     else:
         placed.following[i] = placed.head[box]
         placed.head[box] = i
@@ -124,28 +124,28 @@ def gap_between(x, other, period):
 
 
 @inner_helper
-def overlaps(place, radius, other, placed, periods):
+def overlaps(position, radius, other, placed, periods):
     """Return True if a particle at a position (3,) would overlap another."""
     square = 0.0
     for k in range(len(periods)):
-        gap = gap_between(place[k], placed.positions[other, k], periods[k])
+        gap = gap_between(position[k], placed.positions[other, k], periods[k])
         square += gap * gap
     reach = radius + placed.radii[other]
     return square < reach * reach
 
 
 @inner_helper
-def overlaps_near(place, radius, box, placed, periods):
+def overlaps_near(position, radius, box, placed, periods):
     """Return True if a particle would overlap one of the first particles of a box."""
-    found = 0
+    overlap = 0
     for n in range(placed.near.shape[2]):  # PLACES, but with that constant no vectors would be made of it
         square = 0.0
         for k in range(len(periods)):
-            gap = gap_between(place[k], placed.near[box, k, n], periods[k])
+            gap = gap_between(position[k], placed.near[box, k, n], periods[k])
             square += gap * gap
         reach = radius + placed.near[box, 3, n]
-        found |= square < reach * reach
-    return found != 0
+        overlap |= square < reach * reach
+    return overlap != 0
 
 
 @inner_helper
@@ -189,7 +189,7 @@ def draw_trials(draws, boxes, block, task):
             x = lower[k] + draws[n, k] * (upper[k] - lower[k])
             at = box_coordinate(x, boxes.widths[k], boxes.per_side[k])
             step = 2 if x > (at + 0.5) * boxes.widths[k] else 0
-            block.places[n, k], block.at[n, k], block.own[n, k] = x, at, at * boxes.strides[k]
+            block.positions[n, k], block.at[n, k], block.own[n, k] = x, at, at * boxes.strides[k]
             neighbour = boxes.neighbour[k, at, step]
             block.beside[n, k] = neighbour if neighbour >= 0 else block.own[n, k]
         block.remaining[n] = n
@@ -208,7 +208,7 @@ def reject_overlapping(count, radius, placed, boxes, block):
             for m in range(number):
                 n = block.remaining[m]
                 block.remaining[kept] = n
-                kept += not overlaps_near(block.places[n], radius, block.box[m], placed, boxes.periods)
+                kept += not overlaps_near(block.positions[n], radius, block.box[m], placed, boxes.periods)
             if kept > 0.9 * number:  # in a thin gas a complete test of each trial costs less
                 return kept
             number = kept
@@ -216,11 +216,11 @@ def reject_overlapping(count, radius, placed, boxes, block):
 
 
 @inner_helper
-def is_clear_of_walls(place, radius, periods, walls):
+def is_clear_of_walls(position, radius, periods, walls):
     """Return True if no interior wall is too near to a position (3,)."""
     if walls is not None:
         for m in range(len(walls)):
-            x, y, z = to_wall(walls, m, place, periods)
+            x, y, z = to_wall(walls, m, position, periods)
             square = x * x + y * y + z * z
             if square < radius * radius:
                 return False
@@ -228,15 +228,15 @@ def is_clear_of_walls(place, radius, periods, walls):
 
 
 @inner_helper
-def is_free(place, at, radius, placed, boxes, oversized, walls):
+def is_free(position, at, radius, placed, boxes, oversized, walls):
     """Return True if no particle and no interior wall is too near to a position (3,).
 
     at : (3,), coordinates of the box of the position
     """
-    if not is_clear_of_walls(place, radius, boxes.periods, walls):
+    if not is_clear_of_walls(position, radius, boxes.periods, walls):
         return False
     for other in oversized:
-        if overlaps(place, radius, other, placed, boxes.periods):
+        if overlaps(position, radius, other, placed, boxes.periods):
             return False
     for dz in range(3):
         z = boxes.neighbour[2, at[2], dz]
@@ -249,11 +249,11 @@ def is_free(place, at, radius, placed, boxes, oversized, walls):
                 box = x + y + z
                 if not placed.filled[box]:
                     continue
-                if overlaps_near(place, radius, box, placed, boxes.periods):
+                if overlaps_near(position, radius, box, placed, boxes.periods):
                     return False
                 other = placed.head[box] if placed.filled[box] == PLACES else -1
                 while other >= 0:
-                    if overlaps(place, radius, other, placed, boxes.periods):
+                    if overlaps(position, radius, other, placed, boxes.periods):
                         return False
                     other = placed.following[other]
     return True
@@ -266,7 +266,7 @@ def enter(placed, i, block, n):
     for k in range(3):
         box += block.own[n, k]
     for k in range(placed.positions.shape[1]):
-        placed.positions[i, k] = block.places[n, k]
+        placed.positions[i, k] = block.positions[n, k]
     _put(placed, box, i)
 
 
@@ -293,7 +293,7 @@ def place(draws, placed, boxes, block, task, oversized, walls):
         for n in block.remaining[:number]:
             if i == task.stop or failures + n - tried >= task.patience:
                 break
-            if is_free(block.places[n], block.at[n], radius, placed, boxes, oversized, walls):
+            if is_free(block.positions[n], block.at[n], radius, placed, boxes, oversized, walls):
                 enter(placed, i, block, n)
                 placed.failures[i] = failures + n - tried
                 failures, tried = 0, n + 1

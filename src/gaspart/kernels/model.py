@@ -285,7 +285,7 @@ class Reservoirs(NamedTuple):
     width : (2d,), (k_B T / m)^(1/2) of each gas
     number : (1,), number of the next attempt
     time : (1,), its time on the clocks of the epoch
-    place : (3,), workspace for its position
+    position : (3,), workspace for its position
     opened : `Open` of the faces
     """
 
@@ -295,7 +295,7 @@ class Reservoirs(NamedTuple):
     width: np.ndarray
     number: np.ndarray
     time: np.ndarray
-    place: np.ndarray
+    position: np.ndarray
     opened: Open
 
 
@@ -307,7 +307,7 @@ class Faces(NamedTuple):
     kind : (2d,)
     level : (2d,), temperature (at the low end if it varies), or momentum that sticks
     depth, width : (2d,), depth and width of the well, 0 without a well
-    place : (N, d), -1 or 1 for a particle in the well of an axis' low or high face, or stuck to it
+    well_side : (N, d), -1 or 1 for a particle in the well of an axis' low or high face, or stuck to it
     held : (N, d), energy held there as vibration
     draws : (N,), number of draws of random numbers for a particle
     key : (2,), key of these random numbers
@@ -324,7 +324,7 @@ class Faces(NamedTuple):
     level: np.ndarray
     depth: np.ndarray
     width: np.ndarray
-    place: np.ndarray
+    well_side: np.ndarray
     held: np.ndarray
     draws: np.ndarray
     key: np.ndarray

@@ -19,11 +19,11 @@ def _fetch(context, builder, kind, array, index, offset=0):
     stride = _WORD(context.get_abi_sizeof(context.get_data_type(kind.dtype)))
     if not one_after_other:
         stride = cgutils.unpack_tuple(builder, array.strides)[0]
-    place = builder.gep(builder.bitcast(array.data, _BYTE), [builder.mul(index, stride)])
-    place = builder.gep(place, [_WORD(offset)])
+    address = builder.gep(builder.bitcast(array.data, _BYTE), [builder.mul(index, stride)])
+    address = builder.gep(address, [_WORD(offset)])
     form = ir.FunctionType(ir.VoidType(), [_BYTE, _FLAG, _FLAG, _FLAG])
     prefetch = cgutils.get_or_insert_function(builder.module, form, "llvm.prefetch.p0")
-    builder.call(prefetch, [place, _FLAG(0), _FLAG(3), _FLAG(1)])
+    builder.call(prefetch, [address, _FLAG(0), _FLAG(3), _FLAG(1)])
 
 
 @intrinsic

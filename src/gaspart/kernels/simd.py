@@ -28,8 +28,8 @@ class Lanes:
         """Return a vector with the same number in every lane."""
         if not isinstance(scalar, ir.Value):
             scalar = ir.Constant(_DOUBLE, scalar)
-        one = ir.VectorType(scalar.type, WIDTH)
-        first = self.builder.insert_element(ir.Constant(one, ir.Undefined), scalar, _INT(0))
+        vector = ir.VectorType(scalar.type, WIDTH)
+        first = self.builder.insert_element(ir.Constant(vector, ir.Undefined), scalar, _INT(0))
         everywhere = ir.Constant(ir.VectorType(_INT, WIDTH), [0] * WIDTH)
         return Lanes(self.builder, self.builder.shuffle_vector(first, first, everywhere))
 
@@ -75,12 +75,12 @@ class Lanes:
         """Compare lane by lane."""
         return self._than("==", other)
 
-    def turned(self, step: int) -> Lanes:
+    def rotate(self, step: int) -> Lanes:
         """Rotate the lanes by some steps."""
-        places = ir.Constant(ir.VectorType(_INT, WIDTH), [(n + step) % WIDTH for n in range(WIDTH)])
-        return Lanes(self.builder, self.builder.shuffle_vector(self.value, self.value, places))
+        indices = ir.Constant(ir.VectorType(_INT, WIDTH), [(n + step) % WIDTH for n in range(WIDTH)])
+        return Lanes(self.builder, self.builder.shuffle_vector(self.value, self.value, indices))
 
-    def plus_product(self, one: Lanes, other: Lanes) -> Lanes:
+    def plus_product(self, factor: Lanes, other: Lanes) -> Lanes:
         """Add a product that is exact.
 
         So it does not matter whether the product is rounded before the addition.
@@ -88,7 +88,7 @@ class Lanes:
         kind = ir.FunctionType(self.value.type, [self.value.type] * 3)
         name = f"llvm.fmuladd.v{WIDTH}f64"
         fused = cgutils.get_or_insert_function(self.builder.module, kind, name)
-        return Lanes(self.builder, self.builder.call(fused, [one.value, other.value, self.value]))
+        return Lanes(self.builder, self.builder.call(fused, [factor.value, other.value, self.value]))
 
     def sqrt(self):
         """Compute the square root lane by lane, rounded as IEEE requires."""

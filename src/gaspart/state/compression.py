@@ -16,7 +16,7 @@ from typing import Literal
 import numpy as np
 
 from gaspart.errors import SceneError, SimulationError
-from gaspart.kernels.memory import aligned
+from gaspart.kernels.memory import aligned_zeros
 from gaspart.scene.limits import closest_packing
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
@@ -193,11 +193,11 @@ class _Growing:
         d, n = scene.dimension, scene.count
         self.scale, self.pressure, self.collisions = scale, 1.0, 0
         self._radii = per_particle(scene, "radius").astype(float)
-        self.flights = aligned((n,), model.flight_dtype(d))
+        self.flights = aligned_zeros((n,), model.flight_dtype(d))
         self.flights["position"] = positions
         self.flights["velocity"] = normals(stream(seed, _MOTION), n, d)
         self.flights["radius"] = self._radii * scale
-        predictions = aligned((n,), model.PREDICTION)
+        predictions = aligned_zeros((n,), model.PREDICTION)
         self.particles = model.Particles(self.flights, np.zeros((n, d), dtype=np.int64), predictions)
         width = 2.0 * scene.largest_radius * end * (1.0 + 2.0 * _SPARE)  # so that boxes serve to the end
         boxes = make_boxes(scene, sides_for(scene, width), images=True, narrowest=width)

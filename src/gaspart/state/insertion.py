@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.kernels.memory import aligned
+from gaspart.kernels.memory import aligned_zeros
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
 from gaspart.state.boxes import Boxes, largest_in_boxes, make_boxes, sides_for
@@ -90,7 +90,7 @@ def empty_arrays(scene: Scene, boxes: Boxes, radii: np.ndarray) -> tuple[Placed,
     """
     from gaspart.kernels.insertion import BLOCK, PLACES, Block, PeriodicBoxes, Placed
 
-    near = aligned((boxes.count, 4, PLACES), float)
+    near = aligned_zeros((boxes.count, 4, PLACES), float)
     near[:] = np.inf
     filled = np.zeros(boxes.count, dtype=np.uint8)
     lists = np.full(boxes.count, -1), np.full(len(radii), -1)

@@ -6,7 +6,7 @@ import numba
 import numpy as np
 import pytest
 
-from gaspart.kernels.compile.narrowing import Narrowed, narrowed
+from gaspart.kernels.compile.narrowing import Narrowed, narrow_types
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
 
 NONE, VECTOR = numba.types.none, numba.typeof(np.zeros(2))
@@ -110,13 +110,13 @@ def called_by_python(outer):
 )
 def test_a_function_is_compiled_for_the_entries_that_it_uses(function, given, kept):
     """Itself, or what it hands them to, but not in a branch that is left out; else for all."""
-    assert narrowed(function.py_func, (given,)) == (kept,)
+    assert narrow_types(function.py_func, (given,)) == (kept,)
 
 
 def test_what_is_absent_stays_absent_and_functions_of_no_module_get_all():
     nothing = outer(NONE, NONE, NONE)
-    assert narrowed(if_there.py_func, (nothing, NONE, NONE)) == (by_entries(nothing), NONE, NONE)
-    assert narrowed(lambda outer: outer.rest[0], (outer(),)) == (whole(outer()),)
+    assert narrow_types(if_there.py_func, (nothing, NONE, NONE)) == (by_entries(nothing), NONE, NONE)
+    assert narrow_types(lambda outer: outer.rest[0], (outer(),)) == (whole(outer()),)
 
 
 def test_a_call_passes_these_entries_with_their_values():

@@ -83,9 +83,9 @@ def test_other_files_have_the_digest_of_their_bytes(tmp_path):
 @pytest.fixture
 def cache(tmp_path, monkeypatch):
     monkeypatch.setenv("GASPART_CACHE", str(tmp_path / "cache"))
-    sources._stored.cache_clear()
+    sources._read_stored.cache_clear()
     yield tmp_path / "cache/sources" / STORE
-    sources._stored.cache_clear()
+    sources._read_stored.cache_clear()
 
 
 def test_digests_are_computed_once_for_each_content(tmp_path, cache, monkeypatch):
@@ -93,7 +93,7 @@ def test_digests_are_computed_once_for_each_content(tmp_path, cache, monkeypatch
     for path in paths:
         path.write_text(SOURCE.replace("twice", path.stem))
     expected, computed = file_digests(paths), []
-    sources._stored.cache_clear()  # as another process
+    sources._read_stored.cache_clear()  # as another process
     monkeypatch.setattr(sources, "tree_digest", lambda content: computed.append(content) or "f" * 32)
     assert file_digests(paths) == expected and not computed
     paths[0].write_text("new = 1")
@@ -117,7 +117,7 @@ def test_a_store_of_others_is_neither_read_nor_written(tmp_path, cache, monkeypa
     forged = json.dumps(dict.fromkeys(json.loads(cache.read_text()), "f" * 32))
     cache.write_text(forged)
     cache.parent.chmod(0o777)
-    sources._stored.cache_clear()
+    sources._read_stored.cache_clear()
     assert file_digests([path]) == [tree_digest(SOURCE.encode())] and cache.read_text() == forged
 
 

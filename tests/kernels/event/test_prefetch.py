@@ -7,14 +7,14 @@ import pytest
 import gaspart as gp
 from gaspart.kernels.compile.policy import kernel
 from gaspart.kernels.event.boxes import empty_lists
-from gaspart.kernels.event.prefetch import CACHED, fetch_about, searched
+from gaspart.kernels.event.prefetch import CACHED, fetch_about, next_search
 from gaspart.kernels.model import BOX_FACES, PREDICTION, WELL_EDGES, flight_dtype
 from gaspart.state.boxes import make_boxes
 
 
 @kernel
 def look(predictions, i):
-    return searched(predictions, i)
+    return next_search(predictions, i)
 
 
 @kernel

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gaspart.kernels.compile.policy import kernel
-from gaspart.kernels.physics.exact_sum import DIGITS, WIDTH, add_exact, exact_parts, joined
+from gaspart.kernels.physics.exact_sum import DIGITS, WIDTH, add_exact, exact_parts, sum_over_threads
 
 NUMBERS = st.floats(allow_nan=False, allow_infinity=False, width=64)
 
@@ -40,9 +40,9 @@ def test_a_sum_is_exact_whatever_the_sizes_of_its_terms(one, other):
 def test_order_and_threads_do_not_matter():
     rng = np.random.default_rng(3)
     terms = rng.standard_normal(1000) * 10.0 ** rng.integers(-300, 300, 1000)
-    found = joined(summed(terms))
+    found = sum_over_threads(summed(terms))
     for parts in ((terms[::-1],), (terms[:300], terms[300:]), (terms[700:], [], terms[:700])):
-        assert np.array_equal(joined(summed(*parts)), found)
+        assert np.array_equal(sum_over_threads(summed(*parts)), found)
 
 
 def test_what_is_left_of_large_terms_is_kept():
@@ -61,5 +61,5 @@ def test_nothing_overflows(x):
     assert total[0, DIGITS] == 0 and (total[0, : DIGITS - 1] < 2**32).all()
     for _ in range(10):
         total *= 2
-        joined(total[None])
+        sum_over_threads(total[None])
     assert exact_parts(total)[0] == x * 2.0**39

@@ -23,7 +23,7 @@ from gaspart.kernels.dsmc import model as layout
 from gaspart.kernels.dsmc.boltzmann import Stress
 from gaspart.kernels.dsmc.model import kick_all
 from gaspart.kernels.model import Space
-from gaspart.kernels.physics.exact_sum import WIDTH, exact_parts, joined
+from gaspart.kernels.physics.exact_sum import WIDTH, exact_parts, sum_over_threads
 from gaspart.scene.scene import Scene
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State, drift_of
@@ -266,7 +266,7 @@ class DsmcDynamics(SteppedDynamics):
         return {key: getattr(self._workspace, key) for key in TALLY}
 
     def _sum_threads(self, sums: np.ndarray) -> np.ndarray:
-        return joined(sums) if sums.shape[-1] == WIDTH else super()._sum_threads(sums)
+        return sum_over_threads(sums) if sums.shape[-1] == WIDTH else super()._sum_threads(sums)
 
     def _counts(self) -> dict[str, Any]:
         """Return the counts, with the number of steps that were made in parts."""

@@ -65,7 +65,7 @@ from gaspart.kernels.event import neighbour_lists as lists
 from gaspart.kernels.event.boxes import empty_lists
 from gaspart.kernels.event.pair_contact import Monitors, Record
 from gaspart.kernels.event.queue import EVENT_COUNT, empty_queue
-from gaspart.kernels.memory import aligned
+from gaspart.kernels.memory import aligned_zeros
 from gaspart.kernels.model import NONE, PREDICTION, Model, Oversized, Particles, Space, flight_dtype
 from gaspart.kernels.physics.flight import advance_all, restart_clocks
 from gaspart.scene.faces import GRADIENT
@@ -82,9 +82,9 @@ def particles_of(state: State, boxes: Boxes) -> Particles:
     """Return the particles of a state, without predictions."""
     n = state.count
     particles = Particles(
-        flights=aligned((n,), flight_dtype(state.dimension)),
+        flights=aligned_zeros((n,), flight_dtype(state.dimension)),
         images=state.images.copy(),
-        predictions=aligned((n,), PREDICTION),
+        predictions=aligned_zeros((n,), PREDICTION),
     )
     flights, predictions = particles.flights, particles.predictions
     flights["position"], flights["velocity"] = state.positions, state.velocities

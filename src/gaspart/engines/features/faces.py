@@ -300,7 +300,7 @@ def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_
         level=level / unit_mass,
         depth=depths / unit_mass,
         width=widths,
-        place=places_in_wells(scene, state.positions, state.radii),
+        well_side=places_in_wells(scene, state.positions, state.radii),
         held=np.zeros(state.positions.shape),
         draws=np.zeros(state.count, dtype=np.int64),
         key=key_of(seed, WALL_DRAWS),
@@ -337,7 +337,7 @@ class FacesPart(Part):
 
     def __init__(self, scene: Scene, faces: Faces, unit_mass: float, lightest: float = np.inf) -> None:
         self._shear = faces.sliding.shear if faces.sliding else None
-        arrays = {key: getattr(faces, key) for key in ("place", "held", "draws")}
+        arrays = {"place": faces.well_side, "held": faces.held, "draws": faces.draws}
         super().__init__(arrays if self._shear is None else {**arrays, "shear": self._shear})
         self._scene, self._unit_mass = scene, unit_mass
         self.gained = face_energy(scene) / lightest

@@ -231,7 +231,7 @@ def pair_impulses_part(
         per_unit=per_unit,
         share=float(tally.share),
         listed=np.zeros(n + PLACES + WIDTH, np.uint32),
-        found=np.zeros((2, WIDTH)),
+        separations=np.zeros((2, WIDTH)),
     )
     pairs = 0.5 * n * (n - 1) * d * ball_volume(d)  # per volume and distance^(d - 1), if independent
     return PairImpulsesPart(kernel, unit_mass * scene.container.volume / (pairs * per_unit))

@@ -40,16 +40,16 @@ def usable_cache(version: str) -> Path | None:
     $GASPART_CACHE cannot be written.
     """
     try:
-        wanted: Path | None = cache_directory() / version
+        directory: Path | None = cache_directory() / version
     except RuntimeError:
-        wanted = None
-    why = obstacle(wanted) if wanted else "there is no home for the kernel cache"
-    if not why:
-        return wanted
-    found = None if os.environ.get("GASPART_CACHE") else _temporary(version)
-    instead = f"using {found}" if found else "compiling anew in every process"
-    warnings.warn(f"gaspart: {why}; {instead} ({_REMEDY})", stacklevel=3)
-    return found
+        directory = None
+    problem = obstacle(directory) if directory else "there is no home for the kernel cache"
+    if not problem:
+        return directory
+    fallback = None if os.environ.get("GASPART_CACHE") else _temporary(version)
+    instead = f"using {fallback}" if fallback else "compiling anew in every process"
+    warnings.warn(f"gaspart: {problem}; {instead} ({_REMEDY})", stacklevel=3)
+    return fallback
 
 
 _reported: set[Path] = set()
@@ -59,8 +59,8 @@ def report_unwritable(directory: Path, error: OSError) -> None:
     """Warn once in a process that compiled kernels cannot be stored, as on a full disk."""
     if directory not in _reported:
         _reported.add(directory)
-        why = f"cannot write the kernel cache {directory}: {error.strerror}"
-        warnings.warn(f"gaspart: {why}; compiling anew in every process ({_REMEDY})", stacklevel=3)
+        problem = f"cannot write the kernel cache {directory}: {error.strerror}"
+        warnings.warn(f"gaspart: {problem}; compiling anew in every process ({_REMEDY})", stacklevel=3)
 
 
 def obstacle(directory: Path) -> str:
@@ -79,12 +79,12 @@ def obstacle(directory: Path) -> str:
     return "" if os.access(directory, os.W_OK) else f"cannot write the kernel cache {directory}"
 
 
-def _is_private(found: os.stat_result) -> bool:
+def _is_private(status: os.stat_result) -> bool:
     """Return True if a path is a folder to which only this user may write.
 
     Other users then cannot place machine code in it.
     """
-    return stat.S_ISDIR(found.st_mode) and is_private(found)
+    return stat.S_ISDIR(status.st_mode) and is_private(status)
 
 
 def _temporary(version: str) -> Path | None:

@@ -110,10 +110,10 @@ class KernelFiles(caching.IndexDataCacheFile):
         """
         code = _code(_own_content(self._data_path(self._name(key))))
         if code is None:
-            code = _code(self._shipped(key))
+            code = _code(self._read_shipped(key))
         return None if code is None else pickle.loads(code)
 
-    def _shipped(self, key: tuple) -> bytes | None:
+    def _read_shipped(self, key: tuple) -> bytes | None:
         """Return the content of the file that came with the package.
 
         The folders have the same names as the folders of the cache.

@@ -28,10 +28,10 @@ Use = dict  # uses of an entry by its name; {} if only its comparison with None 
 WHOLE: Use = {"*": {}}
 
 
-def narrowed(function: Callable, arguments: tuple) -> tuple:
+def narrow_types(function: Callable, arguments: tuple) -> tuple:
     """Return the types of arguments for which a function is compiled instead of the given types."""
     uses = zip(arguments, _uses(function, arguments), strict=True)
-    return tuple(_narrow(one, use) for one, use in uses)
+    return tuple(_narrow(argument, use) for argument, use in uses)
 
 
 class Narrowed(types.NamedTuple):
@@ -54,30 +54,30 @@ class Narrowed(types.NamedTuple):
         return None if None in kinds else types.NamedTuple(kinds, self.instance_class)
 
 
-def _narrow(given: Any, use: Use) -> Any:
-    if not isinstance(given, types.NamedTuple):
-        return given
-    key = given._code, str(use)
+def _narrow(full_type: Any, use: Use) -> Any:
+    if not isinstance(full_type, types.NamedTuple):
+        return full_type
+    key = full_type._code, str(use)
     if key not in _known_types:
-        entries = zip(given.fields, given.types, strict=True)
+        entries = zip(full_type.fields, full_type.types, strict=True)
         if "*" in use:
-            kept = given.types
+            kept = full_type.types
         else:
             kept = [_narrow(kind, use[name]) if name in use else types.none for name, kind in entries]
-        _known_types[key] = Narrowed(kept, given.instance_class)
+        _known_types[key] = Narrowed(kept, full_type.instance_class)
     return _known_types[key]
 
 
 @numba.extending.lower_cast(types.NamedTuple, Narrowed)
 @numba.extending.lower_cast(Narrowed, Narrowed)
 @numba.extending.lower_cast(Narrowed, types.NamedTuple)
-def _leave_out(context: Any, builder: Any, given: Any, narrow: Any, value: Any) -> Any:
+def _leave_out(context: Any, builder: Any, full_type: Any, narrow: Any, value: Any) -> Any:
     """Build the tuple of the entries that a function uses."""
     none = context.get_dummy_value()
-    entries = numba.core.cgutils.unpack_tuple(builder, value, len(given))
+    entries = numba.core.cgutils.unpack_tuple(builder, value, len(full_type))
     kept = [
-        none if kind == types.none else context.cast(builder, entry, whole, kind)
-        for entry, whole, kind in zip(entries, given, narrow, strict=True)
+        none if kind == types.none else context.cast(builder, entry, entry_type, kind)
+        for entry, entry_type, kind in zip(entries, full_type, narrow, strict=True)
     ]
     return context.make_tuple(builder, narrow, kept)
 
@@ -120,7 +120,8 @@ def _key(function: Callable, arguments: tuple) -> tuple:
 
     The hashes of the types themselves are slow.
     """
-    return function.__code__, tuple(one._code if isinstance(one, _MATTER) else _UNKNOWN for one in arguments)
+    numbers = (kind._code if isinstance(kind, _MATTER) else _UNKNOWN for kind in arguments)
+    return function.__code__, tuple(numbers)
 
 
 _known_uses: dict[tuple, tuple[Use, ...]] = {}
@@ -131,9 +132,9 @@ def _read(function: Callable, arguments: tuple) -> tuple[Use, ...]:
     definition, assigned = _definition(function.__code__)
     if definition is None or len(definition.args.args) != len(arguments):
         return tuple(WHOLE for _ in arguments)
-    names = [one.arg for one in definition.args.args]
-    known = dict(zip(names, arguments, strict=True)) | dict.fromkeys(assigned, _UNKNOWN)
-    reader = _Reader(function.__globals__, known)
+    names = [argument.arg for argument in definition.args.args]
+    kinds = dict(zip(names, arguments, strict=True)) | dict.fromkeys(assigned, _UNKNOWN)
+    reader = _Reader(function.__globals__, kinds)
     reader.block(definition.body)
     return tuple(reader.uses[name] for name in names)
 
@@ -145,21 +146,25 @@ def _definition(code: Any) -> tuple[ast.FunctionDef | None, set[str]]:
     Any other function has no source: None.
     """
     try:
-        found = _functions(code.co_filename).get(code.co_firstlineno)
+        definition = _functions(code.co_filename).get(code.co_firstlineno)
     except OSError:
-        found = None
-    if found is None or found.name != code.co_qualname or not _is_plain(found.args):
+        definition = None
+    if definition is None or definition.name != code.co_qualname or not _is_plain(definition.args):
         return None, set()
-    names = [node for node in ast.walk(found) if isinstance(node, ast.Name)]
-    own = {one.arg for one in found.args.args}
-    return found, {node.id for node in names if isinstance(node.ctx, ast.Store)} & own
+    names = [node for node in ast.walk(definition) if isinstance(node, ast.Name)]
+    own = {argument.arg for argument in definition.args.args}
+    return definition, {node.id for node in names if isinstance(node.ctx, ast.Store)} & own
 
 
 @cache
 def _functions(file: str) -> dict[int, ast.FunctionDef]:
     """Return the functions of a module by the line where the code of each begins."""
-    found = [one for one in ast.parse(Path(file).read_bytes()).body if isinstance(one, ast.FunctionDef)]
-    return {min([one.lineno, *(before.lineno for before in one.decorator_list)]): one for one in found}
+    functions = [
+        node for node in ast.parse(Path(file).read_bytes()).body if isinstance(node, ast.FunctionDef)
+    ]
+    return {
+        min([node.lineno, *(before.lineno for before in node.decorator_list)]): node for node in functions
+    }
 
 
 def _is_plain(arguments: ast.arguments) -> bool:
@@ -171,9 +176,9 @@ def _is_plain(arguments: ast.arguments) -> bool:
     return not any(others) and arguments.vararg is None and arguments.kwarg is None
 
 
-def _merge(one: Use, other: Use) -> None:
+def _merge(target: Use, other: Use) -> None:
     for name, use in other.items():
-        _merge(one.setdefault(name, {}), use)
+        _merge(target.setdefault(name, {}), use)
 
 
 class _Reader(ast.NodeVisitor):
@@ -185,25 +190,25 @@ class _Reader(ast.NodeVisitor):
 
     def block(self, statements: list[ast.stmt]) -> bool:
         """Read statements; return True if they always end the function."""
-        for one in statements:
-            if isinstance(one, ast.If):
-                if self._branch(one):
+        for statement in statements:
+            if isinstance(statement, ast.If):
+                if self._branch(statement):
                     return True
             else:
-                self.visit(one)
-                if isinstance(one, ast.Return | ast.Raise):
+                self.visit(statement)
+                if isinstance(statement, ast.Return | ast.Raise):
                     return True
         return False
 
-    def _branch(self, one: ast.If) -> bool:
+    def _branch(self, branch: ast.If) -> bool:
         """Read the compiled part of a branch; return True if it always ends the function."""
-        match one.test:
+        match branch.test:
             case ast.Compare(ast.Name(name), [ast.Is() | ast.IsNot() as sign], [ast.Constant(None)]):
                 if isinstance(self.arguments.get(name), types.NoneType):
-                    return self.block(one.body if isinstance(sign, ast.Is) else one.orelse)
+                    return self.block(branch.body if isinstance(sign, ast.Is) else branch.orelse)
             case _:
-                self.visit(one.test)
-        ends = self.block(one.body), self.block(one.orelse)
+                self.visit(branch.test)
+        ends = self.block(branch.body), self.block(branch.orelse)
         return all(ends)
 
     def visit_Name(self, node: ast.Name) -> None:
@@ -213,11 +218,11 @@ class _Reader(ast.NodeVisitor):
 
     def visit_Attribute(self, node: ast.Attribute) -> None:
         """Record the use of an entry, or of an entry of an entry."""
-        place = self._place(node)
-        if place is None:
+        path = self._path(node)
+        if path is None:
             self.generic_visit(node)
         else:
-            self._note(place, WHOLE)
+            self._note(path, WHOLE)
 
     def visit_For(self, node: ast.For) -> None:
         """Read the body as a block."""
@@ -238,26 +243,26 @@ class _Reader(ast.NodeVisitor):
         function = getattr(called, "py_func", None)
         kinds = tuple(map(self._type, node.args))
         named = any(isinstance(kind, types.NamedTuple) for kind in kinds)  # others are passed complete
-        starred = any(isinstance(one, ast.Starred) for one in node.args)
+        starred = any(isinstance(item, ast.Starred) for item in node.args)
         if function is None or not named or node.keywords or starred:
             self.generic_visit(node)
             return
         uses = _uses(function, kinds)
         for argument, use in zip(node.args, uses, strict=True):
-            place = self._place(argument)
-            if place is None:
+            path = self._path(argument)
+            if path is None:
                 self.visit(argument)
             else:
-                self._note(place, use)
+                self._note(path, use)
 
-    def _note(self, place: list[str], use: Use) -> None:
+    def _note(self, path: list[str], use: Use) -> None:
         """Record a use of an argument or of an entry."""
-        at = self.uses[place[0]]
-        for name in place[1:]:
+        at = self.uses[path[0]]
+        for name in path[1:]:
             at = at.setdefault(name, {})
         _merge(at, use)
 
-    def _place(self, node: ast.expr) -> list[str] | None:
+    def _path(self, node: ast.expr) -> list[str] | None:
         """Return an argument's name and the entries that an expression selects.
 
         Returns None for any other expression.
@@ -266,7 +271,7 @@ class _Reader(ast.NodeVisitor):
             case ast.Name(name) if name in self.uses:
                 return [name]
             case ast.Attribute(value, name):
-                outer = self._place(value)
+                outer = self._path(value)
                 kind = self._type(value)
                 if outer is None or not isinstance(kind, types.NamedTuple) or name not in kind.fields:
                     return None

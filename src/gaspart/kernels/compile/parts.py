@@ -18,7 +18,7 @@ from typing import Any, ClassVar
 
 from gaspart.kernels.compile.cache import load_numba
 from gaspart.kernels.compile.files import KernelCache, KernelContents
-from gaspart.kernels.compile.narrowing import narrowed
+from gaspart.kernels.compile.narrowing import narrow_types
 
 numba: Any = load_numba()
 core: Any = numba.core
@@ -48,7 +48,7 @@ def narrow_calls(part: Any) -> None:
 
     def get_call_template(arguments: tuple, keywords: dict) -> tuple:
         signature, arguments = part._compiler.fold_argument_types(arguments, keywords)
-        used = narrowed(part.py_func, tuple(arguments))
+        used = narrow_types(part.py_func, tuple(arguments))
         template, *_ = type(part).get_call_template(part, used, {})
         return template, signature, used, {}
 
@@ -152,7 +152,8 @@ class _PartContents(KernelContents):
         The result is False if the code calls a function of numba that this process had compiled before for
         other callers: other processes may have given the same number to another function.
         """
-        names = (one.name for one in data.library._final_module.functions if not one.is_declaration)
+        functions = data.library._final_module.functions
+        names = (function.name for function in functions if not function.is_declaration)
         numbers = (int(number) for name in names for number in re.findall(r"B\d+v(\d+)", name))
         return super().check_cachable(data) and all(number >= _FIRST for number in numbers)
 

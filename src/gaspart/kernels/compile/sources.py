@@ -33,7 +33,7 @@ def file_digests(paths: Iterable[Path]) -> list[str]:
 
     The digest of a Python file is computed from its syntax tree, the digest of any other file from its bytes.
     """
-    stored, added, digests = _stored(), {}, []
+    stored, added, digests = _read_stored(), {}, []
     for path in paths:
         content = path.read_bytes()
         digest = _digest(content)
@@ -94,7 +94,7 @@ def _digest(content: bytes) -> str:
 
 
 @cache
-def _stored() -> dict[str, str]:
+def _read_stored() -> dict[str, str]:
     """Return the stored digests of trees by the digests of the file contents.
 
     They come from the cache folder; digests computed by this process are added.
@@ -117,8 +117,8 @@ def _store(added: dict[str, str]) -> None:
     """
     try:
         folder = _folder()
-        _stored.cache_clear()
-        kept = [*(_stored() | added).items()][-MOST_STORED:]
+        _read_stored.cache_clear()
+        kept = [*(_read_stored() | added).items()][-MOST_STORED:]
         with scratch_beside(folder / STORE) as scratch:
             scratch.write_text(json.dumps(dict(kept)))
             scratch.replace(folder / STORE)

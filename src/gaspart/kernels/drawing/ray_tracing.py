@@ -22,8 +22,8 @@ _EDGE_PIXELS = 0.8  # half the width of the container's edges
 
 
 @kernel
-def list_spheres(lowest, highest, numbers, places, listed):
-    """Count the spheres of each cell in `places`, or fill the lists of the cells.
+def list_spheres(lowest, highest, numbers, cursors, listed):
+    """Count the spheres of each cell in `cursors`, or fill the lists of the cells.
 
     If `listed` is not empty, the index of each sphere is written to the next position of its cells.
     """
@@ -33,8 +33,8 @@ def list_spheres(lowest, highest, numbers, places, listed):
                 for z in range(lowest[i, 2], highest[i, 2] + 1):
                     c = (x * numbers[1] + y) * numbers[2] + z
                     if len(listed):
-                        listed[places[c]] = i
-                    places[c] += 1
+                        listed[cursors[c]] = i
+                    cursors[c] += 1
 
 
 @helper
@@ -86,15 +86,15 @@ def _nearest(o, d, spheres, grid, any_will_do):
     x = _cell(at[0], low[0], side, numbers[0])
     y = _cell(at[1], low[1], side, numbers[1])
     z = _cell(at[2], low[2], side, numbers[2])
-    best, found = math.inf, -1
+    best, index = math.inf, -1
     while 0 <= x < numbers[0] and 0 <= y < numbers[1] and 0 <= z < numbers[2]:
         c = (x * numbers[1] + y) * numbers[2] + z
         for n in range(first[c], first[c + 1]):
             t = _hit(o, d, spheres[listed[n]])
             if t < best:
-                best, found = t, listed[n]
+                best, index = t, listed[n]
                 if any_will_do:
-                    return best, found
+                    return best, index
         to_x = (low[0] + (x + (d[0] > 0.0)) * side - o[0]) / d[0] if d[0] != 0.0 else math.inf
         to_y = (low[1] + (y + (d[1] > 0.0)) * side - o[1]) / d[1] if d[1] != 0.0 else math.inf
         to_z = (low[2] + (z + (d[2] > 0.0)) * side - o[2]) / d[2] if d[2] != 0.0 else math.inf
@@ -106,7 +106,7 @@ def _nearest(o, d, spheres, grid, any_will_do):
             y += 1 if d[1] > 0.0 else -1
         else:
             z += 1 if d[2] > 0.0 else -1
-    return best, found
+    return best, index
 
 
 @kernel
@@ -174,24 +174,24 @@ def _look(o, d, forward, light, scales, scene, grid, thickness):
     """Return red, green and blue along a ray, and the code of the visible object."""
     spheres, colours, edges, lengths = scene
     t, i = _nearest(o, d, spheres, grid, False)
-    shown = SPHERE + 2 * i if i >= 0 else NOTHING
+    code = SPHERE + 2 * i if i >= 0 else NOTHING
     down = -o[2] / d[2] if d[2] < 0.0 else math.inf
     if down < t:
         p = _along(o, d, down)
         if 0.0 <= p[0] <= lengths[0] and 0.0 <= p[1] <= lengths[1]:
-            t, shown = down, FLOOR
+            t, code = down, FLOOR
     edge = _edge(o, d, edges, thickness)
     if edge < t * (1.0 + 1e-9):
-        t, shown = edge, EDGE
-    if shown == NOTHING:
+        t, code = edge, EDGE
+    if code == NOTHING:
         return 1.0, 1.0, 1.0, NOTHING
     haze = _HAZE * min(max((t * _dot(d, forward) - scales[2]) / (scales[3] - scales[2]), 0.0), 1.0)
-    if shown == EDGE:
+    if code == EDGE:
         grey = _EDGE_LIGHT + haze * (1.0 - _EDGE_LIGHT)
         return grey, grey, grey, EDGE
     p = _along(o, d, t)
     n, colour = (0.0, 0.0, 1.0), (_FLOOR_LIGHT, _FLOOR_LIGHT, _FLOOR_LIGHT)
-    if shown != FLOOR:
+    if code != FLOOR:
         r = spheres[i, 3]
         n = (p[0] - spheres[i, 0]) / r, (p[1] - spheres[i, 1]) / r, (p[2] - spheres[i, 2]) / r
         colour = colours[i, 0], colours[i, 1], colours[i, 2]
@@ -199,8 +199,8 @@ def _look(o, d, forward, light, scales, scene, grid, thickness):
     if lamp > 0.0:
         if _nearest(p, light, spheres, grid, True)[1] >= 0:
             lamp = 0.0
-            shown += 1
-        elif shown != FLOOR:
+            code += 1
+        elif code != FLOOR:
             half = (light[0] - d[0], light[1] - d[1], light[2] - d[2])
             gloss = _GLOSS * (_dot(n, half) / math.sqrt(_dot(half, half))) ** 40
     bright = _AMBIENT * (0.75 + 0.25 * n[2]) * sky(p, n, spheres, grid) + _LAMP * lamp
@@ -208,7 +208,7 @@ def _look(o, d, forward, light, scales, scene, grid, thickness):
         (bright * colour[0] + gloss) * (1.0 - haze) + haze,
         (bright * colour[1] + gloss) * (1.0 - haze) + haze,
         (bright * colour[2] + gloss) * (1.0 - haze) + haze,
-        shown,
+        code,
     )
 
 
@@ -234,20 +234,20 @@ def _pixel(column, row, image, view, scales, scene, grid):
 
 
 @kernel
-def render_once(image, shown, view, scales, scene, grid):
+def render_once(image, codes, view, scales, scene, grid):
     """Trace one ray through the middle of every pixel."""
-    for row in range(shown.shape[0]):
-        for column in range(shown.shape[1]):
+    for row in range(codes.shape[0]):
+        for column in range(codes.shape[1]):
             seen = _pixel(column + 0.5, row + 0.5, image, view, scales, scene, grid)
             image[row, column, 0], image[row, column, 1], image[row, column, 2] = seen[0], seen[1], seen[2]
-            shown[row, column] = seen[3]
+            codes[row, column] = seen[3]
 
 
 @kernel
-def refine(image, places, view, scales, scene, grid):
-    """Trace many rays through the pixels at `places` (M, 2), given by row and column."""
-    for n in range(len(places)):
-        row, column = places[n, 0], places[n, 1]
+def refine(image, pixels, view, scales, scene, grid):
+    """Trace many rays through the `pixels` (M, 2), given by row and column."""
+    for n in range(len(pixels)):
+        row, column = pixels[n, 0], pixels[n, 1]
         red, green, blue = 0.0, 0.0, 0.0
         for m in range(SUBRAYS * SUBRAYS):
             x, y = column + (m % SUBRAYS + 0.5) / SUBRAYS, row + (m // SUBRAYS + 0.5) / SUBRAYS

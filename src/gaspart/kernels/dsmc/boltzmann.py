@@ -139,47 +139,49 @@ def law_of(context, law):
 
 
 @inner_helper
-def load_spin(i, place, which, context, law):
-    """Write mass and spin of a particle to position `place` of a thread's workspace.
+def load_spin(i, row, which, context, law):
+    """Write mass and spin of a particle to a row of a thread's workspace.
 
     i : number of the particle
+    row : row of the workspace
     which : kind of the particle
     """
     workspace, part = context.workspace, context.part
-    workspace.inverse_mass[part, place] = 1.0 / workspace.mass[which]
-    workspace.inverse_inertia[part, place] = 1.0 / workspace.inertia[which]
+    workspace.inverse_mass[part, row] = 1.0 / workspace.mass[which]
+    workspace.inverse_inertia[part, row] = 1.0 / workspace.inertia[which]
     for k in range(3):
-        workspace.pair_spins[part, place, k] = law.spins[i, k]
+        workspace.pair_spins[part, row, k] = law.spins[i, k]
 
 
 @inner_helper
-def store_spin(i, place, context, law):
+def store_spin(i, row, context, law):
     """Write the spin back from the workspace."""
     for k in range(3):
-        law.spins[i, k] = context.workspace.pair_spins[context.part, place, k]
+        law.spins[i, k] = context.workspace.pair_spins[context.part, row, k]
 
 
 @inner_helper
-def load_particle(particles, slot, place, which, context, law):
-    """Write the particle in a slot to position `place` of a thread's workspace.
+def load_particle(particles, slot, row, which, context, law):
+    """Write the particle in a slot to a row of a thread's workspace.
 
+    row : row of the workspace
     which : kind of the particle
     """
     flights = context.workspace.flights[context.part]
     for k in range(len(particles.images)):
-        flights[place].velocity[k] = particles.data[velocity_row(particles, k), slot]
-        flights[place].position[k] = 0.0
-    flights[place].radius = context.workspace.radius[which]
-    load_spin(number_at(particles, slot), place, which, context, law)
+        flights[row].velocity[k] = particles.data[velocity_row(particles, k), slot]
+        flights[row].position[k] = 0.0
+    flights[row].radius = context.workspace.radius[which]
+    load_spin(number_at(particles, slot), row, which, context, law)
 
 
 @inner_helper
-def store_particle(particles, slot, place, context, law):
+def store_particle(particles, slot, row, context, law):
     """Write velocity and spin back from the workspace."""
     flights = context.workspace.flights[context.part]
     for k in range(len(particles.images)):
-        particles.data[velocity_row(particles, k), slot] = flights[place].velocity[k]
-    store_spin(number_at(particles, slot), place, context, law)
+        particles.data[velocity_row(particles, k), slot] = flights[row].velocity[k]
+    store_spin(number_at(particles, slot), row, context, law)
 
 
 @inner_helper
@@ -336,7 +338,7 @@ def cross_section(sigma, dimension):
 
 
 @inner_helper
-def widened(x, y, low, high):
+def widen_range(x, y, low, high):
     """Extend a range so that it contains x and y."""
     return min(min(x, y), low), max(max(x, y), high)
 
@@ -363,8 +365,8 @@ def section_of(particles, pair, context):
     d, kinds = len(context.space.lengths), context.workspace
     if len(kinds.kind) == 0:
         return cross_section(2.0 * kinds.largest, d)
-    one, other = kind_in(particles, pair[0], kinds), kind_in(particles, pair[1], kinds)
-    return cross_section(kinds.radius[one] + kinds.radius[other], d)
+    first, second = kind_in(particles, pair[0], kinds), kind_in(particles, pair[1], kinds)
+    return cross_section(kinds.radius[first] + kinds.radius[second], d)
 
 
 @inner_helper
@@ -396,19 +398,19 @@ def collide_pair(particles, pair, g, square, counter, context, law):
             scatter_equal(particles, pair, g, square, counter)
             return
     normal = contact_vector(g, sqrt(square), d, counter)
-    one, other = kind_in(particles, pair[0], kinds), kind_in(particles, pair[1], kinds)
+    first, second = kind_in(particles, pair[0], kinds), kind_in(particles, pair[1], kinds)
     if law is None:
-        collide_smooth(particles, pair, normal, (kinds.mass[one], kinds.mass[other]))
+        collide_smooth(particles, pair, normal, (kinds.mass[first], kinds.mass[second]))
     else:
-        load_particle(particles, pair[0], 0, one, context, law)
-        load_particle(particles, pair[1], 1, other, context, law)
+        load_particle(particles, pair[0], 0, first, context, law)
+        load_particle(particles, pair[1], 1, second, context, law)
         collide_loaded_pair(normal, context, law)
         store_particle(particles, pair[0], 0, context, law)
         store_particle(particles, pair[1], 1, context, law)
 
 
 @inner_helper
-def between(particles, pair):
+def separation_vector(particles, pair):
     """Return the vector (3,) from the second to the first of the particles in two slots."""
     x, y = particles.data[position_row(particles, 0)], particles.data[position_row(particles, 1)]
     z = particles.data[position_row(particles, len(particles.images) - 1)]
@@ -437,32 +439,32 @@ def collide_cell(particles, cell, slots, volume, context, law, stress):
     flat = 0.0 if d == 2 else 1.0
     most = cross_section(2.0 * context.workspace.largest, d)
     pairs = 0.5 * number * (number - 1.0) * most / volume * context.workspace.dt
-    bound, left, trial, met, exceeded = -1.0, 1.0, 0, 0, 0
+    bound, remaining, trial, met, exceeded = -1.0, 1.0, 0, 0, 0
     while True:
         if bound < 0.0:
             x, y, z = high_u - low_u, high_v - low_v, flat * (high_w - low_w)
             bound = sqrt(x * x + y * y + z * z)
         words = words_of(key, step, cell, trial, 0)
-        left -= waiting_time(words[0]) / (pairs * bound)
-        if not left > 0.0:
+        remaining -= waiting_time(words[0]) / (pairs * bound)
+        if not remaining > 0.0:
             break
         i, j = first + below(words[1], number), first + below(words[2], number - 1)
         j += j >= i
         g = u[j] - u[i], v[j] - v[i], flat * (w[j] - w[i])
         square = g[0] * g[0] + g[1] * g[1] + g[2] * g[2]
         share = section_of(particles, (i, j), context) / most
-        wanted, offered = fraction(words[3]) * bound, square * share * share
+        threshold, offered = fraction(words[3]) * bound, square * share * share
         exceeded += offered > bound * bound * _ROUNDED
-        if wanted * wanted < offered:
+        if threshold * threshold < offered:
             if stress is not None:
                 note_pair(particles, (i, j), context, stress, law)
             collide_pair(particles, (i, j), g, square, (key, step, cell, trial), context, law)
             if stress is not None:
-                add_contact(particles, (i, j), between(particles, (i, j)), context, stress, law)
+                add_contact(particles, (i, j), separation_vector(particles, (i, j)), context, stress, law)
             met += 1
-            low_u, high_u = widened(u[i], u[j], low_u, high_u)
-            low_v, high_v = widened(v[i], v[j], low_v, high_v)
-            low_w, high_w = widened(w[i], w[j], low_w, high_w)
+            low_u, high_u = widen_range(u[i], u[j], low_u, high_u)
+            low_v, high_v = widen_range(v[i], v[j], low_v, high_v)
+            low_w, high_w = widen_range(w[i], w[j], low_w, high_w)
             bound = -1.0
         trial += 1
     counts = context.workspace.counts[context.part]

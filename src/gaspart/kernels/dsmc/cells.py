@@ -50,14 +50,14 @@ def count(first, end, part, grid):
 def find_starts(grid):
     """Find the first slot of each cell, and in `counts` of each thread in a cell."""
     counts, starts = grid.counts, grid.starts
-    place = np.uint32(0)
+    offset = np.uint32(0)
     for cell in range(counts.shape[1]):
-        starts[cell] = place
+        starts[cell] = offset
         for part in range(len(counts)):
             number = counts[part, cell]
-            counts[part, cell] = place
-            place += number
-    starts[counts.shape[1]] = place
+            counts[part, cell] = offset
+            offset += number
+    starts[counts.shape[1]] = offset
 
 
 @inner_kernel
@@ -66,9 +66,9 @@ def put_in_order(first, end, part, grid):
     counts, order = grid.counts[part], grid.order
     for slot in range(first, end):
         cell = grid.cell[slot]
-        place = counts[cell]
-        counts[cell] = place + _ONE
-        order[place] = slot
+        position = counts[cell]
+        counts[cell] = position + _ONE
+        order[position] = slot
 
 
 @inner_kernel
@@ -116,11 +116,11 @@ def share_cells(grid, shares):
     total = np.int64(grid.starts[cells])
     shares[0], shares[parts] = 0, cells
     for part in range(1, parts):
-        wanted = total * part // parts
+        target = total * part // parts
         low, high = shares[part - 1], cells
         while low < high:
             middle = (low + high) // 2
-            if grid.starts[middle] < wanted:
+            if grid.starts[middle] < target:
                 low = middle + 1
             else:
                 high = middle

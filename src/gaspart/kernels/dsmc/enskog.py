@@ -191,7 +191,7 @@ def smooth(particles, cells, grid, workspace, dense):
 @inner_helper
 def cell_at(particles, slot, sigma, direction, grid, context, dense):
     """Return the cell at a distance from the particle in a slot; -1 outside the container."""
-    found, lengths = 0, context.space.lengths
+    cell, lengths = 0, context.space.lengths
     for k in range(len(lengths)):
         x = particles.data[position_row(particles, k), slot] + sigma * direction[k]
         if dense.wraps[k]:
@@ -204,8 +204,8 @@ def cell_at(particles, slot, sigma, direction, grid, context, dense):
             if not dense.wraps[k]:
                 return -1
             along = min(max(along, 0.0), grid.per_side[k] - 1.0)
-        found += np.int64(along) * grid.strides[k]
-    return found
+        cell += np.int64(along) * grid.strides[k]
+    return cell
 
 
 @inner_kernel
@@ -221,22 +221,22 @@ def raise_speed(cell, slab, speed, grid, dense):
         first = first[1], first[2], low
         count = count[1], count[2], span
     for n in range(count[0] * count[1] * count[2]):
-        place = (
+        coordinates = (
             first[0] + n // (count[1] * count[2]),
             first[1] + n // count[2] % count[1],
             first[2] + n % count[2],
         )
-        found, inside = 0, True
+        near_cell, inside = 0, True
         for k in range(d):
-            at = place[3 - d + k]
+            at = coordinates[3 - d + k]
             if dense.wraps[k]:
                 at = (at + grid.per_side[k]) % grid.per_side[k]
             inside &= (at >= 0) & (at < grid.per_side[k])
             if k == dense.axis:
                 inside &= (at >= dense.slabs[slab]) & (at < dense.slabs[slab + 1])
-            found += at * grid.strides[k]
+            near_cell += at * grid.strides[k]
         if inside:
-            dense.near_speed[found] = max(dense.near_speed[found], speed)
+            dense.near_speed[near_cell] = max(dense.near_speed[near_cell], speed)
 
 
 @inner_helper
@@ -295,10 +295,10 @@ def partner_of(particles, slot, sigma, direction, pick, grid, context, dense):
     cell = cell_at(particles, slot, sigma, direction, grid, context, dense)
     if cell < 0:
         return np.int64(-1), np.int64(-1)
-    found = np.int64(grid.starts[cell]) + pick
-    if found >= np.int64(grid.starts[cell + 1]) or found == slot:
+    partner = np.int64(grid.starts[cell]) + pick
+    if partner >= np.int64(grid.starts[cell + 1]) or partner == slot:
         return np.int64(-1), np.int64(-1)
-    return found, np.int64(cell)
+    return partner, np.int64(cell)
 
 
 @inner_helper
@@ -307,11 +307,11 @@ def relative_chance(pair, cells, kinds, largest, dense, workspace, dimension):
 
     The particles are in two cells; `kinds` are their kinds.
     """
-    one, other = workspace.radius[kinds[0]], workspace.radius[kinds[1]]
-    size = (one + other) / (2.0 * workspace.largest)
+    first, second = workspace.radius[kinds[0]], workspace.radius[kinds[1]]
+    size = (first + second) / (2.0 * workspace.largest)
     filled = 0.5 * (dense.fields[FILLED, cells[0]] + dense.fields[FILLED, cells[1]])
     surface = 0.5 * (dense.fields[SURFACE, cells[0]] + dense.fields[SURFACE, cells[1]])
-    contact = contact_value(filled, surface, one * other / (one + other), dense) / largest
+    contact = contact_value(filled, surface, first * second / (first + second), dense) / largest
     return contact * (size if dimension == 2 else size * size)
 
 
@@ -327,19 +327,19 @@ def try_once(particles, counter, words, bound, grid, context, dense, options):
     workspace, d = context.workspace, len(context.space.lengths)
     first = np.int64(grid.starts[cell])
     i = first + below(words[1], np.int64(grid.starts[cell + 1]) - first)
-    one, other = kind_in(particles, i, workspace), np.int64(0)
+    kind, other_kind = kind_in(particles, i, workspace), np.int64(0)
     if len(workspace.radius) > 1:
         extra = words_of(key, step, cell, trial, KIND_BLOCK)
-        other = below(extra[0], len(workspace.radius))
+        other_kind = below(extra[0], len(workspace.radius))
     direction = in_plane(key, step, cell, trial) if d == 2 else unit_vector(key, step, cell, trial)
-    sigma = workspace.radius[one] + workspace.radius[other]
+    sigma = workspace.radius[kind] + workspace.radius[other_kind]
     pick = below(words[2], np.int64(dense.near_count[cell]))
     j, there = partner_of(particles, i, sigma, direction, pick, grid, context, dense)
     if j < 0:
         return False, False
-    if kind_in(particles, j, workspace) != other:
+    if kind_in(particles, j, workspace) != other_kind:
         return False, False
-    pair, kinds = (i, j), (one, other)
+    pair, kinds = (i, j), (kind, other_kind)
     approach = approach_along(particles, pair, direction)
     chance = relative_chance(pair, (cell, there), kinds, dense.highest[0], dense, workspace, d)
     exceeded = approach * chance > bound * _ROUNDED
@@ -363,12 +363,12 @@ def collide_dense_cell(particles, cell, rate, grid, context, dense, options):
     counts, key, step = workspace.counts[context.part], workspace.key, workspace.clock[0]
     number = np.int64(grid.starts[cell + 1]) - np.int64(grid.starts[cell])
     pairs = rate * number * dense.near_count[cell]
-    left, trial = 1.0 if number > 0 else 0.0, 0
-    while left > 0.0:
+    remaining, trial = 1.0 if number > 0 else 0.0, 0
+    while remaining > 0.0:
         words = words_of(key, step, cell, trial, 0)
         bound = dense.speed[cell] + dense.near_speed[cell]
-        left -= waiting_time(words[0]) / (pairs * bound)
-        if not left > 0.0:
+        remaining -= waiting_time(words[0]) / (pairs * bound)
+        if not remaining > 0.0:
             break
         counter = key, step, cell, trial
         done, beyond = try_once(particles, counter, words, bound, grid, context, dense, options)

@@ -244,37 +244,37 @@ def words_of(key, step, cell, trial, block):
     c3 = ((number >> _HALF) << _BLOCK_BITS) | np.uint64(block)
     k0, k1 = np.uint64(key[0]), np.uint64(key[1])
     for _ in range(_ROUNDS):
-        one, other = _M0 * c0, _M1 * c2
-        c0, c1 = (other >> _HALF) ^ c1 ^ k0, other & _LOW
-        c2, c3 = (one >> _HALF) ^ c3 ^ k1, one & _LOW
+        first, second = _M0 * c0, _M1 * c2
+        c0, c1 = (second >> _HALF) ^ c1 ^ k0, second & _LOW
+        c2, c3 = (first >> _HALF) ^ c3 ^ k1, first & _LOW
         k0 = (k0 + _W0) & _LOW
         k1 = (k1 + _W1) & _LOW
     return c0, c1, c2, c3
 
 
 @inner_helper
-def fraction(word):
+def fraction(random_bits):
     """Convert a word of 32 bits to a number above 0 and below 1."""
-    return (np.float64(word) + 0.5) * _WORD
+    return (np.float64(random_bits) + 0.5) * _WORD
 
 
 @inner_helper
-def below(word, count):
+def below(random_bits, count):
     """Convert a word of 32 bits to a whole number from 0 to count - 1.
 
     The probabilities of these numbers differ by count / 2^32.
     """
-    return np.int64((word * np.uint64(count)) >> _HALF)
+    return np.int64((random_bits * np.uint64(count)) >> _HALF)
 
 
 @inner_helper
-def waiting_time(word):
+def waiting_time(random_bits):
     """Convert a word of 32 bits to an exponential random number of mean 1.
 
     The result is -ln of `fraction`, to 1e-12. The leading bits of the word choose an entry of a table; a
     series gives the rest.
     """
-    bits = np.float64(np.float64(word) + 0.5).view(np.int64)
+    bits = np.float64(np.float64(random_bits) + 0.5).view(np.int64)
     exponent = (bits >> 52) - 1023
     entry = (bits >> (52 - _TABLE_BITS)) & ((1 << _TABLE_BITS) - 1)
     mantissa = np.int64((bits & ((1 << 52) - 1)) | (1023 << 52)).view(np.float64)
@@ -376,11 +376,11 @@ def _kick(particles, slot, width, counter, mass, momentum):
     """
     key, number = counter
     i = number_at(particles, slot)
-    one, other, block = normal_pair(key, i, number, 1)
-    changes = one, other, 0.0
+    first, second, block = normal_pair(key, i, number, 1)
+    changes = first, second, 0.0
     if len(particles.images) == 3:
         third, _, _ = normal_pair(key, i, number, block)
-        changes = one, other, third
+        changes = first, second, third
     for k in range(len(particles.images)):
         particles.data[velocity_row(particles, k), slot] += width * changes[k]
     scale = mass * width
@@ -389,21 +389,21 @@ def _kick(particles, slot, width, counter, mass, momentum):
 
 
 @kernel
-def kick_all(particles, workspace, width, counter, given):
+def kick_all(particles, workspace, width, counter, injected_energy):
     """Kick all particles without a change of the total momentum.
 
     width : width of the distribution of kicks for mass 1
     counter : see `_kick`
-    given : (1, 2), energy given to the particles, see `physics.running_sum.add`
+    injected_energy : (1, 2), energy given to the particles, see `physics.running_sum.add`
     """
     momentum, total = (0.0, 0.0, 0.0), 0.0
     for slot in range(particles.data.shape[1]):
         mass = workspace.mass[kind_in(particles, slot, workspace)]
-        add(given, 0, -_energy(particles, slot, mass))
+        add(injected_energy, 0, -_energy(particles, slot, mass))
         momentum = _kick(particles, slot, width / sqrt(mass), counter, mass, momentum)
         total += mass
     for slot in range(particles.data.shape[1]):
         mass = workspace.mass[kind_in(particles, slot, workspace)]
         for k in range(len(particles.images)):
             particles.data[velocity_row(particles, k), slot] -= momentum[k] / total
-        add(given, 0, _energy(particles, slot, mass))
+        add(injected_energy, 0, _energy(particles, slot, mass))

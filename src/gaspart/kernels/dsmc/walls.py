@@ -15,7 +15,7 @@ from gaspart.kernels.dsmc.boltzmann import Sums, count_loss, law_of, load_spin, 
 from gaspart.kernels.dsmc.model import UNFINISHED, open_space
 from gaspart.kernels.model import HARD, NONE, THERMAL
 from gaspart.kernels.obstacles.thermal import mirrors, temperature_at
-from gaspart.kernels.physics.ballistic import flown
+from gaspart.kernels.physics.ballistic import advance_coordinate
 from gaspart.kernels.physics.collision import collide_wall_by_law
 from gaspart.kernels.physics.exact_sum import add_exact
 from gaspart.kernels.physics.rng import flux_speed, normal_pair
@@ -85,7 +85,7 @@ def fly_along(axis, flights, time, gravity):
     if gravity is None:
         flights[0].position[axis] = x + v * time
     else:
-        flights[0].position[axis] = flown(x, v, gravity[axis], time)
+        flights[0].position[axis] = advance_coordinate(x, v, gravity[axis], time)
         flights[0].velocity[axis] = v + gravity[axis] * time
 
 
@@ -115,13 +115,13 @@ def draw_spin(i, level, inertia, key, counter, spins):
         draw may use
     """
     components, number, block = counter
-    width, given = sqrt(level / inertia), 0.0
+    width, energy = sqrt(level / inertia), 0.0
     for k in range(3 - components, 3):
-        one, _, block = normal_pair(key, i, number, block)
-        before, spin = spins[i, k], width * one
-        given += 0.5 * inertia * (before * before - spin * spin)
+        deviate, _, block = normal_pair(key, i, number, block)
+        before, spin = spins[i, k], width * deviate
+        energy += 0.5 * inertia * (before * before - spin * spin)
         spins[i, k] = spin
-    return given
+    return energy
 
 
 @inner_helper
@@ -134,8 +134,8 @@ def add_shear(face, mass, context, shear):
         workspace, part = context.workspace, context.part
         for k in range(shear.shape[2]):
             if k != face // 2:
-                given = mass * workspace.flights[part, 0].velocity[k]
-                add_exact(shear[part, face, k], given)
+                momentum = mass * workspace.flights[part, 0].velocity[k]
+                add_exact(shear[part, face, k], momentum)
 
 
 @inner_helper
@@ -200,7 +200,7 @@ def leave_thermal(i, face, which, number, context, faces, law):
         return
     arrived = momentum_of(mass, flights)
     level = temperature_at(face, flights[0].position, context.space.lengths, faces.level, faces.ramp)
-    width, square, given = sqrt(level / mass), 0.0, 0.0
+    width, square, spin_energy = sqrt(level / mass), 0.0, 0.0
     for k in range(d):
         square += flights[0].velocity[k] * flights[0].velocity[k]
     away = width * flux_speed(key, i, number)
@@ -208,21 +208,21 @@ def leave_thermal(i, face, which, number, context, faces, law):
     flights[0].velocity[axis] = -side * away
     if faces.kind[face] == THERMAL:
         add_shear(face, mass, context, faces.shear)
-        one, other, block = normal_pair(key, i, number, 1)
-        flights[0].velocity[(axis + 1) % d] = width * one
+        first, second, block = normal_pair(key, i, number, 1)
+        flights[0].velocity[(axis + 1) % d] = width * first
         if d == 3:
-            flights[0].velocity[(axis + 2) % d] = width * other
+            flights[0].velocity[(axis + 2) % d] = width * second
         drag(face, mass, context, faces.velocity, faces.shear)
         if law is not None:
             if law.tangential > -1.0:
                 components = 1 if d == 2 else 3
-                given = draw_spin(i, level, inertia, key, (components, number, block), law.spins)
+                spin_energy = draw_spin(i, level, inertia, key, (components, number, block), law.spins)
     for k in range(d):
         square -= flights[0].velocity[k] * flights[0].velocity[k]
-    left = momentum_of(mass, flights)
-    shear = arrived[0] - left[0], arrived[1] - left[1], arrived[2] - left[2]
+    leaving = momentum_of(mass, flights)
+    shear = arrived[0] - leaving[0], arrived[1] - leaving[1], arrived[2] - leaving[2]
     press(face, which, impulse, context)
-    warm(face, which, 0.5 * mass * square + given, shear, context)
+    warm(face, which, 0.5 * mass * square + spin_energy, shear, context)
 
 
 @inner_kernel
@@ -260,19 +260,19 @@ def bounce_often(face, times, speed, which, context):
 
 
 @inner_helper
-def lean(face, which, left, context, gravity):
+def lean(face, which, duration, context, gravity):
     """Put a particle to rest at a face for a time; the face carries its weight.
 
-    left : time
+    duration : time of the rest
     which : kind of the particle
     """
     axis = face // 2
     context.workspace.flights[context.part, 0].velocity[axis] = 0.0
-    press(face, which, context.workspace.mass[which] * abs(gravity[axis]) * left, context)
+    press(face, which, context.workspace.mass[which] * abs(gravity[axis]) * duration, context)
 
 
 @inner_kernel
-def finish_axis(axis, left, which, context, gravity):
+def finish_axis(axis, remaining, which, context, gravity):
     """Move a smooth, elastic particle along one axis for a time, with all its bounces.
 
     The axes are independent. Between the first bounce and the last ones whole periods of the motion are
@@ -288,10 +288,10 @@ def finish_axis(axis, left, which, context, gravity):
             time, w = time_to_face(y, u, a)
             if time < first:
                 first, face, speed = time, 2 * axis + side, w
-        if not first <= left:
-            fly_along(axis, flights, left, gravity)
+        if not first <= remaining:
+            fly_along(axis, flights, remaining, gravity)
             return
-        left -= first
+        remaining -= first
         put_at_face(face, -speed, flights, radius, space)
         bounce_often(face, 1.0, speed, which, context)
         if skipped:
@@ -302,11 +302,11 @@ def finish_axis(axis, left, which, context, gravity):
         if not across:
             period = 2.0 * speed / a  # the acceleration is towards this face, away from the face across
         if gravity is not None:
-            if not period > left * 2.0**-53:
-                lean(face, which, left, context, gravity)
+            if not period > remaining * 2.0**-53:
+                lean(face, which, remaining, context, gravity)
                 return
-        number = floor(left / period)
-        left = max(left - number * period, 0.0)
+        number = floor(remaining / period)
+        remaining = max(remaining - number * period, 0.0)
         bounce_often(face, number, speed, which, context)
         if across:
             bounce_often(face ^ 1, number, w, which, context)
@@ -314,18 +314,18 @@ def finish_axis(axis, left, which, context, gravity):
 
 
 @inner_helper
-def finish_axes(left, which, context, gravity, resting):
+def finish_axes(remaining, which, context, gravity, resting):
     """Move a smooth, elastic particle along all axes for a time, with all its bounces."""
     space = context.space
     for k in range(len(space.lengths)):
         if space.periodic[k]:
-            fly_along(k, context.workspace.flights[context.part], left, gravity)
+            fly_along(k, context.workspace.flights[context.part], remaining, gravity)
         elif not resting >> k & 1:
-            finish_axis(k, left, which, context, gravity)
+            finish_axis(k, remaining, which, context, gravity)
 
 
 @inner_helper
-def comes_to_rest(face, speed, left, which, context, gravity, law):
+def comes_to_rest(face, speed, remaining, which, context, gravity, law):
     """Return True if a particle rests at a hard face, and count its loss and weight.
 
     A particle that hits a face rests there if its bounces are too short; later ones would be shorter still.
@@ -340,7 +340,7 @@ def comes_to_rest(face, speed, left, which, context, gravity, law):
     mass = workspace.mass[which]
     add_exact(workspace.loss[context.part], 0.5 * mass * speed * speed)
     press(face, which, mass * speed, context)
-    lean(face, which, left, context, gravity)
+    lean(face, which, remaining, context, gravity)
     return True
 
 
@@ -351,25 +351,25 @@ def fly_among_faces(i, which, context, gravity, faces, law):
     i, which : number and kind of the particle
     """
     space, workspace, part = context.space, context.workspace, context.part
-    flights, radius, left = workspace.flights[part], workspace.radius[which], workspace.dt
+    flights, radius, remaining = workspace.flights[part], workspace.radius[which], workspace.dt
     resting, clock = 0, np.int64(workspace.clock[0])
     for hit in range(_MOST):
         time, face, speed = next_face(flights, radius, space, gravity, resting)
-        if not time <= left:
-            fly(flights, left, space, gravity, resting)
+        if not time <= remaining:
+            fly(flights, remaining, space, gravity, resting)
             return
         if faces is None and law is None:
             if hit >= _FEW:
-                finish_axes(left, which, context, gravity, resting)
+                finish_axes(remaining, which, context, gravity, resting)
                 return
         fly(flights, time, space, gravity, resting)
-        left -= time
+        remaining -= time
         put_at_face(face, speed, flights, radius, space)
         hard = True
         if faces is not None:
             hard = faces.kind[face] == HARD
         if gravity is not None:
-            if hard and comes_to_rest(face, speed, left, which, context, gravity, law):
+            if hard and comes_to_rest(face, speed, remaining, which, context, gravity, law):
                 resting |= 1 << (face // 2)
                 continue
         workspace.wall_hits[part, face] += 1

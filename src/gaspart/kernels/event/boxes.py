@@ -15,7 +15,7 @@ from numpy import int64, uint64
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.event.simd import PLACES, earliest, list_box
-from gaspart.kernels.memory import aligned
+from gaspart.kernels.memory import aligned_zeros
 from gaspart.kernels.model import BOX_VISITS, IMAGE_BITS, NUMBER_BITS, PAIR_TESTS
 from gaspart.kernels.physics.flight import time_of_contact
 from gaspart.kernels.simd import WIDTH, lowest
@@ -37,7 +37,7 @@ class BoxLists(NamedTuple):
     per_side, widths, strides : (3,), number, widths and index strides of the boxes along each axis
     neighbour, shift : neighbours of a box along each axis, and their periodic images
     filled : (boxes,), number of particles in each box
-    places : (boxes, PLACES), first particles of each box
+    members : (boxes, PLACES), first particles of each box
     head : (boxes,), first of the other particles of each box, which are a linked list
     following : (N,), next particle of the linked list after each particle
     candidates : (M,), workspace for the candidates of a search
@@ -51,7 +51,7 @@ class BoxLists(NamedTuple):
     neighbour: np.ndarray
     shift: np.ndarray
     filled: np.ndarray
-    places: np.ndarray
+    members: np.ndarray
     head: np.ndarray
     following: np.ndarray
     candidates: np.ndarray
@@ -64,7 +64,7 @@ def empty_lists(boxes, count, lists=None):
     return BoxLists(
         boxes.per_side, boxes.widths, boxes.strides, boxes.neighbour, boxes.shift,
         filled=np.zeros(boxes.count, dtype=np.uint32),
-        places=aligned((boxes.count, PLACES), np.uint32),
+        members=aligned_zeros((boxes.count, PLACES), np.uint32),
         head=np.zeros(boxes.count, dtype=np.uint32),
         following=np.zeros(count, dtype=np.uint32),
         candidates=np.zeros(CANDIDATES + WIDTH, dtype=np.uint32),
@@ -87,7 +87,7 @@ def member(boxes, box, n, other):
     The box must have more than n particles.
     """
     if n < PLACES:
-        return boxes.places[box, n]
+        return boxes.members[box, n]
     return boxes.head[box] if n == PLACES else boxes.following[other]
 
 
@@ -97,7 +97,7 @@ def insert(predictions, boxes, i):
     box = np.uint64(box_of(predictions, boxes, i))
     filled = boxes.filled[box]
     if filled < PLACES:
-        boxes.places[box, filled] = i
+        boxes.members[box, filled] = i
     else:
         boxes.following[np.uint64(i)] = boxes.head[box]
         boxes.head[box] = i
@@ -108,18 +108,18 @@ def insert(predictions, boxes, i):
 def remove(predictions, boxes, i):
     """Remove a particle from its box; another particle of the box takes its position."""
     box = np.uint64(box_of(predictions, boxes, i))
-    places, head, following = boxes.places, boxes.head, boxes.following
+    members, head, following = boxes.members, boxes.head, boxes.following
     last = np.uint64(boxes.filled[box]) - np.uint64(1)
     boxes.filled[box] = last
-    place = np.uint64(0)
+    slot = np.uint64(0)
     for n in range(np.uint64(1), np.uint64(PLACES)):
-        place += n * np.uint64(places[box, n] == i)
-    if places[box, place] == i:
+        slot += n * np.uint64(members[box, n] == i)
+    if members[box, slot] == i:
         if last < PLACES:
-            places[box, place] = places[box, last]
-            places[box, last] = _EMPTY
+            members[box, slot] = members[box, last]
+            members[box, last] = _EMPTY
         else:
-            places[box, place] = head[box]
+            members[box, slot] = head[box]
             head[box] = following[head[box]]
     elif head[box] == i:
         head[box] = following[head[box]]
@@ -150,7 +150,7 @@ def move(predictions, boxes, i, axis, to):
 def sort_in(predictions, boxes):
     """Insert all particles into their boxes."""
     boxes.filled[:] = 0
-    boxes.places[:] = _EMPTY
+    boxes.members[:] = _EMPTY
     for i in range(len(predictions)):
         insert(predictions, boxes, i)
 
@@ -218,19 +218,21 @@ def test_candidates(particles, i, count, boxes, space, tally, gravity):
     for n in range(_WIDTH):
         candidates[count + n] = i  # no particle meets itself
     before, partner = predictions[i].contact_time, int64(predictions[i].partner)
-    best, found, unknown = earliest(flights, i, (uint64(0), count), (before, partner), boxes, space, gravity)
+    best, best_partner, unknown = earliest(
+        flights, i, (uint64(0), count), (before, partner), boxes, space, gravity
+    )
     if gravity is not None:
         while unknown:
             candidate = candidates[lowest(unknown)]
             unknown &= unknown - uint64(1)
             other = candidate & NUMBER
             time = time_of_contact(flights, i, other, offset_of(candidate, space), space, gravity)
-            if time < best or (time == best and time < inf and int64(other) < found):
+            if time < best or (time == best and time < inf and int64(other) < best_partner):
                 best = time
-                found = int64(other)
-    if best < before or found != partner:
+                best_partner = int64(other)
+    if best < before or best_partner != partner:
         predictions[i].contact_time = best
-        predictions[i].partner = found
+        predictions[i].partner = best_partner
 
 
 @inner_kernel
@@ -293,7 +295,7 @@ def list_places(boxes, count, box, image, most):
     count : number of candidates before
     most : largest number of particles of a box so far; it is returned too, updated
     """
-    list_box(boxes.candidates, count, boxes.places, box, image)
+    list_box(boxes.candidates, count, boxes.members, box, image)
     filled = uint64(boxes.filled[box])
     return count + min(filled, _PLACES), max(most, filled)
 

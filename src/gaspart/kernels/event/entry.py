@@ -23,17 +23,17 @@ _PLACE, _VELOCITY = 0, 1  # random words of an attempt
 
 
 @inner_helper
-def waiting_time(word, rate):
+def waiting_time(random_bits, rate):
     """Draw a time from the exponential distribution with a given rate."""
-    return -log_of(uniform(word)) / rate
+    return -log_of(uniform(random_bits)) / rate
 
 
 @kernel
 def schedule_first(reservoirs, clock):
     """Schedule the first attempt after the time `clock`, by the words of the counter 0."""
-    word, _, _, _ = random_words(reservoirs.key, _PLACE, 0, 0)
+    random_bits, _, _, _ = random_words(reservoirs.key, _PLACE, 0, 0)
     reservoirs.number[0] = 1
-    reservoirs.time[0] = clock + waiting_time(word, reservoirs.rate)
+    reservoirs.time[0] = clock + waiting_time(random_bits, reservoirs.rate)
 
 
 @inner_helper
@@ -45,28 +45,28 @@ def next_attempt(reservoirs):
 
 
 @inner_helper
-def face_of(word, reservoirs):
+def face_of(random_bits, reservoirs):
     """Return the face of an attempt."""
-    face, fraction = 0, uniform(word)
+    face, fraction = 0, uniform(random_bits)
     while fraction >= reservoirs.up_to[face]:
         face += 1
     return face
 
 
 @inner_helper
-def place_on(place, face, words, lengths):
+def place_on(position, face, words, lengths):
     """Set a random position on a face from two random `words`."""
     axis, n = face // 2, 0
     for k in range(len(lengths)):
         if k == axis:
-            place[k] = lengths[k] if face % 2 else 0.0
+            position[k] = lengths[k] if face % 2 else 0.0
         else:
-            place[k] = uniform(words[n]) * lengths[k]
+            position[k] = uniform(words[n]) * lengths[k]
             n += 1
 
 
 @inner_helper
-def overlaps(flights, place, j, time, space):
+def overlaps(flights, position, j, time, space):
     """Return True if particle j overlaps a new particle at a position and `time`.
 
     Particle j need not have been advanced to that time.
@@ -74,7 +74,7 @@ def overlaps(flights, place, j, time, space):
     late, sigma, square = time - flights[j].clock, 2.0 * flights[j].radius, 0.0
     for k in range(len(space.lengths)):
         x = flights[j].position[k] + flights[j].velocity[k] * late
-        gap = abs(x - place[k])
+        gap = abs(x - position[k])
         if space.periodic[k]:
             gap = min(gap, space.lengths[k] - gap)
         square += gap * gap
@@ -82,11 +82,11 @@ def overlaps(flights, place, j, time, space):
 
 
 @inner_kernel
-def is_free_of_all(flights, place, time, space, present):
+def is_free_of_all(flights, position, time, space, present):
     """Return True if a new particle overlaps no particle inside."""
     for j in range(len(flights)):
         if present[j]:
-            if overlaps(flights, place, j, time, space):
+            if overlaps(flights, position, j, time, space):
                 return False
     return True
 
@@ -98,9 +98,13 @@ def coordinate(boxes, axis, x):
 
 
 @inner_kernel
-def is_free_of_neighbours(flights, place, time, space, boxes):
+def is_free_of_neighbours(flights, position, time, space, boxes):
     """Return True if a new particle overlaps no particle in the boxes around it."""
-    x, y, z = coordinate(boxes, 0, place[0]), coordinate(boxes, 1, place[1]), coordinate(boxes, 2, place[2])
+    x, y, z = (
+        coordinate(boxes, 0, position[0]),
+        coordinate(boxes, 1, position[1]),
+        coordinate(boxes, 2, position[2]),
+    )
     for dz in range(3):
         beside_z = boxes.neighbour[2, z, dz]
         if beside_z < 0:
@@ -116,7 +120,7 @@ def is_free_of_neighbours(flights, place, time, space, boxes):
                 box, j = uint64(beside_x + beside_y + beside_z), uint64(0)
                 for n in range(uint64(boxes.filled[box])):
                     j = uint64(member(boxes, box, n, j))
-                    if overlaps(flights, place, j, time, space):
+                    if overlaps(flights, position, j, time, space):
                         return False
     return True
 
@@ -128,8 +132,8 @@ def is_free(particles, time, queue, boxes, space, reservoirs):
     Without a queue the boxes are empty, and all particles are tested.
     """
     if queue is not None:
-        return is_free_of_neighbours(particles.flights, reservoirs.place, time, space, boxes)
-    return is_free_of_all(particles.flights, reservoirs.place, time, space, reservoirs.opened.present)
+        return is_free_of_neighbours(particles.flights, reservoirs.position, time, space, boxes)
+    return is_free_of_all(particles.flights, reservoirs.position, time, space, reservoirs.opened.present)
 
 
 @inner_kernel
@@ -139,14 +143,14 @@ def send_in(flights, i, face, reservoirs, model, tally):
     number, key = reservoirs.number[0], reservoirs.key
     mass, inwards = mass_of(i, model.masses, model.law), -1.0 if face % 2 else 1.0
     speed = width * flux_speed(key, _VELOCITY, number)
-    one, other, _ = normal_pair(key, _VELOCITY, number, 1)
+    first, second, _ = normal_pair(key, _VELOCITY, number, 1)
     flights[i].velocity[axis] = inwards * speed
-    flights[i].velocity[(axis + 1) % d] = width * one
+    flights[i].velocity[(axis + 1) % d] = width * first
     if d == 3:
-        flights[i].velocity[(axis + 2) % d] = width * other
+        flights[i].velocity[(axis + 2) % d] = width * second
     square = 0.0
     for k in range(d):
-        flights[i].position[k] = reservoirs.place[k]
+        flights[i].position[k] = reservoirs.position[k]
         square += flights[i].velocity[k] * flights[i].velocity[k]
     add(tally.wall_impulse, face, mass * speed)
     add(tally.wall_energy, face, -0.5 * mass * square)
@@ -177,7 +181,7 @@ def admit(particles, queue, boxes, model, tally, limits, reservoirs):
     while attempts < most and time < soonest and time <= stop and not entered:
         wait, where, first, second = random_words(reservoirs.key, _PLACE, reservoirs.number[0], 0)
         face = face_of(where, reservoirs)
-        place_on(reservoirs.place, face, (first, second), model.space.lengths)
+        place_on(reservoirs.position, face, (first, second), model.space.lengths)
         entered = is_free(particles, time, queue, boxes, model.space, reservoirs)
         if entered:
             i = lowest_vacant(reservoirs.opened)

@@ -43,9 +43,9 @@ class Impulses(NamedTuple):
 
 
 @inner_helper
-def add_at(sums, row, place, impulse):
+def add_at(sums, row, position, impulse):
     """Add an impulse at a position, which is given in bins."""
-    bin_, part = bin_at(place, sums.shape[1] - 1)
+    bin_, part = bin_at(position, sums.shape[1] - 1)
     upper = impulse * part
     sums[row, bin_] += impulse - upper
     sums[row, bin_ + 1] += upper
@@ -80,9 +80,9 @@ def tally_impulse(flights, i, before, model, impulses):
     if impulses is not None:
         change = flights[i].velocity[impulses.axis] - before
         if change != 0.0:  # a particle of infinite mass keeps its velocity
-            place = flights[i].position[impulses.axis] * impulses.per_length
+            position = flights[i].position[impulses.axis] * impulses.per_length
             impulse = mass_of(i, model.masses, model.law) * change
-            add_at(impulses.sums, row_of(i, impulses.row), place, impulse)
+            add_at(impulses.sums, row_of(i, impulses.row), position, impulse)
 
 
 @kernel
@@ -91,9 +91,9 @@ def add_momenta(flights, sign, model, impulses):
     for i in range(len(flights)):
         velocity = flights[i].velocity[impulses.axis]
         if velocity != 0.0:
-            place = flights[i].position[impulses.axis] * impulses.per_length
+            position = flights[i].position[impulses.axis] * impulses.per_length
             momentum = sign * mass_of(i, model.masses, model.law) * velocity
-            add_at(impulses.sums, row_of(i, impulses.row), place, momentum)
+            add_at(impulses.sums, row_of(i, impulses.row), position, momentum)
 
 
 # Eight pairs at once: their distances, and the projection of a vector on their separations, in vector
@@ -111,42 +111,42 @@ def nearest(gap: Lanes, length: ir.Value) -> Lanes:
 
 
 @intrinsic
-def separate(typingctx, flights, i, first, listed, vector, space, found):
+def separate(typingctx, flights, i, first, listed, vector, space, separations):
     """Compute distances and projections of particle i and eight listed particles.
 
-    The eight are listed from number `first` on, and i is at the time of its clock. found[0] becomes the
-    distance r, by the nearest image in a periodic space, and found[1] becomes r.v / |r|^d with a vector v
-    (d,) and r from the other particle to i; NaN at a distance of 0.
+    The eight are listed from number `first` on, and i is at the time of its clock. separations[0] becomes the
+    distance r, by the nearest image in a periodic space, and separations[1] becomes r.v / |r|^d with a vector
+    v (d,) and r from the other particle to i; NaN at a distance of 0.
     """
 
     def generate(context, builder, signature, arguments):
-        flights, i, first, listed, vector, space, found = arguments
+        flights, i, first, listed, vector, space, separations = arguments
         lengths = fields(builder, signature.args[5], space)["lengths"]
 
         def data(n, array):
             return context.make_array(signature.args[n])(context, builder, array).data
 
         rows = builder.bitcast(data(0, flights), _DOUBLE.as_pointer())
-        near, vector, found = data(3, listed), data(4, vector), data(6, found)
+        near, vector, separations = data(3, listed), data(4, vector), data(6, separations)
         indices = []
         for n in range(WIDTH):
             number = builder.load(builder.gep(near, [builder.add(first, _WORD(n))]))
             indices.append(builder.zext(number, _WORD))
-        one, other, d = load_row(builder, rows, i), load_rows(builder, rows, indices), len(lengths)
-        late = one[2 * d] - other[2 * d]
+        own, other, d = load_row(builder, rows, i), load_rows(builder, rows, indices), len(lengths)
+        late = own[2 * d] - other[2 * d]
         products = []
         for k, length in enumerate(lengths):
-            gap = nearest(one[k] - (other[k] + other[d + k] * late), length)
+            gap = nearest(own[k] - (other[k] + other[d + k] * late), length)
             products.append((gap * gap, gap * builder.load(builder.gep(vector, [_WORD(k)]))))
         square, product = (reduce(Lanes.__add__, terms) for terms in zip(*products, strict=True))
         distance = square.sqrt()
         for n, lanes in enumerate((distance, product / (square * distance if d == 3 else square))):
-            place = builder.gep(found, [_WORD(n * WIDTH)])
-            builder.store(lanes.value, builder.bitcast(place, lanes.value.type.as_pointer()), align=8)
+            address = builder.gep(separations, [_WORD(n * WIDTH)])
+            builder.store(lanes.value, builder.bitcast(address, lanes.value.type.as_pointer()), align=8)
         return context.get_dummy_value()
 
-    word = types.uint64
-    return types.none(flights, word, word, listed, vector, space, found), generate
+    index = types.uint64
+    return types.none(flights, index, index, listed, vector, space, separations), generate
 
 
 # Impulses by the distance of a pair of particles, which make the radial distribution function accurate.
@@ -179,7 +179,7 @@ class PairImpulses(NamedTuple):
     per_unit : see `sums`
     share : fraction of the collisions at which the other pairs count
     listed : workspace for the numbers of all particles
-    found : (2, 8), workspace for the results of `separate`
+    separations : (2, 8), workspace for the results of `separate`
     """
 
     sums: np.ndarray
@@ -190,7 +190,7 @@ class PairImpulses(NamedTuple):
     per_unit: float
     share: float
     listed: np.ndarray
-    found: np.ndarray
+    separations: np.ndarray
 
 
 @inner_helper
@@ -219,16 +219,16 @@ def tally_pairs(particles, i, j, queue, boxes, model, tally, pairs):
 @inner_helper
 def _add_at(row, distance, product, pairs):
     """Add dp.r / r^d = `product` of a pair at a distance."""
-    place = distance * pairs.per_length
-    shell = uint64(place)
+    position = distance * pairs.per_length
+    shell = uint64(position)
     low = float(shell)
     if len(pairs.impulse) == 3:
-        part = (place * place * place - low * low * low) * pairs.per_volume[shell]
+        part = (position * position * position - low * low * low) * pairs.per_volume[shell]
     else:
-        part = (place * place - low * low) * pairs.per_volume[shell]
-    whole = product * pairs.per_unit
-    upper = int64(np.rint(whole * part))
-    pairs.sums[row, shell] += int64(np.rint(whole)) - upper
+        part = (position * position - low * low) * pairs.per_volume[shell]
+    total = product * pairs.per_unit
+    upper = int64(np.rint(total * part))
+    pairs.sums[row, shell] += int64(np.rint(total)) - upper
     pairs.sums[row, shell + uint64(1)] += upper
 
 
@@ -256,11 +256,11 @@ def _add_listed(flights, i, j, count, factor, space, pairs):
     for n in range(uint64(WIDTH)):
         pairs.listed[count + n] = i
     for first in range(uint64(0), count, uint64(WIDTH)):
-        separate(flights, i, first, pairs.listed, pairs.impulse, space, pairs.found)
+        separate(flights, i, first, pairs.listed, pairs.impulse, space, pairs.separations)
         for n in range(uint64(WIDTH)):
-            distance = pairs.found[0, n]
+            distance = pairs.separations[0, n]
             if 0.0 < distance < pairs.furthest and pairs.listed[first + n] != j:
-                _add_at(OTHERS, distance, factor * pairs.found[1, n], pairs)
+                _add_at(OTHERS, distance, factor * pairs.separations[1, n], pairs)
 
 
 @inner_kernel
@@ -290,7 +290,7 @@ def _list_cell(cell, count, boxes, pairs, lists):
     other = uint64(0)
     if lists is None:
         filled = uint64(boxes.filled[cell])
-        list_box(pairs.listed, count, boxes.places, cell, uint64(0))
+        list_box(pairs.listed, count, boxes.members, cell, uint64(0))
         for n in range(uint64(PLACES), filled):
             other = uint64(member(boxes, cell, n, other))
             pairs.listed[count + n] = other
@@ -338,7 +338,7 @@ def _gap_square(x, cell, span, count, per_length):
 
 
 @inner_helper
-def _wrapped(cell, count):
+def _wrap_cell(cell, count):
     """Map a cell along a periodic axis into the container."""
     if cell < 0:
         return cell + count
@@ -349,8 +349,8 @@ def _wrapped(cell, count):
 def _list_near(flights, i, boxes, space, pairs, lists):
     """List all particles in the cells within reach of particle i; return their number."""
     count = uint64(0)
-    place, d = flights[i].position, len(space.lengths)
-    x, y, z = place[0], place[1], place[2] if d == 3 else 0.0
+    position, d = flights[i].position, len(space.lengths)
+    x, y, z = position[0], position[1], position[2] if d == 3 else 0.0
     reach = _reach(pairs.furthest, lists)
     count_x, per_x = _grid(boxes, 0, lists)
     count_y, per_y = _grid(boxes, 1, lists)
@@ -360,10 +360,10 @@ def _list_near(flights, i, boxes, space, pairs, lists):
         left_z = reach * reach - _gap_square(z, cz, span_z, count_z, per_z)
         span_y = _span(y, sqrt(max(left_z, 0.0)), count_y, per_y)
         for cy in range(span_y[0], span_y[1]):
-            left = left_z - _gap_square(y, cy, span_y, count_y, per_y)
-            row = (_wrapped(cz, count_z) * count_y + _wrapped(cy, count_y)) * count_x
-            low, end = _span(x, sqrt(max(left, 0.0)), count_x, per_x)
+            remaining = left_z - _gap_square(y, cy, span_y, count_y, per_y)
+            row = (_wrap_cell(cz, count_z) * count_y + _wrap_cell(cy, count_y)) * count_x
+            low, end = _span(x, sqrt(max(remaining, 0.0)), count_x, per_x)
             for cx in range(low, end):
-                cell = uint64(row + _wrapped(cx, count_x))
+                cell = uint64(row + _wrap_cell(cx, count_x))
                 count = _list_cell(cell, count, boxes, pairs, lists)
     return count

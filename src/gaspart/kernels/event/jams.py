@@ -27,7 +27,7 @@ from gaspart.kernels.model import LOSS, NONE, Support
 from gaspart.kernels.obstacles.distance import to_wall
 from gaspart.kernels.obstacles.support import leave_of
 from gaspart.kernels.physics.contact import SHORTEST
-from gaspart.kernels.physics.flight import acceleration_of, advance, flown, mark_resting
+from gaspart.kernels.physics.flight import acceleration_of, advance, advance_coordinate, mark_resting
 from gaspart.kernels.physics.periodic import nearest
 from gaspart.kernels.physics.running_sum import add
 
@@ -41,10 +41,10 @@ _PAUSE = 4.0  # longest time between contacts of a supported particle, in contac
 @inner_helper
 def _lies(flights, i, space, gravity):
     """Return True if a particle is at rest on faces or interior walls, or fixed."""
-    found = True
+    lies = True
     for k in range(len(space.lengths)):
-        found &= flights[i].velocity[k] == 0.0 and acceleration_of(flights, i, k, space, gravity) == 0.0
-    return found
+        lies &= flights[i].velocity[k] == 0.0 and acceleration_of(flights, i, k, space, gravity) == 0.0
+    return lies
 
 
 @kernel
@@ -61,7 +61,7 @@ def find_resting(flights, before, time, most, model, marks):
         for k in range(len(space.lengths)):
             pull = acceleration_of(flights, i, k, space, gravity)
             late = time - flights[i].clock
-            x = flown(flights[i].position[k], flights[i].velocity[k], pull, late)
+            x = advance_coordinate(flights[i].position[k], flights[i].velocity[k], pull, late)
             square += (x - before[i, k]) * (x - before[i, k])
             before[i, k] = x
         marks[MOVES, i] = square > most * most
@@ -104,17 +104,17 @@ def root_of(parent, i):
 
 
 @inner_kernel
-def gap_between(flights, places, i, j, space):
+def gap_between(flights, positions, i, j, space):
     """Return the gap between the surfaces of two particles at their positions (N, d)."""
     square = 0.0
     for k in range(len(space.lengths)):
-        part = nearest(places[j, k] - places[i, k], space.lengths[k], space.periodic[k])
+        part = nearest(positions[j, k] - positions[i, k], space.lengths[k], space.periodic[k])
         square += part * part
     return sqrt(square) - flights[i].radius - flights[j].radius
 
 
 @kernel
-def join(flights, order, places, axis, reach, space, parent):
+def join(flights, order, positions, axis, reach, space, parent):
     """Join particles with gaps of at most `reach` in trees with the parents (N,).
 
     order : (M,), these particles, sorted by their coordinate along an axis that is not periodic
@@ -125,12 +125,12 @@ def join(flights, order, places, axis, reach, space, parent):
         largest = max(largest, flights[i].radius)
     for first in range(len(order)):
         i = order[first]
-        furthest = places[i, axis] + flights[i].radius + largest + reach
+        furthest = positions[i, axis] + flights[i].radius + largest + reach
         for second in range(first + 1, len(order)):
             j = order[second]
-            if places[j, axis] > furthest:
+            if positions[j, axis] > furthest:
                 break
-            if gap_between(flights, places, i, j, space) <= reach:
+            if gap_between(flights, positions, i, j, space) <= reach:
                 parent[root_of(parent, j)] = root_of(parent, i)
 
 
@@ -144,7 +144,7 @@ def hold(flights, order, time, marks, parent, model, tally):
     marks : (3, N), see `find_resting`; they become the marks of the trees
     """
     touches, rests = marks[TOUCHES], marks[RESTS]
-    island, found = model.law.duration.island, False
+    island, any_held = model.law.duration.island, False
     for i in order:
         root = root_of(parent, i)
         touches[root] |= touches[i]
@@ -155,8 +155,8 @@ def hold(flights, order, time, marks, parent, model, tally):
             stop(flights, i, time, model, tally)
             island[i] = root
             model.gravity.fixed[i] = True
-            found = True
-    return found
+            any_held = True
+    return any_held
 
 
 @inner_kernel
@@ -182,12 +182,12 @@ class Line(NamedTuple):
     Attributes
     ----------
     order : (M,), their numbers, sorted by the coordinate along the axis
-    places : (N, d), positions
+    positions : (N, d), positions
     axis : axis
     """
 
     order: np.ndarray
-    places: np.ndarray
+    positions: np.ndarray
     axis: int
 
 
@@ -240,26 +240,26 @@ def _free_if_moved(i, j, rr, rv, gravity, law, duration):
     least = duration.moving * (duration.inverse_mass[i] + duration.inverse_mass[j]) * sqrt(rr)
     for particle in (i, j):
         if is_jammed(duration, particle):
-            given = 2.0 * abs(rv) * duration.inverse_mass[particle]
-            if given > _FAR * least:
+            change = 2.0 * abs(rv) * duration.inverse_mass[particle]
+            if change > _FAR * least:
                 law.inverse_mass[particle] = duration.inverse_mass[particle]  # so that `loop.wake` frees all
-            elif given > least:
+            elif change > least:
                 free(particle, gravity, law)
 
 
 @inner_helper
-def squeezed(flights, i, j, law):
+def pressed_particle(flights, i, j, law):
     """Return the particle that is pressed by the jam of the other particle, or NONE.
 
     The two particles have been advanced to their contact.
     """
     if law is not None:
-        return _squeezed(flights, i, j, law, law.duration)
+        return _pressed_particle(flights, i, j, law, law.duration)
     return NONE
 
 
 @inner_helper
-def _squeezed(flights, i, j, law, duration):
+def _pressed_particle(flights, i, j, law, duration):
     if duration is not None:
         late = flights[i].clock - min(duration.latest[i], duration.latest[j])
         if late < _OFTEN * duration.length:
@@ -304,35 +304,35 @@ def _add(support, x, y, z):
 
 
 @inner_helper
-def _add_particle(flights, places, i, j, space, limits):
+def _add_particle(flights, positions, i, j, space, limits):
     """Add particle j to the support of particle i, if they touch."""
-    if gap_between(flights, places, i, j, space) <= limits.reach:
+    if gap_between(flights, positions, i, j, space) <= limits.reach:
         x = y = z = 0.0
         for k in range(len(space.lengths)):
-            part = nearest(places[i, k] - places[j, k], space.lengths[k], space.periodic[k])
+            part = nearest(positions[i, k] - positions[j, k], space.lengths[k], space.periodic[k])
             x, y, z = part if k == 0 else x, part if k == 1 else y, part if k == 2 else z
         distance = sqrt(x * x + y * y + z * z)
         _add(limits.support, x / distance, y / distance, z / distance)
 
 
 @inner_helper
-def _add_faces(flights, places, i, space, limits):
+def _add_faces(flights, positions, i, space, limits):
     """Add the container's faces that the particle touches."""
     near = space.margin * flights[i].radius + limits.reach
     for k in range(len(space.lengths)):
         x, y, z = 1.0 if k == 0 else 0.0, 1.0 if k == 1 else 0.0, 1.0 if k == 2 else 0.0
-        if not space.periodic[k] and places[i, k] <= near:
+        if not space.periodic[k] and positions[i, k] <= near:
             _add(limits.support, x, y, z)
-        if not space.periodic[k] and space.lengths[k] - places[i, k] <= near:
+        if not space.periodic[k] and space.lengths[k] - positions[i, k] <= near:
             _add(limits.support, -x, -y, -z)
 
 
 @inner_helper
-def _add_walls(flights, places, i, space, limits, walls):
+def _add_walls(flights, positions, i, space, limits, walls):
     """Add the interior walls that the particle touches."""
     if walls is not None:
         for m in range(len(walls.rows)):
-            x, y, z = to_wall(walls.rows, m, places[i], space.lengths)
+            x, y, z = to_wall(walls.rows, m, positions[i], space.lengths)
             distance = sqrt(x * x + y * y + z * z)
             if 0.0 < distance <= flights[i].radius + limits.reach:
                 _add(limits.support, -x / distance, -y / distance, -z / distance)
@@ -345,17 +345,17 @@ def _is_stable(flights, n, largest, line, limits, model, stays):
     n : number of the particle in its line
     largest : largest radius
     """
-    order, places, axis = line
+    order, positions, axis = line
     i, support = order[n], limits.support
     support.number[0] = 0
-    _add_faces(flights, places, i, model.space, limits)
-    _add_walls(flights, places, i, model.space, limits, model.walls)
+    _add_faces(flights, positions, i, model.space, limits)
+    _add_walls(flights, positions, i, model.space, limits, model.walls)
     far = flights[i].radius + largest + limits.reach
     for step in (-1, 1):
         other = n + step
-        while 0 <= other < len(order) and abs(places[order[other], axis] - places[i, axis]) <= far:
+        while 0 <= other < len(order) and abs(positions[order[other], axis] - positions[i, axis]) <= far:
             if stays[order[other]]:
-                _add_particle(flights, places, i, order[other], model.space, limits)
+                _add_particle(flights, positions, i, order[other], model.space, limits)
             other += step
     for m in range(len(limits.pulls)):
         pull = limits.pulls[m, 0], limits.pulls[m, 1], limits.pulls[m, 2]
@@ -386,13 +386,13 @@ def keep_stable(flights, line, limits, model, marks):
 @kernel
 def free_unstable(flights, time, marks, model):
     """Free the particles of jams that are no longer held; return whether there are any."""
-    found = False
+    any_free = False
     for i in range(len(flights)):
         if is_jammed(model.law.duration, i) and not marks[HELD, i]:
             flights[i].clock = time
             free(i, model.gravity, model.law)
-            found = True
-    return found
+            any_free = True
+    return any_free
 
 
 @kernel
@@ -401,7 +401,7 @@ def jam(flights, order, time, marks, parent, model, tally):
 
     Returns whether there are any new ones.
     """
-    pressed, duration, found = marks[PRESSED], model.law.duration, False
+    pressed, duration, any_new = marks[PRESSED], model.law.duration, False
     for i in order:
         pressed[root_of(parent, i)] |= pressed[i] or is_jammed(duration, i)
     for i in order:
@@ -409,6 +409,6 @@ def jam(flights, order, time, marks, parent, model, tally):
         if pressed[root]:
             if not is_jammed(duration, i):
                 stop(flights, i, time, model, tally)
-                found = True
+                any_new = True
             _fix(i, len(flights) + root, model.gravity, model.law)
-    return found
+    return any_new

@@ -18,14 +18,14 @@ from numpy import int64, uint32, uint64
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
 from gaspart.kernels.event.boxes import NUMBER, X, Y, Z, image_bits, number_of, opposite
 from gaspart.kernels.event.simd import earliest, equal, nearer
-from gaspart.kernels.memory import aligned
+from gaspart.kernels.memory import aligned_zeros
 from gaspart.kernels.model import BOX_FACES, CROSSINGS, NONE, PAIR_TESTS
 from gaspart.kernels.simd import WIDTH, lowest
 
 _FAR = 1e30  # coordinate of an empty position of a cell
 _STILL = 1e-280  # squared speeds below which a particle does not move
 
-LISTED = np.dtype([("centre", "f8", 3), ("cell", "u4"), ("place", "u4")], align=True)
+LISTED = np.dtype([("centre", "f8", 3), ("cell", "u4"), ("slot", "u4")], align=True)
 """Centre of a particle, at which its list was made, the cell of that point, and its position in the cell."""
 
 
@@ -92,13 +92,13 @@ def empty_neighbour_lists(cells, count, dimension, distances, room, per_cell):
     per_cell : number of pages of a cell
     """
     return NeighbourLists(
-        listed=aligned((count,), LISTED),
-        candidates=aligned((count * room + 2 * WIDTH,), np.uint32),
+        listed=aligned_zeros((count,), LISTED),
+        candidates=aligned_zeros((count * room + 2 * WIDTH,), np.uint32),
         room=room,
         per_side=cells.per_side, per_length=1.0 / cells.widths, strides=cells.strides,
         neighbour=cells.neighbour, shift=cells.shift,
         filled=np.zeros(cells.count, dtype=np.uint32),
-        pages=aligned((cells.count * per_cell,), page_dtype(dimension)),
+        pages=aligned_zeros((cells.count * per_cell,), page_dtype(dimension)),
         per_cell=per_cell,
         margin=distances[0],
         reach=distances[1],
@@ -108,9 +108,9 @@ def empty_neighbour_lists(cells, count, dimension, distances, room, per_cell):
 
 
 @inner_helper
-def write_place(lists, cell, place, i, centre):
+def write_slot(lists, cell, slot, i, centre):
     """Write a particle and its centre (d,) to a position of a cell."""
-    page, lane = cell * uint64(lists.per_cell) + place // uint64(WIDTH), place % uint64(WIDTH)
+    page, lane = cell * uint64(lists.per_cell) + slot // uint64(WIDTH), slot % uint64(WIDTH)
     lists.pages[page].members[lane] = i
     for k in range(lists.pages[page].centres.shape[0]):
         lists.pages[page].centres[k, lane] = centre[k]
@@ -129,25 +129,25 @@ def enter_cell(lists, i):
     cell = int64(0)
     for k in range(lists.pages[0].centres.shape[0]):
         cell += cell_along(lists, k, listed.centre[k]) * lists.strides[k]
-    place = uint64(lists.filled[cell])
-    listed.cell, listed.place = cell, place
-    if place == uint64(lists.per_cell * WIDTH):
+    slot = uint64(lists.filled[cell])
+    listed.cell, listed.slot = cell, slot
+    if slot == uint64(lists.per_cell * WIDTH):
         lists.full[1] = 1
         return
-    write_place(lists, uint64(cell), place, i, listed.centre)
-    lists.filled[cell] = place + uint64(1)
+    write_slot(lists, uint64(cell), slot, i, listed.centre)
+    lists.filled[cell] = slot + uint64(1)
 
 
 @inner_helper
 def leave_cell(lists, i):
     """Remove a particle from its cell; the last particle there takes its position."""
-    cell, place = uint64(lists.listed[i].cell), uint64(lists.listed[i].place)
+    cell, slot = uint64(lists.listed[i].cell), uint64(lists.listed[i].slot)
     last = uint64(lists.filled[cell]) - uint64(1)
     page = cell * uint64(lists.per_cell) + last // uint64(WIDTH)
     other = lists.pages[page].members[last % uint64(WIDTH)]
-    write_place(lists, cell, place, other, lists.listed[other].centre)
-    lists.listed[other].place = place
-    write_place(lists, cell, last, i, (_FAR, _FAR, _FAR))
+    write_slot(lists, cell, slot, other, lists.listed[other].centre)
+    lists.listed[other].slot = slot
+    write_slot(lists, cell, last, i, (_FAR, _FAR, _FAR))
     lists.filled[cell] = last
 
 
@@ -177,28 +177,28 @@ def strike(lists, i, other):
     """Remove a particle from a list."""
     row = uint64(i) * uint64(lists.room)
     last = row + uint64(lists.candidates[row])
-    place = row + uint64(1)
-    found = equal(lists.candidates, place, other, NUMBER)
-    while not found:
-        place += uint64(2 * WIDTH)
-        found = equal(lists.candidates, place, other, NUMBER)
-    lists.candidates[place + lowest(found)] = lists.candidates[last]
+    index = row + uint64(1)
+    matches = equal(lists.candidates, index, other, NUMBER)
+    while not matches:
+        index += uint64(2 * WIDTH)
+        matches = equal(lists.candidates, index, other, NUMBER)
+    lists.candidates[index + lowest(matches)] = lists.candidates[last]
     lists.candidates[last] = i
     lists.candidates[row] -= uint32(1)
 
 
 @inner_helper
-def list_found(lists, i, page, found, image, both):
+def list_matches(lists, i, page, matches, image, both):
     """List particles whose centres are near the centre of a particle.
 
     page : first page
-    found : a bit for each position of the pages, WIDTH bits per page
+    matches : a bit for each position of the pages, WIDTH bits per page
     both : True to list the particle in their lists too
     """
-    while found:
-        place = lowest(found)
-        found &= found - uint64(1)
-        other = uint64(lists.pages[page + place // uint64(WIDTH)].members[place % uint64(WIDTH)])
+    while matches:
+        slot = lowest(matches)
+        matches &= matches - uint64(1)
+        other = uint64(lists.pages[page + slot // uint64(WIDTH)].members[slot % uint64(WIDTH)])
         if other != i:
             append(lists, i, other | image)
             if both:
@@ -215,8 +215,8 @@ def list_cell(lists, i, point, cell, offset, image, both):
     page = cell * uint64(lists.per_cell)
     end = page + max((uint64(lists.filled[cell]) + uint64(WIDTH - 1)) // uint64(WIDTH), uint64(1))
     while page < end:
-        found = nearer(lists.pages, page, point, offset, lists.reach * lists.reach)
-        list_found(lists, i, page, found, image, both)
+        matches = nearer(lists.pages, page, point, offset, lists.reach * lists.reach)
+        list_matches(lists, i, page, matches, image, both)
         page += uint64(1)
 
 
@@ -231,11 +231,11 @@ def list_row(lists, i, point, first, offset, image, both):
         for cell in range(first, first + uint64(3)):
             list_cell(lists, i, point, cell, offset, image, both)
         return
-    found = uint64(0)
+    matches = uint64(0)
     for n in range(uint64(3)):
         near = nearer(lists.pages, first + n, point, offset, lists.reach * lists.reach)
-        found |= near << n * uint64(WIDTH)
-    list_found(lists, i, first, found, image, both)
+        matches |= near << n * uint64(WIDTH)
+    list_matches(lists, i, first, matches, image, both)
 
 
 @inner_kernel
@@ -341,8 +341,8 @@ def next_renewal(flights, i, lists):
             rv += r * v
             vv += v * v
         if vv > _STILL:
-            left = rv * rv - vv * (rr - lists.margin * lists.margin)
-            return flight.clock + (sqrt(max(left, 0.0)) - rv) / vv, int64(BOX_FACES)
+            discriminant = rv * rv - vv * (rr - lists.margin * lists.margin)
+            return flight.clock + (sqrt(max(discriminant, 0.0)) - rv) / vv, int64(BOX_FACES)
     return inf, int64(NONE)
 
 

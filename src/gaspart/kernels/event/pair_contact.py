@@ -9,7 +9,7 @@ import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
 from gaspart.kernels.event.impulses import speed_before, tally_impulse
-from gaspart.kernels.event.jams import free_if_moved, join_jam, squeezed
+from gaspart.kernels.event.jams import free_if_moved, join_jam, pressed_particle
 from gaspart.kernels.event.sheared import fold, unfold
 from gaspart.kernels.event.stress import end_flight, note_pair, tally_contact
 from gaspart.kernels.model import COLLISIONS, FIXED_COLLISIONS, LOSS, VIRIAL
@@ -45,17 +45,17 @@ def least_parting(flights, i, j, space, gravity, law):
 @inner_helper
 def _pressed_parting(flights, i, j, space, gravity, duration):
     if duration is not None:
-        square = along = whole = 0.0
+        square = along = gravity_square = 0.0
         for k in range(len(space.lengths)):
             gap = gap_along(flights, i, j, k, space)
             pull = acceleration_of(flights, j, k, space, gravity)
             pull -= acceleration_of(flights, i, k, space, gravity)
             square += gap * gap
             along += gap * pull
-            whole += gravity.acceleration[k] * gravity.acceleration[k]
+            gravity_square += gravity.acceleration[k] * gravity.acceleration[k]
         pressing = max(0.0, -along / sqrt(square))
         if meet_often(flights, i, j, duration):
-            pressing = max(pressing, sqrt(whole))
+            pressing = max(pressing, sqrt(gravity_square))
         return pressing * 0.5 * SHORTEST * duration.length
     return 0.0
 
@@ -147,7 +147,7 @@ def collide(flights, i, j, time, model, tally):
         rr += gap * gap
         rv += gap * (flights[j].velocity[k] - flights[i].velocity[k])
     free_if_moved(i, j, rr, rv, model.gravity, model.law)
-    joins = squeezed(flights, i, j, model.law)
+    joins = pressed_particle(flights, i, j, model.law)
     note_pair(flights, i, j, space, model.masses, model.law, tally.stress)
     before_i = speed_before(flights, i, tally.impulses)
     before_j = speed_before(flights, j, tally.impulses)
@@ -180,21 +180,21 @@ def _energy(flights, i, mass, space):
 @inner_helper
 def _kick(flights, i, width, key, number, space):
     """Add normal random numbers of this width to the velocity components."""
-    one, other, block = normal_pair(key, i, number, 1)
-    flights[i].velocity[0] += width * one
-    flights[i].velocity[1] += width * other
+    first, second, block = normal_pair(key, i, number, 1)
+    flights[i].velocity[0] += width * first
+    flights[i].velocity[1] += width * second
     if len(space.lengths) == 3:
-        one, _, _ = normal_pair(key, i, number, block)
-        flights[i].velocity[2] += width * one
+        first, _, _ = normal_pair(key, i, number, block)
+        flights[i].velocity[2] += width * first
 
 
 @kernel
-def kick_all(flights, time, width, counter, model, given):
+def kick_all(flights, time, width, counter, model, injected_energy):
     """Advance all particles to `time` and kick them without a change of the total momentum.
 
     width : width of the distribution of kicks for mass 1
     counter : words (2,) of the key, and number of the kick
-    given : (1, 2), energy given to the particles, see `physics.running_sum.add`
+    injected_energy : (1, 2), energy given to the particles, see `physics.running_sum.add`
     """
     (key, number), space = counter, model.space
     total = px = py = pz = 0.0
@@ -203,7 +203,7 @@ def kick_all(flights, time, width, counter, model, given):
         advance(flights, i, time, space, model.gravity)
         mass = mass_of(i, model.masses, model.law)
         if mass < inf:
-            add(given, 0, -_energy(flights, i, mass, space))
+            add(injected_energy, 0, -_energy(flights, i, mass, space))
             velocity = flights[i].velocity
             px, py = px - mass * velocity[0], py - mass * velocity[1]
             pz -= mass * velocity[last]
@@ -217,7 +217,7 @@ def kick_all(flights, time, width, counter, model, given):
         if mass < inf:
             for k in range(len(space.lengths)):
                 flights[i].velocity[k] -= mean[k]
-            add(given, 0, _energy(flights, i, mass, space))
+            add(injected_energy, 0, _energy(flights, i, mass, space))
 
 
 # Observers of events while they happen: the record of events, and the detection of a collapse.

@@ -59,12 +59,12 @@ def fetch_about(flights, boxes, at, side, members):
                 for dx in range(low_x, end_x):
                     box = uint64(max(y + z + neighbour[0, ax, dx], 0))
                     for n in range(uint64(_FETCHED)):
-                        fetch(flights, min(boxes.places[box, n], last_particle))
+                        fetch(flights, min(boxes.members[box, n], last_particle))
             else:
-                fetch(boxes.places, first)
+                fetch(boxes.members, first)
                 fetch(boxes.filled, first)
                 last = uint64(max(y + z + neighbour[0, ax, end_x - uint64(1)], 0))
-                fetch(boxes.places, last)
+                fetch(boxes.members, last)
                 fetch(boxes.filled, last)
 
 
@@ -76,7 +76,7 @@ def crossing_of(face):
 
 
 @inner_helper
-def searched(predictions, i):
+def next_search(predictions, i):
     """Return the box (3,) and the side (3,) of a particle's next search.
 
     The search is around this box. The side is not 0 for the axis along which the particle crosses into the
@@ -201,7 +201,7 @@ def prefetch(particles, queue, boxes, next_bucket):
                         fetch(predictions, partner)
                         fetch(flights, partner)
                 if stage < 2:
-                    at, side = searched(predictions, i)
+                    at, side = next_search(predictions, i)
                     fetch_about(flights, boxes, at, side, stage == 1)
                 elif predictions[i].contact_time < predictions[i].face_time:
                     at = predictions[partner].box

@@ -210,17 +210,17 @@ def _is_before(predictions, i, j):
 
 
 @inner_kernel
-def _merge(predictions, one, other):
+def _merge(predictions, head, other_head):
     """Merge two sorted lists of particles; return the first particle.
 
     The lists are linked by `after` and end with -1.
     """
     first = last = np.int64(-1)
-    while one >= 0 or other >= 0:
-        if other < 0 or (one >= 0 and _is_before(predictions, one, other)):
-            particle, one = one, np.int64(predictions[one].after)
+    while head >= 0 or other_head >= 0:
+        if other_head < 0 or (head >= 0 and _is_before(predictions, head, other_head)):
+            particle, head = head, np.int64(predictions[head].after)
         else:
-            particle, other = other, np.int64(predictions[other].after)
+            particle, other_head = other_head, np.int64(predictions[other_head].after)
         if last >= 0:
             predictions[last].after = particle
         else:
@@ -253,10 +253,10 @@ def _sort(predictions, first, count):
     while length < count:
         rest, last, first = first, np.int64(-1), np.int64(-1)
         while rest >= 0:
-            one = rest
-            other = _cut(predictions, one, length)
-            rest = _cut(predictions, other, length) if other >= 0 else np.int64(-1)
-            merged = _merge(predictions, one, other)
+            head = rest
+            other_head = _cut(predictions, head, length)
+            rest = _cut(predictions, other_head, length) if other_head >= 0 else np.int64(-1)
+            merged = _merge(predictions, head, other_head)
             if last >= 0:
                 predictions[last].after = merged
             else:
@@ -275,27 +275,27 @@ def _add_run(queue, predictions, count):
     The runs after them that are not more than twice as long are merged into it.
     """
     bucket = queue.cursor[BUCKET] & (len(queue.head) - 2)
-    runs, found, end = queue.cursor[RUNS], np.int64(-1), np.int64(-1)
+    runs, run, end = queue.cursor[RUNS], np.int64(-1), np.int64(-1)
     first = np.int64(queue.head[bucket])
     rest = _cut(predictions, first, count)
-    found = _sort(predictions, first, count)
+    run = _sort(predictions, first, count)
     while runs > 0 and queue.runs[LENGTH, runs - 1] <= 2 * count:
         runs -= 1
         end = queue.runs[FIRST, runs - 1] if runs > 0 else np.int64(-1)
         if end >= 0:
             predictions[predictions[end].before].after = -1
-        found = _merge(predictions, found, rest)
+        run = _merge(predictions, run, rest)
         count += queue.runs[LENGTH, runs]
         rest = end
-    queue.head[bucket] = found
-    before, i = np.int64(-1), found
+    queue.head[bucket] = run
+    before, i = np.int64(-1), run
     while i >= 0:
         predictions[i].before = before
         before, i = i, np.int64(predictions[i].after)
     predictions[before].after = rest
     if rest >= 0:
         predictions[rest].before = before
-    queue.runs[FIRST, runs], queue.runs[LENGTH, runs] = found, count
+    queue.runs[FIRST, runs], queue.runs[LENGTH, runs] = run, count
     queue.cursor[RUNS] = runs + 1
 
 

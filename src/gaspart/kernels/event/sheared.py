@@ -33,7 +33,7 @@ def _search_row(particles, i, row, image, boxes, space, tally, shear):
     """
     flights, predictions = particles.flights, particles.predictions
     depth = predictions[i].box[2]
-    best, found = predictions[i].contact_time, predictions[i].partner
+    best, partner = predictions[i].contact_time, predictions[i].partner
     for step in range(3):
         beside = boxes.neighbour[2, depth, step]
         if beside < 0:
@@ -49,10 +49,10 @@ def _search_row(particles, i, row, image, boxes, space, tally, shear):
                     continue
                 tally.counts[PAIR_TESTS] += 1
                 time = time_of_sheared_contact(flights, i, other, image, offset, space, shear)
-                if time < best or (time == best and time < inf and other < found):
-                    best, found = time, other
+                if time < best or (time == best and time < inf and other < partner):
+                    best, partner = time, other
     predictions[i].contact_time = best
-    predictions[i].partner = found
+    predictions[i].partner = partner
 
 
 @inner_kernel

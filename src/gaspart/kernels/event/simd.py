@@ -32,15 +32,15 @@ def load_rows(builder: ir.IRBuilder, data: ir.Value, indices: list[ir.Value]) ->
     vector = ir.VectorType(_DOUBLE, WIDTH)
     rows = []
     for index in indices:
-        place = builder.gep(data, [builder.mul(index, _WORD(WIDTH))])
-        rows.append(builder.load(builder.bitcast(place, vector.as_pointer()), align=8))
+        address = builder.gep(data, [builder.mul(index, _WORD(WIDTH))])
+        rows.append(builder.load(builder.bitcast(address, vector.as_pointer()), align=8))
     for step, *halves in _STAGES:
         swapped = list(rows)
         for n in range(WIDTH):
             if not n & step:
-                for place, mask in zip((n, n + step), halves, strict=True):
+                for row, mask in zip((n, n + step), halves, strict=True):
                     which = ir.Constant(ir.VectorType(_INT, WIDTH), mask)
-                    swapped[place] = builder.shuffle_vector(rows[n], rows[n + step], which)
+                    swapped[row] = builder.shuffle_vector(rows[n], rows[n + step], which)
         rows = swapped
     return [Lanes(builder, row) for row in rows]
 
@@ -52,38 +52,40 @@ def load_row(builder: ir.IRBuilder, data: ir.Value, index: ir.Value) -> list[Lan
     return [Lanes(builder, value).all(value) for value in values]
 
 
-def flown(x: Lanes, v: Lanes, pull: Lanes | None, late: Lanes) -> tuple[Lanes, Lanes]:
+def advance_flight(x: Lanes, v: Lanes, pull: Lanes | None, late: Lanes) -> tuple[Lanes, Lanes]:
     """Return a coordinate and its velocity some time later, as in `flight.encounter`."""
     if not pull:
         return x + v * late, v
     return x + (v + pull * 0.5 * late) * late, v + pull * late
 
 
-def bring_to_start(one: list[Lanes], clocks: Lanes, pull: list) -> tuple[Lanes, list[tuple]]:
+def bring_to_start(particle: list[Lanes], clocks: Lanes, pull: list) -> tuple[Lanes, list[tuple]]:
     """Return the later of the clocks of one particle and eight others, and its flight then.
 
     The flight consists of coordinates and velocities, under an acceleration `pull` (d,). If no other clock is
     later than its own, as always just after its event, these are known already.
     """
     builder, d = clocks.builder, len(pull)
-    clock = one[2 * d]
+    clock = particle[2 * d]
     later = clocks > clock
-    known = builder.basic_block
-    own = [clock, *(part for k in range(d) for part in (one[k], one[d + k]))]
+    entry_block = builder.basic_block
+    own = [clock, *(part for k in range(d) for part in (particle[k], particle[d + k]))]
     with builder.if_then(builder.icmp_unsigned("!=", mask_of(later), ir.IntType(WIDTH)(0)), likely=False):
         start = clocks.where(later, clock)
-        then = [flown(one[k], one[d + k], pull[k], start - clock) for k in range(d)]
+        then = [advance_flight(particle[k], particle[d + k], pull[k], start - clock) for k in range(d)]
         moved, computed = [start, *(part for pair in then for part in pair)], builder.basic_block
     joined = []
     for part, moved_part in zip(own, moved, strict=True):
         phi = builder.phi(part.value.type)
-        phi.add_incoming(part.value, known)
+        phi.add_incoming(part.value, entry_block)
         phi.add_incoming(moved_part.value, computed)
         joined.append(Lanes(builder, phi))
     return joined[0], list(zip(joined[1::2], joined[2::2], strict=True))
 
 
-def contact_times(one: list[Lanes], other: list[Lanes], images: list, lengths: list, pull: list) -> Lanes:
+def contact_times(
+    particle: list[Lanes], other: list[Lanes], images: list, lengths: list, pull: list
+) -> Lanes:
     """Return the contact times of one particle and eight others in images (d,) of a container.
 
     This is `flight.time_of_contact` in columns of rows. All particles fall alike under an acceleration `pull`
@@ -92,17 +94,17 @@ def contact_times(one: list[Lanes], other: list[Lanes], images: list, lengths: l
     lengths : (d,), sides of the container
     """
     d = len(lengths)
-    pull = [one[0].all(component) for component in pull] or [None] * d
-    start, flights = bring_to_start(one, other[2 * d], pull)
+    pull = [particle[0].all(component) for component in pull] or [None] * d
+    start, flights = bring_to_start(particle, other[2 * d], pull)
     late = start - other[2 * d]
     products = []
     for k, (x, v) in enumerate(flights):
-        x_other, v_other = flown(other[k], other[d + k], pull[k], late)
+        x_other, v_other = advance_flight(other[k], other[d + k], pull[k], late)
         r = (x_other - x).plus_product(images[k], start.all(lengths[k]))
         v = v_other - v
         products.append((r * r, r * v, v * v))
     rr, rv, vv = (reduce(Lanes.__add__, terms) for terms in zip(*products, strict=True))
-    sigma = one[2 * d + 1] + other[2 * d + 1]
+    sigma = particle[2 * d + 1] + other[2 * d + 1]
     c = rr - sigma * sigma
     meets = (rv < 0.0) & (rv * rv >= vv * c)
     root = c / ((rv * rv - vv * c).sqrt() - rv)
@@ -123,11 +125,11 @@ def images_of(candidates: Lanes, axes: int) -> list[Lanes]:
 
 def marks(builder: ir.IRBuilder, data: ir.Value, indices: list[ir.Value]) -> ir.Value:
     """Return a bit for each particle, from an array of bytes 0 or 1."""
-    found = ir.IntType(WIDTH)(0)
+    mask = ir.IntType(WIDTH)(0)
     for n, index in enumerate(indices):
         mark = builder.load(builder.gep(data, [index]))
-        found = builder.or_(found, builder.shl(mark, ir.IntType(WIDTH)(n)))
-    return found
+        mask = builder.or_(mask, builder.shl(mark, ir.IntType(WIDTH)(n)))
+    return mask
 
 
 def sooner(time: Lanes, number: Lanes, other_time: Lanes, other_number: Lanes) -> tuple[Lanes, Lanes]:
@@ -144,36 +146,36 @@ def soonest(time: Lanes, number: Lanes) -> tuple[ir.Value, ir.Value]:
     build = time.builder
     first = time
     for step in (4, 2, 1):
-        other = first.turned(step)
+        other = first.rotate(step)
         first = other.where(other < first, first)
     earliest = build.extract_element(first.value, _INT(0))
     at_first = time.equals(first)
     mask = mask_of(at_first)
     lane = build.zext(build.cttz(mask, ir.IntType(1)(0)), _INT)
-    found = cgutils.alloca_once_value(build, build.extract_element(number.value, lane))
+    result = cgutils.alloca_once_value(build, build.extract_element(number.value, lane))
     one_less = build.sub(mask, mask.type(1))
     several = build.icmp_unsigned("!=", build.and_(mask, one_less), mask.type(0))
     is_finite = build.fcmp_ordered("<", earliest, _DOUBLE(inf))
     with build.if_then(build.and_(several, is_finite), likely=False):
         lowest = number.where(at_first, number.all(_WORD(2**63 - 1)))
         for step in (4, 2, 1):
-            other = lowest.turned(step)
+            other = lowest.rotate(step)
             lower = Lanes(build, build.icmp_signed("<", other.value, lowest.value))
             lowest = other.where(lower, lowest)
-        build.store(build.extract_element(lowest.value, _INT(0)), found)
-    return earliest, build.load(found)
+        build.store(build.extract_element(lowest.value, _INT(0)), result)
+    return earliest, build.load(result)
 
 
-def load_candidates(builder: ir.IRBuilder, place: ir.Value) -> tuple[Lanes, Lanes, list[ir.Value]]:
+def load_candidates(builder: ir.IRBuilder, address: ir.Value) -> tuple[Lanes, Lanes, list[ir.Value]]:
     """Load eight candidates, and their numbers in a vector and one by one.
 
     The numbers are also loaded one by one because the units that compute with vectors have enough to do.
     """
     mask, numbers = (1 << NUMBER_BITS) - 1, []
     for n in range(WIDTH):
-        candidate = builder.load(builder.gep(place, [_WORD(n)]))
+        candidate = builder.load(builder.gep(address, [_WORD(n)]))
         numbers.append(builder.zext(builder.and_(candidate, _INT(mask)), _WORD))
-    eight = builder.bitcast(place, ir.VectorType(_INT, WIDTH).as_pointer())
+    eight = builder.bitcast(address, ir.VectorType(_INT, WIDTH).as_pointer())
     candidates = Lanes(builder, builder.load(eight, align=4))
     together = builder.and_(candidates.value, candidates.all(_INT(mask)).value)
     return candidates, Lanes(builder, builder.zext(together, ir.VectorType(_WORD, WIDTH))), numbers
@@ -207,9 +209,9 @@ def earliest(typingctx, flights, i, span, present, boxes, space, gravity):
         falls = not isinstance(types_of["gravity"], types.NoneType)
         resting = data(kinds["resting"], boxes["resting"]) if falls else None
         pull = fields(builder, types_of["gravity"], gravity)["acceleration"] if falls else []
-        one = load_row(builder, rows, i)
+        particle = load_row(builder, rows, i)
         best, partner = (
-            cgutils.alloca_once_value(builder, one[0].all(part).value)
+            cgutils.alloca_once_value(builder, particle[0].all(part).value)
             for part in cgutils.unpack_tuple(builder, present)
         )
         unknown = cgutils.alloca_once_value(builder, _WORD(0))
@@ -217,7 +219,7 @@ def earliest(typingctx, flights, i, span, present, boxes, space, gravity):
             candidates, numbers, indices = load_candidates(builder, builder.gep(near, [first]))
             others = load_rows(builder, rows, indices)
             images = images_of(candidates, len(lengths))
-            time = contact_times(one, others, images, lengths, pull)
+            time = contact_times(particle, others, images, lengths, pull)
             if falls:
                 mask = builder.or_(marks(builder, resting, indices), marks(builder, resting, [i] * WIDTH))
                 lanes = builder.bitcast(mask, ir.VectorType(ir.IntType(1), WIDTH))
@@ -231,10 +233,10 @@ def earliest(typingctx, flights, i, span, present, boxes, space, gravity):
         contact = soonest(*(Lanes(builder, builder.load(part)) for part in (best, partner)))
         return context.make_tuple(builder, signature.return_type, [*contact, builder.load(unknown)])
 
-    found = types.Tuple((types.float64, types.int64, types.uint64))
+    result = types.Tuple((types.float64, types.int64, types.uint64))
     contact = types.Tuple((types.float64, types.int64))
     span_type = types.UniTuple(types.uint64, 2)
-    return found(flights, types.uint64, span_type, contact, boxes, space, gravity), generate
+    return result(flights, types.uint64, span_type, contact, boxes, space, gravity), generate
 
 
 @intrinsic
@@ -284,39 +286,39 @@ def equal(typingctx, numbers, start, number, mask):
         data = context.make_array(signature.args[0])(context, builder, numbers).data
         many = ir.VectorType(_INT, 2 * WIDTH)
 
-        def all_of(word):
+        def all_of(value):
             first = builder.insert_element(
-                ir.Constant(many, ir.Undefined), builder.trunc(word, _INT), _INT(0)
+                ir.Constant(many, ir.Undefined), builder.trunc(value, _INT), _INT(0)
             )
             return builder.shuffle_vector(first, first, ir.Constant(many, [0] * (2 * WIDTH)))
 
-        place = builder.bitcast(builder.gep(data, [start]), many.as_pointer())
-        masked = builder.and_(builder.load(place, align=4), all_of(mask))
+        address = builder.bitcast(builder.gep(data, [start]), many.as_pointer())
+        masked = builder.and_(builder.load(address, align=4), all_of(mask))
         same = builder.icmp_unsigned("==", masked, all_of(number))
         return builder.zext(builder.bitcast(same, ir.IntType(2 * WIDTH)), _WORD)
 
-    word = types.uint64
-    return word(numbers, word, word, word), generate
+    index = types.uint64
+    return index(numbers, index, index, index), generate
 
 
 @intrinsic
-def list_box(typingctx, candidates, count, places, box, image):
+def list_box(typingctx, candidates, count, members, box, image):
     """Write all positions of a box as candidates of an image into `candidates`.
 
     The positions are written whether they are filled or not, beginning at index `count`.
     """
 
     def generate(context, builder, signature, arguments):
-        near, count, places, box, image = arguments
+        near, count, members, box, image = arguments
         near = context.make_array(signature.args[0])(context, builder, near).data
-        places = context.make_array(signature.args[2])(context, builder, places).data
+        members = context.make_array(signature.args[2])(context, builder, members).data
         four = ir.VectorType(_INT, PLACES)
-        place = builder.gep(places, [builder.mul(box, _WORD(PLACES))])
-        numbers = builder.load(builder.bitcast(place, four.as_pointer()), align=4)
+        address = builder.gep(members, [builder.mul(box, _WORD(PLACES))])
+        numbers = builder.load(builder.bitcast(address, four.as_pointer()), align=4)
         image = builder.insert_element(ir.Constant(four, ir.Undefined), builder.trunc(image, _INT), _INT(0))
         images = builder.shuffle_vector(image, image, ir.Constant(four, [0] * PLACES))
-        place = builder.bitcast(builder.gep(near, [count]), four.as_pointer())
-        builder.store(builder.or_(numbers, images), place, align=4)
+        address = builder.bitcast(builder.gep(near, [count]), four.as_pointer())
+        builder.store(builder.or_(numbers, images), address, align=4)
         return context.get_dummy_value()
 
-    return types.none(candidates, types.uint64, places, types.uint64, types.uint64), generate
+    return types.none(candidates, types.uint64, members, types.uint64, types.uint64), generate

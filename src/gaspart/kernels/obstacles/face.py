@@ -254,8 +254,8 @@ def rest_on_face(flights, i, face, hard, model, tally, gravity, support):
         axis, side = face // 2, 1.0 if face % 2 else -1.0
         normal = side if axis == 0 else 0.0, side if axis == 1 else 0.0, side if axis == 2 else 0.0
         mass = mass_of(i, model.masses, model.law)
-        place = NONE, False, longest_rest(flights, i, gravity, model.law)
-        come_to_rest(flights, i, normal, place, mass, model.space, tally, gravity)
+        contact = NONE, False, longest_rest(flights, i, gravity, model.law)
+        come_to_rest(flights, i, normal, contact, mass, model.space, tally, gravity)
 
 
 @inner_helper

@@ -20,7 +20,7 @@ from gaspart.kernels.obstacles.support import (
 )
 from gaspart.kernels.obstacles.thermal import leave_warm
 from gaspart.kernels.physics.ballistic import (
-    flown,
+    advance_coordinate,
     time_of_summit,
     time_to_contact_pulled,
     time_to_far_side,
@@ -77,12 +77,12 @@ def time_to_edge(r, v, g, length, radius):
     gx, gz, gy = g
     start = 0.0
     for _ in range(2):
-        place = (flown(x, vx, gx, start), 0.0, flown(z, vz, gz, start))
-        time = time_to_point(place, (vx + gx * start, 0.0, vz + gz * start), (gx, 0.0, gz), radius)
+        position = (advance_coordinate(x, vx, gx, start), 0.0, advance_coordinate(z, vz, gz, start))
+        time = time_to_point(position, (vx + gx * start, 0.0, vz + gz * start), (gx, 0.0, gz), radius)
         if time == inf:
             return inf
         time += start
-        if 0.0 <= flown(y, vy, gy, time) <= length:
+        if 0.0 <= advance_coordinate(y, vy, gy, time) <= length:
             return time
         gg = gx * gx + gz * gz
         if gg == 0.0:
@@ -117,7 +117,11 @@ def time_to_plate(flights, i, rows, m, space, gravity):
             time = time_to_side(abs(z) - radius, -side * w, -side * c)
         else:
             time = time_to_far_side(-abs(z) - radius, side * w, side * c)
-        if time < best and 0.0 <= flown(x, u, a, time) <= length and 0.0 <= flown(y, v, b, time) <= width:
+        if (
+            time < best
+            and 0.0 <= advance_coordinate(x, u, a, time) <= length
+            and 0.0 <= advance_coordinate(y, v, b, time) <= width
+        ):
             best = time
     for upper in range(2):
         far_x, far_y = x - upper * length, y - upper * width
@@ -281,8 +285,8 @@ def settle_on(flights, i, m, normal, model, tally, walls, gravity):
     if gravity is not None:
         mass = mass_of(i, model.masses, model.law)
         at_end = is_at_end(flights, i, walls.rows[m], model.space.lengths)
-        place = m, at_end, longest_rest(flights, i, gravity, model.law)
-        come_to_rest(flights, i, normal, place, mass, model.space, tally, gravity)
+        contact = m, at_end, longest_rest(flights, i, gravity, model.law)
+        come_to_rest(flights, i, normal, contact, mass, model.space, tally, gravity)
 
 
 @inner_helper

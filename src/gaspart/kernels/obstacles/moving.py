@@ -13,7 +13,7 @@ from math import inf, sqrt
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
 from gaspart.kernels.model import NONE, PISTON_CLOCK, PISTON_PLACE, PISTON_VELOCITY, WALLS
-from gaspart.kernels.physics.ballistic import flown, time_to_side
+from gaspart.kernels.physics.ballistic import advance_coordinate, time_to_side
 from gaspart.kernels.physics.collision import LEAST, collide_wall_by_law
 from gaspart.kernels.physics.flight import acceleration_of, face_plane
 from gaspart.kernels.physics.mass import mass_of
@@ -28,31 +28,31 @@ from gaspart.kernels.physics.sine import TURN, sine_cosine
 
 
 @inner_helper
-def time_to_stop(place, velocity, push):
+def time_to_stop(position, velocity, push):
     """Return the time until a piston reaches the side of the container, or inf."""
-    return time_to_side(place, -velocity, -push)
+    return time_to_side(position, -velocity, -push)
 
 
 @kernel
-def moved(place, velocity, push, late):
+def fly_piston(position, velocity, push, late):
     """Return (position, velocity) of a piston some time later, without a hit by a particle."""
-    stop = time_to_stop(place, velocity, push)
+    stop = time_to_stop(position, velocity, push)
     if late < stop:
-        return flown(place, velocity, push, late), velocity + push * late
+        return advance_coordinate(position, velocity, push, late), velocity + push * late
     back = -(velocity + push * stop)
     late -= stop
-    return flown(0.0, back, push, late), back + push * late
+    return advance_coordinate(0.0, back, push, late), back + push * late
 
 
 @kernel
-def time_to_piston(x, v, place, velocity, push):
+def time_to_piston(x, v, position, velocity, push):
     """Return the time until a particle touches a piston; inf if it never does.
 
     x : height of the particle
     v : inward velocity of the particle
     """
-    stop = time_to_stop(place, velocity, push)
-    time = time_to_side(x - place, velocity - v, push)
+    stop = time_to_stop(position, velocity, push)
+    time = time_to_side(x - position, velocity - v, push)
     if time <= stop:
         return time
     back = -(velocity + push * stop)
@@ -68,11 +68,11 @@ def next_piston(particles, i, space, piston):
     x, v = flight.position[axis] - face_plane(flights, i, axis, upper, space), flight.velocity[axis]
     if upper:
         x, v = -x, -v
-    place, velocity = motion[PISTON_PLACE], motion[PISTON_VELOCITY]
+    position, velocity = motion[PISTON_PLACE], motion[PISTON_VELOCITY]
     start = max(flight.clock, motion[PISTON_CLOCK])
     if start > motion[PISTON_CLOCK]:
-        place, velocity = moved(place, velocity, piston.push, start - motion[PISTON_CLOCK])
-    return start + time_to_piston(x + v * (start - flight.clock), v, place, velocity, piston.push)
+        position, velocity = fly_piston(position, velocity, piston.push, start - motion[PISTON_CLOCK])
+    return start + time_to_piston(x + v * (start - flight.clock), v, position, velocity, piston.push)
 
 
 @inner_helper
@@ -92,7 +92,7 @@ def find_piston(particles, i, axis, space, piston):
 def advance_piston(motion, push, time):
     """Advance a piston to `time`."""
     late = time - motion[PISTON_CLOCK]
-    motion[PISTON_PLACE], motion[PISTON_VELOCITY] = moved(
+    motion[PISTON_PLACE], motion[PISTON_VELOCITY] = fly_piston(
         motion[PISTON_PLACE], motion[PISTON_VELOCITY], push, late
     )
     motion[PISTON_CLOCK] = time
@@ -153,8 +153,8 @@ def next_moving(flights, i, moving):
     axis, side, motion = moving.axis, moving.side[i], moving.motion
     start = max(flights[i].clock, motion[PISTON_CLOCK])
     x = flights[i].position[axis] + flights[i].velocity[axis] * (start - flights[i].clock)
-    place = motion[PISTON_PLACE] + motion[PISTON_VELOCITY] * (start - motion[PISTON_CLOCK])
-    gap = side * (x - place) - flights[i].radius
+    position = motion[PISTON_PLACE] + motion[PISTON_VELOCITY] * (start - motion[PISTON_CLOCK])
+    gap = side * (x - position) - flights[i].radius
     closing = side * (motion[PISTON_VELOCITY] - flights[i].velocity[axis])
     return start + time_to_side(gap, closing, 0.0)
 
@@ -229,13 +229,13 @@ def place_and_velocity(time, sine, stroke, period):
 
 
 @inner_helper
-def time_to_sawtooth(gap, closing, pull, left):
+def time_to_sawtooth(gap, closing, pull, duration):
     """Return the time until a particle touches a steadily moving face, and whether it does.
 
-    left : time for which the face moves steadily; it is the result if there is no contact
+    duration : time for which the face moves steadily; it is the result if there is no contact
     """
     time = time_to_side(gap, closing, pull)
-    return (time, True) if time < left else (left, False)
+    return (time, True) if time < duration else (duration, False)
 
 
 @inner_helper
@@ -270,15 +270,15 @@ def time_to_vibrating(x, v, a, clocks, at, sine, stroke, period):
     clock, epoch = clocks
     time = 0.0
     while clock + time <= epoch:
-        height, velocity = flown(x, v, a, time), v + a * time
+        height, velocity = advance_coordinate(x, v, a, time), v + a * time
         if height > stroke:
             step, meets = time_to_side(height - stroke, -velocity, -a), False
         else:
-            place, speed = place_and_velocity(at, sine, stroke, period)
+            face_height, speed = place_and_velocity(at, sine, stroke, period)
             if sine:
-                step, meets = time_to_sine(height - place, speed - velocity, largest)
+                step, meets = time_to_sine(height - face_height, speed - velocity, largest)
             else:
-                step, meets = time_to_sawtooth(height - place, speed - velocity, -a, period - at)
+                step, meets = time_to_sawtooth(height - face_height, speed - velocity, -a, period - at)
         if meets:
             return time + step
         if not step < inf:

@@ -39,10 +39,10 @@ def is_resting_on(support, i, row):
     """
     if support is None:
         return False
-    found = False
+    rests = False
     for n in range(support.number[i]):
-        found |= support.row[i, n] == row
-    return found
+        rests |= support.row[i, n] == row
+    return rests
 
 
 @inner_helper
@@ -80,18 +80,18 @@ def within(support, i, planes, vector, dimension):
 
 
 @inner_kernel
-def leave_of(whole, support, i, dimension):
+def leave_of(acceleration, support, i, dimension):
     """Determine the acceleration that remains on the planes of a particle; return its square.
 
-    It is the largest projection of the acceleration `whole` (3,) on one or two planes that leads into no
+    It is the largest projection of the `acceleration` (3,) on one or two planes that leads into no
     plane; zero if there is no such projection.
     """
-    least = _INTO * sqrt(dot(whole, whole))
+    least = _INTO * sqrt(dot(acceleration, acceleration))
     best, pull = 0.0, support.pull[i]
     pull[:] = 0.0
     for first in range(support.number[i]):
         for second in range(-1, first):
-            part = within(support, i, (first, second), whole, dimension)
+            part = within(support, i, (first, second), acceleration, dimension)
             square = dot(part, part)
             leads_into = False
             for n in range(support.number[i]):
@@ -108,9 +108,9 @@ def find_pull(gravity, i, dimension):
     Planes from which it leads away are removed.
     """
     support = gravity.support
-    whole = pull_along(gravity, 0), pull_along(gravity, 1), pull_along(gravity, 2)
-    leave_of(whole, support, i, dimension)
-    least, pull, kept = _INTO * sqrt(dot(whole, whole)), support.pull[i], 0
+    acceleration = pull_along(gravity, 0), pull_along(gravity, 1), pull_along(gravity, 2)
+    leave_of(acceleration, support, i, dimension)
+    least, pull, kept = _INTO * sqrt(dot(acceleration, acceleration)), support.pull[i], 0
     for n in range(support.number[i]):
         if dot(support.normal[i, n], pull) <= least:
             for k in range(3):
@@ -314,16 +314,16 @@ _HOP = (
 
 
 @inner_kernel
-def come_to_rest(flights, i, normal, place, mass, space, tally, gravity):
+def come_to_rest(flights, i, normal, contact, mass, space, tally, gravity):
     """Put a particle to rest after a bounce that is too short to be resolved.
 
     If the particle cannot rest there, its bounce is made long enough to be resolved.
 
     normal : (3,), unit vector towards the wall
-    place : row of the wall, whether it is touched at an end, where only a balanced particle can rest, and the
-        longest bounce taken for rest
+    contact : row of the wall, whether it is touched at an end, where only a balanced particle can rest, and
+        the longest bounce taken for rest
     """
-    row, at_end, longest = place
+    row, at_end, longest = contact
     support = gravity.support
     press = pressing(flights, i, normal, space, gravity, longest)
     v = velocity_of(flights, i, space)

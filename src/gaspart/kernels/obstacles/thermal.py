@@ -36,8 +36,8 @@ def mirrors(i, face, number, key, accommodation):
     """
     if accommodation is None:
         return False
-    _, word, _, _ = random_words(key, i, number, 0)
-    return uniform(word) >= accommodation[face]
+    _, random_bits, _, _ = random_words(key, i, number, 0)
+    return uniform(random_bits) >= accommodation[face]
 
 
 @inner_helper
@@ -81,10 +81,10 @@ def collide_thermal(flights, i, face, model, tally, law, faces):
     add(tally.wall_impulse, face, mass * (approach + away))
     if faces.kind[face] == THERMAL:
         add_shear(flights, i, face, mass, faces.sliding)
-        one, other, block = normal_pair(faces.key, i, number, 1)
-        flights[i].velocity[(axis + 1) % d] = width * one
+        first, second, block = normal_pair(faces.key, i, number, 1)
+        flights[i].velocity[(axis + 1) % d] = width * first
         if d == 3:
-            flights[i].velocity[(axis + 2) % d] = width * other
+            flights[i].velocity[(axis + 2) % d] = width * second
         drag(flights, i, face, mass, faces.sliding)
         draw_spin(i, face, level, faces.key, (number, block), d, tally, law)
     for k in range(d):
@@ -129,8 +129,8 @@ def draw_spin(i, wall, level, key, counter, dimension, tally, law):
         inertia = 1.0 / law.inverse_inertia[i]
         width = sqrt(level / inertia)
         for k in range(2 if dimension == 2 else 0, 3):
-            one, _, block = normal_pair(key, i, number, block)
-            spin = width * one
+            deviate, _, block = normal_pair(key, i, number, block)
+            spin = width * deviate
             before = law.spins[i, k]
             add(tally.wall_energy, wall, 0.5 * inertia * (before * before - spin * spin))
             law.spins[i, k] = spin
@@ -162,10 +162,10 @@ def _leave_warm(flights, i, wall, normal, model, tally, law, warm):
     warm.draws[i] = number + 1
     width, before = sqrt(level / mass), velocity_of(flights, i, space)
     away = width * flux_speed(warm.key, i, number)
-    one, other, block = normal_pair(warm.key, i, number, 1)
+    deviate, other, block = normal_pair(warm.key, i, number, 1)
     first, second = tangents(normal, d)
     for k in range(d):
-        flights[i].velocity[k] = width * one * first[k] - away * normal[k]
+        flights[i].velocity[k] = width * deviate * first[k] - away * normal[k]
         if d == 3:
             flights[i].velocity[k] += width * other * second[k]
     more = max(0.0, least_speed(flights, i, space) - away)
@@ -223,11 +223,11 @@ def collide_sticky(flights, i, face, model, tally, law, faces):
     energy = held + 0.5 * mass * before * before
     if is_absorbed(energy, face, mass, faces):
         faces.held[i, axis] = energy
-        faces.place[i, axis] = 1 if face % 2 else -1
+        faces.well_side[i, axis] = 1 if face % 2 else -1
         after = 0.0
     else:
         faces.held[i, axis] = 0.0
-        faces.place[i, axis] = 0
+        faces.well_side[i, axis] = 0
         after = -abs(before) if held == 0.0 else -sqrt(2.0 * energy / mass)
     flights[i].velocity[axis] = side * after
     add(tally.wall_impulse, face, mass * (before - after))
@@ -239,9 +239,9 @@ def is_held(flights, i, axis, masses, law, faces, sticky):
 
     The face absorbs its velocity along this axis.
     """
-    place = faces.place[i, axis]
-    face = 2 * axis + (1 if place > 0 else 0)
-    if place == 0 or not sticky[face]:
+    side = faces.well_side[i, axis]
+    face = 2 * axis + (1 if side > 0 else 0)
+    if side == 0 or not sticky[face]:
         return False
     mass = mass_of(i, masses, law)
     energy = faces.held[i, axis] + 0.5 * mass * flights[i].velocity[axis] * flights[i].velocity[axis]
@@ -334,12 +334,12 @@ def time_to_edge(flights, i, axis, space, faces):
     """
     v = flights[i].velocity[axis]
     clock = flights[i].clock
-    place = faces.place[i, axis]
-    upper = place > 0 or (place == 0 and v > 0.0)
+    side = faces.well_side[i, axis]
+    upper = side > 0 or (side == 0 and v > 0.0)
     face = 2 * axis + (1 if upper else 0)
-    if faces.kind[face] == STICKY and place != 0:
+    if faces.kind[face] == STICKY and side != 0:
         return clock, face
-    if faces.depth[face] > 0.0 and (place == 0 or (v > 0.0) != upper):
+    if faces.depth[face] > 0.0 and (side == 0 or (v > 0.0) != upper):
         way = edge_plane(flights, i, face, space, faces) - flights[i].position[axis]
         return clock + way / v, WELL_EDGES + face
     return inf, NONE
@@ -359,10 +359,10 @@ def cross_edge(flights, i, face, model, tally, law, faces):
     before = side * flights[i].velocity[axis]
     if before > 0.0:
         after = sqrt(before * before + step)
-        faces.place[i, axis] = 1 if face % 2 else -1
+        faces.well_side[i, axis] = 1 if face % 2 else -1
     elif before * before > step:
         after = -sqrt(before * before - step)
-        faces.place[i, axis] = 0
+        faces.well_side[i, axis] = 0
     else:
         after = -before
     flights[i].velocity[axis] = side * after

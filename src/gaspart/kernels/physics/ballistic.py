@@ -14,7 +14,7 @@ _HALVINGS = 2200  # maximum number of bisections; fewer narrow any interval to t
 
 
 @inner_helper
-def flown(x, v, pull, time):
+def advance_coordinate(x, v, pull, time):
     """Return a coordinate after ballistic flight (Spencer 2022, Eq. 1)."""
     return x + (v + 0.5 * pull * time) * time
 
@@ -129,9 +129,9 @@ def time_to_contact_pulled(gap, rv, vv, ra, va, aa):
     square = 9.0 * c3 * c3 - 24.0 * c4 * c2
     if square > 0.0:
         q = -3.0 * c3 - sqrt(square) if c3 > 0.0 else -3.0 * c3 + sqrt(square)
-        one = q / (12.0 * c4)
-        other = 2.0 * c2 / q if q != 0.0 else 0.0
-        first, second = max(0.0, min(one, other)), max(0.0, max(one, other))
+        root = q / (12.0 * c4)
+        other_root = 2.0 * c2 / q if q != 0.0 else 0.0
+        first, second = max(0.0, min(root, other_root)), max(0.0, max(root, other_root))
     last = max(second, sqrt(sqrt(abs(gap) / c4)), sqrt(vv / aa))
     while last < inf and not (
         _polynomial(c1, 2.0 * c2, 3.0 * c3, 4.0 * c4, 0.0, last) > 0.0

@@ -38,15 +38,15 @@ def carry(total):
 @inner_helper
 def add_exact(total, x):
     """Add a finite number to a sum (WIDTH,)."""
-    word = np.float64(x).view(np.int64)
-    exponent, mantissa = (word >> 52) & _EXPONENT, word & _FRACTION
+    bits = np.float64(x).view(np.int64)
+    exponent, mantissa = (bits >> 52) & _EXPONENT, bits & _FRACTION
     if exponent > 0:
         mantissa |= _HIDDEN
         exponent -= 1
     n, shift = exponent >> 5, exponent & 31
     low, high = (mantissa & _MASK) << shift, (mantissa >> _BITS) << shift
     middle = (low >> _BITS) + (high & _MASK)
-    if word < 0:
+    if bits < 0:
         total[n] -= low & _MASK
         total[n + 1] -= middle
         total[n + 2] -= high >> _BITS
@@ -95,8 +95,8 @@ def join(parts, total):
 
 
 @kernel
-def evaluate(sums, units, found):
-    """Set found (K, 2) to the values of sums (K, WIDTH), whose digits are overwritten.
+def evaluate(sums, units, values):
+    """Set values (K, 2) to the values of sums (K, WIDTH), whose digits are overwritten.
 
     A value is the nearest float64, and the remainder, to 2^-64 of the value.
 
@@ -115,10 +115,10 @@ def evaluate(sums, units, found):
             value, error = _two_sum(value, total[top - n] * units[top - n])
             rest += error
         value, rest = _two_sum(value, rest)
-        found[k, 0], found[k, 1] = sign * value, sign * rest
+        values[k, 0], values[k, 1] = sign * value, sign * rest
 
 
-def joined(parts: np.ndarray) -> np.ndarray:
+def sum_over_threads(parts: np.ndarray) -> np.ndarray:
     """Return the sum (..., WIDTH) over threads of (threads, ..., WIDTH)."""
     total = np.empty(parts.shape[1:], np.int64)
     join(parts.reshape(len(parts), -1, WIDTH), total.reshape(-1, WIDTH))
@@ -127,7 +127,7 @@ def joined(parts: np.ndarray) -> np.ndarray:
 
 def exact_parts(parts: np.ndarray) -> np.ndarray:
     """Return the values (..., 2) of sums (threads, ..., WIDTH): nearest float64 and remainder."""
-    total = joined(parts)
-    found = np.empty((*total.shape[:-1], 2))
-    evaluate(total.reshape(-1, WIDTH), UNITS, found.reshape(-1, 2))
-    return found
+    total = sum_over_threads(parts)
+    values = np.empty((*total.shape[:-1], 2))
+    evaluate(total.reshape(-1, WIDTH), UNITS, values.reshape(-1, 2))
+    return values

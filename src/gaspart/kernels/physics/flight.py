@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, kernel
-from gaspart.kernels.physics.ballistic import flown, time_to_contact_pulled
+from gaspart.kernels.physics.ballistic import advance_coordinate, time_to_contact_pulled
 from gaspart.kernels.physics.contact import time_to_contact
 
 
@@ -67,10 +67,10 @@ def mark_resting(flights, i, space, gravity, resting):
     This is so if it is fixed, supported, or does not move along an axis with gravity (see `acceleration_of`).
     """
     if gravity is not None:
-        found = gravity.fixed[i] | is_supported(gravity.support, i)
+        rests = gravity.fixed[i] | is_supported(gravity.support, i)
         for k in range(len(space.lengths)):
-            found |= (gravity.acceleration[k] != 0.0) & (flights[i].velocity[k] == 0.0)
-        resting[i] = found
+            rests |= (gravity.acceleration[k] != 0.0) & (flights[i].velocity[k] == 0.0)
+        resting[i] = rests
 
 
 @inner_helper
@@ -82,7 +82,9 @@ def advance(flights, i, time, space, gravity):
             flights[i].position[k] += flights[i].velocity[k] * late
         else:
             pull = acceleration_of(flights, i, k, space, gravity)
-            flights[i].position[k] = flown(flights[i].position[k], flights[i].velocity[k], pull, late)
+            flights[i].position[k] = advance_coordinate(
+                flights[i].position[k], flights[i].velocity[k], pull, late
+            )
             flights[i].velocity[k] += pull * late
     flights[i].clock = time
 
@@ -126,7 +128,11 @@ def encounter(flights, i, j, offset, space, gravity):
             pull_j = acceleration_of(flights, j, k, space, gravity)
             a = pull_j - pull_i
             v = (v_j + pull_j * late_j) - (v_i + pull_i * late_i)
-            r = flown(x_j, v_j, pull_j, late_j) - flown(x_i, v_i, pull_i, late_i) + offset[k]
+            r = (
+                advance_coordinate(x_j, v_j, pull_j, late_j)
+                - advance_coordinate(x_i, v_i, pull_i, late_i)
+                + offset[k]
+            )
             ra += r * a
             va += v * a
             aa += a * a
@@ -172,11 +178,11 @@ def row_of(i, row):
 
 
 @inner_helper
-def bin_at(place, bins):
+def bin_at(position, bins):
     """Return the bin of a position, and the fraction of the bin below the position.
 
     The position is counted in bins. A position outside counts in the last bin on that side, by the same
     linear formula.
     """
-    bin_ = min(max(np.int64(place), 0), bins - 1)
-    return bin_, place - bin_
+    bin_ = min(max(np.int64(position), 0), bins - 1)
+    return bin_, position - bin_

@@ -48,9 +48,9 @@ def random_words(key, particle, number, block):
 
 
 @helper
-def uniform(word):
+def uniform(random_bits):
     """Convert the 52 highest bits of a word to a number above 0 and below 1."""
-    return (np.float64(word >> _SPARE) + 0.5) * 2.0**-52
+    return (np.float64(random_bits >> _SPARE) + 0.5) * 2.0**-52
 
 
 @kernel
@@ -74,8 +74,8 @@ def flux_speed(key, particle, number):
 
     Its probability density is v exp(-v^2/2).
     """
-    word, _, _, _ = random_words(key, particle, number, 0)
-    return sqrt(-2.0 * log_of(uniform(word)))
+    random_bits, _, _, _ = random_words(key, particle, number, 0)
+    return sqrt(-2.0 * log_of(uniform(random_bits)))
 
 
 @kernel

@@ -39,9 +39,9 @@ def add_whole(sum_, x, largest):
         quotient is the same for all terms
     """
     units = x * (1.0 / largest / _COARSE)
-    whole = np.rint(units)
-    sum_[0] += np.int64(whole)
-    sum_[1] += np.int64(np.rint((units - whole) * (_COARSE / _FINE)))
+    coarse = np.rint(units)
+    sum_[0] += np.int64(coarse)
+    sum_[1] += np.int64(np.rint((units - coarse) * (_COARSE / _FINE)))
 
 
 def values(sums: np.ndarray) -> np.ndarray:
@@ -54,7 +54,7 @@ def net(*sums: np.ndarray) -> float:
 
     The remainder after large sums cancel is exact.
     """
-    return math.fsum(np.concatenate([one.ravel() for one in sums]))
+    return math.fsum(np.concatenate([array.ravel() for array in sums]))
 
 
 def whole_parts(sums: np.ndarray, largest: float) -> np.ndarray:

@@ -49,14 +49,14 @@ def place_and_speed(particles, slot, ago, tally, impulses):
 
 
 @inner_helper
-def add_impulse(particles, slot, place, change, tally, thread, impulses):
+def add_impulse(particles, slot, position, change, tally, thread, impulses):
     """Add the impulse, at a position, that has changed a particle's velocity along the axis."""
     if impulses is not None:
         if change != 0.0:
             bins, number = impulses.shape[2] - 1, particles.index[slot]
-            place *= tally.per_length
-            place -= np.floor(place * tally.turns) * bins
-            bin_, part = bin_at(place, bins)
+            position *= tally.per_length
+            position -= np.floor(position * tally.turns) * bins
+            bin_, part = bin_at(position, bins)
             row = row_of(number, tally.row)
             impulse = np.float64(particles.masses[number]) * change
             upper = impulse * part
@@ -71,9 +71,9 @@ def add_contact(particles, slot, before, tally, impulses):
     before : result of `place_and_speed` before the contact
     """
     if impulses is not None:
-        place, speed = before
+        position, speed = before
         change = particles.velocities[tally.axis, slot] - speed
-        add_impulse(particles, slot, place, change, tally, 0, impulses)
+        add_impulse(particles, slot, position, change, tally, 0, impulses)
 
 
 @inner_helper
@@ -84,15 +84,15 @@ def add_reflection(particles, slot, axis, at, tally, thread, impulses):
     """
     if impulses is not None:
         if axis == tally.axis:
-            place, change = np.float64(at[0]), np.float64(at[1])
-            add_impulse(particles, slot, place, change, tally, thread, impulses)
+            position, change = np.float64(at[0]), np.float64(at[1])
+            add_impulse(particles, slot, position, change, tally, thread, impulses)
 
 
 @inner_helper
-def add_share(i, face, given, tally, thread, per_area):
+def add_share(i, face, transfer, tally, thread, per_area):
     """Add momentum and heat given to a face to the sums per accessible area."""
     if per_area is not None:
-        share, (impulse, heat) = tally.share[tally.size[i], face], given
+        share, (impulse, heat) = tally.share[tally.size[i], face], transfer
         add_whole(per_area[thread, face, 0], share * impulse, tally.momentum)
         add_whole(per_area[thread, face, 1], share * heat, tally.energy)
 
@@ -137,7 +137,7 @@ def is_free(particles, slot, rules):
         x = particles.positions[k, slot]
         free &= (x >= rules.free[k, 0]) & (x < rules.free[k, 1])
         if rules.holds:
-            free &= rules.model.faces.place[particles.index[slot], k] == 0
+            free &= rules.model.faces.well_side[particles.index[slot], k] == 0
     return free
 
 
@@ -180,9 +180,9 @@ def crossing_time(flights, i, axis, space, faces):
     if v == 0.0:
         return inf, NONE
     upper = v > 0.0
-    place = faces.place[i, axis]
-    if place != 0 and faces.kind[2 * axis + (1 if place > 0 else 0)] == STICKY:
-        upper = place > 0
+    side = faces.well_side[i, axis]
+    if side != 0 and faces.kind[2 * axis + (1 if side > 0 else 0)] == STICKY:
+        upper = side > 0
     else:  # no particle comes to a plane before the edge of its well
         time, face = time_to_edge(flights, i, axis, space, faces)
         if time <= 0.0:
@@ -236,7 +236,7 @@ def first_crossing(flights, i, space, dt, faces, gravity):
 
 
 @inner_helper
-def taken(sums, n):
+def pop_sum(sums, n):
     """Reset one of the sums (K, 2) to zero; return its value before."""
     x = sums[n, 0] + sums[n, 1]
     sums[n, 0] = sums[n, 1] = 0.0
@@ -248,11 +248,11 @@ def record_face(i, face, rules, tally):
     """Move the contribution of an event at a face from the rules' tally to the engine's."""
     event = rules.tally
     tally.wall_hits[0, face] += event.wall_hits[face]
-    given = taken(event.wall_impulse, face), taken(event.wall_energy, face)
-    add_whole(tally.wall_impulse[0, face], given[0], tally.momentum)
-    add_whole(tally.wall_loss[0], taken(event.sums, LOST), tally.energy)
-    add_whole(rules.heat[face], given[1], tally.energy)
-    add_share(i, face, given, tally, 0, tally.per_area)
+    transfer = pop_sum(event.wall_impulse, face), pop_sum(event.wall_energy, face)
+    add_whole(tally.wall_impulse[0, face], transfer[0], tally.momentum)
+    add_whole(tally.wall_loss[0], pop_sum(event.sums, LOST), tally.energy)
+    add_whole(rules.heat[face], transfer[1], tally.energy)
+    add_share(i, face, transfer, tally, 0, tally.per_area)
     event.wall_hits[face] = 0
 
 
@@ -272,8 +272,8 @@ def add_impulse_of_face(particles, slot, before, rules, tally, impulses):
     """
     if impulses is not None:
         flight = rules.flights[particles.index[slot]]
-        change, place = flight.velocity[tally.axis] - before, flight.position[tally.axis]
-        add_impulse(particles, slot, place, change, tally, 0, impulses)
+        change, position = flight.velocity[tally.axis] - before, flight.position[tally.axis]
+        add_impulse(particles, slot, position, change, tally, 0, impulses)
 
 
 @inner_kernel
@@ -317,11 +317,11 @@ def collide_flights(particles, i, j, contact, rules, tally, law):
     """
     ago, rr, rv = contact
     flights, space = rules.flights, rules.model.space
-    one, other = gather(particles, i, rules), gather(particles, j, rules)
-    advance(flights, one, ago, space, None)
-    advance(flights, other, ago, space, None)
-    add(tally.sums, VIRIAL, collide_by_law(flights, one, other, rr, rv, space, rules.tally, law))
-    add(tally.sums, LOSS, taken(rules.tally.sums, LOST))
-    advance(flights, one, 0.0, space, None)
-    advance(flights, other, 0.0, space, None)
+    first, second = gather(particles, i, rules), gather(particles, j, rules)
+    advance(flights, first, ago, space, None)
+    advance(flights, second, ago, space, None)
+    add(tally.sums, VIRIAL, collide_by_law(flights, first, second, rr, rv, space, rules.tally, law))
+    add(tally.sums, LOSS, pop_sum(rules.tally.sums, LOST))
+    advance(flights, first, 0.0, space, None)
+    advance(flights, second, 0.0, space, None)
     return scatter(particles, i, rules), scatter(particles, j, rules)

@@ -21,7 +21,14 @@ from gaspart.kernels.physics.periodic import box_coordinate
 from gaspart.kernels.step.model import BOX_VISITS, DISPLACEMENT, FASTEST, PAIR_TESTS, Search, Step
 from gaspart.kernels.step.resolve import count_left, distance_squared, examine, in_order
 from gaspart.kernels.step.shared_contacts import resolve_found
-from gaspart.kernels.step.threads import gathered, is_outdated, make_list, move_all, room_for, search_list
+from gaspart.kernels.step.threads import (
+    gather_overlaps,
+    is_outdated,
+    make_list,
+    move_all,
+    room_for,
+    search_list,
+)
 
 
 class StepBoxes(NamedTuple):
@@ -91,7 +98,7 @@ def is_out_of_reach(particles, slot, boxes, dx, dy, dz):
 
 
 @inner_kernel
-def search_all(particles, i, space, step, found):
+def search_all(particles, i, space, step, overlaps):
     """Test a particle against all particles before it; return the number of tests.
 
     For each block of particles the test is a loop without branches.
@@ -100,21 +107,21 @@ def search_all(particles, i, space, step, found):
     start = 0
     while start < i:
         stop = min(start + 256, i)
-        overlaps = 0
+        hits = 0
         for j in range(start, stop):
             sigma = size + particles.radii[j]
-            overlaps += distance_squared(particles, i, j, space) < sigma * sigma
-        if overlaps:
+            hits += distance_squared(particles, i, j, space) < sigma * sigma
+        if hits:
             for j in range(start, stop):
                 sigma = size + particles.radii[j]
                 if distance_squared(particles, i, j, space) < sigma * sigma:
-                    examine(particles, i, j, space, step, found, 0)
+                    examine(particles, i, j, space, step, overlaps, 0)
         start = stop
     return i
 
 
 @inner_helper
-def search_list_of_box(particles, i, j, boxes, space, step, found):
+def search_list_of_box(particles, i, j, boxes, space, step, overlaps):
     """Test a particle against slot j and all slots that follow in its box.
 
     Returns the number of tests.
@@ -125,25 +132,25 @@ def search_list_of_box(particles, i, j, boxes, space, step, found):
         tests += 1
         sigma = size + particles.radii[j]
         if distance_squared(particles, i, j, space) < sigma * sigma:
-            examine(particles, i, j, space, step, found, 0)
+            examine(particles, i, j, space, step, overlaps, 0)
         j = boxes.following[j]
     return tests
 
 
 @inner_kernel
-def search_boxes(particles, boxes, space, step, found, tally):
+def search_boxes(particles, boxes, space, step, overlaps, tally):
     """Record all pairs of ordinary particles that must be resolved."""
     if len(boxes.head) == 1:
         tally.counts[BOX_VISITS] += particles.ordinary
         for i in range(particles.ordinary):
-            tally.counts[PAIR_TESTS] += search_all(particles, i, space, step, found)
+            tally.counts[PAIR_TESTS] += search_all(particles, i, space, step, overlaps)
         return
     tests = visits = 0
     for i in range(particles.ordinary):
         ax, ay, az = boxes.at[i, 0], boxes.at[i, 1], boxes.at[i, 2]
         own = ax * boxes.strides[0] + ay * boxes.strides[1] + az * boxes.strides[2]
         visits += 1
-        tests += search_list_of_box(particles, i, boxes.following[i], boxes, space, step, found)
+        tests += search_list_of_box(particles, i, boxes.following[i], boxes, space, step, overlaps)
         for dz in range(3):
             z = boxes.neighbour[2, az, dz]
             if z < 0:
@@ -160,7 +167,7 @@ def search_boxes(particles, boxes, space, step, found, tally):
                         continue
                     visits += 1
                     j = boxes.head[x + y + z]
-                    tests += search_list_of_box(particles, i, j, boxes, space, step, found)
+                    tests += search_list_of_box(particles, i, j, boxes, space, step, overlaps)
     tally.counts[PAIR_TESTS] += tests
     tally.counts[BOX_VISITS] += visits
 
@@ -193,29 +200,29 @@ def update_list(particles, pairs, space, tally, before, threads, cells):
 
 
 @inner_helper
-def search_grid(particles, space, step, found, tally, boxes):
+def search_grid(particles, space, step, overlaps, tally, boxes):
     """Search the boxes, if there are any."""
     if boxes is not None:
         sort_in(particles, boxes)
-        search_boxes(particles, boxes, space, step, found, tally)
+        search_boxes(particles, boxes, space, step, overlaps, tally)
 
 
 @inner_allocating_kernel
-def find_contacts(particles, search, space, step, found, tally, threads):
-    """Find all pairs that must be resolved; return them in `found`, or in larger arrays."""
-    parts, count = len(found.number), particles.positions.shape[1]
+def find_contacts(particles, search, space, step, overlaps, tally, threads):
+    """Find all pairs that must be resolved; return them in `overlaps`, or in larger arrays."""
+    parts, count = len(overlaps.number), particles.positions.shape[1]
     while True:
-        found.number[:] = 0
-        found.tests[:] = 0
-        search_list(particles, search.pairs, space, step, found, threads, search.cells)
-        search_grid(particles, space, step, found, tally, search.boxes)
+        overlaps.number[:] = 0
+        overlaps.tests[:] = 0
+        search_list(particles, search.pairs, space, step, overlaps, threads, search.cells)
+        search_grid(particles, space, step, overlaps, tally, search.boxes)
         for slot in range(particles.ordinary, count):
-            found.tests[0] += search_all(particles, slot, space, step, found)
-        if found.number.max() <= found.times.shape[1]:
+            overlaps.tests[0] += search_all(particles, slot, space, step, overlaps)
+        if overlaps.number.max() <= overlaps.times.shape[1]:
             break
-        found = room_for(parts, 2 * found.number.max(), particles.positions)
-    tally.counts[PAIR_TESTS] += found.tests.sum()
-    return found
+        overlaps = room_for(parts, 2 * overlaps.number.max(), particles.positions)
+    tally.counts[PAIR_TESTS] += overlaps.tests.sum()
+    return overlaps
 
 
 @allocating_kernel
@@ -231,7 +238,7 @@ def run_steps(particles, search, model, settings, steps, tally, threads):
     space, rules, law = model.space, model.rules, model.law
     dt, rewind, passes = settings
     parts = 1 if threads is None else threads
-    found = room_for(parts, particles.positions.shape[1] // parts + 16, particles.positions)
+    overlaps = room_for(parts, particles.positions.shape[1] // parts + 16, particles.positions)
     particles.last_pass[:] = 0
     pull = total_pull(model.gravity)
     if steps == 0:
@@ -244,11 +251,13 @@ def run_steps(particles, search, model, settings, steps, tally, threads):
         for now in range(first, first + passes):
             pairs, before = update_list(particles, pairs, space, tally, before, threads, cells)
             step = Step(dt, rewind, passes > 1, now, first, before)
-            found = find_contacts(particles, Search(boxes, cells, pairs), space, step, found, tally, threads)
-            number = found.number.sum()
+            overlaps = find_contacts(
+                particles, Search(boxes, cells, pairs), space, step, overlaps, tally, threads
+            )
+            number = overlaps.number.sum()
             if number == 0:
                 break
-            contacts, times = gathered(found)
+            contacts, times = gather_overlaps(overlaps)
             in_turn = contacts, in_order(particles.index, contacts, times)
             resolve_found(particles, in_turn, model, step, tally, threads, law, cells)
             before = now

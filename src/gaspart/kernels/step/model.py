@@ -168,7 +168,7 @@ class StepTally(NamedTuple):
     fixed: bool | None = None
 
 
-class Found(NamedTuple):
+class Overlaps(NamedTuple):
     """Contacts to resolve, by thread.
 
     Attributes
@@ -284,16 +284,16 @@ def order_part(cells, ordinary, first, end):
     """
     ends, order, width = cells.ends[first:end], cells.order, np.uint32(end - first)
     ends[:] = 0
-    place = ONE - ONE
+    offset = ONE - ONE
     for cell in cells.cell[:ordinary]:
         within = np.uint32(cell - first)  # a large number for a cell before the first
         if within < width:
             ends[within] += ONE
-        place += np.uint32(cell < first)
+        offset += np.uint32(cell < first)
     for within in range(width):
         number = ends[within]
-        ends[within] = place
-        place += number
+        ends[within] = offset
+        offset += number
     for slot in range(ordinary):
         within = np.uint32(cells.cell[slot] - first)
         if within < width:

@@ -75,26 +75,26 @@ def nearer(typingctx, positions, radii, space, slot, skin, first):
         real = context.get_value_type(signature.args[0].dtype)
         vector = ir.VectorType(real, WIDTH)
 
-        def loaded(data, start):
+        def load_lanes(data, start):
             eight = builder.bitcast(builder.gep(data, [builder.add(start, first)]), vector.as_pointer())
             eight = Lanes(builder, builder.load(eight, align=real.get_abi_size(context.target_data)))
             return eight, eight.all(builder.load(builder.gep(data, [builder.add(start, slot)])))
 
         square = None
         for k, (length, periodic) in enumerate(zip(space["lengths"], space["periodic"], strict=True)):
-            others, one = loaded(array.data, builder.mul(count, _WORD(k)))
+            others, own = load_lanes(array.data, builder.mul(count, _WORD(k)))
             length = builder.select(builder.trunc(periodic, ir.IntType(1)), length, ir.Constant(real, inf))
-            gap = _size(others - one)
+            gap = _size(others - own)
             across = _size(gap.all(length) - gap)
             gap = gap.where(gap < across, across)
             square = gap * gap if square is None else square + gap * gap
-        others, one = loaded(radii, _WORD(0))
-        reach = one + others + skin
+        others, own = load_lanes(radii, _WORD(0))
+        reach = own + others + skin
         near = builder.bitcast((square < reach * reach).value, _BYTE)
         return builder.zext(near, _WORD)
 
-    word = types.uint64
-    return word(positions, radii, space, word, positions.dtype, word), generate
+    index = types.uint64
+    return index(positions, radii, space, index, positions.dtype, index), generate
 
 
 @intrinsic
@@ -113,8 +113,8 @@ def equals(typingctx, values, first, value):
         same = builder.icmp_unsigned("==", eight.value, eight.all(value).value)
         return builder.zext(builder.bitcast(same, _BYTE), _WORD)
 
-    word = types.uint64
-    return word(values, word, values.dtype), generate
+    index = types.uint64
+    return index(values, index, values.dtype), generate
 
 
 @intrinsic
@@ -138,12 +138,12 @@ def compact_eight(typingctx, words, first, least, kept, number):
         which = builder.zext(builder.bitcast(which, _BYTE), _WORD)
         return _call(builder, "llvm.ctpop.i64", _WORD, which)
 
-    word = types.uint64
-    return word(words, word, word, kept, word), generate
+    index = types.uint64
+    return index(words, index, index, kept, index), generate
 
 
 @intrinsic
-def bits(typingctx, word):
+def bits(typingctx, value):
     """Return the number of bits that are set in a word."""
 
     def generate(context, builder, signature, arguments):
@@ -288,11 +288,11 @@ def list_part(particles, part, cells, pairs, space, tests):
         start, stop = part_of(part, parts, lines)
         for line in range(start, stop):
             plane = line // cells.per_side[1]
-            left = 2 + (line - plane * cells.per_side[1] + 1) * cells.strides[1]
+            first = 2 + (line - plane * cells.per_side[1] + 1) * cells.strides[1]
             if rows == 5:
-                left += (plane + 1) * cells.strides[2]
-            right = left + cells.per_side[0] - 1
-            for at, across in ((left, right), (right, left)):
+                first += (plane + 1) * cells.strides[2]
+            last = first + cells.per_side[0] - 1
+            for at, across in ((first, last), (last, first)):
                 filled, tested = record_across(particles, at, across, cells, space, entries, mine, filled)
                 total += tested
     cells.listed[part] = compact(entries, filled[0], mine, filled[1])
@@ -309,14 +309,15 @@ def is_complete(particles, cells):
 
 
 @inner_kernel
-def search_pairs(particles, entries, space, step, found, thread):
+def search_pairs(particles, entries, space, step, overlaps, thread):
     """Record the pairs of some entries (n,) that must be resolved.
 
     With a pass `step.before`, only pairs are searched with a particle that had a contact in that pass: for
     all others nothing has changed since their last search.
     """
-    touching, before, last_pass = found.touching[thread], step.before, particles.last_pass
-    tests = np.uint64(0)  # into `found` at the end: threads that write to one cache line wait for each other
+    touching, before, last_pass = overlaps.touching[thread], step.before, particles.last_pass
+    # The number goes into `overlaps` at the end: threads that write to one cache line wait for each other.
+    tests = np.uint64(0)
     for low in range(0, len(entries), len(touching)):
         number = np.uint64(0)
         for entry in entries[low : low + len(touching)]:
@@ -340,6 +341,6 @@ def search_pairs(particles, entries, space, step, found, thread):
         for entry in touching[:number]:
             slot, first, marks = (entry >> _PLACE) & _SLOTS, entry & _SLOTS, entry >> _SHIFT
             while marks != 0:
-                examine(particles, slot, first + lowest(marks), space, step, found, thread)
+                examine(particles, slot, first + lowest(marks), space, step, overlaps, thread)
                 marks &= marks - ONE
-    found.tests[thread] += np.int64(tests)
+    overlaps.tests[thread] += np.int64(tests)

@@ -85,19 +85,19 @@ def must_resolve(rr, rv, vv, ss, step):
 
 
 @inner_helper
-def examine(particles, i, j, space, step, found, thread):
+def examine(particles, i, j, space, step, overlaps, thread):
     """Record a pair of overlapping slots if it must be resolved."""
     if particles.index[i] > particles.index[j]:
         i, j = j, i
     rr, rv, vv = invariants(particles, i, j, space)
     sigma = particles.radii[i] + particles.radii[j]
     if must_resolve(rr, rv, vv, sigma * sigma, step):
-        n = found.number[thread]
-        if n < found.times.shape[1]:
-            found.pairs[thread, n, 0] = i
-            found.pairs[thread, n, 1] = j
-            found.times[thread, n] = entry_time(rr, rv, vv, sigma * sigma)
-        found.number[thread] = n + 1
+        n = overlaps.number[thread]
+        if n < overlaps.times.shape[1]:
+            overlaps.pairs[thread, n, 0] = i
+            overlaps.pairs[thread, n, 1] = j
+            overlaps.times[thread, n] = entry_time(rr, rv, vv, sigma * sigma)
+        overlaps.number[thread] = n + 1
 
 
 @inner_helper
@@ -121,17 +121,17 @@ def spread(times):
     number = len(times)
     first, last = times.min(), times.max()
     scale = (number - 1) / np.float64(last - first) if last > first else 0.0
-    place = np.empty(number, np.uint32)
+    interval = np.empty(number, np.uint32)
     ends = np.zeros(number + 1, np.uint32)
     for n in range(number):
-        place[n] = np.uint32((times[n] - first) * scale)
-        ends[place[n] + _ONE] += _ONE
+        interval[n] = np.uint32((times[n] - first) * scale)
+        ends[interval[n] + _ONE] += _ONE
     for n in range(number):
         ends[n + 1] += ends[n]
     order = np.empty(number, np.uint32)
     for n in range(number):
-        order[ends[place[n]]] = n
-        ends[place[n]] += _ONE
+        order[ends[interval[n]]] = n
+        ends[interval[n]] += _ONE
     return order
 
 
@@ -140,11 +140,11 @@ def insert(index, pairs, times, order, low, high):
     """Sort the contacts order[low:high] by insertion."""
     for n in range(low + 1, high):
         contact = order[n]
-        place = n
-        while place > low and earlier(index, pairs, times, contact, order[place - 1]):
-            order[place] = order[place - 1]
-            place -= 1
-        order[place] = contact
+        position = n
+        while position > low and earlier(index, pairs, times, contact, order[position - 1]):
+            order[position] = order[position - 1]
+            position -= 1
+        order[position] = contact
 
 
 @inner_kernel
@@ -152,20 +152,20 @@ def merge(index, pairs, times, order, room, low, middle, high):
     """Merge order[low:middle] with order[middle:high]."""
     for n in range(low, middle):
         room[n] = order[n]
-    left, right = low, middle
-    place = low
-    while left < middle and right < high:
-        if earlier(index, pairs, times, order[right], room[left]):
-            order[place] = order[right]
-            right += 1
+    lower, upper = low, middle
+    position = low
+    while lower < middle and upper < high:
+        if earlier(index, pairs, times, order[upper], room[lower]):
+            order[position] = order[upper]
+            upper += 1
         else:
-            order[place] = room[left]
-            left += 1
-        place += 1
-    while left < middle:
-        order[place] = room[left]
-        left += 1
-        place += 1
+            order[position] = room[lower]
+            lower += 1
+        position += 1
+    while lower < middle:
+        order[position] = room[lower]
+        lower += 1
+        position += 1
 
 
 @inner_allocating_kernel
@@ -224,8 +224,8 @@ def collide_smooth(particles, i, j, contact, model, tally):
     """
     ago, rr, rv = contact
     space = model.space
-    one, other = particles.index[i], particles.index[j]
-    to_i, to_j, passed = impulse_factors(rr, rv, particles.masses[one], particles.masses[other])
+    first, second = particles.index[i], particles.index[j]
+    to_i, to_j, passed = impulse_factors(rr, rv, particles.masses[first], particles.masses[second])
     add(tally.sums, LOSS, 0.25 * (1.0 - model.normal * model.normal) * passed * abs(rv) / rr)
     to_i, to_j = to_i * model.impulse_share, to_j * model.impulse_share
     add(tally.sums, VIRIAL, passed * model.impulse_share)
@@ -255,8 +255,8 @@ def collide(particles, i, j, contact, model, tally, law):
 def count_fixed(particles, i, j, tally, fixed):
     """Count a contact with a fixed particle."""
     if fixed is not None:
-        one, other = particles.masses[particles.index[i]], particles.masses[particles.index[j]]
-        tally.counts[FIXED] += one == np.inf or other == np.inf
+        first, second = particles.masses[particles.index[i]], particles.masses[particles.index[j]]
+        tally.counts[FIXED] += first == np.inf or second == np.inf
 
 
 @inner_helper

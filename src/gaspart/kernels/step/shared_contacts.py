@@ -150,12 +150,12 @@ def resolve_parts(particles, contacts, lengths, periodic, numbers, step, tally, 
 
 
 @inner_allocating_kernel
-def resolve_shared(particles, found, model, step, tally, cells):
+def resolve_shared(particles, ordered_pairs, model, step, tally, cells):
     """Perform `resolve_all` with several threads.
 
-    found : pairs and their order
+    ordered_pairs : pairs and their order
     """
-    (pairs, order), threads, space = found, len(cells.listed), model.space
+    (pairs, order), threads, space = ordered_pairs, len(cells.listed), model.space
     contacts = Contacts(
         pairs,
         order,
@@ -175,7 +175,7 @@ def resolve_shared(particles, found, model, step, tally, cells):
 
 
 @inner_allocating_kernel
-def resolve_found(particles, found, model, step, tally, threads, law, cells):
+def resolve_found(particles, ordered_pairs, model, step, tally, threads, law, cells):
     """Resolve the pairs of one search, in their order.
 
     The work is shared among threads if there are several threads and a list, and contacts are smooth.
@@ -183,6 +183,6 @@ def resolve_found(particles, found, model, step, tally, threads, law, cells):
     if law is None:
         if cells is not None:
             if threads is not None:
-                resolve_shared(particles, found, model, step, tally, cells)
+                resolve_shared(particles, ordered_pairs, model, step, tally, cells)
                 return
-    resolve_all(particles, found[0], found[1], model, step, tally, law, cells)
+    resolve_all(particles, ordered_pairs[0], ordered_pairs[1], model, step, tally, law, cells)

@@ -20,7 +20,7 @@ from gaspart.kernels.step.model import (
     FASTEST,
     PAIR_TESTS,
     REBUILDS,
-    Found,
+    Overlaps,
     StepModel,
     copy,
     copy_periodic_rows,
@@ -39,7 +39,7 @@ _BLOCK = 1024  # pairs that are tested before the touching ones are examined
 @inner_allocating_kernel
 def room_for(threads, room, like):
     """Return empty arrays for contacts to resolve."""
-    return Found(
+    return Overlaps(
         np.empty((threads, room, 2), np.uint32),
         np.empty((threads, room), like.dtype),
         np.zeros(threads, np.int64),
@@ -111,26 +111,28 @@ def list_shared(particles, cells, pairs, lengths, periodic, margin, tests):
 
 
 @inner_helper
-def search_part(particles, cells, pairs, space, step, found, part):
+def search_part(particles, cells, pairs, space, step, overlaps, part):
     """Search one thread's list; see `search_pairs`."""
-    search_pairs(particles, pairs[part, : cells.listed[part]], space, step, found, part)
+    search_pairs(particles, pairs[part, : cells.listed[part]], space, step, overlaps, part)
 
 
 @inner_parallel_kernel
-def search_shared(particles, cells, pairs, lengths, periodic, margin, step, found):
+def search_shared(particles, cells, pairs, lengths, periodic, margin, step, overlaps):
     """Perform `search_part` for the whole list."""
     for part in prange(len(pairs)):
-        search_part(particles, cells, pairs, Space(lengths, periodic, margin), step, found, part)
+        search_part(particles, cells, pairs, Space(lengths, periodic, margin), step, overlaps, part)
 
 
 @inner_allocating_kernel
-def search_list(particles, pairs, space, step, found, threads, cells):
+def search_list(particles, pairs, space, step, overlaps, threads, cells):
     """Search the whole list, if there is one."""
     if cells is not None:
         if threads is None:
-            search_part(particles, cells, pairs, space, step, found, 0)
+            search_part(particles, cells, pairs, space, step, overlaps, 0)
         else:
-            search_shared(particles, cells, pairs, space.lengths, space.periodic, space.margin, step, found)
+            search_shared(
+                particles, cells, pairs, space.lengths, space.periodic, space.margin, step, overlaps
+            )
 
 
 @inner_kernel
@@ -244,15 +246,15 @@ def make_list(particles, cells, pairs, space, tally, threads):
 
 
 @inner_allocating_kernel
-def gathered(found):
+def gather_overlaps(overlaps):
     """Collect the pairs (n, 2) and times (n,) that the threads have found."""
-    number = found.number.sum()
+    number = overlaps.number.sum()
     pairs = np.empty((number, 2), np.uint32)
-    times = np.empty(number, found.times.dtype)
+    times = np.empty(number, overlaps.times.dtype)
     n = 0
-    for part in range(len(found.number)):
-        for k in range(found.number[part]):
-            pairs[n, 0], pairs[n, 1] = found.pairs[part, k, 0], found.pairs[part, k, 1]
-            times[n] = found.times[part, k]
+    for part in range(len(overlaps.number)):
+        for k in range(overlaps.number[part]):
+            pairs[n, 0], pairs[n, 1] = overlaps.pairs[part, k, 0], overlaps.pairs[part, k, 1]
+            times[n] = overlaps.times[part, k]
             n += 1
     return pairs, times
