@@ -68,7 +68,7 @@ def _scan_time(axis: Axes, scan: Table, near: Table) -> None:
     if np.isfinite(interval[1]):
         axis.axvspan(*interval, color=style.GREY, alpha=0.25, lw=0)
     source = scan.source_boxes_per_particle * particles
-    axis.axvline(source, color=_SOURCE, linestyle="--", ymax=0.45, label="F & M")
+    axis.axvline(source, color=_SOURCE, linestyle="--", ymax=0.45, label="number of F & M")
     axis.set(xscale="log", yscale="log")
     style.label_axes(axis, y="time per particle and step (ns)", legend="upper right")
 
@@ -91,7 +91,7 @@ def _scan_work(axis: Axes, scan: Table, near: Table) -> None:
     colour = style.COLOURS[1]
     handles += axis.plot(boxes, scan.in_reach, color=colour, linestyle="--", label="boxes within reach")
     handles += axis.plot(boxes, scan.touched, color=colour, linestyle=":", label="boxes touched (F & M)")
-    axis.set(yscale="log", ylabel="per particle and step", ylim=(0.01, 1e8))
+    axis.set(yscale="log", ylabel="number per particle and step", ylim=(0.01, 1e8))
     axis.legend(handles=handles, loc="upper right")
 
 
@@ -115,7 +115,7 @@ def _sectors(axis: Axes, scan: Table) -> None:
     style.points(axis, sectors, scan.sector_crossings, kind=2, linestyle="-", label="crossings")
     look: dict[str, Any] = {"color": style.DATA, "marker": "X", "linestyle": "-", "label": "time (µs)"}
     style.points(axis, sectors, scan.sector_seconds * _US, **look)
-    axis.set(xscale="log", yscale="log", xlabel="number of sectors", ylabel="event-driven, per event")
+    axis.set(xscale="log", yscale="log", xlabel="number of sectors", ylabel="per event (event-driven)")
     axis.set_ylim(top=6e5)
     axis.legend(loc="upper right", ncols=2, columnspacing=0.8)
 

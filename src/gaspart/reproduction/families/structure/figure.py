@@ -96,7 +96,7 @@ def chemical_potential(ds: xr.Dataset) -> Figure:
     style.label_axes(upper, y=r"$\mu_\mathrm{excess}/kT$", legend="best")
     style.label_axes(ratio, density, "insertion / integral", xlim=(0.0, None), ylim=(0.97, 1.03))
     chance.set(yscale="log", xlim=(0.0, None), ylim=(1e-16, 3.0))  # with room for the legend
-    style.label_axes(chance, density, "chance of an insertion", "lower left")
+    style.label_axes(chance, density, "probability of insertion", "lower left")
     style.label_axes(partition, density, r"$-\ln Q/N$", "best", xlim=(0.0, None))
     style.letters(*axes)
     return figure
