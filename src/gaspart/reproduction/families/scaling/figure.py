@@ -32,7 +32,7 @@ def naive_scaling(ds: xr.Dataset) -> Figure:
     style.level(bottom, test * _NS)
     style.points(bottom, count, each, color=style.DATA)
     high = 1.6 * each.value.max()
-    style.label_axes(bottom, "number of particles $N$", "per test (ns)", ylim=(0.0, high))
+    style.label_axes(bottom, "number of particles $N$", "time per test (ns)", ylim=(0.0, high))
     style.letters(top, bottom)
     return figure
 
@@ -142,7 +142,7 @@ def ideal_boxes(ds: xr.Dataset) -> Figure:
         style.points(bottom, gas.boxes_per_particle, time, kind=kind, linestyle="-", label=label)
     bottom.axvspan(7.0, 10.0, **source)
     bottom.set(xscale="log", ylim=(0.9, 4.5))
-    style.label_axes(bottom, "boxes per particle", "time over the least", "upper center")
+    style.label_axes(bottom, "boxes per particle", "time / least time", "upper center")
     style.letters(top, bottom)
     return figure
 
@@ -196,7 +196,7 @@ def linear_scaling(ds: xr.Dataset) -> Figure:
     number = "number of particles $N$"
     style.label_axes(top, number, "time per step (s)", "upper left")
     middle.set(xscale="log", yscale="log", ylabel="time per particle (ns)", ylim=(1.0, None))
-    bottom.set(yscale="log", ylabel="per particle", xlabel=number, ylim=(0.02, 100.0))
+    bottom.set(yscale="log", ylabel="number per particle", xlabel=number, ylim=(0.02, 100.0))
     bottom.text(0.02, 0.85, "boxes searched", transform=bottom.transAxes)
     bottom.text(0.02, 0.06, "pair tests (hollow)", transform=bottom.transAxes)
     style.letters(top, middle, bottom)

@@ -37,8 +37,8 @@ def structure(ds: xr.Dataset) -> Figure:
     density = r"packing fraction $\eta$"
     style.label_axes(g, r"distance $r/\sigma$", "$g(r)$", "best", xlim=(0.9, None))
     style.label_axes(s, r"wave number $k\sigma$", "$S(k)$", "best", xlim=(0.0, None))
-    style.label_axes(zero, density, r"$S(0)$ over $kT\,\mathrm{d}\rho/\mathrm{d}P$", "best", xlim=(0.0, None))
-    style.label_axes(contact, density, r"$g(\sigma)$ over that from $Z$", "best", xlim=(0.0, None))
+    style.label_axes(zero, density, r"$S(0)$ / ($kT\,\mathrm{d}\rho/\mathrm{d}P$)", "best", xlim=(0.0, None))
+    style.label_axes(contact, density, r"$g(\sigma)$ / $g(\sigma)$ from $Z$", "best", xlim=(0.0, None))
     style.letters(*axes)
     return figure
 
