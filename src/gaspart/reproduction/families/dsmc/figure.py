@@ -81,4 +81,6 @@ def _dense(axis: Axes, model: Table, spheres: Table) -> None:
     axis.plot(curve, ratio, color=style.GREY, lw=0.8, label="Erpenbeck & Wood")
     axis.axhline(1.0, color=style.GREY, lw=0.8, ls=":")
     room = (0.95, 1.7)  # for the legend
-    style.label_axes(axis, r"packing fraction $\eta$", "ratio to Enskog's theory", legend="upper left", ylim=room)
+    style.label_axes(
+        axis, r"packing fraction $\eta$", "ratio to Enskog's theory", legend="upper left", ylim=room
+    )
