@@ -10,7 +10,7 @@ from gaspart import theory
 from gaspart.accuracy import models
 from gaspart.analysis.estimate import Estimate
 from gaspart.engines.dsmc.defaults import contact_values
-from gaspart.reproduction.families.tradeoff import flows, relaxation, uniform
+from gaspart.reproduction.families.tradeoff import choices, maps, uniform
 from gaspart.reproduction.families.tradeoff.choices import PARTS, Choice, cheapest
 from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.point import Point
@@ -101,35 +101,35 @@ def flow(engine, value, error=0.001, bounds=(0.0, 0.0), **changes):
         "observable": "heat_flux", "packing_fraction": 0.1, "time_step": 0.1, "count": 500, "variance": 2.0,
         "contacts": 1000.0, "decay": 3.0, "shortest": 3.0,
     }  # fmt: skip
-    return flows.Flow(engine=engine, value=Estimate(value, error, 20.0), bounds=bounds, **numbers | changes)
+    return maps.Flow(engine=engine, value=Estimate(value, error, 20.0), bounds=bounds, **numbers | changes)
 
 
 def test_an_error_is_bounded_by_theory_or_by_what_is_seen():
     event = flow("event", 1.0)
     seen = 0.02 + 2.0 * math.hypot(0.001 / 1.02, 0.001) * 1.02
-    assert flows.errors_of(flow("boltzmann", 1.02, bounds=(0.3, 0.005)), event) == pytest.approx(
+    assert maps.errors_of(flow("boltzmann", 1.02, bounds=(0.3, 0.005)), event) == pytest.approx(
         (seen - 0.005, 0.005), rel=1e-3
     )
-    assert flows.errors_of(flow("boltzmann", 1.02, bounds=(0.004, 0.001)), event) == (0.004, 0.001)
-    assert flows.errors_of(flow("step", 1.02, bounds=(0.0, math.inf)), event)[1] == pytest.approx(
+    assert maps.errors_of(flow("boltzmann", 1.02, bounds=(0.004, 0.001)), event) == (0.004, 0.001)
+    assert maps.errors_of(flow("step", 1.02, bounds=(0.0, math.inf)), event)[1] == pytest.approx(
         seen, rel=1e-3
     )
-    assert flows.errors_of(event, event) == (0.0, 0.0)
+    assert maps.errors_of(event, event) == (0.0, 0.0)
 
 
 def test_a_flow_costs_its_variance_and_settles_first():
     speeds = {"event": Estimate(1e-3, 1e-5), "enskog": Estimate(2e-3, 1e-5)}
-    made = list(flows.choices([flow("event", 1.0), flow("enskog", 1.0), flow("step", 1.0)], 1000, speeds))
+    made = list(maps.choices([flow("event", 1.0), flow("enskog", 1.0), flow("step", 1.0)], 1000, speeds))
     assert [one.engine for one in made] == ["event", "enskog"]
     assert made[0].unit == pytest.approx(2.0 * 1e-3) and made[1].unit == pytest.approx(4.0e-3)
     assert made[0].least == pytest.approx(3.0 * 1e-3 * 2.0)  # of twice as many particles
-    assert made[0].equilibration == pytest.approx(flows.SETTLED * made[0].decay)
+    assert made[0].equilibration == pytest.approx(maps.SETTLED * made[0].decay)
     assert made[0].uncertainty == pytest.approx(0.01)
 
 
 def test_rarer_collisions_make_speeds_relax_later():
-    assert relaxation.relaxation_time(1.0) == pytest.approx(1.618, abs=0.002)
-    assert relaxation.relaxation_time(2.0) > 1.2 * relaxation.relaxation_time(1.0)
+    assert choices.relaxation_time(1.0) == pytest.approx(1.618, abs=0.002)
+    assert choices.relaxation_time(2.0) > 1.2 * choices.relaxation_time(1.0)
 
 
 def point(folder, **settings):
@@ -143,8 +143,8 @@ def point(folder, **settings):
 def test_relaxation_of_a_small_gas(tmp_path):
     run = {"count": 400, "speed": math.sqrt(3.0), "collisions_per_particle": 3, "samples": 12, "replicas": 4}
     made = point(tmp_path, engine="event", **run)
-    found = flows.relaxation_of(made)
-    assert abs((found.value - relaxation.relaxation_time(1.0)).deviation) < 4.0
+    found = maps.relaxation_of(made)
+    assert abs((found.value - choices.relaxation_time(1.0)).deviation) < 4.0
     rate = float(theory.collision_rate(0.1, 3))
     assert found.contacts == pytest.approx(0.5 * 400 * rate, rel=0.1)
     assert found.bounds == (0.0, 0.0) and found.decay == 0.0
