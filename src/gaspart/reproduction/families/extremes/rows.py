@@ -9,7 +9,7 @@ from functools import partial
 from typing import Any
 
 from gaspart.scene.container import Container
-from gaspart.scene.geometry import CLOSE_PACKING
+from gaspart.scene.limits import CLOSE_PACKING
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Particle, Species
