@@ -1,4 +1,4 @@
-"""Drives of a gas: a uniform force along a periodic axis with its sinks, and a stochastic thermostat."""
+"""Drives of a gas: a uniform force along a periodic axis, and a stochastic thermostat."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sums of stress, heat flux and impulses under the event-driven engine, and sums for each area of a face."""
+"""Sums of stress, heat flux and impulses, and sums for each area of a face."""
 
 from __future__ import annotations
 

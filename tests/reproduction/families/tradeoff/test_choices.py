@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from gaspart import theory
-from gaspart.accuracy import models
+from gaspart.accuracy import tabulated
 from gaspart.analysis.estimate import Estimate
 from gaspart.engines.dsmc.defaults import contact_values
 from gaspart.reproduction.families.tradeoff import choices, maps, uniform
@@ -54,7 +54,7 @@ def test_the_cheapest_choice_is_the_least_biased_one_where_none_reaches():
 def test_the_boltzmann_equation_lacks_contact_value_and_virial(dimension, order):
     """order: of the contact value, 1 + order x packing fraction."""
     z, contact = (float(f(0.1, dimension)) for f in (theory.compressibility_factor, theory.contact_value))
-    error = partial(models.model_error, dimension=dimension, equation="boltzmann")
+    error = partial(tabulated.model_error, dimension=dimension, equation="boltzmann")
     assert error(0.1, observable="Z") == pytest.approx(1.0 - 1.0 / z)
     assert error(0.1, observable="collision_rate") == pytest.approx(1.0 - 1.0 / contact)
     assert error(1e-3, observable="collision_rate") == pytest.approx(1e-3 * order, rel=0.005)
@@ -67,17 +67,17 @@ def test_the_enskog_model_errs_by_the_contact_value_that_its_engine_has(dimensio
     radius, density = np.array([0.5]), np.array([0.3 / theory.particle_volume(dimension)])
     given = contact_values(density, radius, dimension).item()
     error = abs(given / float(theory.contact_value(0.3, dimension)) - 1.0)
-    found = models.model_error(0.3, dimension, "enskog", "collision_rate")
+    found = tabulated.model_error(0.3, dimension, "enskog", "collision_rate")
     assert 0.0 < found < 0.004 and found == pytest.approx(error, rel=1e-9)
-    assert 0.0 < models.model_error(0.3, dimension, "enskog", "Z") < found
+    assert 0.0 < tabulated.model_error(0.3, dimension, "enskog", "Z") < found
 
 
 def test_both_models_lack_the_memory_of_collisions_in_d():
     ratio = float(theory.erpenbeck_wood_ratio(0.3))
     exact = 1.0 - 1.0 / ratio + theory.ERPENBECK_WOOD_UNCERTAINTY
-    assert models.model_error(0.3, 3, "enskog", "D") == pytest.approx(exact, rel=0.02)
-    assert models.model_error(1e-6, 3, "boltzmann", "D") < 1e-5
-    assert models.model_error(0.01, 2, "boltzmann", "D") == math.inf  # discs have no D
+    assert tabulated.model_error(0.3, 3, "enskog", "D") == pytest.approx(exact, rel=0.02)
+    assert tabulated.model_error(1e-6, 3, "boltzmann", "D") < 1e-5
+    assert tabulated.model_error(0.01, 2, "boltzmann", "D") == math.inf  # discs have no D
 
 
 def test_what_the_size_leaves_falls_with_it():
@@ -93,7 +93,7 @@ def test_steps_of_a_fifth_of_a_free_time():
     step = 0.2 / float(theory.collision_rate(0.001, 3))
     moved = 0.2 * math.sqrt(math.pi) / 2.0
     expected = 4.0 / (27.0 * math.pi) * moved**2
-    assert models.step_error(0.001, step) == pytest.approx(expected, rel=0.01)
+    assert tabulated.step_error(0.001, step) == pytest.approx(expected, rel=0.01)
 
 
 def flow(engine, value, error=0.001, bounds=(0.0, 0.0), **changes):

@@ -1,4 +1,4 @@
-"""Gap between two thermal walls: its size, averages over blocks of time, and the approach to a steady state.
+"""Gap between two thermal walls: size, averages over blocks of time, approach to a steady state.
 
 The averages are of its particles and walls. The walls are the two faces of the first axis. Positions count
 from the hot one on, where centres can be.

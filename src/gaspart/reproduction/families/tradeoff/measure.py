@@ -14,8 +14,8 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.accuracy import table
-from gaspart.accuracy.models import model_error
 from gaspart.accuracy.table import EQUILIBRATION, LEAST, PRECISIONS, REFERENCE, STEP
+from gaspart.accuracy.tabulated import model_error
 from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction import table as tables

@@ -17,8 +17,8 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.accuracy import table
-from gaspart.accuracy.models import model_error, step_error
 from gaspart.accuracy.table import EQUILIBRATION, LEAST, PRECISIONS
+from gaspart.accuracy.tabulated import model_error, step_error
 from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import mean_of
