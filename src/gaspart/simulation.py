@@ -128,7 +128,7 @@ class Simulation:
 
     def _set_up(self) -> None:
         """Set up the initial state and the engine."""
-        self.engine = self._asked.resolved(self.scene)
+        self.engine = self._asked.for_scene(self.scene)
         if self._given is None:
             self._initial = initial_state(self.scene, self.seed)
         else:

@@ -174,7 +174,7 @@ def test_a_gas_is_run_until_it_is_accurate(whole):
         frames = data.sizes["frame"]
     assert is_examined(frames) and frames > 64
     for one, asked, observable in zip(reached, ASKED, measured, strict=True):
-        assert one.asked == asked and one.met and one.accuracy <= asked.accuracy
+        assert one.request == asked and one.met and one.accuracy <= asked.accuracy
         assert one.value == float(observable.estimate) and one.error >= float(observable.error)
         low, high = one.interval
         assert abs(one.value - float(observable.theory)) < high - low

@@ -13,7 +13,7 @@ import numpy as np
 
 from gaspart.analysis.flow import ABOUT
 from gaspart.analysis.measuring import measure, until_time
-from gaspart.analysis.observables import ALIASES, OBSERVABLES, known, selecting, selections
+from gaspart.analysis.observables import ALIASES, OBSERVABLES, observable_name, selecting, selections
 from gaspart.cli.arguments import (
     Parser,
     UsageError,
@@ -126,7 +126,7 @@ def _split_words(options: argparse.Namespace) -> tuple[list[str], list[str]]:
         )
     if late := [argument for argument in names if _is_file(argument)]:
         raise UsageError(f"{late[0]!r}: files stand before the names of observables")
-    return files, [name if name == _FIELD else known(name) for name in names]
+    return files, [name if name == _FIELD else observable_name(name) for name in names]
 
 
 def _measure(options: argparse.Namespace) -> None:

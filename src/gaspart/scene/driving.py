@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
-from gaspart.keys import declared, positive, validate
+from gaspart.keys import declare, positive, validate
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -111,9 +111,9 @@ class Thermostat:
     0.1
     """
 
-    power: float = field(metadata=declared(positive("mean energy per time that a particle is given")))
+    power: float = field(metadata=declare(positive("mean energy per time that a particle is given")))
     interval: float = field(
-        metadata=declared(positive("time between kicks: short compared with that between contacts"))
+        metadata=declare(positive("time between kicks: short compared with that between contacts"))
     )
 
     def __post_init__(self) -> None:

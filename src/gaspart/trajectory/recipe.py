@@ -118,7 +118,7 @@ class Recipe:
             if getattr(self, key):
                 refuse_open(self.scene, f"excludes {key}: the particles change")
         finest = self.correlations.interval if self.correlations else self.sample_interval
-        object.__setattr__(self, "engine", self.engine.resolved(self.scene, finest))
+        object.__setattr__(self, "engine", self.engine.for_scene(self.scene, finest))
         if self.engine.quantum:
             multiple("sample_interval", self.sample_interval, "time_step", self.engine.quantum)
         if self.frames > amber.MOST_FRAMES:

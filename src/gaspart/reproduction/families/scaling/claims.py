@@ -52,7 +52,7 @@ def remarks(ds: xr.Dataset) -> list[Claim]:
             bound=1.0,
             required=0.1,
             source=f"{SOURCE_A}, section 2.3: to search fewer boxes is a possible improvement",
-            why="whether a box is within reach costs more to decide than the box, mostly empty, to look into",
+            source_error="a test of the distance to a box costs more than a look into it: most are empty",
             fails_if="leaving out boxes costs more than looking into them",
         ),
         Claim.at_most(
@@ -78,7 +78,7 @@ def remarks(ds: xr.Dataset) -> list[Claim]:
             bound=1.05,
             required=0.05,
             source=f"{SOURCE_A}, section 4.2: a negligible effect",
-            why=OTHER_MACHINE,
+            source_error=OTHER_MACHINE,
             fails_if="a further test per particle costs more than a twentieth of a step",
         ),
     ]
@@ -140,7 +140,7 @@ def _exponents(series: Table) -> list[Claim]:
         expected=1.0,
         half_width=0.4,
         source=f"{SOURCE_A}, figures 5 to 7: linear",
-        why=OTHER_MACHINE,
+        source_error=OTHER_MACHINE,
         fails_if="the ideal number per particle depends on N, as when caches overflow",
     )
 
@@ -156,7 +156,7 @@ def _plateaus(plateaus: Table) -> list[Claim]:
         bound=1.05,
         required=0.05,
         source=f"{SOURCE_A}, section 3.4: so many are ideal in all of this range",
-        why=OTHER_MACHINE,
+        source_error=OTHER_MACHINE,
         fails_if="the ideal number follows N, or is another",
     )
 
@@ -177,7 +177,7 @@ def _source_numbers(source: Row, origin: str) -> list[Claim]:
             required=0.3 * source.source_ideal,
             source=origin,
             allowance_source="read from the source's figure to 10 %",
-            why=OTHER_MACHINE,
+            source_error=OTHER_MACHINE,
             fails_if="another machine or program has other relative costs of tests and boxes",
         ),
         Claim.at_most(
@@ -187,7 +187,7 @@ def _source_numbers(source: Row, origin: str) -> list[Claim]:
             bound=1.1,
             required=0.05,
             source=origin,
-            why=OTHER_MACHINE,
+            source_error=OTHER_MACHINE,
             fails_if="the source's number is far from the minimum on this machine",
         ),
     ]
@@ -255,7 +255,7 @@ def box_count(ds: xr.Dataset) -> list[Claim]:
         bound=1.05,
         required=0.05,
         source=f"{SOURCE_A}, figure 6 at this number of particles",
-        why=OTHER_MACHINE,
+        source_error=OTHER_MACHINE,
         fails_if="the source's number is far from the flat minimum on this machine",
     )
     sectors = _sectors(scan.crossing_searches, scan.crossing_exponent)
@@ -354,7 +354,7 @@ def linear_scaling(ds: xr.Dataset) -> list[Claim]:
             expected=math.log10(parts.source_years * YEAR),
             required=0.1,
             source=f"{SOURCE_A}, section 3.4: {parts.source_years:g} years instead of a second",
-            why="no count of the work of one step gives it: it is what about a thousand steps would take",
+            source_error="no count of the work of one step gives it: a thousand steps would take so long",
             fails_if="the source's years are not those of one step",
         ),
     ]
@@ -385,7 +385,7 @@ def _regime(part: Row, number: int) -> Claim:
             bound=1.0,
             required=0.15,
             source=f"{source}: superlinear",
-            why="caches of this machine are larger",
+            source_error="caches of this machine are larger",
             fails_if="larger gases are no slower per particle",
         )
     return Claim.within(
@@ -395,7 +395,7 @@ def _regime(part: Row, number: int) -> Claim:
         expected=1.0,
         half_width=0.1,
         source=f"{source}: linear",
-        why="the same operations are more expensive in memory than in the caches",
+        source_error="the same operations are more expensive in memory than in the caches",
         fails_if="the time per particle depends on N, as when caches overflow",
     )
 
