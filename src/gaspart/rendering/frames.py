@@ -264,8 +264,6 @@ def parameters_of(scene: Scene) -> tuple[str, ...]:
         texts.append(f"gravity {math.hypot(*scene.gravity):.3g}")
     if scene.restitution is not None:
         texts.append(f"restitution {scene.restitution.normal:.3g}")
-    if wall := scene.moving_wall:
-        texts.append(f"a wall of mass {wall.mass:.3g} moves")
     return tuple(texts)
 
 
