@@ -273,7 +273,9 @@ def check_walls(scene: Scene) -> None:
         if not isinstance(wall, wall_kind(scene.container)):
             raise SceneError(f"walls[{n}]", wall, WALL_RULE)
         if scene.centres_to_walls:
-            raise SceneError("centres_to_walls", True, "interior walls stop the surfaces of particles")
+            raise SceneError(
+                "centres_to_walls", True, "excludes interior walls, which stop surfaces of particles"
+            )
         for key, point in wall.corners.items():
             inside = zip(point, scene.container.lengths, strict=True)
             if not all(0.0 <= x <= length for x, length in inside):
