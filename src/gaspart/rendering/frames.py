@@ -218,7 +218,7 @@ def particles_of(source: State | Simulation | Scene | xr.Dataset, frame: int = -
         return _of_state(initial_state(source, 0), source)
     frames = source.sizes["frame"]
     if not -frames <= count_of("frame", frame, least=-frames) < frames:
-        raise SceneError("frame", frame, f"the trajectory has {frames}, counted from 0")
+        raise SceneError("frame", frame, f"must be one of {frames} frames, counted from 0")
     names = ("coordinates", "velocities", "time", "piston_position")
     # Of these alone: xarray takes milliseconds for a frame of the whole.
     variables = {name: source.variables[name][frame].values for name in names if name in source.variables}
