@@ -462,7 +462,7 @@ class Simulation:
         (10,)
         """
         if not any(optional_tally.name == tally for optional_tally in self.tallies):
-            raise SceneError(tally, False, "was not asked for when the simulation was made")
+            raise SceneError(tally, False, "was not requested; name the tally when the simulation is made")
         return self._dynamics.sums_of(tally)
 
     def reset_tally(self) -> None:

@@ -150,7 +150,7 @@ class Scene(Facts):
         if isinstance(self.faces, dict):
             set_fields(self, faces={key_of(name): face for name, face in self.faces.items()})
         if self.count > MOST_PARTICLES:
-            raise SceneError("count", self.count, f"there may be {MOST_PARTICLES} particles")
+            raise SceneError("count", self.count, f"must be at most {MOST_PARTICLES}")
         self._check_gravity()
         check_walls(self)
         check_faces(self)

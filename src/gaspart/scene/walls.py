@@ -57,9 +57,11 @@ def check_moving_wall(scene: Scene) -> None:
             continue
         key, lengths = f"walls[{n}].mass", scene.container.lengths
         if len(scene.walls) > 1:
-            raise SceneError(key, wall.mass, "a wall that moves must be the only interior wall")
+            raise SceneError(key, wall.mass, "must be the only interior wall, since it moves")
         if wall.temperature is not None:
-            raise SceneError(key, wall.mass, "a wall that moves has no temperature: it is smooth and elastic")
+            raise SceneError(
+                key, wall.mass, "excludes a temperature; a wall that moves is smooth and elastic"
+            )
         axis = crossed_axis(wall, lengths)
         if axis < 0:
             rule = "a wall that moves must reach across the whole container, at right angles to an axis"
@@ -327,7 +329,9 @@ def check_walls(scene: Scene) -> None:
         if not isinstance(wall, wall_kind(scene.container)):
             raise SceneError(f"walls[{n}]", wall, WALL_RULE)
         if scene.centres_to_walls:
-            raise SceneError("centres_to_walls", True, "interior walls stop the surfaces of particles")
+            raise SceneError(
+                "centres_to_walls", True, "excludes interior walls, which stop surfaces of particles"
+            )
         for key, point in wall.corners.items():
             inside = zip(point, scene.container.lengths, strict=True)
             if not all(0.0 <= x <= length for x, length in inside):
