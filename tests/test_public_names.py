@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import gaspart as gp
-from gaspart.analysis.observables import ALIASES, OBSERVABLES, known
+from gaspart.analysis.observables import ALIASES, OBSERVABLES, observable_name
 from gaspart.public import entries, read_stub
 
 ROOT = Path(__file__).parents[1]
@@ -73,7 +73,7 @@ def test_no_module_hides_an_observable():
         import_module(module.name)
     for name in (*OBSERVABLES, *ALIASES):
         if name.isidentifier() and hasattr(gp.analysis, name):
-            function = OBSERVABLES[known(name)].function
+            function = OBSERVABLES[observable_name(name)].function
             expected = name if function == "profile" else function
             assert getattr(gp.analysis, name).__name__ == expected
     assert set(OBSERVABLES) <= set(gp.analysis.__all__)
@@ -81,12 +81,12 @@ def test_no_module_hides_an_observable():
 
 @pytest.mark.parametrize("name", ["compressibility_factor", "viscosity", "wall_pressure"])
 def test_an_alias_names_its_observable(name):
-    assert known(name) in OBSERVABLES
+    assert observable_name(name) in OBSERVABLES
 
 
 def test_an_accuracy_takes_aliases():
     assert gp.Accuracy("compressibility_factor", 1e-2).observable == "Z"
-    with pytest.raises(gp.SceneError, match="temperature.*ends no run.*give a duration, and measure"):
+    with pytest.raises(gp.SceneError, match="temperature.*does not end a run.*give a duration and measure"):
         gp.Accuracy("temperature", 1e-2)
 
 

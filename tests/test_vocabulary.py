@@ -57,8 +57,8 @@ def test_a_face_has_two_names():
     )
     with pytest.raises(gp.SceneError, match="faces.up = .*unknown face; known are x_low"):
         gp.Scene(BOX, faces={"up": WARM})
-    assert gp.Accuracy("pressure", 0.1, face="x_low") == gp.Accuracy.named("pressure:x low", 0.1)
-    assert gp.Accuracy.named("pressure:x_low", 0.1).name == "pressure:x low"
+    assert gp.Accuracy("pressure", 0.1, face="x_low") == gp.Accuracy.from_name("pressure:x low", 0.1)
+    assert gp.Accuracy.from_name("pressure:x_low", 0.1).name == "pressure:x low"
     assert Target.from_name(SCENE, "pressure:x_low") == Target.from_name(SCENE, "pressure: x low")
     along = {"face": (np.array(["x low", "x high"]), {})}
     found = observable("p", along, np.array([1.0, 2.0]), np.zeros(2), units="1", long_name="p")

@@ -130,7 +130,7 @@ class Simulation:
 
     def _set_up(self) -> None:
         """Set up the initial state and the engine."""
-        self.engine = self._asked.resolved(self.scene)
+        self.engine = self._asked.for_scene(self.scene)
         if self._given is None:
             self._initial = initial_state(self.scene, self.seed)
         else:
@@ -464,7 +464,7 @@ class Simulation:
         (10,)
         """
         if not any(optional_tally.name == tally for optional_tally in self.tallies):
-            raise SceneError(tally, False, "was not asked for when the simulation was made")
+            raise SceneError(tally, False, "was not requested; name the tally when the simulation is made")
         return self._dynamics.sums_of(tally)
 
     def reset_tally(self) -> None:

@@ -86,7 +86,7 @@ def test_dilute_spheres_take_the_model_that_is_accurate_enough():
         advice(0.003, accuracy, observable, count=4000).best.engine.time_step
         for observable, accuracy in (("collision_rate", 0.03), ("D", 0.04), ("D", 0.015))
     ]
-    own = DSMC().resolved(gas(0.003, count=4000)).time_step
+    own = DSMC().for_scene(gas(0.003, count=4000)).time_step
     assert steps[0] == 4.0 * own and steps[0] > steps[1] > steps[2]  # they change D, not the rate
     assert advice(0.1, 0.03, "collision_rate").best.engine.name != "dsmc"
 

@@ -111,7 +111,7 @@ def test_the_enskog_model_in_a_narrow_slit(fraction):
     cells between them."""
     scene = slit(300, fraction, 4)
     engine = gp.DSMC(model="enskog")
-    cells = engine.resolved(scene).cells_per_side
+    cells = engine.for_scene(scene).cells_per_side
     difference, error = compared(scene, engine, 100)
     found = conditions_of(scene)
     bounds = [enskog_error(asked(found, name), cells) for name in ("collision_rate", "pressure")]
@@ -167,7 +167,7 @@ def test_cells_that_are_longer_than_a_column_is_high_are_refused():
 def test_steps_that_are_longer_than_a_free_time_are_refused():
     scene = gas(2000, 0.01, SLIT, gravity=(0.0, 0.0, -0.001))
     found = conditions_of(scene)
-    own = gp.DSMC().resolved(scene)
+    own = gp.DSMC().for_scene(scene)
     require_resolved(own, found)
     free = float((found.path / found.speed).min())
     with pytest.raises(gp.SceneError, match="time_step.*local free time"):

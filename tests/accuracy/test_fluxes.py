@@ -74,4 +74,4 @@ def test_what_vanishes_is_refused(scene, observable, reason):
         plan.plan(scene, observable, 0.1, pilot_seconds=0.1)
     if OBSERVABLES[observable.partition(":")[0]].ends_runs:
         with pytest.raises(gp.SceneError, match=reason):
-            require_measurable(gp.Accuracy.named(observable, 0.1), scene, gp.EventDriven())
+            require_measurable(gp.Accuracy.from_name(observable, 0.1), scene, gp.EventDriven())

@@ -32,7 +32,7 @@ def paths(folder, made, **options):
 
 def statuses(files, name):
     """The status of each pair of runs."""
-    asked, found = (gp.Accuracy.named(name, 0.1),), []
+    asked, found = (gp.Accuracy.from_name(name, 0.1),), []
     for n in range(PAIRS):
         with opened_together(files[2 * n : 2 * n + 2]) as runs:
             found += Examiner().examine(runs, asked, runs[0].sizes["frame"])

@@ -6,11 +6,14 @@ import numpy as np
 import pytest
 
 from gaspart.accuracy import speed, table
-from gaspart.analysis.observables import having
+from gaspart.analysis.observables import observables_with
 
 
 def test_every_row_is_a_number_with_an_error_of_a_known_quantity():
-    known = {"seconds", *(f"{kind}_{name}" for kind in ("bias", "noise") for name in having(tabulated=True))}
+    known = {
+        "seconds",
+        *(f"{kind}_{name}" for kind in ("bias", "noise") for name in observables_with(tabulated=True)),
+    }
     known |= {f"price_{name}" for name in ("walls", "gravity", "spin", "two_masses", "recording", "stress")}
     assert {row["quantity"] for row in table.read()} == known
     assert all(np.isfinite((row["value"], row["error"])).all() for row in table.read())

@@ -174,7 +174,7 @@ def test_a_gas_is_run_until_it_is_accurate(whole):
         frames = data.sizes["frame"]
     assert is_examined(frames) and frames > 64
     for one, asked, observable in zip(reached, ASKED, measured, strict=True):
-        assert one.asked == asked and one.met and one.accuracy <= asked.accuracy
+        assert one.request == asked and one.met and one.accuracy <= asked.accuracy
         assert one.value == float(observable.estimate) and one.error >= float(observable.error)
         low, high = one.interval
         assert abs(one.value - float(observable.theory)) < high - low
@@ -306,7 +306,7 @@ def test_the_default_interval_is_the_time_between_collisions(tmp_path):
         ({"duration": 8.0}, "duration = 8.0: excludes until"),
         ({"until": ()}, r"until = \(\): must be a gaspart.Accuracy"),
         ({"until": "Z=0.1"}, "until = \\('Z=0.1',\\): must be a gaspart.Accuracy"),
-        ({"until": (ASKED[0], ASKED[0])}, "until = 'Z': is asked for twice"),
+        ({"until": (ASKED[0], ASKED[0])}, "until = 'Z': must be requested only once"),
         ({"at_most": 0.3}, "at_most = 0.3: must be at least the sample_interval, 0.4"),
         ({"at_most": -1.0}, "at_most = -1.0: must be positive"),
         ({"until": None, "at_most": 8.0}, "at_most = 8.0: needs until"),

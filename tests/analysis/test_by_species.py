@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.analysis.observables import having, selecting
+from gaspart.analysis.observables import observables_with, selecting
 
 SCENE = gp.Scene(
     gp.Container((9.0, 9.0, 9.0), "periodic"),
@@ -38,7 +38,7 @@ def test_a_row_for_each_species_that_moves(table):
 
 
 def test_what_accepts_a_species_has_its_value_there(path, table):
-    motion = [name for name in selecting("species") if name in having(scatter="particles")]
+    motion = [name for name in selecting("species") if name in observables_with(scatter="particles")]
     assert {"D", "msd", "vacf"} <= set(motion)
     for name in motion:
         found = gp.analysis.measuring.measure(path, name, species=1)

@@ -51,7 +51,7 @@ def test_independent_points_have_none(tmp_path):
     square = float((found.deviation**2).mean())  # of Student's t with 15 degrees of freedom
     assert square == pytest.approx(15.0 / 13.0, abs=3.0 * (2.6 / found.estimate.size) ** 0.5)
     with gp.open_trajectory(path) as data:
-        mu = A.chemical_potential(data.isel(frame=slice(0, None, 2)), places=64)
+        mu = A.chemical_potential(data.isel(frame=slice(0, None, 2)), trials=64)
     assert (np.abs(mu.deviation) < 3.0).all() and (mu.error < 0.03).all()
 
 
@@ -59,7 +59,7 @@ def test_each_species_has_its_chemical_potential(path):
     """By the equation of state of Santos and others, with the correction for 86 particles (0.03 of the large
     ones), which insertion resolves; without places near the others' surfaces it would be less by half."""
     with gp.open_trajectory(path) as data:
-        found = A.chemical_potential(data.isel(frame=slice(0, None, 2)), places=256)
+        found = A.chemical_potential(data.isel(frame=slice(0, None, 2)), trials=256)
     assert found.estimate.dims == ("species",) and (found.error < 0.02).all()
     assert (np.abs(found.estimate - found.theory) < 3.0 * found.error).all()
     assert (found["frames_with_success"] > 140).all()

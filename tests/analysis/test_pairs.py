@@ -75,7 +75,7 @@ def test_the_structure_factor_is_that_of_the_distribution_and_of_theory(fluid):
 
 
 def test_the_chemical_potential_agrees_with_theory(fluid):
-    found = A.chemical_potential(fluid, places=256)
+    found = A.chemical_potential(fluid, trials=256)
     assert abs(float(found.deviation)) < 4.0
     assert float(found.error) < 0.06 * float(found.estimate)
     assert float(found["probability"]) == pytest.approx(np.exp(-float(found.estimate)))
@@ -125,7 +125,7 @@ def test_a_crystal_has_no_room(tmp_path):
     )
     path = gp.run(scene, gp.EventDriven(), 1, 1.0, 0.02, tmp_path / "a.nc")
     with pytest.raises(gp.SceneError, match=r"packing_fraction = 0\.544.*: of 8 places in each of"):
-        A.chemical_potential(path, places=8)
+        A.chemical_potential(path, trials=8)
 
 
 def test_what_cannot_be_measured_is_refused(tmp_path):

@@ -9,7 +9,7 @@ from scipy import stats
 import gaspart as gp
 from gaspart.analysis.fields import QUANTITIES
 from gaspart.analysis.measuring import measure
-from gaspart.analysis.observables import OBSERVABLES, having, selecting
+from gaspart.analysis.observables import OBSERVABLES, observables_with, selecting
 from gaspart.errors import SceneError
 
 ROUNDED = 5e-6
@@ -17,7 +17,7 @@ ROUNDED = 5e-6
 CELLS = 4
 """Of a field, along each of its two axes."""
 COSTLY = {name: {"bins": 12} for name in ("structure_factor", "partial_structure_factors")}
-COSTLY["chemical_potential"], ENOUGH = {"places": 16}, 18
+COSTLY["chemical_potential"], ENOUGH = {"trials": 16}, 18
 """Observables of which so many frames are looked at, from the first one on, and less in each."""
 ACCUMULATED = ("msd", "vacf")
 """What a run with correlations of the motion has accumulated."""
@@ -93,7 +93,7 @@ def names():
     found += [f"{name} per axis" for name in selecting("per_axis")]
     found += [f"{name} at a lag" for name in AT_LAGS]
     found += [f"accumulated {name}" for name in ACCUMULATED]
-    found += [f"{name}{BY_IMPULSES}" for name in (*having(by_impulses=True), *BY_PAIRS)]
+    found += [f"{name}{BY_IMPULSES}" for name in (*observables_with(by_impulses=True), *BY_PAIRS)]
     return [*found, "by_species", *(f"field {of}" for of in QUANTITIES)]
 
 
@@ -103,7 +103,7 @@ def form_of(name):
         return "correlations"
     if name.endswith(BY_IMPULSES):
         return "pair_impulses" if plain_name(name) in BY_PAIRS else "impulses"
-    return "fluxes" if name in having(needs="fluxes") else "frames"
+    return "fluxes" if name in observables_with(needs="fluxes") else "frames"
 
 
 def measured(name, data, axes, start=None):

@@ -14,7 +14,7 @@ from battery import symmetries, twins
 from battery.kinds_of_runs import runs
 from battery.observed import names
 
-from gaspart.analysis.observables import having
+from gaspart.analysis.observables import observables_with
 
 FILE = Path(__file__).parents[2] / "results/docs/symmetries.csv"
 COLUMNS = ("symmetry", "observable", "state", "reason", "runs", "deviation", "unit")
@@ -23,7 +23,7 @@ SYMMETRIES = (
     "one species", "simulation", "parts", "start",
 )  # fmt: skip
 """All symmetries, in the order of the table."""
-FLUXES = having(needs="fluxes")
+FLUXES = observables_with(needs="fluxes")
 WHOLE = "(all variables of a file)"
 """In place of an observable: what a pair of runs is compared by."""
 _PARTS = (

@@ -11,7 +11,7 @@ from battery import table
 from battery.kinds_of_runs import KINDS, engines, recorded, runs
 from battery.observed import MEANS, SAMPLED, SINGLE, WITHOUT_NAME, names
 
-from gaspart.analysis.observables import having
+from gaspart.analysis.observables import observables_with
 from gaspart.engines import ENGINES
 from gaspart.inspection.energy import energy_line
 from gaspart.scene.features import FEATURES
@@ -84,7 +84,8 @@ def test_every_observable_is_tested_by_every_symmetry_somewhere():
     }
     never = set(product(names(), table.SYMMETRIES)) - tested
     split = {
-        (name, "one species") for name in (*having(merged="split"), *having(merged="lost"), "by_species")
+        (name, "one species")
+        for name in (*observables_with(merged="split"), *observables_with(merged="lost"), "by_species")
     }
     kept = [name for name in names() if name.startswith("accumulated") or name in table.FLUXES]
     short = {("mutual_diffusion", "parts")}  # of so short a run there is none

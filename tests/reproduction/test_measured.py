@@ -58,7 +58,7 @@ def test_a_missing_measurement_is_an_error(folder):
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_the_table_of_the_package_is_near_theory(dimension):
     """Z by its errors, and dilute gases' viscosity and conductivity to some per cent."""
-    rows = theory.measured("Z", dimension)
+    rows = theory.measurements("Z", dimension)
     deviation = (rows.value - theory.compressibility_factor(rows.packing_fraction, dimension)) / np.hypot(
         rows.error, theory.compressibility_uncertainty(rows.packing_fraction, dimension)
     )
@@ -67,7 +67,7 @@ def test_the_table_of_the_package_is_near_theory(dimension):
         ("viscosity", theory.enskog_viscosity),
         ("conductivity", theory.enskog_conductivity),
     ):
-        row = theory.measured(quantity, dimension)[0]
+        row = theory.measurements(quantity, dimension)[0]
         assert (
             abs(row.value / enskog(row.packing_fraction, dimension) - 1.0)
             < 0.01 + 3.0 * row.error / row.value

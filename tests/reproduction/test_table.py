@@ -8,7 +8,7 @@ import xarray as xr
 
 from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.table import Table, each, entries, from_rows, prefixed, table
+from gaspart.reproduction.table import Table, each, entries, from_rows, merge_with_prefixes, table
 
 COMMON = {"source": "theory at {eta:.2g}", "fails_if": "it is wrong", "required": 0.1}
 
@@ -55,9 +55,11 @@ def test_an_error_of_other_dimensions_is_not_that_of_the_column():
 
 
 def test_tables_with_different_rows_have_one_data_set():
-    dataset = prefixed(gas=from_rows("gas", [{"eta": 1.0}]), point=gases()).assign_attrs(order=4)
-    rows, none = Table.prefixed(dataset, "point"), Table.prefixed(dataset, "other")
-    assert dataset["point_Z"].sizes == {"point": 3} and Table.prefixed(dataset, "gas").eta.tolist() == [1.0]
+    dataset = merge_with_prefixes(gas=from_rows("gas", [{"eta": 1.0}]), point=gases()).assign_attrs(order=4)
+    rows, none = Table.from_prefixed(dataset, "point"), Table.from_prefixed(dataset, "other")
+    assert dataset["point_Z"].sizes == {"point": 3} and Table.from_prefixed(dataset, "gas").eta.tolist() == [
+        1.0
+    ]
     assert rows.Z == Table(gases(), "point").Z and rows.order == 4 and not none
     with pytest.raises(AttributeError, match="gas_eta: no such column"):
         _ = rows.gas_eta

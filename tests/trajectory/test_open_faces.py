@@ -158,7 +158,7 @@ def test_the_last_state_is_that_of_a_checkpoint(trajectory, tmp_path):
     assert np.array_equal(gp.last_state(path).positions, simulation.state.positions)
     with pytest.raises(gp.SceneError, match="x_low.*no checkpoint of its end"):
         gp.last_state(made(tmp_path / "other.nc"))
-    with pytest.raises(gp.SceneError, match="initial.*the scene has 12 in 2"):
+    with pytest.raises(gp.SceneError, match="initial.*must be as in the scene, 12 in 2"):
         gp.Simulation(DISCS, initial=simulation.state)
 
 

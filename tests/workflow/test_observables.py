@@ -11,7 +11,7 @@ import pytest
 from gaspart import analysis, theory
 from gaspart.analysis import bulk, finite
 from gaspart.analysis.declaration import DIMENSIONS, powers_of, units_in
-from gaspart.analysis.observables import OBSERVABLES, about, having
+from gaspart.analysis.observables import OBSERVABLES, about, observables_with
 from gaspart.reproduction.points.modules import PACKAGE
 from gaspart.theory.equations import carnahan_starling
 
@@ -105,8 +105,8 @@ def test_the_power_of_the_temperature_is_that_of_the_units():
 
 def test_mutual_diffusion_is_transport():
     """It was missing in one of thirteen tables."""
-    assert "mutual_diffusion" in having(memory=True)
-    assert set(having(needs="paths")) <= set(having(memory=True))
+    assert "mutual_diffusion" in observables_with(memory=True)
+    assert set(observables_with(needs="paths")) <= set(observables_with(memory=True))
 
 
 def test_the_command_line_starts_without_what_observables_need():

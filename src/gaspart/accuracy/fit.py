@@ -79,7 +79,7 @@ def _steps(accuracy: xr.Dataset) -> Iterator[dict]:
 
 def _models(accuracy: xr.Dataset) -> Iterator[dict]:
     """Yield times of the models of the DSMC engine, with its own step and longer ones."""
-    names = {engine.equation: engine.timed_as for engine in DSMC.offered()}
+    names = {engine.equation: engine.timed_as for engine in DSMC.variants()}
     for n in range(accuracy.sizes["dsmc"]):
         run = accuracy.isel(dsmc=n)
         gas = run.dsmc_dimension, run.dsmc_packing_fraction

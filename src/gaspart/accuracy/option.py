@@ -17,7 +17,7 @@ from gaspart.accuracy.target import Target
 from gaspart.analysis.observables import OBSERVABLES, require_modelled
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine, candidate_engines
-from gaspart.engines.engine import Asked, Candidate
+from gaspart.engines.engine import AccuracyRequest, Candidate
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.trajectory.recipe import MOST_REPLICAS
@@ -163,12 +163,12 @@ def candidates(
     return proposals, refused
 
 
-def make_request(target: Target, accuracy: float, conditions: Conditions) -> Asked:
+def make_request(target: Target, accuracy: float, conditions: Conditions) -> AccuracyRequest:
     """Return the request to engines for a target and an accuracy."""
     governed = depends_on_transport(target.scene, target.observable)
     presses = target.declared.of_impulses  # a force has the relative errors of a pressure
     observable = "pressure" if presses else target.observable
-    return Asked(
+    return AccuracyRequest(
         observable, accuracy, conditions, target.face, governed, target.initial,
         memory=conditions.memory, points=conditions.of_points(observable, target.face),
     )  # fmt: skip

@@ -153,8 +153,8 @@ class Plan:
         interval = float(f"{min(duration / _FRAMES, self.longest_interval):.3g}")
         if target.correlated:
             duration, interval, correlations = target.schedule(engine, duration)
-        elif quantum := engine.resolved(scene).quantum:
-            engine = engine.resolved(scene)
+        elif quantum := engine.for_scene(scene).quantum:
+            engine = engine.for_scene(scene)
             interval = max(1, round(interval / quantum)) * quantum
         until = (
             self._until(duration) if self.pilots and target.declared.ends_runs and self.affordable else None
@@ -328,5 +328,5 @@ def _least(target: Target, engine: Engine, pilot: Pilot) -> float:
     if target.correlated:
         sampled = target.schedule(engine, 0.0)[0]
     else:
-        sampled = _FRAMES * (engine.resolved(scene).quantum or 0.0)
+        sampled = _FRAMES * (engine.for_scene(scene).quantum or 0.0)
     return max(collisions, crossings, settled, sampled)

@@ -58,7 +58,7 @@ _UNCHANGED = "frames: all are the same so far, which tells no error"
 class AccuracyStatus:
     """Estimate of an observable by a run, compared with the required accuracy.
 
-    asked : requirement.
+    request : requirement.
     component : the least accurate face or axis, "" for a scalar.
     value : its value.
     noise : its standard error at the energies of the runs, correlations included, the larger one of the last
@@ -70,7 +70,7 @@ class AccuracyStatus:
     replicas : number of runs.
     """
 
-    asked: Requirement
+    request: Requirement
     component: str = ""
     value: float = math.nan
     noise: float = math.inf
@@ -123,12 +123,12 @@ class AccuracyStatus:
             return math.inf
         few = math.sqrt(LEAST_FREEDOM / self.freedom)
         noise = self._relative(self.noise) * bound(self.freedom)
-        return max(noise / noise_allowed(self.asked.accuracy, self.of_starts), few if few > 1.0 else 0.0)
+        return max(noise / noise_allowed(self.request.accuracy, self.of_starts), few if few > 1.0 else 0.0)
 
     @property
     def met(self) -> bool:
         """True if the required accuracy was reached."""
-        return self.excess <= 1.0 and self.of_starts < self.asked.accuracy
+        return self.excess <= 1.0 and self.of_starts < self.request.accuracy
 
     def _relative(self, error: float) -> float:
         """Return an error divided by the value; inf if the value is not known."""
@@ -304,7 +304,9 @@ def _is_idle(reached: list[AccuracyStatus], collisions: float) -> bool:
     return any(
         status.rule == _UNCHANGED
         or (
-            status.value == 0.0 if "face" in OBSERVABLES[status.asked.observable].along else collisions == 0.0
+            status.value == 0.0
+            if "face" in OBSERVABLES[status.request.observable].along
+            else collisions == 0.0
         )
         for status in reached
     )

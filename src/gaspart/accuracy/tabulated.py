@@ -16,7 +16,7 @@ from gaspart.accuracy.option import Option, sort_by_cost
 from gaspart.accuracy.table import EQUILIBRATION, LEAST
 from gaspart.accuracy.target import Target
 from gaspart.analysis import bulk
-from gaspart.analysis.observables import OBSERVABLES, having
+from gaspart.analysis.observables import OBSERVABLES, observables_with
 from gaspart.engines import Engine
 from gaspart.engines.engine import Candidate
 from gaspart.errors import SceneError
@@ -63,8 +63,10 @@ def tabulated_target(scene: Scene, observable: str) -> tuple[Gas, Target]:
 
     Raises SceneError for a scene, and an observable, that the table does not cover.
     """
-    if observable not in having(tabulated=True):
-        raise SceneError("observable", observable, f"must be one of {', '.join(having(tabulated=True))}")
+    if observable not in observables_with(tabulated=True):
+        raise SceneError(
+            "observable", observable, f"must be one of {', '.join(observables_with(tabulated=True))}"
+        )
     return fluid_of(scene), Target.from_name(scene, observable)
 
 

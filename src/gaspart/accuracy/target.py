@@ -15,7 +15,7 @@ from gaspart.analysis.motion import MOST_FRAMES
 from gaspart.analysis.observables import (
     OBSERVABLES,
     Named,
-    known,
+    observable_name,
     require_defined,
     require_steady_value,
     walls_of,
@@ -72,7 +72,7 @@ class Target:
         """
         observable, colon, face = str(name).partition(":")
         face = wall_of(face)
-        observable = known(observable)
+        observable = observable_name(observable)
         walls = walls_of(observable, scene)
         if scene.count:  # an empty one has no advice at all
             _require_defined(scene, observable, name)
@@ -205,7 +205,7 @@ class Target:
         frames = int(np.clip(_HELD // numbers, least, most))
         interval = min(length / frames, longest_interval)
         frames = math.ceil(length / interval * (1.0 - 1e-9))
-        if quantum := engine.resolved(self.scene).quantum:
+        if quantum := engine.for_scene(self.scene).quantum:
             interval = max(1, round(interval / quantum)) * quantum
         return frames * interval, interval, None
 
@@ -218,7 +218,7 @@ class Target:
         if not self.frequency > 0.0:
             raise SceneError("observable", self.observable, "needs particles that collide")
         sample = float(f"{_LONGEST_LAG / lags / self.frequency:.1g}")
-        if quantum := engine.resolved(self.scene, sample).quantum:
+        if quantum := engine.for_scene(self.scene, sample).quantum:
             sample = rounded_to_12_digits(max(1, round(sample / quantum)) * quantum)
         return Correlations(sample, lags, stress=self.declared.needs == "fluxes")
 

@@ -30,7 +30,7 @@ from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of
 
-PLACES = 512
+TRIALS = 512
 """Places that are tried in each frame, by default."""
 MOST_FRAMES = 2048
 """Frames, evenly spaced, in which they are tried."""
@@ -206,14 +206,14 @@ def _find_covered_cells(
     return ends.reshape(strips, last).cumsum(axis=1).ravel() > 0
 
 
-def chemical_potential(source: Source, places: int = PLACES, start: float | None = None) -> Observable:
+def chemical_potential(source: Source, trials: int = TRIALS, start: float | None = None) -> Observable:
     """Measure the excess chemical potential of a periodic fluid, divided by k_B T, by insertion.
 
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
         A trajectory, by its path or open, or a simulation.
-    places : int, default 512
+    trials : int, default 512
         Number of random positions that are tried in each of up to 2048 frames, where a particle may fit.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
@@ -247,10 +247,10 @@ def chemical_potential(source: Source, places: int = PLACES, start: float | None
     >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
     >>> simulation = gp.Simulation(scene, seed=1)
     >>> simulation.advance(40.0)
-    >>> gp.analysis.chemical_potential(simulation, places=50).estimate.attrs["units"]
+    >>> gp.analysis.chemical_potential(simulation, trials=50).estimate.attrs["units"]
     '1'
     """
-    trials = count_of("places", places, least=1)
+    trials = count_of("trials", trials, least=1)
     with open_run(source, start) as run:
         require_defined("chemical_potential", run.scene)
         run.require_all()

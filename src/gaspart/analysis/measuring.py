@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
 from gaspart import analysis
-from gaspart.analysis.observables import OBSERVABLES, known, require_selection
+from gaspart.analysis.observables import OBSERVABLES, observable_name, require_selection
 from gaspart.errors import SceneError
 
 if TYPE_CHECKING:
@@ -81,10 +81,10 @@ def measure(
     ['Z', 'collision_rate']
     """
     if not isinstance(observable, str):
-        names = [known(name) for name in observable]
+        names = [observable_name(name) for name in observable]
         with open_frames(source, any(OBSERVABLES[name].needs == "pairs" for name in names)) as data:
             return {name: measure(data, name, start, end, **selection) for name in names}
-    name = known(observable)
+    name = observable_name(observable)
     declared = OBSERVABLES[name]
     require_selection(name, selection)
     function = getattr(analysis, declared.function)

@@ -91,7 +91,7 @@ def _of_free_particles(run: Run) -> float:
     return count / (count - 1.0)
 
 
-def between(time: np.ndarray, start: float, stop: float) -> np.ndarray:
+def mask_between(time: np.ndarray, start: float, stop: float) -> np.ndarray:
     """Mask of the times from `start` to `stop`, both included."""
     return (time >= start * (1.0 - 1e-9)) & (time <= stop * (1.0 + 1e-9))
 

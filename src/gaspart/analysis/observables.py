@@ -464,7 +464,7 @@ ALIASES: dict[str, str] = {
 """Other names of observables, including the names of their functions in `gaspart.analysis`."""
 
 
-def known(name: object) -> str:
+def observable_name(name: object) -> str:
     """Return the name of an observable that is given by its name or an alias.
 
     Raises SceneError for other values.
@@ -478,7 +478,7 @@ def known(name: object) -> str:
     raise SceneError("observable", name, unknown_word(name, words, "observable"))
 
 
-def having(**traits: Any) -> tuple[str, ...]:
+def observables_with(**traits: Any) -> tuple[str, ...]:
     """Return the names of the observables whose traits have these values."""
     return tuple(
         name
@@ -526,7 +526,7 @@ def require_defined(name: str, scene: Scene, **selection: Any) -> None:
     No run of the scene has it, however long. Raises SceneError too for a selection that the observable or the
     scene does not have.
     """
-    declared = OBSERVABLES[known(name)]
+    declared = OBSERVABLES[observable_name(name)]
     require_selection(name, selection)
     if not declared.varying:
         refuse_open(scene, where.VARYING)
@@ -572,7 +572,7 @@ def require_steady_value(name: str, scene: Scene) -> None:
     """
     if scene.is_open and not any(face.temperatures for _, face in scene.faces_of(Open)):
         refuse_open(scene, "has no reservoir: all particles leave, and nothing is steady; give a duration")
-    for condition in OBSERVABLES[known(name)].drives:
+    for condition in OBSERVABLES[observable_name(name)].drives:
         condition(scene, {})
 
 
@@ -584,7 +584,7 @@ def require_modelled(name: str, scene: Scene, engine: Engine) -> None:
     """
     from gaspart.state.optional_tallies import StressTally, WallShearTally  # which load numpy
 
-    declared = OBSERVABLES[known(name)]
+    declared = OBSERVABLES[observable_name(name)]
     if engine.equation in declared.nothing:
         raise SceneError("observable", name, declared.nothing[engine.equation])
     if declared.needs == "fluxes":
@@ -600,6 +600,6 @@ def require_kept(name: str, kept: Collection[str]) -> None:
 
     `kept` has the stored data, "fluxes" or "pairs". Paths also follow from frames that are close enough.
     """
-    needs = OBSERVABLES[known(name)].needs
+    needs = OBSERVABLES[observable_name(name)].needs
     if needs in KEPT and needs not in kept:
         raise SceneError(*KEPT[needs])

@@ -12,7 +12,7 @@ import xarray as xr
 from gaspart.analysis.flow import FLOW, mean_motion
 from gaspart.analysis.measuring import measure
 from gaspart.analysis.observable import Observable, scalar
-from gaspart.analysis.observables import having, selecting
+from gaspart.analysis.observables import observables_with, selecting
 from gaspart.analysis.run import Run, Source, open_run, select_particles
 from gaspart.errors import SceneError
 from gaspart.trajectory.reading import open_trajectory
@@ -92,7 +92,7 @@ def by_species(source: Source, start: float | None = None, about: str = FLOW) ->
 
 def _of_motion() -> tuple[str, ...]:
     """Return the observables of the motion of particles that can be measured by species."""
-    return tuple(name for name in selecting("species") if name in having(scatter="particles"))
+    return tuple(name for name in selecting("species") if name in observables_with(scatter="particles"))
 
 
 def _of_velocities(run: Run, kind: int) -> dict[str, Observable]:

@@ -13,7 +13,7 @@ from gaspart.analysis.expected.equilibrium import describe
 from gaspart.analysis.flow import FLOW, Grid, accessible_fraction, mean_motion
 from gaspart.analysis.impulses import default_bins, described_density, mixed_density
 from gaspart.analysis.observable import Observable, observable, scalar, with_freedom
-from gaspart.analysis.observables import having, require_defined
+from gaspart.analysis.observables import observables_with, require_defined
 from gaspart.analysis.pairs import STRETCHES, chosen_frames
 from gaspart.analysis.profiles import Cells, Means
 from gaspart.analysis.run import Run, Source, open_run, select_particles
@@ -187,7 +187,7 @@ def profile(
     >>> gp.analysis.profile(simulation, of="density", axis="x", bins=4).sizes["position"]
     4
     """
-    one_of("of", of, having(function="profile"))
+    one_of("of", of, observables_with(function="profile"))
     with open_run(source, start, varying=True, about=about) as run:
         require_defined(of, run.scene, axis=axis, species=species)
         names = "xyz"[: run.dimension]

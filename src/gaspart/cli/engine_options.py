@@ -10,7 +10,7 @@ from typing import Any
 from gaspart.cli.arguments import alone, several
 from gaspart.engines import ENGINES
 from gaspart.errors import SceneError, short_repr
-from gaspart.keys import Kind, described, schema_of
+from gaspart.keys import Kind, describe, schema_of
 
 
 @cache
@@ -21,7 +21,7 @@ def engine_settings() -> dict[str, Kind]:
         for key, kind in schema_of(engine)["properties"].items():
             meaning = f"{name} engine: {kind['description']}"
             previous = settings.get(key)
-            settings[key] = described(kind, f"{previous['description']}; {meaning}" if previous else meaning)
+            settings[key] = describe(kind, f"{previous['description']}; {meaning}" if previous else meaning)
     return settings
 
 

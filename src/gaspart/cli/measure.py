@@ -13,7 +13,7 @@ import numpy as np
 
 from gaspart.analysis.flow import ABOUT
 from gaspart.analysis.measuring import measure, until_time
-from gaspart.analysis.observables import ALIASES, OBSERVABLES, known, selecting, selections
+from gaspart.analysis.observables import ALIASES, OBSERVABLES, observable_name, selecting, selections
 from gaspart.cli.arguments import (
     Parser,
     UsageError,
@@ -126,7 +126,7 @@ def _split_words(options: argparse.Namespace) -> tuple[list[str], list[str]]:
         )
     if late := [argument for argument in names if _is_file(argument)]:
         raise UsageError(f"{late[0]!r}: files stand before the names of observables")
-    return files, [name if name == _FIELD else known(name) for name in names]
+    return files, [name if name == _FIELD else observable_name(name) for name in names]
 
 
 def _measure(options: argparse.Namespace) -> None:
@@ -155,7 +155,7 @@ def _field_of(options: argparse.Namespace) -> dict[str, Any]:
         key: getattr(options, key) for key in ("of", "axes", "cells") if getattr(options, key) is not None
     }
     if stated and _FIELD not in options.words:
-        raise UsageError(f"--{next(iter(stated))} is of {_FIELD} only")
+        raise UsageError(f"--{next(iter(stated))} is defined only for {_FIELD}")
     if len(stated.get("cells", [])) == 1:
         (stated["cells"],) = stated["cells"]
     return stated
@@ -178,7 +178,7 @@ def _measure_each(
 
     if len(files) > 1:
         if _FIELD in names:
-            raise UsageError(f"{_FIELD} is of one file")
+            raise UsageError(f"{_FIELD}: requires one file; give one file at a time")
         for name in names:
             with waiting(f"measuring {name} of {len(files)} files"):
                 observable = replicas(name, files, *times, **selection)

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gaspart.analysis.observables import having
+from gaspart.analysis.observables import observables_with
 from gaspart.cli.arguments import (
     Parser,
     UsageError,
@@ -93,7 +93,7 @@ def _add_ends(group: argparse._ArgumentGroup) -> None:
     add("--sample-interval", type=float, metavar="T", help=text)
     text = (
         f"relative standard error at which the run ends, instead of --duration; several with commas, or by "
-        f"repeating it; {one_of(having(ends_runs=True))}; pressure:'x low' is that on one wall"
+        f"repeating it; {one_of(observables_with(ends_runs=True))}; pressure:'x low' is that on one wall"
     )
     add("--until", action="extend", type=_requests, metavar="NAME=X", help=text)
     add("--at-most", type=float, metavar="T", help="longest duration of a run with --until")
@@ -210,7 +210,7 @@ def _until(options: argparse.Namespace, scene: Scene) -> list[Accuracy] | None:
     if options.until is not None:
         if options.duration is not None:
             raise UsageError("--duration: excludes --until; the longest duration is --at-most")
-        return [Accuracy.named(name, value, options.start) for name, value in options.until]
+        return [Accuracy.from_name(name, value, options.start) for name, value in options.until]
     for option, value in (("--at-most", options.at_most), ("--start", options.start)):
         if value is not None:
             raise UsageError(f"{option}: needs --until")
@@ -247,9 +247,9 @@ class _Status:
         finite = [status for status in self._reached if status.accuracy < math.inf]
         if not finite:
             return ""
-        worst = max(finite, key=lambda status: status.accuracy / status.asked.accuracy)
+        worst = max(finite, key=lambda status: status.accuracy / status.request.accuracy)
         error = f"error {worst.accuracy:.2g}, at most {worst.bound:.2g}"
-        return f"  {worst.asked.name}: {error}, required {worst.asked.accuracy:g}"
+        return f"  {worst.request.name}: {error}, required {worst.request.accuracy:g}"
 
 
 def _correlations(numbers: tuple[float, ...] | None, stress: bool) -> Correlations | None:

@@ -21,16 +21,18 @@ def accuracy_lines(path: Path) -> list[str]:
 
     lines, reached = [], reached_accuracy(path)
     for status in reached:
-        where = f" ({status.component})" if status.component and status.asked.face is None else ""
-        required = f"required {status.asked.accuracy:g}"
+        where = f" ({status.component})" if status.component and status.request.face is None else ""
+        required = f"required {status.request.accuracy:g}"
         if status.rule:
-            lines.append(f"{status.asked.name}: {required}, not measured: {status.rule}")
+            lines.append(f"{status.request.name}: {required}, not measured: {status.rule}")
             continue
         low, high = status.interval
         value = f"{status.value:.6g} +- {status.error:.2g}, 95 % interval {low:.6g} to {high:.6g}"
         error = f"relative error {status.accuracy:.2g}, by its uncertainty at most {status.bound:.2g}"
         verdict = "reached" if status.met else "not reached"
-        lines.append(f"{status.asked.name}{where} = {value}{_starts(status)}; {error}; {required}: {verdict}")
+        lines.append(
+            f"{status.request.name}{where} = {value}{_starts(status)}; {error}; {required}: {verdict}"
+        )
     if path.suffix != PARTIAL and not all(status.met for status in reached):
         lines.append(_why_ended(path, reached))
     return lines

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Asked:
+class AccuracyRequest:
     """Observable of a steady scene, and its requested relative accuracy.
 
     The accuracy is a standard error with the bias.
@@ -135,7 +135,7 @@ class Engine:
         """Time of which all times that it reaches are multiples; None without such a time."""
         return None
 
-    def resolved(self, scene: Scene, interval: float | None = None) -> Engine:
+    def for_scene(self, scene: Scene, interval: float | None = None) -> Engine:
         """Return these settings completed for a scene.
 
         `interval`, if given, becomes a multiple of the quantum. Raises SceneError.
@@ -155,11 +155,11 @@ class Engine:
         return 0.0
 
     @classmethod
-    def offered(cls) -> tuple[Engine, ...]:
+    def variants(cls) -> tuple[Engine, ...]:
         """Return the engines among which advice chooses: one for each model."""
         return (cls(),)
 
-    def candidate(self, asked: Asked) -> Candidate:
+    def candidate(self, request: AccuracyRequest) -> Candidate:
         """Return the engine with settings that fit a request, and bounds on its errors.
 
         Raises SceneError if it is no candidate.
@@ -310,7 +310,7 @@ def resolve_engine(engine: Engine | str | None) -> Engine:
 def candidate_engines() -> list[Engine]:
     """Return the engines among which advice chooses, the reference first."""
     return sorted(
-        (variant for engine in ENGINES.values() for variant in engine.offered()),
+        (variant for engine in ENGINES.values() for variant in engine.variants()),
         key=lambda variant: not variant.reference,
     )
 

@@ -87,7 +87,7 @@ class SceneError(OneLine, ValueError):
         return SceneError(key, self.value, self.rule, file or self.file)
 
 
-def unknown_word(word: object, candidates: Iterable[str], kind: str = "key") -> str:
+def unknown_word(name: object, candidates: Iterable[str], kind: str = "key") -> str:
     """Return the rule for a word that is not among the known ones.
 
     It states its new name, its meaning in other programs, the most similar known word, or all known words.
@@ -97,12 +97,12 @@ def unknown_word(word: object, candidates: Iterable[str], kind: str = "key") -> 
     from gaspart.errors.synonyms import meant
 
     names = list(candidates)
-    renamed = str(word).replace("bodies", "particles").replace("body", "particle")  # names of version 0.2
-    if renamed != word and renamed in names:
+    renamed = str(name).replace("bodies", "particles").replace("body", "particle")  # names of version 0.2
+    if renamed != name and renamed in names:
         return f"is called {renamed} now"
-    if meaning := meant(str(word), names):
+    if meaning := meant(str(name), names):
         return f"unknown {kind}; here it is {meaning}"
-    near = get_close_matches(str(word), names, n=1)
+    near = get_close_matches(str(name), names, n=1)
     return f"unknown {kind}; " + (f"did you mean {near[0]}?" if near else f"known are {', '.join(names)}")
 
 

@@ -235,7 +235,7 @@ def _check_container(contents: Contents, scene: Scene, path: Path) -> None:
     movable = np.isin(np.arange(scene.dimension), [number // 2 for number, _ in scene.pistons])
     within = (stated == 0.0) | (movable & (stated < lengths)) | (np.abs(stated - lengths) <= _SAME * lengths)
     if not within.all():
-        rule = f"the container of the scene is {scene.container.lengths}"
+        rule = f"must be the container of the scene, {scene.container.lengths}"
         raise SceneError("lengths", tuple(stated.tolist()), rule, str(path))
 
 

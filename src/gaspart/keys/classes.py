@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from gaspart.errors import SceneError, unknown_word
 from gaspart.keys import values
-from gaspart.keys.kinds import Check, Kind, described, nullable, record
+from gaspart.keys.kinds import Check, Kind, describe, nullable, record
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 T = TypeVar("T", bound="DataclassInstance")
 
 
-def declared(kind: Kind) -> dict[str, Any]:
+def declare(kind: Kind) -> dict[str, Any]:
     """Return the metadata of a field of a dataclass.
 
     Parameters
@@ -77,7 +77,7 @@ def set_fields(instance: Any, **checked: object) -> None:
         del vars(instance)[name]  # facts of the values before
 
 
-def stated(instance: Any) -> dict[str, Any]:
+def field_values(instance: Any) -> dict[str, Any]:
     """Return the fields of a dataclass by name, without cached properties.
 
     Parameters
@@ -99,7 +99,7 @@ def schema_of(cls: Any, **more: Kind) -> Kind:
     Parameters
     ----------
     cls : type
-        Dataclass, whose fields were `declared`. The summary of its docstring is the meaning of the mapping.
+        Dataclass, whose fields were `declare`. The summary of its docstring is the meaning of the mapping.
     **more : Kind
         Further keys, before the fields.
 
@@ -199,7 +199,7 @@ def instance_of(cls: type, meaning: str) -> Kind:
             raise SceneError(key, value, f"must be a {cls.__name__}")
         return value
 
-    return described(schema_of(cls), meaning, check)
+    return describe(schema_of(cls), meaning, check)
 
 
 def instances_of(meaning: str, *classes: type, rule: str) -> Kind:
@@ -225,7 +225,7 @@ def instances_of(meaning: str, *classes: type, rule: str) -> Kind:
     def check(key: str, value: Any) -> tuple:
         return values.instances(key, value, classes, rule)
 
-    return described(schema, meaning, check)
+    return describe(schema, meaning, check)
 
 
 # Values of a file, compared with the schema of their keys.

@@ -58,7 +58,7 @@ TEXT = Kind({"type": "string"})
 _PER_AXIS = {"minItems": 2, "maxItems": 3}
 
 
-def described(kind: Mapping[str, Any], meaning: str, check: Check | None = None, **more: Any) -> Kind:
+def describe(kind: Mapping[str, Any], meaning: str, check: Check | None = None, **more: Any) -> Kind:
     """Return a kind with its meaning and further entries of its schema.
 
     Parameters
@@ -96,7 +96,7 @@ def positive(meaning: str, **more: Any) -> Kind:
     Kind
         Kind, whose check returns a float.
     """
-    return described(POSITIVE, meaning, **more)
+    return describe(POSITIVE, meaning, **more)
 
 
 def not_negative(meaning: str, **more: Any) -> Kind:
@@ -114,10 +114,10 @@ def not_negative(meaning: str, **more: Any) -> Kind:
     Kind
         Kind, whose check returns a float.
     """
-    return described(NOT_NEGATIVE, meaning, **more)
+    return describe(NOT_NEGATIVE, meaning, **more)
 
 
-def signed(meaning: str) -> Kind:
+def real(meaning: str) -> Kind:
     """Return the kind of a number of either sign, 0 or of an acceptable size.
 
     Parameters
@@ -130,10 +130,10 @@ def signed(meaning: str) -> Kind:
     Kind
         Kind, whose check returns a float.
     """
-    return described(NUMBER, meaning)
+    return describe(NUMBER, meaning)
 
 
-def between(meaning: str, least: float, most: float) -> Kind:
+def in_range(meaning: str, least: float, most: float) -> Kind:
     """Return the kind of a number in a range.
 
     Parameters
@@ -153,7 +153,7 @@ def between(meaning: str, least: float, most: float) -> Kind:
     def check(key: str, value: Any) -> float:
         return values.number(key, value, rule, least=least, most=most)
 
-    return described({"type": "number"}, meaning, check, minimum=least, maximum=most)
+    return describe({"type": "number"}, meaning, check, minimum=least, maximum=most)
 
 
 def fraction(meaning: str) -> Kind:
@@ -173,7 +173,7 @@ def fraction(meaning: str) -> Kind:
     def check(key: str, value: Any) -> float:
         return values.number(key, value, "must be above 0 and at most 1", above=0.0, most=1.0)
 
-    return described({"type": "number"}, meaning, check, exclusiveMinimum=0, maximum=1)
+    return describe({"type": "number"}, meaning, check, exclusiveMinimum=0, maximum=1)
 
 
 def count(meaning: str, minimum: int = 1, **more: Any) -> Kind:
@@ -197,7 +197,7 @@ def count(meaning: str, minimum: int = 1, **more: Any) -> Kind:
     def check(key: str, value: Any) -> int:
         return values.count_of(key, value, minimum, more.get("maximum", values.LARGEST_INTEGER))
 
-    return described(COUNT, meaning, check, minimum=minimum, **more)
+    return describe(COUNT, meaning, check, minimum=minimum, **more)
 
 
 def flag(meaning: str, **more: Any) -> Kind:
@@ -215,7 +215,7 @@ def flag(meaning: str, **more: Any) -> Kind:
     Kind
         Kind, whose check returns a bool.
     """
-    return described(FLAG, meaning, **more)
+    return describe(FLAG, meaning, **more)
 
 
 def choice(meaning: str, *accepted: Any, **more: Any) -> Kind:
@@ -239,7 +239,7 @@ def choice(meaning: str, *accepted: Any, **more: Any) -> Kind:
     def check(key: str, value: Any) -> Any:
         return values.one_of(key, value, accepted)
 
-    return described({"enum": list(accepted)}, meaning, check, **more)
+    return describe({"enum": list(accepted)}, meaning, check, **more)
 
 
 def vector(meaning: str, dimension: int | None = None, sized: bool = True) -> Kind:
@@ -266,7 +266,7 @@ def vector(meaning: str, dimension: int | None = None, sized: bool = True) -> Ki
             values.size(key, components)
         return components
 
-    return described(_numbers(dimension), meaning, check)
+    return describe(_numbers(dimension), meaning, check)
 
 
 def two_vectors(meaning: str, dimension: int | None = None) -> Kind:
@@ -290,13 +290,13 @@ def two_vectors(meaning: str, dimension: int | None = None) -> Kind:
             raise SceneError(key, value, f"must be two lists of {dimension or '2 or 3'} numbers")
         return tuple(values.finite_vector(f"{key}[{n}]", item, dimension) for n, item in enumerate(value))
 
-    return described(listed(_numbers(dimension), least=2, most=2), meaning, check)
+    return describe(list_of(_numbers(dimension), least=2, most=2), meaning, check)
 
 
 def _numbers(dimension: int | None) -> Kind:
     """Return the kind of a list of numbers with the length of a vector."""
     least, most = (2, 3) if dimension is None else (dimension, dimension)
-    return listed({"type": "number"}, least=least, most=most)
+    return list_of({"type": "number"}, least=least, most=most)
 
 
 def per_side(meaning: str) -> Kind:
@@ -313,10 +313,10 @@ def per_side(meaning: str) -> Kind:
         Kind of a number for all sides, or a number for each. Its check is `values.partition`.
     """
     types = {"type": ["integer", "array"], "items": COUNT}
-    return described({**COUNT, **types, **_PER_AXIS}, meaning, values.partition)
+    return describe({**COUNT, **types, **_PER_AXIS}, meaning, values.partition)
 
 
-def listed(
+def list_of(
     item: Mapping[str, Any], meaning: str = "", least: int = 1, most: int | None = None, **more: Any
 ) -> Kind:
     """Return the kind of a list of values of the same kind.
@@ -340,7 +340,7 @@ def listed(
         New kind, without a check.
     """
     ends = {"minItems": least} | ({} if most is None else {"maxItems": most})
-    return described({"type": "array", **ends, "items": item}, meaning, **more)
+    return describe({"type": "array", **ends, "items": item}, meaning, **more)
 
 
 def names(meaning: str, **more: Any) -> Kind:
@@ -358,7 +358,7 @@ def names(meaning: str, **more: Any) -> Kind:
     Kind
         New kind, without a check.
     """
-    return listed(TEXT, meaning, uniqueItems=True, **more)
+    return list_of(TEXT, meaning, uniqueItems=True, **more)
 
 
 def record(keys: Mapping[str, Mapping[str, Any]], meaning: str = "", **more: Any) -> Kind:
@@ -380,7 +380,7 @@ def record(keys: Mapping[str, Mapping[str, Any]], meaning: str = "", **more: Any
     """
     required = [name for name, kind in keys.items() if "default" not in kind]
     closed = {"type": "object", "additionalProperties": False, "properties": keys}
-    return described(closed | ({"required": required} if required else {}), meaning, **more)
+    return describe(closed | ({"required": required} if required else {}), meaning, **more)
 
 
 def nullable(kind: Kind) -> Kind:

@@ -251,6 +251,7 @@ def _looks(surfaces: list[tuple[DrawnSurface, ...]]) -> dict:
             "dashed": surface.dashed,
             "hatched": surface.hatched,
             "motion": None if surface.motion is None else _in_space(surface.motion),
+            "to_and_fro": surface.to_and_fro,
             "through": surface.through,
             "band": surface.band,
         }

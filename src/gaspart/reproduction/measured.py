@@ -2,7 +2,7 @@
 
     python -m gaspart.reproduction.measured results/measurements > src/gaspart/theory/data/measured.csv
 
-writes what `gaspart.theory.measured` reads: Z, contact values and transport coefficients with their
+writes what `gaspart.theory.measurements` reads: Z, contact values and transport coefficients with their
 uncertainties.
 """
 

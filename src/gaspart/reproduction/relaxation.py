@@ -35,7 +35,7 @@ def relaxation(dimension: int, count: int, collisions: float, seed: int) -> np.n
     kind = Species(count, 0.5, speed=1.0)
     scene = Scene(Container((side,) * dimension, "periodic"), [kind])
     simulation = Simulation(scene, DSMC(), seed)
-    step = simulation.engine.resolved(scene).quantum
+    step = simulation.engine.for_scene(scene).quantum
     assert step is not None
     start = simulation.state.velocities
     rows: list[tuple[float, ...]] = []

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from gaspart.analysis.observables import known
+from gaspart.analysis.observables import observable_name
 from gaspart.errors import SceneError, SimulationError
 from gaspart.files import only_process
 from gaspart.kernels.compile.cache import load_numba
@@ -122,7 +122,7 @@ def names_of(observables: object, axes: Mapping[str, list]) -> list[str]:
     listed = [observables] if isinstance(observables, str) else observables
     if not isinstance(listed, Iterable) or isinstance(listed, bytes | Mapping):
         raise SceneError("observables", observables, "must be the names of observables")
-    names = list(dict.fromkeys([known(name) for name in listed]))
+    names = list(dict.fromkeys([observable_name(name) for name in listed]))
     for name in names:
         if name in axes:
             rule = f"is also a key that varies: vary species.0.{name} instead"

@@ -73,10 +73,10 @@ class Table(_Columns):
         self.dataset, self._over = dataset.transpose(over, ..., missing_dims="ignore"), over
 
     @classmethod
-    def prefixed(cls, dataset: xr.Dataset, over: str) -> Table:
+    def from_prefixed(cls, dataset: xr.Dataset, over: str) -> Table:
         """Return the rows along `over` of the variables that begin with its name.
 
-        See the function `prefixed`.
+        See the function `merge_with_prefixes`.
         """
         start = f"{over}_"
         names = {name: str(name).removeprefix(start) for name in dataset if str(name).startswith(start)}
@@ -195,7 +195,7 @@ def _spread(row: Mapping[str, Any]) -> dict[str, Any]:
     return spread
 
 
-def prefixed(**tables: xr.Dataset) -> xr.Dataset:
+def merge_with_prefixes(**tables: xr.Dataset) -> xr.Dataset:
     """Merge tables with different rows to one data set, by the names of their dimensions.
 
     The column `volume` along `path` is the variable `path_volume`.

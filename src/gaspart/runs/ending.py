@@ -11,8 +11,8 @@ from typing import Self
 from gaspart.accuracy.steady import require_steady
 from gaspart.analysis.observables import (
     OBSERVABLES,
-    having,
-    known,
+    observable_name,
+    observables_with,
     require_modelled,
     require_run,
     require_steady_value,
@@ -65,12 +65,12 @@ class Accuracy(Requirement):
 
     def __post_init__(self) -> None:
         try:
-            name = known(self.observable)
+            name = observable_name(self.observable)
         except SceneError as error:
             raise error.inside("until") from None
-        able = having(ends_runs=True)
+        able = observables_with(ends_runs=True)
         if name not in able:
-            rule = f"ends no run: those that do are {', '.join(able)}; give a duration, and measure {name}"
+            rule = f"does not end a run; use {', '.join(able)}, or give a duration and measure {name}"
             raise SceneError("until.observable", self.observable, rule)
         object.__setattr__(self, "observable", name)
         super().__post_init__()
@@ -78,7 +78,7 @@ class Accuracy(Requirement):
             raise SceneError("until.face", self.face, f"has no meaning for {self.observable}")
 
     @classmethod
-    def named(cls, name: str, accuracy: float, start: float | None = None) -> Self:
+    def from_name(cls, name: str, accuracy: float, start: float | None = None) -> Self:
         """Return the accuracy of an observable, named as on the command line and in a config.
 
         Parameters
@@ -103,7 +103,7 @@ class Accuracy(Requirement):
         Examples
         --------
         >>> import gaspart as gp
-        >>> gp.Accuracy.named("pressure:x low", 0.01).face
+        >>> gp.Accuracy.from_name("pressure:x low", 0.01).face
         'x low'
         """
         observable, colon, face = name.partition(":")

@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Any
 
 from gaspart.errors import SceneError
-from gaspart.keys import POSITIVE, declared, described, set_fields, validate
+from gaspart.keys import POSITIVE, declare, describe, set_fields, validate
 from gaspart.keys.values import finite_vector, one_of, positive_number
 
 BOUNDARIES = ("wall", "periodic")
@@ -48,11 +48,11 @@ class Container:
     """
 
     lengths: tuple[float, ...] = field(
-        metadata=declared(described({**_PER_AXIS, "items": POSITIVE}, "(d,) side lengths", _lengths))
+        metadata=declare(describe({**_PER_AXIS, "items": POSITIVE}, "(d,) side lengths", _lengths))
     )
     boundary: str | tuple[str, ...] = field(
         default="wall",
-        metadata=declared(described(_BOUNDARY, "of all axes, or one per axis")),
+        metadata=declare(describe(_BOUNDARY, "of all axes, or one per axis")),
     )
 
     def __post_init__(self) -> None:

@@ -42,7 +42,7 @@ def check_faces(scene: Scene) -> None:
             _check_sheared(scene, name, surface)
             continue
         if scene.container.periodic[axis]:
-            raise SceneError(f"faces.{name}", surface.kind, "a periodic axis has no faces")
+            raise SceneError(f"faces.{name}", surface.kind, "needs walls; a periodic axis has no faces")
         if isinstance(surface, Thermal) and surface.velocity is not None:
             _check_velocity(scene, name, surface.velocity)
         if isinstance(surface, Thermal) and surface.varies_along is not None:
@@ -65,7 +65,9 @@ def check_faces(scene: Scene) -> None:
 def _check_sheared(scene: Scene, name: str, surface: LeesEdwards) -> None:
     """Raise SceneError for a sheared face that is not y_high, and a container with walls."""
     if name != FACES[2 * GRADIENT + 1]:
-        rule = "state it of y_high: the flow is along x, with a gradient along y, and y_low is its other side"
+        rule = (
+            "must be stated for y_high, which includes y_low; the flow is along x, with its gradient along y"
+        )
         raise SceneError(f"faces.{name}", surface.kind, rule)
     if not scene.is_periodic:
         raise SceneError(f"faces.{name}", surface.kind, "needs a container that is periodic along all axes")
@@ -95,7 +97,7 @@ def _check_piston(scene: Scene, name: str, surface: Piston) -> None:
     The same holds for a prescribed speed that is too high.
     """
     if len(scene.pistons) > 1:
-        raise SceneError("faces", [FACES[n] for n, _ in scene.pistons], "only one may be a piston")
+        raise SceneError("faces", [FACES[n] for n, _ in scene.pistons], "must include at most one piston")
     size(f"faces.{name}.mass", surface.acceleration(scene, FACES.index(name) // 2))
     size(f"faces.{name}.speed", surface.speed or 0.0)
 
@@ -122,7 +124,7 @@ def check_piston_end(scene: Scene, key: str, until: float, position: float | Non
     """Raise SceneError, with the key of an end of a run, if it is after `piston_end`."""
     end = piston_end(scene, position)
     if end < until:
-        rule = f"the piston leaves no room for the particles at {end:.6g}: end before"
+        rule = f"must be before {end:.6g}, when the piston leaves no room for the particles"
         raise SceneError(key, until, rule)
 
 

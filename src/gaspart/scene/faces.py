@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from gaspart.errors import SceneError
 from gaspart.keys import (
     choice,
-    declared,
-    described,
+    declare,
+    describe,
     fraction,
     from_mapping,
     not_negative,
     positive,
+    real,
     schema_of,
     set_fields,
-    signed,
     validate,
     vector,
 )
@@ -148,21 +148,21 @@ class Thermal(Surface):
 
     temperature: float | dict[str, float] = field(
         hash=False,
-        metadata=declared(
-            described(_TEMPERATURE, "temperature of the wall, or those where it ends, at two opposite faces")
+        metadata=declare(
+            describe(_TEMPERATURE, "temperature of the wall, or those where it ends, at two opposite faces")
         ),
     )
     components: str = field(
         default="all",
-        metadata=declared(choice("velocity components that are drawn", *COMPONENTS)),
+        metadata=declare(choice("velocity components that are drawn", *COMPONENTS)),
     )
     velocity: tuple[float, ...] | None = field(
         default=None,
-        metadata=declared(vector("velocity of the wall, along itself; without it the wall is at rest")),
+        metadata=declare(vector("velocity of the wall, along itself; without it the wall is at rest")),
     )
     accommodation: float | None = field(
         default=None,
-        metadata=declared(
+        metadata=declare(
             fraction("fraction of hits after which velocities are drawn, of mirrored others; 1 without it")
         ),
     )
@@ -172,7 +172,7 @@ class Thermal(Surface):
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.components == "normal" and self.slides:
-            raise SceneError("velocity", self.velocity, 'needs components "all": no other drags particles')
+            raise SceneError("velocity", self.velocity, 'requires components "all"')
         if self.accommodation == 1.0:  # absent everywhere, so that no other place has to ask
             set_fields(self, accommodation=None)
 
@@ -270,12 +270,12 @@ class Well(Surface):
     ('hard', 0.0)
     """
 
-    depth: float = field(metadata=declared(positive("depth of the well: an energy")))
+    depth: float = field(metadata=declare(positive("depth of the well: an energy")))
     width: float = field(
-        metadata=declared(positive("distance of a particle's surface from the wall up to which it lies"))
+        metadata=declare(positive("distance of a particle's surface from the wall up to which it lies"))
     )
     temperature: float | None = field(
-        default=None, metadata=declared(positive("temperature of the wall; without it the wall is hard"))
+        default=None, metadata=declare(positive("temperature of the wall; without it the wall is hard"))
     )
 
     kind: ClassVar[str] = "well"
@@ -345,7 +345,7 @@ class Sticky(Surface):
     ('sticky', 0.5)
     """
 
-    momentum: float = field(metadata=declared(positive("normal momentum below which a particle stays")))
+    momentum: float = field(metadata=declare(positive("normal momentum below which a particle stays")))
 
     kind: ClassVar[str] = "sticky"
 
@@ -394,9 +394,9 @@ class Vibrating(Surface):
     array([0. , 0.2])
     """
 
-    amplitude: float = field(metadata=declared(positive("half the distance that the wall moves")))
-    period: float = field(metadata=declared(positive("duration of one vibration")))
-    waveform: str = field(default="sine", metadata=declared(choice("how the wall moves", *WAVEFORMS)))
+    amplitude: float = field(metadata=declare(positive("half the distance that the wall moves")))
+    period: float = field(metadata=declare(positive("duration of one vibration")))
+    waveform: str = field(default="sine", metadata=declare(choice("how the wall moves", *WAVEFORMS)))
 
     kind: ClassVar[str] = "vibrating"
     moves: ClassVar[bool] = True
@@ -500,15 +500,15 @@ class Piston(Surface):
     """
 
     mass: float | None = field(
-        default=None, metadata=declared(positive("mass of the piston, with a pressure"))
+        default=None, metadata=declare(positive("mass of the piston, with a pressure"))
     )
     pressure: float | None = field(
         default=None,
-        metadata=declared(not_negative("external pressure: the force on the piston over its area")),
+        metadata=declare(not_negative("external pressure: the force on the piston over its area")),
     )
     speed: float | None = field(
         default=None,
-        metadata=declared(positive("speed at which it moves inwards, instead of a mass and a pressure")),
+        metadata=declare(positive("speed at which it moves inwards, instead of a mass and a pressure")),
     )
 
     kind: ClassVar[str] = "piston"
@@ -519,7 +519,7 @@ class Piston(Surface):
         loaded = [value is not None for value in (self.mass, self.pressure)]
         if any(loaded) if self.speed is not None else not all(loaded):
             stated = {key: value for key, value in vars(self).items() if value is not None}
-            raise SceneError("speed", stated, "a piston has a mass and a pressure, or a speed alone")
+            raise SceneError("speed", stated, "must be mass and pressure, or speed alone")
 
     def acceleration(self, scene: Scene, axis: int) -> float:
         """Return the inward acceleration due to the load; 0 if the speed is prescribed.
@@ -620,10 +620,10 @@ class Open(Surface):
     """
 
     activity: float | None = field(
-        default=None, metadata=declared(positive("of the reservoir outside; without it a vacuum"))
+        default=None, metadata=declare(positive("of the reservoir outside; without it a vacuum"))
     )
     temperature: float | None = field(
-        default=None, metadata=declared(positive("of the reservoir, which has an activity too"))
+        default=None, metadata=declare(positive("of the reservoir, which has an activity too"))
     )
 
     kind: ClassVar[str] = "open"
@@ -631,7 +631,7 @@ class Open(Surface):
     def __post_init__(self) -> None:
         super().__post_init__()
         if (self.activity is None) != (self.temperature is None):
-            raise SceneError("temperature", self.temperature, "a reservoir has an activity and a temperature")
+            raise SceneError("temperature", self.temperature, "must be given together with activity")
 
     @property
     def smooth(self) -> bool:
@@ -693,7 +693,7 @@ class LeesEdwards(Surface):
     0.5
     """
 
-    shear_rate: float = field(metadata=declared(signed("gradient of the flow, du_x / dy")))
+    shear_rate: float = field(metadata=declare(real("gradient of the flow, du_x / dy")))
 
     kind: ClassVar[str] = "lees_edwards"
     moves: ClassVar[bool] = True
@@ -704,7 +704,7 @@ SCHEMA = {
     "propertyNames": {"enum": list(FACES)},
     "additionalProperties": {
         "anyOf": [
-            schema_of(face, kind=described({"const": name}, "the kind of face"))
+            schema_of(face, kind=describe({"const": name}, "the kind of face"))
             for name, face in FACE_KINDS.items()
         ]
     },

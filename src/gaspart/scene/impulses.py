@@ -34,33 +34,35 @@ def require_impulses(scene: Scene) -> None:
     They give none if velocities depend on positions, as they do except in equilibrium at one temperature.
     """
     if len({particle.mass for particle in scene.particles}) > 1:
-        rule = "impulses are summed over all single particles, which must have one mass"
+        rule = "must have one mass for an impulse tally, which sums over all single particles"
         raise SceneError("particles.mass", len(scene.particles), rule)
     if scene.restitution is not None and scene.restitution.dissipative:
-        rule = "impulses give a density in equilibrium: this gas loses energy"
+        rule = "excludes impulses, which require equilibrium; this gas loses energy"
         raise SceneError("restitution", scene.restitution.normal, rule)
     for name in _DISTURBING:
         if FEATURES[name].value(scene) is not None:
-            rule = f"impulses give a density in equilibrium at rest, not with {FEATURES[name].meaning}"
+            rule = f"excludes impulses, which require equilibrium at rest, not {FEATURES[name].meaning}"
             raise FEATURES[name].refuse(scene, rule)
     if scene.driven_axes:
-        raise SceneError("gravity", scene.gravity, "impulses give a density in equilibrium: this gas flows")
+        raise SceneError(
+            "gravity", scene.gravity, "excludes impulses, which require equilibrium; this gas flows"
+        )
     temperatures = sorted(scene.face_temperatures)
     if len(temperatures) > 1:
-        rule = "impulses give a density in equilibrium: heat flows between faces"
+        rule = "excludes impulses, which require equilibrium; heat flows between faces"
         raise SceneError("faces.temperature", temperatures, rule)
 
 
 def require_pair_impulses(scene: Scene, furthest: float) -> None:
     """Raise SceneError, with the reason, if the impulses give no g(r) up to a distance."""
     if not scene.is_periodic:
-        raise SceneError("pair_impulses", furthest, "g(r) needs a periodic container; set boundary: periodic")
+        raise SceneError("pair_impulses", furthest, "needs a periodic container; set boundary: periodic")
     diameter, half = 2.0 * scene.largest_radius, FURTHEST * min(scene.container.lengths)
     if not diameter < furthest <= half:
         rule = f"must be from the largest diameter, {diameter:g}, to half of the shortest side, {half:.4g}"
         raise SceneError("pair_impulses.furthest", furthest, rule)
     if scene.count < 2:
-        raise SceneError("count", scene.count, "a pair needs two particles")
+        raise SceneError("count", scene.count, "must be at least 2 for pair_impulses")
     require_impulses(scene)
 
 

@@ -58,7 +58,7 @@ def check_room(container: Container, centres_to_walls: bool, key: str, particle:
     shortest, longest = min(container.lengths), max(container.lengths)
     if not centres_to_walls:
         if 2 * radius > shortest:
-            rule = f"a particle must fit into the container, whose shortest side is {shortest:g}"
+            rule = f"is too large for the container, whose shortest side is {shortest:g}"
             raise SceneError(key, radius, rule)
         walled = zip(container.lengths, container.periodic, strict=True)
         narrow = any(2 * radius * (1.0 + _ROOM) > length for length, periodic in walled if not periodic)
@@ -67,7 +67,7 @@ def check_room(container: Container, centres_to_walls: bool, key: str, particle:
             raise SceneError(key, radius, rule)
     if 2 * particle.smallest_radius * _RESOLVED < longest:
         radius = particle.smallest_radius
-        rule = f"too small to resolve its contacts, in a container whose longest side is {longest:g}"
+        rule = f"is too small to resolve contacts in a container whose longest side is {longest:g}"
         raise SceneError(key, radius, rule)
 
 

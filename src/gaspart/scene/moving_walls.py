@@ -50,9 +50,11 @@ def check_moving_wall(scene: Scene) -> None:
             continue
         key, lengths = f"walls[{n}].mass", scene.container.lengths
         if len(scene.walls) > 1:
-            raise SceneError(key, wall.mass, "a wall that moves must be the only interior wall")
+            raise SceneError(key, wall.mass, "must be the only interior wall, since it moves")
         if wall.temperature is not None:
-            raise SceneError(key, wall.mass, "a wall that moves has no temperature: it is smooth and elastic")
+            raise SceneError(
+                key, wall.mass, "excludes a temperature; a wall that moves is smooth and elastic"
+            )
         axis = crossed_axis(wall, lengths)
         if axis < 0:
             rule = "a wall that moves must reach across the whole container, at right angles to an axis"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from gaspart.errors import SceneError
-from gaspart.keys import between, declared, not_negative, positive, validate
+from gaspart.keys import declare, in_range, not_negative, positive, validate
 
 
 @dataclass(frozen=True)
@@ -42,16 +42,16 @@ class Restitution:
 
     normal: float = field(
         default=1.0,
-        metadata=declared(
-            between(
+        metadata=declare(
+            in_range(
                 "the normal part is multiplied by minus this: from 0 (they stick) to 1 (elastic)", 0.0, 1.0
             )
         ),
     )
     tangential: float = field(
         default=-1.0,
-        metadata=declared(
-            between(
+        metadata=declare(
+            in_range(
                 "likewise the tangential part: from -1 (perfectly smooth) to 1 (perfectly rough)", -1.0, 1.0
             )
         ),
@@ -59,7 +59,7 @@ class Restitution:
 
     contact_duration: float | None = field(
         default=None,
-        metadata=declared(
+        metadata=declare(
             not_negative(
                 "a contact of a particle less than this after its last one is elastic; 0: none is; default: "
                 "under gravity 0.01 of the time scale of a fall through the smallest diameter, else 0"
@@ -69,7 +69,7 @@ class Restitution:
 
     reference_speed: float | None = field(
         default=None,
-        metadata=declared(
+        metadata=declare(
             positive(
                 "with it particles are viscoelastic: `normal` is the restitution of two particles of the "
                 "first species that approach at this normal speed; slower contacts take less"

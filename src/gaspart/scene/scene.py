@@ -17,15 +17,15 @@ from typing import Any
 import gaspart
 from gaspart.errors import SceneError
 from gaspart.keys import (
-    declared,
-    described,
+    declare,
+    describe,
+    field_values,
     flag,
     from_mapping,
     instance_of,
     instances_of,
     refuse_unknown,
     set_fields,
-    stated,
     validate,
     vector,
 )
@@ -112,41 +112,39 @@ class Scene(Facts):
     51
     """
 
-    container: Container = field(metadata=declared(instance_of(Container, "the simulated volume")))
+    container: Container = field(metadata=declare(instance_of(Container, "the simulated volume")))
     species: Sequence[Species] = field(
         default=(),
-        metadata=declared(instances_of("particles placed by the program", Species, rule="must be a Species")),
+        metadata=declare(instances_of("particles placed by the program", Species, rule="must be a Species")),
     )
     particles: Sequence[Particle] = field(
         default=(),
-        metadata=declared(instances_of("particles at given positions", Particle, rule="must be a Particle")),
+        metadata=declare(instances_of("particles at given positions", Particle, rule="must be a Particle")),
     )
     centres_to_walls: bool = field(
         default=False,
-        metadata=declared(flag("walls stop centres, not surfaces, of particles")),
+        metadata=declare(flag("walls stop centres, not surfaces, of particles")),
     )
     gravity: tuple[float, ...] | None = field(
         default=None,
-        metadata=declared(vector("(d,) uniform acceleration; along a periodic axis it drives a flow")),
+        metadata=declare(vector("(d,) uniform acceleration; along a periodic axis it drives a flow")),
     )
     restitution: Restitution | None = field(
         default=None,
-        metadata=declared(instance_of(Restitution, "the law of all contacts; without it elastic and smooth")),
+        metadata=declare(instance_of(Restitution, "the law of all contacts; without it elastic and smooth")),
     )
     walls: Sequence[Wall | Plate] = field(
-        default=(), metadata=declared(instances_of("walls inside the container", Wall, Plate, rule=WALL_RULE))
+        default=(), metadata=declare(instances_of("walls inside the container", Wall, Plate, rule=WALL_RULE))
     )
     faces: dict[str, Surface] = field(
         default_factory=dict,
         hash=False,
-        metadata=declared(described(FACES_SCHEMA, "kinds of the container's faces; others are hard")),
+        metadata=declare(describe(FACES_SCHEMA, "kinds of the container's faces; others are hard")),
     )
 
     thermostat: Thermostat | None = field(
         default=None,
-        metadata=declared(
-            instance_of(Thermostat, "random kicks that give energy; without it there are none")
-        ),
+        metadata=declare(instance_of(Thermostat, "random kicks that give energy; without it there are none")),
     )
 
     def __post_init__(self) -> None:
@@ -154,7 +152,7 @@ class Scene(Facts):
         if isinstance(self.faces, dict):
             set_fields(self, faces={key_of(name): face for name, face in self.faces.items()})
         if self.count > MOST_PARTICLES:
-            raise SceneError("count", self.count, f"there may be {MOST_PARTICLES} particles")
+            raise SceneError("count", self.count, f"must be at most {MOST_PARTICLES}")
         self._check_gravity()
         check_walls(self)
         check_faces(self)
@@ -427,13 +425,13 @@ class Scene(Facts):
 
         def plain(value: Any) -> Any:
             if is_dataclass(value):
-                value = stated(value)
+                value = field_values(value)
             if isinstance(value, dict):
                 return {k: plain(x) for k, x in value.items() if x is not None and (x or k not in _ABSENT)}
             return [plain(item) for item in value] if isinstance(value, tuple) else value
 
         faces = {name: surface_to_dict(surface) for name, surface in self.faces.items()}
-        return plain({**stated(self), "faces": faces})
+        return plain({**field_values(self), "faces": faces})
 
     @classmethod
     def from_dict(cls, mapping: dict, file: str | None = None) -> Scene:

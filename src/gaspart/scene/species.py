@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, ClassVar
 from gaspart.errors import SceneError
 from gaspart.keys import (
     POSITIVE,
-    between,
     choice,
     count,
-    declared,
-    described,
+    declare,
+    describe,
     flag,
+    in_range,
     not_negative,
     positive,
     set_fields,
@@ -33,16 +33,16 @@ SHARED = (*LATTICES, "compressed")
 """Arrangements that all particles of a scene share."""
 ARRANGEMENTS = ("random", *SHARED)
 
-_RADIUS = declared(positive("radius"))
-_MASS = declared(positive("mass"))
-_MOMENT = declared(
-    described(
+_RADIUS = declare(positive("radius"))
+_MASS = declare(positive("mass"))
+_MOMENT = declare(
+    describe(
         POSITIVE,
         "moment of inertia; by default that of a uniform disc or sphere",
         lambda name, value: number(name, value, "must be positive", above=0.0),
     )
 )
-_FIXED = declared(flag("the particle never moves: it has infinite mass"))
+_FIXED = declare(flag("the particle never moves: it has infinite mass"))
 _SPIN: dict = {"type": ["number", "array"], "items": {"type": "number"}, "minItems": 3, "maxItems": 3}
 
 
@@ -53,7 +53,7 @@ def _check_matter(particle: Species | Particle) -> None:
             rule = f"must be from {SMALLEST:g} to {LARGEST:g} times the mass times the radius squared"
             raise SceneError("moment_of_inertia", particle.moment_of_inertia, rule)
     if particle.vibration is not None and not particle.fixed:
-        raise SceneError("vibration", particle.vibration, "only a fixed particle vibrates")
+        raise SceneError("vibration", particle.vibration, "requires fixed: true")
 
 
 @dataclass(frozen=True)
@@ -125,30 +125,30 @@ class Species:
     array([0.6772, 0.6544])
     """
 
-    count: int = field(metadata=declared(count("number of particles", 0, maximum=MOST_PARTICLES)))
-    radius: float = field(metadata=declared(positive("radius; the mean, if there is a polydispersity")))
+    count: int = field(metadata=declare(count("number of particles", 0, maximum=MOST_PARTICLES)))
+    radius: float = field(metadata=declare(positive("radius; the mean, if there is a polydispersity")))
     _: KW_ONLY
     mass: float = field(default=1.0, metadata=_MASS)
-    speed: float | None = field(default=None, metadata=declared(not_negative("one initial speed for all")))
+    speed: float | None = field(default=None, metadata=declare(not_negative("one initial speed for all")))
     temperature: float | None = field(
         default=None,
-        metadata=declared(
+        metadata=declare(
             not_negative("instead of `speed`: of the initial Maxwellian velocities; of vibrations if fixed")
         ),
     )
     exact_temperature: bool = field(
         default=False,
-        metadata=declared(
+        metadata=declare(
             flag(
                 "the initial velocities are scaled to exactly the `temperature`, after the mean velocity "
                 "along axes on which momentum is conserved was taken off"
             )
         ),
     )
-    arrangement: str = field(default="random", metadata=declared(choice("initial positions", *ARRANGEMENTS)))
+    arrangement: str = field(default="random", metadata=declare(choice("initial positions", *ARRANGEMENTS)))
     region: tuple[tuple[float, ...], ...] | None = field(
         default=None,
-        metadata=declared(
+        metadata=declare(
             two_vectors(
                 "two opposite corners, (2, d), of the box in which all its particles start, the lower one "
                 "first; default: the container"
@@ -159,19 +159,19 @@ class Species:
     fixed: bool = field(default=False, metadata=_FIXED)
     vibration: float | None = field(
         default=None,
-        metadata=declared(
+        metadata=declare(
             not_negative("of fixed particles, instead of `temperature`: initial energy of vibration")
         ),
     )
     polydispersity: float | None = field(
         default=None,
-        metadata=declared(
-            between("standard deviation of the radii over their mean; by default all are equal", 0.0, 1.0)
+        metadata=declare(
+            in_range("standard deviation of the radii over their mean; by default all are equal", 0.0, 1.0)
         ),
     )
     radius_distribution: str | None = field(
         default=None,
-        metadata=declared(choice("of the radii, with a polydispersity; default: lognormal", *DISTRIBUTIONS)),
+        metadata=declare(choice("of the radii, with a polydispersity; default: lognormal", *DISTRIBUTIONS)),
     )
 
     def __post_init__(self) -> None:
@@ -182,7 +182,7 @@ class Species:
         if self.speed is not None and self.temperature is not None:
             raise SceneError("temperature", self.temperature, "give speed or temperature, not both")
         if self.fixed and self.speed:
-            raise SceneError("speed", self.speed, "a fixed species has none")
+            raise SceneError("speed", self.speed, "must be 0 for a fixed species")
         if self.exact_temperature and (self.temperature is None or self.fixed):
             raise SceneError("exact_temperature", True, "needs the temperature of a species that moves")
         if self.vibration is not None and self.temperature is not None:
@@ -197,10 +197,10 @@ class Species:
             if self.radius_distribution is not None:
                 raise SceneError("radius_distribution", self.radius_distribution, "needs a polydispersity")
         elif self.radius_distribution == "uniform" and not self.polydispersity < MOST_UNIFORM:
-            rule = f"of a uniform distribution must be below {MOST_UNIFORM:.4g}, where radii would be zero"
+            rule = f"must be below {MOST_UNIFORM:.4g} for a uniform distribution; radii must be positive"
             raise SceneError("polydispersity", self.polydispersity, rule)
         elif self.moment_of_inertia is not None:
-            rule = "of a polydisperse species is that of uniform discs or spheres"
+            rule = "must be absent for a polydisperse species, whose particles are uniform discs or spheres"
             raise SceneError("moment_of_inertia", self.moment_of_inertia, rule)
 
     @property
@@ -358,19 +358,19 @@ class Particle:
     count: ClassVar[int] = 1
     alike: ClassVar[bool] = True
     position: tuple[float, ...] = field(
-        metadata=declared(vector("initial position of its centre", sized=False))
+        metadata=declare(vector("initial position of its centre", sized=False))
     )
-    velocity: tuple[float, ...] = field(metadata=declared(vector("initial velocity")))
+    velocity: tuple[float, ...] = field(metadata=declare(vector("initial velocity")))
     radius: float = field(metadata=_RADIUS)
     mass: float = field(default=1.0, metadata=_MASS)
     spin: float | tuple[float, ...] | None = field(
         default=None,
-        metadata=declared(described(_SPIN, "angular velocity: a number in 2D, a vector in 3D")),
+        metadata=declare(describe(_SPIN, "angular velocity: a number in 2D, a vector in 3D")),
     )
     moment_of_inertia: float | None = field(default=None, metadata=_MOMENT)
     fixed: bool = field(default=False, metadata=_FIXED)
     vibration: float | None = field(
-        default=None, metadata=declared(not_negative("of a fixed particle: initial energy of vibration"))
+        default=None, metadata=declare(not_negative("of a fixed particle: initial energy of vibration"))
     )
 
     def __post_init__(self) -> None:
@@ -385,7 +385,7 @@ class Particle:
             set_fields(self, spin=spin)
         for key, value in (("velocity", self.velocity), ("spin", self.spin_vector)):
             if self.fixed and any(value):
-                raise SceneError(key, value, "a fixed particle has none")
+                raise SceneError(key, value, "must be zero for a fixed particle")
 
     @property
     def radii(self) -> np.ndarray:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from gaspart.keys import declared, positive, validate
+from gaspart.keys import declare, positive, validate
 
 
 @dataclass(frozen=True)
@@ -49,9 +49,9 @@ class Thermostat:
     0.1
     """
 
-    power: float = field(metadata=declared(positive("mean energy per time that a particle is given")))
+    power: float = field(metadata=declare(positive("mean energy per time that a particle is given")))
     interval: float = field(
-        metadata=declared(positive("time between kicks: short compared with that between contacts"))
+        metadata=declare(positive("time between kicks: short compared with that between contacts"))
     )
 
     def __post_init__(self) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
-from gaspart.keys import declared, positive, two_vectors, validate, vector
+from gaspart.keys import declare, positive, two_vectors, validate, vector
 from gaspart.keys.values import finite_vector, positive_number
 from gaspart.scene.moving_walls import check_moving_wall
 
@@ -56,10 +56,10 @@ class Wall:
     5.0
     """
 
-    start: tuple[float, ...] = field(metadata=declared(vector("one end", 2, sized=False)))
-    end: tuple[float, ...] = field(metadata=declared(vector("the other end", 2, sized=False)))
-    temperature: float | None = field(default=None, metadata=declared(_TEMPERATURE))
-    mass: float | None = field(default=None, metadata=declared(_MASS))
+    start: tuple[float, ...] = field(metadata=declare(vector("one end", 2, sized=False)))
+    end: tuple[float, ...] = field(metadata=declare(vector("the other end", 2, sized=False)))
+    temperature: float | None = field(default=None, metadata=declare(_TEMPERATURE))
+    mass: float | None = field(default=None, metadata=declare(_MASS))
 
     def __post_init__(self) -> None:
         validate(self)
@@ -150,12 +150,12 @@ class Plate:
     3.0
     """
 
-    corner: tuple[float, ...] = field(metadata=declared(vector("one corner", 3, sized=False)))
+    corner: tuple[float, ...] = field(metadata=declare(vector("one corner", 3, sized=False)))
     edges: tuple[tuple[float, ...], ...] = field(
-        metadata=declared(two_vectors("the vectors from it to the two neighbouring corners", 3))
+        metadata=declare(two_vectors("the vectors from it to the two neighbouring corners", 3))
     )
-    temperature: float | None = field(default=None, metadata=declared(_TEMPERATURE))
-    mass: float | None = field(default=None, metadata=declared(_MASS))
+    temperature: float | None = field(default=None, metadata=declare(_TEMPERATURE))
+    mass: float | None = field(default=None, metadata=declare(_MASS))
 
     def __post_init__(self) -> None:
         validate(self)
@@ -273,7 +273,9 @@ def check_walls(scene: Scene) -> None:
         if not isinstance(wall, wall_kind(scene.container)):
             raise SceneError(f"walls[{n}]", wall, WALL_RULE)
         if scene.centres_to_walls:
-            raise SceneError("centres_to_walls", True, "interior walls stop the surfaces of particles")
+            raise SceneError(
+                "centres_to_walls", True, "excludes interior walls, which stop surfaces of particles"
+            )
         for key, point in wall.corners.items():
             inside = zip(point, scene.container.lengths, strict=True)
             if not all(0.0 <= x <= length for x, length in inside):

@@ -144,7 +144,7 @@ from gaspart.theory.tables import excess_chemical_potential as excess_chemical_p
 from gaspart.theory.tables import excess_free_energy as excess_free_energy
 from gaspart.theory.tables import insertion_finite_size_correction as insertion_finite_size_correction
 from gaspart.theory.tables import literature as literature
-from gaspart.theory.tables import measured as measured
+from gaspart.theory.tables import measurements as measurements
 from gaspart.theory.tables import packing_fraction_at as packing_fraction_at
 from gaspart.theory.tables import small_systems as small_systems
 from gaspart.theory.vibrated import bed_height as bed_height

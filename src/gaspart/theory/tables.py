@@ -44,7 +44,7 @@ def literature(quantity: str, dimension: int) -> np.recarray:
 
     See Also
     --------
-    measured : Values that this program has measured.
+    measurements : Values that this program has measured.
 
     Notes
     -----
@@ -60,7 +60,7 @@ def literature(quantity: str, dimension: int) -> np.recarray:
     return _of("literature", quantity, dimension)
 
 
-def measured(quantity: str, dimension: int) -> np.recarray:
+def measurements(quantity: str, dimension: int) -> np.recarray:
     """Return values of hard discs and spheres that this program has measured, to be cited.
 
     Parameters
@@ -97,7 +97,7 @@ def measured(quantity: str, dimension: int) -> np.recarray:
     Examples
     --------
     >>> from gaspart import theory
-    >>> rows = theory.measured("Z", 3)
+    >>> rows = theory.measurements("Z", 3)
     >>> rows.dtype.names
     ('dimension', 'quantity', 'packing_fraction', 'count', 'container', 'value', 'error', 'source')
     """

@@ -112,14 +112,16 @@ class Recipe:
             if (value := getattr(self, key, None)) is not None:
                 object.__setattr__(self, key, kind.check(key, value))
         if self.follow is not None and self.follow > self.scene.count:
-            raise SceneError("follow", self.follow, f"there are {self.scene.count} particles")
+            raise SceneError(
+                "follow", self.follow, f"must be at most {self.scene.count}, the number of particles"
+            )
         if self.keep and self.until:
             raise SceneError("keep", self.keep, "has no meaning with until, which measures what is there")
         for key in ("follow", "correlations", "displacements", "pairs"):
             if getattr(self, key):
                 refuse_open(self.scene, f"excludes {key}: the particles change")
         finest = self.correlations.interval if self.correlations else self.sample_interval
-        object.__setattr__(self, "engine", self.engine.resolved(self.scene, finest))
+        object.__setattr__(self, "engine", self.engine.for_scene(self.scene, finest))
         if self.engine.quantum:
             multiple("sample_interval", self.sample_interval, "time_step", self.engine.quantum)
         if self.frames > amber.MOST_FRAMES:
@@ -150,8 +152,8 @@ class Recipe:
             multiple("correlations.start", correlations.start, *interval)
         samples = (self.frames - 1) * self.samples_per_frame - correlations.first
         if correlations.lags > samples:
-            rule = f"there are {max(0, samples)} intervals of {correlations.interval:g} "
-            rule += f"from {correlations.start:g} on"
+            rule = f"must be at most {max(0, samples)}, the number of intervals "
+            rule += f"of {correlations.interval:g} from {correlations.start:g} on"
             raise SceneError("correlations.lags", correlations.lags, rule)
 
     @property

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from gaspart.keys import TEXT, Kind, choice, count, described, flag
+from gaspart.keys import TEXT, Kind, choice, count, describe, flag
 from gaspart.state.optional_tallies import REQUESTED
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ OPTIONS: dict[str, Kind] = {
         default=False,
     ),
     **{
-        tally.name: described(TEXT, tally.meaning, title=tally.form, default=None)
+        tally.name: describe(TEXT, tally.meaning, title=tally.form, default=None)
         for tally in REQUESTED.values()
     },
 }

@@ -76,7 +76,7 @@ def test_a_cold_gas_that_is_heated_comes_to_the_temperature_of_the_event_driven_
     collisions, by the contact value, and so a higher temperature, by its power 2/3."""
     temperatures = []
     for seed in range(4):
-        sim = gp.Simulation(driven(), gp.DSMC().resolved(driven(), 20.0), seed)
+        sim = gp.Simulation(driven(), gp.DSMC().for_scene(driven(), 20.0), seed)
         sim.advance(until=400.0)
         found = []
         for _ in range(100):
@@ -94,7 +94,7 @@ def test_tiny_energies_are_counted():
     """From rest, with a power of 1e-40 or less: what is given is kept or dissipated."""
     for power in (1e-40, 1e-60):
         scene = driven(0.0, power, 1.0)
-        sim = gp.Simulation(scene, gp.DSMC().resolved(scene), 1)
+        sim = gp.Simulation(scene, gp.DSMC().for_scene(scene), 1)
         sim.advance(duration=4.0 * sim.engine.time_step)
         tally, energy = sim.tally, sim.state.kinetic_energy
         assert tally.thermostat_energy == pytest.approx(150 * power * sim.time, rel=0.5)
@@ -122,15 +122,15 @@ def test_energies_a_thousand_million_times_those_of_the_start_balance(speed, ste
 def test_a_step_of_its_own_allows_for_what_accelerates_the_particles():
     """They fly no farther in it than a fifth of a mean free path, by what gravity and kicks give them."""
     scene = driven(0.0)
-    step = gp.DSMC().resolved(scene).time_step
+    step = gp.DSMC().for_scene(scene).time_step
     way = math.sqrt(2.0 * 0.05 * step) * step
     assert way == pytest.approx(LONGEST * rates(scene, False).path, rel=2e-3)
     fall = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(9, 0.01)], gravity=(0.0, -2.0))
-    assert gp.DSMC().resolved(fall).time_step == pytest.approx(math.sqrt(9.0 / 8.0 / 2.0), rel=2e-3)
+    assert gp.DSMC().for_scene(fall).time_step == pytest.approx(math.sqrt(9.0 / 8.0 / 2.0), rel=2e-3)
     with pytest.raises(
         gp.SceneError, match="time_step = None: must be given for particles that start at rest, and"
     ):
-        gp.DSMC().resolved(gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(9, 0.01)]))
+        gp.DSMC().for_scene(gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(9, 0.01)]))
 
 
 def test_parts_of_a_step_are_as_short_as_is_stated():
@@ -205,8 +205,8 @@ def test_a_heated_gas_with_divided_steps_goes_on():
     ],
 )
 def test_what_was_not_given_adapts_and_the_settings_state_so(settings, adapt):
-    engine = gp.DSMC(**settings).resolved(driven())
+    engine = gp.DSMC(**settings).for_scene(driven())
     assert engine.adapt == adapt
-    assert engine == engine.resolved(driven())
+    assert engine == engine.for_scene(driven())
     assert gp.engine_from_dict(gp.engine_to_dict(engine)) == engine
     assert engine.with_step(0.25).time_step == 0.25 and not engine.with_step(0.25).adapts_steps

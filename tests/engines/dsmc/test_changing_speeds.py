@@ -49,7 +49,7 @@ def balance(sim, start):
 
 def measured(scene, engine, seed):
     """Of a run: the mean kinetic energy, and the momentum that the faces across z have taken per time."""
-    sim = gp.Simulation(scene, engine.resolved(scene, DURATION / SAMPLES), seed)
+    sim = gp.Simulation(scene, engine.for_scene(scene, DURATION / SAMPLES), seed)
     start, energies = sim.initial_state.energy, []
     for n in range(SAMPLES):
         sim.advance(until=DURATION * (n + 1) / SAMPLES)

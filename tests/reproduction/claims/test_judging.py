@@ -51,9 +51,9 @@ def test_a_source_is_reproduced_or_in_error_for_a_reason():
 
     assert of(1.0) == ["reproduced"]
     assert of(2.0) == ["disagrees"]
-    assert of(2.0, why="its step is 27 times too slow") == ["source in error"]
-    assert of(1.0, error=1.0, why="its step is 27 times too slow") == ["inconclusive"]
-    wrong = claim(2.0, kind="reproduction", why="it counts twice")
+    assert of(2.0, source_error="its step is 27 times too slow") == ["source in error"]
+    assert of(1.0, error=1.0, source_error="its step is 27 times too slow") == ["inconclusive"]
+    wrong = claim(2.0, kind="reproduction", source_error="it counts twice")
     assert reason(wrong, "source in error") == "it counts twice"
 
 

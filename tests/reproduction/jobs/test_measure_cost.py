@@ -112,7 +112,7 @@ def test_parts_of_the_step_that_the_scene_gives():
     }
     scanned = Point("gas", "a", "measure_cost", gas | run | {"scan_step_parts": [1, 0.5]}, ".", 1)
     whole, half = (engine.time_step for engine in scanned.engines)
-    assert whole == DSMC().resolved(scanned.scene).time_step == 2.0 * half
+    assert whole == DSMC().for_scene(scanned.scene).time_step == 2.0 * half
     found = measure_cost(**scanned.arguments)
     steps = found.variables["steps"][1]
     assert steps[1] == pytest.approx(2 * steps[0], abs=2)

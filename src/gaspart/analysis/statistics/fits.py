@@ -142,7 +142,7 @@ def _of_estimated_errors(
     too small, each by the part 2 few (1 - leverage) of its share (for the weighted mean: Meier, Biometrics 9,
     59 (1953)). With f - 2 for f, as in the mean of 1 / chi-square, this is good to some per cent of the
     errors from f = 3 on, and f / 3 below. The degrees of freedom follow Welch and Satterthwaite; the
-    test is that of Welch, Biometrika 38, 330 (1951), for linear models Johansen, Biometrika 67, 85 (1980).
+    test follows Welch, Biometrika 38, 330 (1951), for linear models Johansen, Biometrika 67, 85 (1980).
     """
     free = 1.0 - np.clip((basis**2).sum(axis=1), 0.0, 1.0)
     with np.errstate(divide="ignore"):

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.engines.engine import Asked, Candidate
+from gaspart.engines.engine import AccuracyRequest, Candidate
 from gaspart.errors import SceneError
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ In the Enskog model the contact value too is taken at the mean density of a cell
 """
 
 
-def candidate(engine: DSMC, request: Asked) -> Candidate:
+def candidate(engine: DSMC, request: AccuracyRequest) -> Candidate:
     """Choose cells and step of the engine, and bound its errors.
 
     Raises SceneError if the cells or the step are too coarse for the local conditions, and if the gas is too
@@ -50,13 +50,13 @@ def candidate(engine: DSMC, request: Asked) -> Candidate:
     if dense and filled > DENSEST:
         rule = f"the Enskog model is known up to {DENSEST:g}, also where the gas is densest"
         raise SceneError("packing_fraction", round(filled, 4), rule)
-    resolved = engine.resolved(request.scene)
+    resolved = engine.for_scene(request.scene)
     require_resolved(resolved, conditions)
     model = enskog_error(request, cells_of(resolved, conditions)) if dense else boltzmann_error(request)
     return Candidate(engine, model, cell_error(resolved, request))
 
 
-def boltzmann_error(request: Asked) -> float:
+def boltzmann_error(request: AccuracyRequest) -> float:
     """Bound the relative error of the Boltzmann equation, in which particles are points."""
     conditions, scene = request.conditions, request.scene
     error = (request.memory if request.transported else 0.0) + _layers(request)
@@ -73,7 +73,7 @@ def boltzmann_error(request: Asked) -> float:
     return float(error + max(excess, virial if scene.gravity else virial / (1.0 + virial)))
 
 
-def enskog_error(request: Asked, cells: tuple[int, ...] | None = None) -> float:
+def enskog_error(request: AccuracyRequest, cells: tuple[int, ...] | None = None) -> float:
     """Bound the relative error of the Enskog equation.
 
     Pairs collide a diameter apart, with the contact value of their density.
@@ -94,7 +94,7 @@ def enskog_error(request: Asked, cells: tuple[int, ...] | None = None) -> float:
     return float(error)
 
 
-def cell_error(engine: DSMC, request: Asked) -> float:
+def cell_error(engine: DSMC, request: AccuracyRequest) -> float:
     """Bound the relative error due to cells and steps.
 
     The error is in the viscosity, and in observables that depend on it, by the shortest free path; in a rate
@@ -155,7 +155,7 @@ def cells_of(engine: DSMC, conditions: Layers) -> tuple[int, ...]:
     return tuple(np.broadcast_to(np.array(engine.cells_per_side or 1), conditions.free.shape).tolist())
 
 
-def _layers(request: Asked) -> float:
+def _layers(request: AccuracyRequest) -> float:
     """Return the relative error of a density due to the layers of particles at walls.
 
     In these layers the density is Z times the density of the middle, over about a diameter.

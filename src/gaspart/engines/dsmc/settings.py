@@ -8,11 +8,11 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from gaspart.engines.engine import Engine, register
-from gaspart.keys import choice, count, declared, per_side, positive
+from gaspart.keys import choice, count, declare, per_side, positive
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.dynamics import DsmcDynamics
-    from gaspart.engines.engine import Asked, Candidate
+    from gaspart.engines.engine import AccuracyRequest, Candidate
     from gaspart.scene.scene import Scene
     from gaspart.state.optional_tallies import OptionalTally
     from gaspart.state.state import State
@@ -73,21 +73,21 @@ class DSMC(Engine):
 
     time_step: float | None = field(
         default=None,
-        metadata=declared(positive("duration of a step; by default a fifth of a mean free time, at most")),
+        metadata=declare(positive("duration of a step; by default a fifth of a mean free time, at most")),
     )
     cells_per_side: int | tuple[int, ...] | None = field(
         default=None,
-        metadata=declared(
+        metadata=declare(
             per_side("number of cells, or one for each axis; by default a third of a mean free path wide")
         ),
     )
     model: str = field(
         default="boltzmann",
-        metadata=declared(choice("`boltzmann`, a dilute gas, or `enskog`, a dense one", *MODELS)),
+        metadata=declare(choice("`boltzmann`, a dilute gas, or `enskog`, a dense one", *MODELS)),
     )
     adapt: str | None = field(
         default=None,
-        metadata=declared(
+        metadata=declare(
             choice(
                 "what follows a gas whose speeds or densities change: `nothing`, `steps`, which are divided,"
                 " `cells`, or `both`; by default what is not given",
@@ -95,7 +95,7 @@ class DSMC(Engine):
             )
         ),
     )
-    threads: int = field(default=1, metadata=declared(count("number of threads that share a run's work")))
+    threads: int = field(default=1, metadata=declare(count("number of threads that share a run's work")))
 
     name: ClassVar[str] = "dsmc"
     title: ClassVar[str] = "DSMC"
@@ -157,7 +157,7 @@ class DSMC(Engine):
         """
         return self.time_step
 
-    def resolved(self, scene: Scene, interval: float | None = None) -> DSMC:
+    def for_scene(self, scene: Scene, interval: float | None = None) -> DSMC:
         """Return a copy with cells and time step chosen for a scene.
 
         Parameters
@@ -182,7 +182,7 @@ class DSMC(Engine):
         >>> import gaspart as gp
         >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
         >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
-        >>> gp.DSMC().resolved(scene, interval=1.0).describe(), gp.DSMC().resolved(scene).cells_per_side
+        >>> gp.DSMC().for_scene(scene, interval=1.0).describe(), gp.DSMC().for_scene(scene).cells_per_side
         ('dsmc, model boltzmann, time_step 0.5', (6, 6, 6))
         """
         from gaspart.engines.dsmc.defaults import cells_for, rates, step_for
@@ -317,7 +317,7 @@ class DSMC(Engine):
         return lost + (defaults.diffusion_error(step, scene, gas_rates) if kind == "paths" else 0.0)
 
     @classmethod
-    def offered(cls) -> tuple[DSMC, ...]:
+    def variants(cls) -> tuple[DSMC, ...]:
         """Return the engines among which advice chooses: one for each model.
 
         Returns
@@ -328,17 +328,17 @@ class DSMC(Engine):
         Examples
         --------
         >>> import gaspart as gp
-        >>> [engine.model for engine in gp.DSMC.offered()]
+        >>> [engine.model for engine in gp.DSMC.variants()]
         ['boltzmann', 'enskog']
         """
         return tuple(cls(model=model) for model in MODELS)
 
-    def candidate(self, asked: Asked) -> Candidate:
+    def candidate(self, request: AccuracyRequest) -> Candidate:
         """Return the engine with its default cells and step, and bounds on its errors.
 
         Parameters
         ----------
-        asked : Asked
+        request : AccuracyRequest
             Observable of a steady scene, and its requested accuracy.
 
         Returns
@@ -356,16 +356,16 @@ class DSMC(Engine):
         --------
         >>> import gaspart as gp
         >>> from gaspart.accuracy.conditions import even_conditions
-        >>> from gaspart.engines.engine import Asked
+        >>> from gaspart.engines.engine import AccuracyRequest
         >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
         >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
-        >>> asked = Asked("collision_rate", 0.01, even_conditions(scene, 1.0))
-        >>> round(gp.DSMC(model="enskog").candidate(asked).bias, 3)
+        >>> request = AccuracyRequest("collision_rate", 0.01, even_conditions(scene, 1.0))
+        >>> round(gp.DSMC(model="enskog").candidate(request).bias, 3)
         0.01
         """
         from gaspart.engines.dsmc.accuracy import candidate
 
-        return candidate(self, asked)
+        return candidate(self, request)
 
     @property
     def timed_as(self) -> str:
@@ -399,7 +399,7 @@ class DSMC(Engine):
         >>> gp.DSMC().timed_step(gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)]))
         1.0
         """
-        return (self.resolved(scene).time_step or 0.0) / self._own_step(scene)
+        return (self.for_scene(scene).time_step or 0.0) / self._own_step(scene)
 
     def at_step(self, scene: Scene, step: float, precision: str) -> DSMC:
         """Return a copy with a time step of the table of costs.
@@ -426,10 +426,10 @@ class DSMC(Engine):
         >>> gp.DSMC().at_step(scene, 2.0, "float64").timed_step(scene)
         2.0
         """
-        return self.resolved(scene).with_step(step * self._own_step(scene))
+        return self.for_scene(scene).with_step(step * self._own_step(scene))
 
     def _own_step(self, scene: Scene) -> float:
-        return replace(self, time_step=None).resolved(scene).time_step or math.inf
+        return replace(self, time_step=None).for_scene(scene).time_step or math.inf
 
     @property
     def limitations(self) -> str:
@@ -540,7 +540,7 @@ class DSMC(Engine):
         >>> gp.DSMC().for_small_scene(scene).cells_per_side
         1
         """
-        return self.resolved(scene)._with(cells_per_side=1, adapts=(self.adapts_steps, False))
+        return self.for_scene(scene)._with(cells_per_side=1, adapts=(self.adapts_steps, False))
 
     def start(
         self,

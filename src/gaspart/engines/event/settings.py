@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from gaspart.engines.engine import Engine, register
 from gaspart.errors import SceneError
-from gaspart.keys import choice, declared, per_side
+from gaspart.keys import choice, declare, per_side
 from gaspart.scene.features import FEATURES
 from gaspart.state.optional_tallies import TALLIES
 
@@ -68,11 +68,11 @@ class EventDriven(Engine):
     """
 
     search: str = field(
-        default="automatic", metadata=declared(choice("how the next event is found", *SEARCHES))
+        default="automatic", metadata=declare(choice("how the next event is found", *SEARCHES))
     )
     boxes_per_side: int | tuple[int, ...] | None = field(
         default=None,
-        metadata=declared(per_side("number of boxes, or one for each axis; by default chosen")),
+        metadata=declare(per_side("number of boxes, or one for each axis; by default chosen")),
     )
 
     name: ClassVar[str] = "event"

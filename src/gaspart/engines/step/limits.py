@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.engines.engine import Asked, Candidate
+from gaspart.engines.engine import AccuracyRequest, Candidate
 from gaspart.errors import SceneError, SimulationError
 from gaspart.scene.geometry import ball_volume
 from gaspart.scene.scene import Scene
@@ -193,7 +193,7 @@ _LONGEST = 0.2
 """Longest step, as a fraction of the mean time between a particle's collisions."""
 
 
-def candidate(engine: TimeStepped, request: Asked) -> Candidate:
+def candidate(engine: TimeStepped, request: AccuracyRequest) -> Candidate:
     """Return the engine with the longest step that is accurate enough.
 
     Raises SceneError for a gas without collisions.

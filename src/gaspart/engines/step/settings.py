@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, ClassVar
 
 from gaspart.engines.engine import Engine, register
 from gaspart.errors import SceneError
-from gaspart.keys import choice, count, declared, flag, per_side, positive
+from gaspart.keys import choice, count, declare, flag, per_side, positive
 from gaspart.scene.faces import FACE_KINDS
 from gaspart.scene.gas import plain_gas
 
 if TYPE_CHECKING:
-    from gaspart.engines.engine import Asked, Candidate
+    from gaspart.engines.engine import AccuracyRequest, Candidate
     from gaspart.engines.step.dynamics import StepDynamics
     from gaspart.scene.scene import Scene
     from gaspart.state.optional_tallies import OptionalTally
@@ -78,31 +78,29 @@ class TimeStepped(Engine):
     'step, time_step 0.01, float64, 4 passes'
     """
 
-    time_step: float = field(metadata=declared(positive("duration of a step")))
+    time_step: float = field(metadata=declare(positive("duration of a step")))
     boxes_per_side: int | tuple[int, ...] | None = field(
         default=None,
-        metadata=declared(per_side("number of boxes, or one for each axis; by default a neighbour list")),
+        metadata=declare(per_side("number of boxes, or one for each axis; by default a neighbour list")),
     )
     precision: str = field(
-        default="float64", metadata=declared(choice("floating-point type of the state", *PRECISIONS))
+        default="float64", metadata=declare(choice("floating-point type of the state", *PRECISIONS))
     )
     rewind: bool = field(
         default=True,
-        metadata=declared(flag("overlapping particles are moved back to the time of their contact")),
+        metadata=declare(flag("overlapping particles are moved back to the time of their contact")),
     )
-    passes: int = field(
-        default=4, metadata=declared(count("how often a step searches for overlaps, at most"))
-    )
+    passes: int = field(default=4, metadata=declare(count("how often a step searches for overlaps, at most")))
     skin: float | None = field(
         default=None,
-        metadata=declared(
+        metadata=declare(
             positive("distance by which a neighbour list reaches farther than a contact; by default chosen")
         ),
     )
     near_boxes: bool = field(
-        default=False, metadata=declared(flag("with boxes: search only the boxes within reach of a contact"))
+        default=False, metadata=declare(flag("with boxes: search only the boxes within reach of a contact"))
     )
-    threads: int = field(default=1, metadata=declared(count("number of threads that share a run's work")))
+    threads: int = field(default=1, metadata=declare(count("number of threads that share a run's work")))
 
     name: ClassVar[str] = "step"
     title: ClassVar[str] = "time-stepped"
@@ -164,7 +162,7 @@ class TimeStepped(Engine):
         return replace(self, time_step=step)
 
     @classmethod
-    def offered(cls) -> tuple[TimeStepped, ...]:
+    def variants(cls) -> tuple[TimeStepped, ...]:
         """Return the engines among which advice chooses.
 
         Returns
@@ -175,17 +173,17 @@ class TimeStepped(Engine):
         Examples
         --------
         >>> import gaspart as gp
-        >>> len(gp.TimeStepped.offered())
+        >>> len(gp.TimeStepped.variants())
         1
         """
         return (cls(1.0),)
 
-    def candidate(self, asked: Asked) -> Candidate:
+    def candidate(self, request: AccuracyRequest) -> Candidate:
         """Return the engine with the longest step that is accurate enough.
 
         Parameters
         ----------
-        asked : Asked
+        request : AccuracyRequest
             Observable of a steady scene, and its requested accuracy.
 
         Returns
@@ -202,17 +200,17 @@ class TimeStepped(Engine):
         --------
         >>> import gaspart as gp
         >>> from gaspart.accuracy.conditions import even_conditions
-        >>> from gaspart.engines.engine import Asked
+        >>> from gaspart.engines.engine import AccuracyRequest
         >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
         >>> state = gp.Simulation(scene, "dsmc", seed=1).state
-        >>> asked = Asked("pressure", 0.01, even_conditions(scene, 1.0), initial=state)
-        >>> candidate = gp.TimeStepped(time_step=0.01).candidate(asked)
+        >>> request = AccuracyRequest("pressure", 0.01, even_conditions(scene, 1.0), initial=state)
+        >>> candidate = gp.TimeStepped(time_step=0.01).candidate(request)
         >>> candidate.engine.time_step, round(candidate.bias, 4)
         (0.019, 0.0011)
         """
         from gaspart.engines.step.limits import candidate
 
-        return candidate(self, asked)
+        return candidate(self, request)
 
     def timed_step(self, scene: Scene) -> float:
         """Return the time step in diameters divided by the thermal speed of a plain gas.

@@ -233,7 +233,7 @@ def _check_settings(run: Finished) -> None:
         same = (
             recipe.scene == point.scene
             and recipe.seed == arguments["seeds"][replica]
-            and recipe.engine == arguments["engine"].resolved(recipe.scene, finest)
+            and recipe.engine == arguments["engine"].for_scene(recipe.scene, finest)
             and recipe.sample_interval == arguments["sample_interval"]
             and recipe.duration == arguments["duration"]
         )

@@ -49,7 +49,7 @@ class Claim:
     follows : True if the number follows, or nearly, from other claims, so that the joint test does not count
         it again.
     no_verdict : reason why the number is reported only, such as UNVERIFIED.
-    why : for a reproduction, reason why the source errs if it is not reproduced.
+    source_error : for a reproduction, reason why the source errs if it is not reproduced.
 
     Raises ValueError for an unknown kind, an empty text, source or fails_if, a negative required uncertainty,
     and an allowance without a source.
@@ -68,7 +68,7 @@ class Claim:
     alternative: Number | None = None
     follows: bool = False
     no_verdict: str = ""
-    why: str = ""
+    source_error: str = ""
 
     def __post_init__(self) -> None:
         if self.kind not in CLAIM_KINDS:
@@ -294,7 +294,7 @@ def _verdict(claim: Claim, is_significant: bool) -> str:
         return "inconclusive"
     is_reproduction = claim.kind == "reproduction"
     if is_significant:
-        return "source in error" if is_reproduction and claim.why else "disagrees"
+        return "source in error" if is_reproduction and claim.source_error else "disagrees"
     if not claim.is_conclusive or (claim.form == "bound" and claim.deviation_sigma != 0.0):
         return "inconclusive"
     return "reproduced" if is_reproduction else "agrees"
@@ -309,7 +309,7 @@ def reason(claim: Claim, verdict: str) -> str:
     if verdict == "no verdict":
         return claim.no_verdict
     if verdict == "source in error":
-        return claim.why
+        return claim.source_error
     if verdict != "inconclusive":
         return ""
     if not claim.is_finite:

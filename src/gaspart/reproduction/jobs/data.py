@@ -7,7 +7,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from gaspart.keys import NOT_NEGATIVE, POSITIVE, described, listed
+from gaspart.keys import NOT_NEGATIVE, POSITIVE, describe, list_of
 
 if TYPE_CHECKING:
     from gaspart.reproduction.points.point import Point
@@ -55,12 +55,12 @@ class PointData(NamedTuple):
 
 SLACK = 1e-6
 """Part of a time step by which a run is longer, so that rounding of its duration loses no step."""
-EQUILIBRATION_KEY = described(
+EQUILIBRATION_KEY = describe(
     NOT_NEGATIVE,
     "time before the length, in the same unit; rounded up to whole samples, which are not measured",
     default=0,
 )
-SCAN_TIME_STEPS = listed(
+SCAN_TIME_STEPS = list_of(
     POSITIVE,
     "time steps that one job runs in turn; the length of the run is in multiples of `time_step`",
     default=None,

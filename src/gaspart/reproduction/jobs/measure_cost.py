@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gaspart.engines import engine_to_dict, reference_engine
 from gaspart.errors import SimulationError
-from gaspart.keys import COUNT, POSITIVE, TEXT, Kind, count, described, flag, listed
+from gaspart.keys import COUNT, POSITIVE, TEXT, Kind, count, describe, flag, list_of
 from gaspart.reproduction.jobs.data import EQUILIBRATION_KEY, SCAN_TIME_STEPS, SLACK, PointData, intervals
 
 if TYPE_CHECKING:
@@ -41,14 +41,14 @@ KEYS: dict[str, Kind] = {
     "samples": count(
         "number of timings, each of one of the intervals into which the length is divided", default=1
     ),
-    "scan_boxes_per_side": listed(
+    "scan_boxes_per_side": list_of(
         COUNT, "numbers of boxes per side that one job times in turn", default=None
     ),
-    "scan_boxes_per_particle": listed(
+    "scan_boxes_per_particle": list_of(
         POSITIVE, "numbers of boxes per particle that one job times in turn", default=None
     ),
     "scan_time_steps": SCAN_TIME_STEPS,
-    "scan_step_parts": listed(
+    "scan_step_parts": list_of(
         POSITIVE,
         "time steps that one job runs in turn, as parts of the engine's own in the scene",
         default=None,
@@ -56,7 +56,7 @@ KEYS: dict[str, Kind] = {
     "record_events": flag("record all events; needs an engine that has them", default=False),
     "stress": flag("tally the stress tensor and the heat flux", default=False),
     "copies": count("equal runs at once, each in a thread of its own; times are those of all", default=1),
-    "without": described(
+    "without": describe(
         {"type": "array", "items": TEXT, "minItems": 1},
         "keys that a second scene and engine lack, which are timed in turn with the point's",
         default=None,
@@ -162,12 +162,12 @@ def measure_cost(
     # By the shortest step: a longer one leaves overlaps, which would count against a shorter one.
     careful = min(engines, key=lambda engine: engine.quantum or 0.0)
     start = _start(scene, careful, seed, equilibration)
-    runs = [_Run(scene, start, engine.resolved(scene), extras) for engine in engines]
+    runs = [_Run(scene, start, engine.for_scene(scene), extras) for engine in engines]
     if rival:
         rival_scene = rival["scene"]
         other = start if rival_scene == scene else _start(rival_scene, careful, seed, equilibration)
         runs += [
-            _Run(rival_scene, other, rival_engine.resolved(rival_scene), _NONE)
+            _Run(rival_scene, other, rival_engine.for_scene(rival_scene), _NONE)
             for rival_engine in rival["engines"]
         ]
     available = config.NUMBA_NUM_THREADS
@@ -220,7 +220,7 @@ def _attributes(scene: Scene, engine: Engine) -> dict:
         "packing_fraction": scene.packing_fraction,
         "engine": engine.name,
         **{key: settings.get(key, "") for key in ("search", "model")},
-        "time_step": engine.resolved(scene).quantum or 0.0,
+        "time_step": engine.for_scene(scene).quantum or 0.0,
     }
 
 

@@ -10,7 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gaspart.keys import Kind, count, described, flag, positive
+from gaspart.keys import Kind, count, describe, flag, positive
 from gaspart.reproduction.jobs.data import EQUILIBRATION_KEY
 from gaspart.reproduction.jobs.replicas import write_replicas
 from gaspart.trajectory.run_options import OPTIONS, recipe_fields
@@ -28,7 +28,7 @@ KEYS: dict[str, Kind] = {
         "by default one for each collision of a particle",
         default=1,
     ),
-    "until": described(
+    "until": describe(
         {
             "type": "object",
             "minProperties": 1,

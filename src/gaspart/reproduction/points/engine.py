@@ -42,7 +42,7 @@ def scan_engines(point: Point) -> list[Engine]:
             raise point.make_error(scan, f"has no meaning with engine: {single.name}")
         return [single.with_step(step) for step in values]
     if scans == ["scan_step_parts"]:
-        resolved: Any = point.engine.resolved(point.scene)
+        resolved: Any = point.engine.for_scene(point.scene)
         if resolved.quantum is None:
             raise point.make_error(scan, f"has no meaning with engine: {resolved.name}")
         return [resolved.with_step(part * resolved.time_step) for part in values]

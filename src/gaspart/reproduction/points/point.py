@@ -264,7 +264,7 @@ def compile_kernels(job: str) -> None:
     if task["engine"] is None:
         initial_state(scene, seed=1)
         return
-    engine = engine_from_dict(task["engine"]).resolved(scene)
+    engine = engine_from_dict(task["engine"]).for_scene(scene)
     simulation = Simulation(scene, engine, 1, task.get("stress", False))
     if task.get("events"):
         simulation.record_events = True

@@ -11,8 +11,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from gaspart import engines
-from gaspart.analysis.observables import having
-from gaspart.keys import POSITIVE, TEXT, Kind, choice, count, described, flag, positive, schema_of
+from gaspart.analysis.observables import observables_with
+from gaspart.keys import POSITIVE, TEXT, Kind, choice, count, describe, flag, positive, schema_of
 from gaspart.scene.sizes import DISTRIBUTIONS
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ EXTENTS: dict[str, Kind] = {
     "packing_fraction": positive(
         "area or volume of all particles over that of the container", exclusiveMaximum=1, default=None
     ),
-    "side": described(
+    "side": describe(
         {**POSITIVE, "type": ["number", "array"], "items": POSITIVE, **_PER_AXIS},
         "side length of the container, or one for each axis",
         default=None,
@@ -40,7 +40,7 @@ EXTENTS: dict[str, Kind] = {
 
 GAS: dict[str, Kind] = {
     "dimension": choice("2 for discs, 3 for spheres; required", 2, 3, default=None),
-    "boundary": described(
+    "boundary": describe(
         {"type": ["string", "array"]}, "`wall` or `periodic`, or one of them for each axis", default="wall"
     ),
     "centres_to_walls": flag(
@@ -83,7 +83,7 @@ GAS: dict[str, Kind] = {
 """Keys of one species in a container, or of two species of different sizes."""
 
 SCENE_FILE: dict[str, Kind] = {
-    "scene": described(
+    "scene": describe(
         {**TEXT, "minLength": 1},
         "path of a scene file, instead of all keys above; it runs by itself with `gaspart run`",
         default=None,
@@ -124,7 +124,9 @@ ENGINE_KEYS: dict[str, dict[str, Kind]] = {
         "accuracy": positive(
             "relative accuracy: standard error and bias; required", exclusiveMaximum=1, default=None
         ),
-        "observable": choice("observable whose accuracy it is", *having(tabulated=True), default="Z"),
+        "observable": choice(
+            "observable whose accuracy it is", *observables_with(tabulated=True), default="Z"
+        ),
     },
 }
 """The keys that each engine has a meaning for."""
@@ -160,7 +162,7 @@ def ending(point: Point) -> dict[str, Any]:
 
     settings, times = point.settings, point.schedule
     start = times.equilibration if "equilibration" in settings else None
-    accuracies = tuple(Accuracy.named(name, value, start) for name, value in settings["until"].items())
+    accuracies = tuple(Accuracy.from_name(name, value, start) for name, value in settings["until"].items())
     for accuracy in accuracies:
         require_measurable(accuracy, point.scene, point.engine)
         require_end(accuracy, point.scene, times.duration, from_state=False)

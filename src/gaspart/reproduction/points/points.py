@@ -16,7 +16,7 @@ from dataclasses import replace
 from typing import Any
 
 from gaspart.errors import SceneError
-from gaspart.keys import TEXT, Kind, choice, count, described, flag, listed, nullable, positive, record
+from gaspart.keys import TEXT, Kind, choice, count, describe, flag, list_of, nullable, positive, record
 from gaspart.reproduction.points import point_keys
 from gaspart.reproduction.points.jobs import JOBS
 from gaspart.reproduction.points.lengths import scale_length
@@ -57,7 +57,7 @@ def _of_any_engine() -> dict[str, Kind]:
             meaning = kind["description"]
             text = merged.setdefault(name, kind.stating(default=None))["description"]
             if meaning not in text:
-                merged[name] = described(merged[name], f"{text}; {engine}: {meaning}")
+                merged[name] = describe(merged[name], f"{text}; {engine}: {meaning}")
     return merged
 
 
@@ -69,7 +69,7 @@ def _of_any_job() -> dict[str, Kind]:
         for name, kind in module.KEYS.items():
             kinds.setdefault(name, kind)
             meanings.setdefault(name, {}).setdefault(kind["description"], []).append(f"`{job}`")
-    return {name: described(kind, _in_words(meanings[name])) for name, kind in kinds.items()}
+    return {name: describe(kind, _in_words(meanings[name])) for name, kind in kinds.items()}
 
 
 def _in_words(meanings: Mapping[str, list[str]]) -> str:
@@ -99,8 +99,8 @@ _JOBS = "; ".join(f"`{name}`: {module.RESULT}" for name, module in JOBS.items())
 EXPERIMENT: dict[str, Kind] = {
     "job": choice(_JOBS, *JOBS, default="simulate"),
     "point": record(POINT, "the settings that all points share", patternProperties={r"^scene[.]": {}}),
-    "grid": described(
-        {"anyOf": [_BLOCK, listed(_BLOCK)]},
+    "grid": describe(
+        {"anyOf": [_BLOCK, list_of(_BLOCK)]},
         "the settings that vary: a mapping from a key to the list of its values, of which the product is "
         "taken, or a list of such mappings, one after the other; a single value counts as a list of one",
         default=None,
@@ -108,8 +108,8 @@ EXPERIMENT: dict[str, Kind] = {
 }
 
 ANIMATION: dict[str, Kind] = {
-    "experiment": described(TEXT, "the experiment whose first point's first replica is filmed"),
-    "size": listed(
+    "experiment": describe(TEXT, "the experiment whose first point's first replica is filmed"),
+    "size": list_of(
         {"type": "integer", "minimum": 16}, "width and height in pixels", 2, 2, default=[1000, 750]
     ),
     "colour": choice("what the colour of a particle shows", "speed", "species", default="speed"),
@@ -119,7 +119,7 @@ ANIMATION: dict[str, Kind] = {
         "write parameters, the meaning of the colours, time and scale above and below the pictures",
         default=False,
     ),
-    "figure": described(TEXT, "the figure beside which the report shows the film", default=None),
+    "figure": describe(TEXT, "the figure beside which the report shows the film", default=None),
 }
 
 
@@ -134,27 +134,27 @@ def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
     """
     named = {"type": "object", "propertyNames": _NAME}
     return {
-        "title": described({**TEXT, "minLength": 1}, "stands in the report and in each figure's data"),
+        "title": describe({**TEXT, "minLength": 1}, "stands in the report and in each figure's data"),
         "seed": count(
             "with the names of experiment, point and replica it gives every random stream", minimum=0
         ),
-        "points": described(
+        "points": describe(
             {**TEXT, "pattern": r"^results(/[A-Za-z0-9_.-]*[A-Za-z0-9_-])+$(?!\n)", "maxLength": 200},
             "the folder of the simulations, which several runs may share",
         ),
         "run": nullable(
-            described(
+            describe(
                 {**TEXT, "pattern": rf"^(?!({'|'.join(_TAKEN)})$){_WORD}", "maxLength": 100},
                 "a name: figures, claims, tables, logs and report are then in `results/<run>`, instead of "
                 "`results`, where they replace those of no other run",
                 default=None,
             )
         ),
-        "experiments": described(
+        "experiments": describe(
             {**named, "minProperties": 1, "additionalProperties": record(EXPERIMENT)}, "what is simulated"
         ),
         "lengths": nullable(
-            described(
+            describe(
                 {
                     "type": "object",
                     "additionalProperties": {"type": ["object", "null"], "additionalProperties": MULTIPLE},
@@ -164,11 +164,11 @@ def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
                 default=None,
             )
         ),
-        "figures": described(
+        "figures": describe(
             {**named, "properties": figures, "additionalProperties": own},
             "what is drawn, and the settings of its measurement; a figure with another name has a `kind`",
         ),
-        "animations": described(
+        "animations": describe(
             {**named, "additionalProperties": nullable(record(ANIMATION))},
             "films; null takes one back",
             default={},

@@ -8,7 +8,7 @@ from reproduction.families.displacement.data import langevin, point
 import gaspart as gp
 from gaspart import theory
 from gaspart.analysis.correlations import Curves, correlate
-from gaspart.analysis.motion import between, line
+from gaspart.analysis.motion import line, mask_between
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.displacement import measure as displacement
 from gaspart.reproduction.families.shared import curves
@@ -59,7 +59,7 @@ def test_a_line_needs_four_points():
     x = np.arange(10.0)
     assert line(x, 3.0 * x + 1.0) == pytest.approx(3.0)
     assert np.isnan(line(x[:3], x[:3]))
-    assert between(x, 2.0, 4.0).sum() == 3
+    assert mask_between(x, 2.0, 4.0).sum() == 3
 
 
 @pytest.mark.parametrize("unit", [{}, {"drift": 7.0}, {"length": 2.0, "speed": 3.0}], ids=str)

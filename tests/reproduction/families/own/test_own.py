@@ -12,7 +12,7 @@ from reproduction.families.drawn import Points, draw, lines, shows
 import gaspart as gp
 from gaspart.analysis import measuring
 from gaspart.analysis.observable import observable as made
-from gaspart.analysis.observables import OBSERVABLES, having
+from gaspart.analysis.observables import OBSERVABLES, observables_with
 from gaspart.errors import SceneError
 from gaspart.reproduction import sweep_table
 from gaspart.reproduction.claims import judge
@@ -161,7 +161,7 @@ def test_the_names_of_the_curves_are_known(simulated):
                 continue
             if any(found[dim].dtype.kind in "fiu" for dim in found.estimate.dims):
                 curves.add(name)
-    assert {"rdf", "speeds"} <= curves <= set(having(form="curve")) <= set(OBSERVABLES)
+    assert {"rdf", "speeds"} <= curves <= set(observables_with(form="curve")) <= set(OBSERVABLES)
 
 
 def test_an_observable_with_names_has_a_series_for_each(simulated, monkeypatch):

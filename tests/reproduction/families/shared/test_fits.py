@@ -53,8 +53,8 @@ def well(rng):
 def large_disc(rng):
     """The force and the radius, means of all heights, and the density that floats in the middle."""
     ds = scattered(rng, DISCS, 15, ["fixed_force", "fixed_missing", "fixed_force_radius", "source_height"])
-    *_, force, radius = buoyancy._claims_on_fixed(Table.prefixed(ds, "fixed"))
-    neutral = buoyancy._neutral(Table.prefixed(ds, "source")[2:8], 31.5)
+    *_, force, radius = buoyancy._claims_on_fixed(Table.from_prefixed(ds, "fixed"))
+    neutral = buoyancy._neutral(Table.from_prefixed(ds, "source")[2:8], 31.5)
     return [claim.measured - claim.expected for claim in (force, radius, neutral)]
 
 

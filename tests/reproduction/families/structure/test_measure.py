@@ -57,7 +57,7 @@ def test_the_routes_agree(points):
 
 
 def test_insertion_agrees_with_the_integrated_pressure(points):
-    settings = {"measured": ["frames"], "places": 64, "frames": 100, "enough": 90}
+    settings = {"measured": ["frames"], "trials": 64, "frames": 100, "enough": 90}
     ds = potential.chemical_potential(points, settings)
     assert (ds["works"] == 1).all() and (ds["hit_frames"] > 90).all()
     assert (ds["ratio_error"].values < 0.03).all()

@@ -24,7 +24,7 @@ def buoyancy(ds: xr.Dataset) -> list[Claim]:
 
     The heights are of free discs, and of the source's discs.
     """
-    fixed, free, source = (Table.prefixed(ds, kind) for kind in ("fixed", "free", "source"))
+    fixed, free, source = (Table.from_prefixed(ds, kind) for kind in ("fixed", "free", "source"))
     largest = Table(ds, "height").displaced.max()
     return [
         *_claims_on_fixed(fixed),
@@ -154,6 +154,6 @@ def _neutral(discs: Table, middle: float) -> Claim:
         expected=1.0,
         required=0.02,
         source="notebook of [source C]'s code (tms-ninja/billiards), buoyancy: mean density of small discs",
-        why="a disc displaces the fluid of a larger radius than its own, as the claims above state",
+        source_error="a disc displaces the fluid of a larger radius than its own, as the claims above state",
         fails_if="a disc that displaces exactly its own area of the fluid",
     )

@@ -14,7 +14,7 @@ from gaspart.theory.brownian import displaced_area
 
 def buoyancy(ds: xr.Dataset) -> Figure:
     """Draw force against density, the displaced radius, and the heights of free discs."""
-    fixed, free, source = (Table.prefixed(ds, kind) for kind in ("fixed", "free", "source"))
+    fixed, free, source = (Table.from_prefixed(ds, kind) for kind in ("fixed", "free", "source"))
     figure, axes = style.new((2.1, 2.1), (2.1,), *([(2.1,)] if source else []))
     top, middle, bottom = axes[:3]
     _draw_displacement(top, middle, fixed, ds.attrs["size_ratio"])

@@ -24,7 +24,7 @@ from gaspart.reproduction.families.shared.columns import (
     stretches,
 )
 from gaspart.reproduction.points.point import Point
-from gaspart.reproduction.table import prefixed, table
+from gaspart.reproduction.table import merge_with_prefixes, table
 from gaspart.theory.brownian import displaced_area
 from gaspart.theory.geometry import particle_volume
 from gaspart.theory.gravity import hydrostatic_profiles
@@ -53,7 +53,7 @@ def buoyancy(points: list[Point], settings: dict) -> xr.Dataset:
     moving = [point for point in own if point not in held]
     fixed = table("fixed", held, _measure_fixed, settings, inner=("place",))
     column, ratio = field(held[0]), float(fixed["size_ratio"][0])
-    dataset = prefixed(
+    dataset = merge_with_prefixes(
         fixed=fixed.drop_vars("fluid"),
         free=table("free", moving, _free, settings),
         source=table("source", sorted(of_source, key=_mass), _free, settings),

@@ -16,7 +16,7 @@ _IDLE = "the uncertainty has what other programs took of the cores, for which ru
 
 def cores(dataset: xr.Dataset) -> list[Claim]:
     """Return the claims that threads change no bit, and that two cores are faster."""
-    runs = Table.prefixed(dataset, "run")
+    runs = Table.from_prefixed(dataset, "run")
     two = runs[runs.cores == 2]
     threads = two[(two.copies == 1) & (two.count >= LARGE)]
     copies = two[(two.copies == 2) & (two.count <= _SMALL) & (two.engine == "event-driven")]

@@ -23,7 +23,7 @@ def cores(dataset: xr.Dataset) -> Figure:
     cores.
     """
     figure, axes = style.new((2.6,), (2.6,), (2.6,), (2.6,))
-    runs, models = Table.prefixed(dataset, "run"), Table.prefixed(dataset, "model")
+    runs, models = Table.from_prefixed(dataset, "run"), Table.from_prefixed(dataset, "model")
     fractions = sorted(set(runs.packing_fraction.tolist()))
     two = runs[runs.cores == 2]
     for axis, (name, short) in zip(axes, _PANELS.items(), strict=False):

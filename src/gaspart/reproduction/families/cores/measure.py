@@ -18,7 +18,7 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction.families.cores.model import SLABS
 from gaspart.reproduction.families.shared.timings import SYSTEMATIC, median, weights
 from gaspart.reproduction.points.point import Point
-from gaspart.reproduction.table import Table, prefixed, table
+from gaspart.reproduction.table import Table, merge_with_prefixes, table
 
 ENGINES = {"event": "event-driven", "step": "time-stepped", "dsmc": "DSMC"}
 """The names of engines in the figure."""
@@ -47,7 +47,7 @@ def cores(points: list[Point], settings: dict) -> xr.Dataset:
     threads = threads[threads.copies == 1]
     gases = [gas for _, same in threads.by("engine") for _, gas in same.by("packing_fraction")]
     models = table("model", gases, _model, units={"overhead": "particles"})
-    return prefixed(run=runs, model=models).assign_attrs(cores=available, waiting=waiting)
+    return merge_with_prefixes(run=runs, model=models).assign_attrs(cores=available, waiting=waiting)
 
 
 def _job(point: Point) -> dict:

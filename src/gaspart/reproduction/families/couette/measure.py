@@ -127,7 +127,7 @@ def _coarseness(point: Point, gap: Gap, path: float) -> float:
 
     Only widths across the gap matter.
     """
-    engine = asdict(point.engine.resolved(point.scene, point.schedule.sample_interval))
+    engine = asdict(point.engine.for_scene(point.scene, point.schedule.sample_interval))
     width = gap.length / engine["cells_per_side"][0] / path
     step = engine["time_step"] * math.sqrt(2.0) / path
     return float(cell_factor("viscosity", width) * step_factor("viscosity", step))

@@ -19,7 +19,7 @@ from gaspart import theory
 from gaspart.analysis.correlations import Curves
 from gaspart.analysis.diffusion import LINEAR_FROM
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.motion import between, line
+from gaspart.analysis.motion import line, mask_between
 from gaspart.analysis.statistics import fit_polynomial, means_of
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.shared.curves import reduced_curves
@@ -182,7 +182,7 @@ def spheres(point: Point) -> dict[str, Any]:
         raise SceneError(where, round(point.schedule.samples * row["interval"]), rule)
     slopes = []
     for curve in curves:
-        inside = between(curve.time, start, 2.0 * start)
+        inside = mask_between(curve.time, start, 2.0 * start)
         slopes.append(line(curve.time[inside], curve.msd[inside]) / 6.0)
     diffusion = _mean(slopes)
     carried = float(theory.number_density(state["packing_fraction"], 3)) * diffusion.value
@@ -226,9 +226,9 @@ def _discs(point: Point) -> dict[str, Any]:
         return row | {"logarithmic_slope": ABSENT, "slope_expected": math.nan}
     slopes = []
     for curve in curves:
-        inside = between(curve.time, start, stop)
+        inside = mask_between(curve.time, start, stop)
         slopes.append(line(np.log(curve.time[inside]), curve.running[inside]))
-    time = row["time"][between(row["time"], start, stop)]
+    time = row["time"][mask_between(row["time"], start, stop)]
     running = theory.diffusion_modes(time, state["packing_fraction"], 2, state["count"])
     expected = line(np.log(time), running)
     fit = {"slope_expected": expected, "fit_from": start, "fit_to": stop}
@@ -245,7 +245,7 @@ def _green_kubo(curves: list[Curves], rate: float, dimension: int) -> dict[str, 
     integrals = [cumulative_simpson(curve.correlation, x=curve.time, initial=0.0) for curve in curves]
     differences = []
     for curve, integral in zip(curves, integrals, strict=True):
-        inside = between(curve.time * rate, GREEN_KUBO_FROM, GREEN_KUBO_TO)
+        inside = mask_between(curve.time * rate, GREEN_KUBO_FROM, GREEN_KUBO_TO)
         twice = cumulative_simpson(integral, x=curve.time, initial=0.0)
         einstein = line(curve.time[inside], curve.msd[inside]) / (2.0 * dimension)
         differences.append(line(curve.time[inside], twice[inside]) / einstein - 1.0)

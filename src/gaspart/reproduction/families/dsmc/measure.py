@@ -101,7 +101,7 @@ def _dilute_path(point: Point) -> float:
 def _resolution(point: Point) -> dict[str, float]:
     """Compute the width of the cells and length of a step."""
     gas, path = plain_gas(point.scene), _dilute_path(point)
-    engine = asdict(point.engine.resolved(point.scene, point.schedule.sample_interval))
+    engine = asdict(point.engine.for_scene(point.scene, point.schedule.sample_interval))
     sides = np.array(point.scene.container.lengths) / np.array(engine["cells_per_side"])
     speed = math.sqrt(2.0) * gas.thermal_speed
     return {"width": float(sides.max()) / path, "step": engine["time_step"] * speed / path}

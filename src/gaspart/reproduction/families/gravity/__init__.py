@@ -1,6 +1,6 @@
 """Under gravity."""
 
-from gaspart.keys import POSITIVE, TEXT, count, described, listed, positive, record
+from gaspart.keys import POSITIVE, TEXT, count, describe, list_of, positive, record
 
 TITLE = "Under gravity"
 CHAPTER = "Gravity, heat and walls"
@@ -9,7 +9,7 @@ CHAPTER = "Gravity, heat and walls"
 def _columns(**meanings: str) -> dict:
     """Return the setting that names the experiment of each column."""
     return record(
-        {name: described(TEXT, meaning, default=None) for name, meaning in meanings.items()},
+        {name: describe(TEXT, meaning, default=None) for name, meaning in meanings.items()},
         "the experiment of each column that the figure distinguishes",
     )
 
@@ -19,8 +19,8 @@ _PROFILES = {
     "bins": count("bins of height"),
     "blocks": count("stretches of each replica"),
     "clear": positive("diameters next to floor and ceiling that are left out, where layers are"),
-    "ranges": listed(
-        listed(POSITIVE, least=2, most=2),
+    "ranges": list_of(
+        list_of(POSITIVE, least=2, most=2),
         "pairs of packing fractions between which the equation of state is averaged",
     ),
 }
@@ -38,7 +38,7 @@ FIGURES = {
     | {
         "columns": _columns(**_OWN, source="source C's own run"),
         "source_collisions": _COLLISIONS,
-        "source_shares": listed(
+        "source_shares": list_of(
             POSITIVE, "of the light discs in source C's sample, in equal layers from the floor up"
         ),
     },

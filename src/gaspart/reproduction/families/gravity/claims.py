@@ -102,7 +102,7 @@ def _source_column(row: Row) -> list[Claim]:
             bound=1.0,
             required=0.3,
             source=f"{C}, gravity: takes the column to be in equilibrium after its collisions",
-            why="the oscillation after the fall decays as slowly as sound does over 200 diameters",
+            source_error="the oscillation after the fall decays as slowly as sound does over 200 diameters",
             fails_if="a column that still rings more than the accuracy of the other claims",
         ),
         _balance(row, _at(row)),

@@ -1,6 +1,6 @@
 """Random insertion."""
 
-from gaspart.keys import count, listed, names, positive
+from gaspart.keys import count, list_of, names, positive
 
 TITLE = "Random insertion"
 CHAPTER = "Equation of state and structure"
@@ -8,7 +8,7 @@ FIGURES = {
     "fill_failures": {
         "saturated": names("the experiments that are filled until nothing more fits"),
         "bins": count("bins of the packing fraction up to the densest fill"),
-        "windows": listed(
+        "windows": list_of(
             {"type": "number", "exclusiveMinimum": 1},
             "ratios of the last time to the first one of the fitted window; the first is the one claimed",
         ),

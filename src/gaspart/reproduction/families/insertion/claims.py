@@ -95,7 +95,7 @@ def _source(fill: Row) -> Claim:
         required=4e-3,
         source="[source A], section 3.2: a single fill",
         allowance_source="the scatter of our fills, as that of its one fill, and its rounding to a percent",
-        why="its centres go up to the walls, and its spheres are counted completely",
+        source_error="its centres go up to the walls, and its spheres are counted completely",
         fails_if="source A counted or placed its spheres by another rule",
     )
 

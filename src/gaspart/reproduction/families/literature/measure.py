@@ -14,7 +14,7 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.motion import between
+from gaspart.analysis.motion import mask_between
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import combine_estimates, mean_of
 from gaspart.analysis.transport import green_kubo
@@ -121,6 +121,6 @@ def _coefficient(point: Point, flux: str) -> Estimate:
         with open_trajectory(path) as trajectory:
             run = Run(point.scene, trajectory["time"].values, trajectory)
             lags = trajectory["lag"].values
-            inside = between(lags + 0.5 * (lags[1] - lags[0]), *STRETCH)
+            inside = mask_between(lags + 0.5 * (lags[1] - lags[0]), *STRETCH)
             samples += list(green_kubo(run, flux)[:, inside].mean(axis=1))
     return mean_of(samples)

@@ -150,7 +150,7 @@ def _better(spheres: Table) -> Claim:
         required=0.2,
         source="abstract of [Santos 1999]",
         fails_if="mixtures that the equation describes less well",
-        why="the statement is of the mixtures that had been simulated then",
+        source_error="the statement is of the mixtures that had been simulated then",
     )
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from gaspart.analysis.observables import OBSERVABLES
-from gaspart.keys import NUMBER, TEXT, Kind, choice, described, flag, listed, names, positive, record
+from gaspart.keys import NUMBER, TEXT, Kind, choice, describe, flag, list_of, names, positive, record
 
 if TYPE_CHECKING:
     from gaspart.reproduction.points.point import Point
@@ -22,7 +22,7 @@ _CLAIM = record(
             "bound, a value, or the exponent of a power law",
             *("theory", "at_least", "at_most", "value", "exponent"),
         ),
-        "value": described(NUMBER, "the bound, value or exponent", default=None),
+        "value": describe(NUMBER, "the bound, value or exponent", default=None),
         "tolerance": positive(
             "half of the width of the band in which a value or an exponent lies; with `theory`, if it is an "
             "approximation, the same over theory's value",
@@ -33,37 +33,37 @@ _CLAIM = record(
             "over theory's value; of a value and an exponent by default half of the tolerance",
             default=None,
         ),
-        "between": listed(
+        "between": list_of(
             NUMBER,
             "lowest and highest value of `against` of the points that it is about",
             2,
             2,
             default=None,
         ),
-        "source": described(
+        "source": describe(
             {**TEXT, "minLength": 1}, "of the expected value; that of a theory is known", default=None
         ),
-        "fails_if": described({**TEXT, "minLength": 1}, "what would make it fail"),
+        "fails_if": describe({**TEXT, "minLength": 1}, "what would make it fail"),
     }
 )
 KINDS: dict[str, dict[str, Kind]] = {
     "observable": {
         "observable": choice("what is measured, as by `gaspart measure`", *OBSERVABLES),
-        "against": described(
+        "against": describe(
             {**TEXT, "minLength": 1},
             "the key of the grid, of numbers, that is the horizontal axis; of an observable that is a curve "
             "there is one curve for each of its values",
         ),
         "experiments": names("experiments that make trajectories, whose points are measured"),
-        "place": described(
+        "place": describe(
             NUMBER, "of a curve: the place, or the nearest one, whose value is taken instead", default=None
         ),
         "theory": flag("draw theory, where there is one for the scene", default=True),
         "logarithmic": choice("axes with a logarithmic scale", "none", "x", "y", "both", default="none"),
-        "caption": described(
+        "caption": describe(
             TEXT, "reStructuredText for the report, whose first words in bold are the finding", default=""
         ),
-        "claims": listed(_CLAIM, "what is expected of the measurement", 0, default=[]),
+        "claims": list_of(_CLAIM, "what is expected of the measurement", 0, default=[]),
     }
 }
 """The settings of each kind of figure, to which a config gives a name of its own."""

@@ -29,7 +29,7 @@ def exponents(path: Row) -> np.ndarray:
 
 def piston(ds: xr.Dataset) -> list[Claim]:
     """Return the claims on adiabatic exponents, states at constant pressure, and free expansions."""
-    paths, states, gases = (Table.prefixed(ds, kind) for kind in ("path", "state", "expansion"))
+    paths, states, gases = (Table.from_prefixed(ds, kind) for kind in ("path", "state", "expansion"))
     return [
         *(claim for path in paths for claim in _of_path(path)),
         *(_equation_of_state(state) for state in states),

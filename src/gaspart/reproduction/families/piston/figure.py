@@ -23,7 +23,7 @@ _EXPONENTS = {2: "2", 3: "5/3"}
 def piston(ds: xr.Dataset) -> Figure:
     """Draw temperature along adiabats, factors at constant pressure, and variances of the volume."""
     figure, (upper, middle, lower) = style.new((2.6,), (1.9, 1.9))
-    paths, states, gases = (Table.prefixed(ds, kind) for kind in ("path", "state", "expansion"))
+    paths, states, gases = (Table.from_prefixed(ds, kind) for kind in ("path", "state", "expansion"))
     for path in paths:
         _draw_path(upper, path)
     for gas in gases[:1]:

@@ -11,7 +11,7 @@ from scipy.integrate import cumulative_trapezoid
 from gaspart.analysis.run import Run
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
-from gaspart.reproduction.table import prefixed, table
+from gaspart.reproduction.table import merge_with_prefixes, table
 from gaspart.scene.scene import Scene
 from gaspart.theory.enskog import enskog_longitudinal_viscosity
 from gaspart.theory.speeds import mean_speed
@@ -45,7 +45,7 @@ def piston(points: list[Point], settings: dict) -> xr.Dataset:
         chosen = [point for point in points if _kind(point) == kind]
         inner = f"{kind}_replica", "frame"
         tables[kind] = table(kind, chosen, _row, read, ("dimension", *facts), inner=inner, units={})
-    return prefixed(**tables)
+    return merge_with_prefixes(**tables)
 
 
 def _kind(point: Point) -> str:

@@ -1,20 +1,20 @@
 """Gain from space partitioning."""
 
-from gaspart.keys import COUNT, count, listed, positive, record
+from gaspart.keys import COUNT, count, list_of, positive, record
 
 TITLE = "Gain from space partitioning"
 CHAPTER = "Speed and accuracy"
 FIGURES = {
     "naive_scaling": {},
     "box_count": {
-        "round_per_side": listed(COUNT, "boxes per side that source A found quicker for their round width"),
+        "round_per_side": list_of(COUNT, "boxes per side that source A found quicker for their round width"),
         "source_boxes_per_particle": positive(
             "the ideal number of boxes per particle in source A's figure 6"
         ),
     },
     "ideal_boxes": {
         "rule": positive("source A's boxes per particle"),
-        "source_numbers": listed(
+        "source_numbers": list_of(
             record(
                 {
                     "count": count("number of particles"),
@@ -24,11 +24,11 @@ FIGURES = {
             ),
             "what source A found for the largest gas of its figures 5, 6 and 7",
         ),
-        "source_plateaus": listed(
+        "source_plateaus": list_of(
             record(
                 {
                     "radius": positive("radius"),
-                    "counts": listed(COUNT, "least and largest number of particles", 2, 2),
+                    "counts": list_of(COUNT, "least and largest number of particles", 2, 2),
                     "boxes_per_side": count("the ideal number of boxes per side in this range"),
                 }
             ),
@@ -36,11 +36,11 @@ FIGURES = {
         ),
     },
     "linear_scaling": {
-        "source_figures": listed(
+        "source_figures": list_of(
             record(
                 {
                     "radius": positive("radius"),
-                    "counts": listed(COUNT, "least and largest number of particles", 2, 2),
+                    "counts": list_of(COUNT, "least and largest number of particles", 2, 2),
                 }
             ),
             "source A's figures 8, 9 and 10",

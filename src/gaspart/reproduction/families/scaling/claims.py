@@ -80,7 +80,7 @@ def box_count(ds: xr.Dataset) -> list[Claim]:
         bound=1.05,
         required=0.05,
         source=f"{SOURCE_A}, figure 6 at this number of particles",
-        why=OTHER_MACHINE,
+        source_error=OTHER_MACHINE,
         fails_if="the source's number is far from the flat minimum on this machine",
     )
     sectors = _sectors(scan.crossing_searches, scan.crossing_exponent)
@@ -179,7 +179,7 @@ def linear_scaling(ds: xr.Dataset) -> list[Claim]:
             expected=math.log10(parts.source_years * YEAR),
             required=0.1,
             source=f"{SOURCE_A}, section 3.4: {parts.source_years:g} years instead of a second",
-            why="no count of the work of one step gives it: it is what about a thousand steps would take",
+            source_error="no count of the work of one step gives it: a thousand steps would take so long",
             fails_if="the source's years are not those of one step",
         ),
     ]
@@ -210,7 +210,7 @@ def _regime(part: Row, number: int) -> Claim:
             bound=1.0,
             required=0.15,
             source=f"{source}: superlinear",
-            why="caches of this machine are larger",
+            source_error="caches of this machine are larger",
             fails_if="larger gases are no slower per particle",
         )
     return Claim.within(
@@ -220,7 +220,7 @@ def _regime(part: Row, number: int) -> Claim:
         expected=1.0,
         half_width=0.1,
         source=f"{source}: linear",
-        why="the same operations are more expensive in memory than in the caches",
+        source_error="the same operations are more expensive in memory than in the caches",
         fails_if="the time per particle depends on N, as when caches overflow",
     )
 

@@ -65,7 +65,7 @@ def _exponents(series: Table) -> list[Claim]:
         expected=1.0,
         half_width=0.4,
         source=f"{SOURCE_A}, figures 5 to 7: linear",
-        why=OTHER_MACHINE,
+        source_error=OTHER_MACHINE,
         fails_if="the ideal number per particle depends on N, as when caches overflow",
     )
 
@@ -81,7 +81,7 @@ def _plateaus(plateaus: Table) -> list[Claim]:
         bound=1.05,
         required=0.05,
         source=f"{SOURCE_A}, section 3.4: so many are ideal in all of this range",
-        why=OTHER_MACHINE,
+        source_error=OTHER_MACHINE,
         fails_if="the ideal number follows N, or is another",
     )
 
@@ -102,7 +102,7 @@ def _source_numbers(source: Row, origin: str) -> list[Claim]:
             required=0.3 * source.source_ideal,
             source=origin,
             allowance_source="read from the source's figure to 10 %",
-            why=OTHER_MACHINE,
+            source_error=OTHER_MACHINE,
             fails_if="another machine or program has other relative costs of tests and boxes",
         ),
         Claim.at_most(
@@ -112,7 +112,7 @@ def _source_numbers(source: Row, origin: str) -> list[Claim]:
             bound=1.1,
             required=0.05,
             source=origin,
-            why=OTHER_MACHINE,
+            source_error=OTHER_MACHINE,
             fails_if="the source's number is far from the minimum on this machine",
         ),
     ]

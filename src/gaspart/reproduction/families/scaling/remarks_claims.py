@@ -42,7 +42,7 @@ def remarks(ds: xr.Dataset) -> list[Claim]:
             bound=1.0,
             required=0.1,
             source=f"{SOURCE_A}, section 2.3: to search fewer boxes is a possible improvement",
-            why="whether a box is within reach costs more to decide than the box, mostly empty, to look into",
+            source_error="a test of the distance to a box costs more than a look into it: most are empty",
             fails_if="leaving out boxes costs more than looking into them",
         ),
         Claim.at_most(
@@ -68,7 +68,7 @@ def remarks(ds: xr.Dataset) -> list[Claim]:
             bound=1.05,
             required=0.05,
             source=f"{SOURCE_A}, section 4.2: a negligible effect",
-            why=OTHER_MACHINE,
+            source_error=OTHER_MACHINE,
             fails_if="a further test per particle costs more than a twentieth of a step",
         ),
     ]

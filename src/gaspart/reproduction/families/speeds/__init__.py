@@ -1,6 +1,6 @@
 """Speed distributions."""
 
-from gaspart.keys import POSITIVE, count, listed, positive
+from gaspart.keys import POSITIVE, count, list_of, positive
 
 TITLE = "Speed distributions"
 CHAPTER = "Motion and its memory"
@@ -11,7 +11,7 @@ _HISTOGRAM = {
 _DISTRIBUTION = {**_HISTOGRAM, "classes": count("classes of equal probability for chi-square", minimum=3)}
 FIGURES = {
     "speed_relaxation": {
-        "times": listed(POSITIVE, "times of the histograms, each a sampled one"),
+        "times": list_of(POSITIVE, "times of the histograms, each a sampled one"),
         **_HISTOGRAM,
     },
     "speed_distribution_spheres": _DISTRIBUTION,

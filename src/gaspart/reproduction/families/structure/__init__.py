@@ -15,7 +15,7 @@ FIGURES = {
     },
     "chemical_potential": {
         **_SERIES,
-        "places": count("places that are tried in each frame"),
+        "trials": count("positions that are tried in each frame"),
         "frames": count("frames of each run that are used", minimum=20),
         "enough": count("frames with a free place from which on their mean counts as Gaussian"),
     },

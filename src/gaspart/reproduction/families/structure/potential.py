@@ -103,7 +103,7 @@ def _insertions(run: Run, diameter: float, settings: dict, seed: tuple[int, ...]
     positions = run.positions[1:]
     stride = -(-len(positions) // settings["frames"])
     lengths = run.scene.container.lengths
-    return insertions(positions[::stride], lengths, [(slice(None), diameter)], settings["places"], seed)
+    return insertions(positions[::stride], lengths, [(slice(None), diameter)], settings["trials"], seed)
 
 
 def _chance(insertions: Insertions) -> Estimate:

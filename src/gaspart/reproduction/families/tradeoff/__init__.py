@@ -1,11 +1,11 @@
 """Speed against accuracy."""
 
-from gaspart.keys import COUNT, POSITIVE, count, listed, names, positive
+from gaspart.keys import COUNT, POSITIVE, count, list_of, names, positive
 
 TITLE = "Speed against accuracy"
 CHAPTER = "Speed and accuracy"
 COSTS = ["time_to_accuracy"]
-_ACCURACIES = listed(POSITIVE, "relative accuracies of the cheapest settings")
+_ACCURACIES = list_of(POSITIVE, "relative accuracies of the cheapest settings")
 FIGURES = {
     "speed_accuracy": {
         "order_up_to": positive("largest relative error that the fits of the order use"),
@@ -13,7 +13,7 @@ FIGURES = {
         "cells": names("experiments of the Enskog model in its default cells"),
     },
     "time_to_accuracy": {
-        "counts": listed(COUNT, "numbers of particles; the first is that of the map"),
+        "counts": list_of(COUNT, "numbers of particles; the first is that of the map"),
         "accuracies": _ACCURACIES,
         "elsewhere": names("experiments of gases that the model of costs was not fitted to"),
         "cells": names("experiments of the Enskog model in its default cells"),

@@ -19,7 +19,7 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import mean_of
 from gaspart.engines.dsmc.accuracy import boltzmann_error, enskog_error
 from gaspart.engines.dsmc.defaults import rates
-from gaspart.engines.engine import Asked
+from gaspart.engines.engine import AccuracyRequest
 from gaspart.reproduction.families.heat.gap import Gap, averages
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.families.speeds.measure import kurtosis
@@ -137,7 +137,7 @@ def engine_of(point: Point) -> str:
 
 def _step(point: Point) -> float:
     """Compute the length of a step, 0 of the event-driven engine."""
-    return point.engine.resolved(point.scene, point.schedule.sample_interval).quantum or 0.0
+    return point.engine.for_scene(point.scene, point.schedule.sample_interval).quantum or 0.0
 
 
 def _bounds(point: Point, coefficient: str) -> tuple[float, float]:
@@ -155,7 +155,7 @@ def _bounds(point: Point, coefficient: str) -> tuple[float, float]:
         speed = kinetics.speed / math.sqrt(8.0 / math.pi)
         lost = 2.0 / 3.0 * (speed * _step(point) / (2.0 * scene.largest_radius)) ** 2
         return 0.0, lost if scene.packing_fraction <= 0.01 * 1.05 else math.inf
-    engine = point.engine.resolved(scene, point.schedule.sample_interval)
+    engine = point.engine.for_scene(scene, point.schedule.sample_interval)
     cells = asdict(engine)["cells_per_side"]
     width = max(
         (length / n for length, n in zip(scene.container.lengths, cells, strict=True) if n > 1), default=0.0
@@ -164,7 +164,7 @@ def _bounds(point: Point, coefficient: str) -> tuple[float, float]:
     grown = cell_factor(coefficient, width / kinetics.path) * step_factor(coefficient, step / kinetics.path)
     bound = boltzmann_error if name == "boltzmann" else enskog_error
     even = even_conditions(scene, 1.0)
-    model = bound(Asked("D", 1.0, even, transported=True, memory=even.memory))
+    model = bound(AccuracyRequest("D", 1.0, even, transported=True, memory=even.memory))
     return model, float(grown) - 1.0
 
 

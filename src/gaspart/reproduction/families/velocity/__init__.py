@@ -1,12 +1,12 @@
 """Velocity autocorrelation."""
 
-from gaspart.keys import POSITIVE, listed, positive
+from gaspart.keys import POSITIVE, list_of, positive
 
 TITLE = "Velocity autocorrelation"
 CHAPTER = "Motion and its memory"
 FIGURES = {
     "velocity_autocorrelation": {
         "start_to": positive("collisions of a particle up to which the initial decay is fitted"),
-        "tail": listed(POSITIVE, "collisions of a particle from and to which the tail is fitted", 2, 2),
+        "tail": list_of(POSITIVE, "collisions of a particle from and to which the tail is fitted", 2, 2),
     }
 }

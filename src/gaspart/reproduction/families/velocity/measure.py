@@ -22,7 +22,7 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.motion import between
+from gaspart.analysis.motion import mask_between
 from gaspart.analysis.statistics import fit_linear, fit_polynomial, mean_of, means_of
 from gaspart.reproduction.families.shared.curves import reduced_curves
 from gaspart.reproduction.points.point import Point
@@ -66,7 +66,10 @@ def _row(point: Point, settings: dict) -> dict:
         **dict.fromkeys(("start_rate", "tail_ratio"), Estimate(math.nan, math.nan, len(samples) - 1)),
         **dict.fromkeys(("tail_from", "tail_to", "tail_correction"), math.nan),
     }
-    early, late = between(collisions, collisions[1], settings["start_to"]), between(collisions, start, stop)
+    early, late = (
+        mask_between(collisions, collisions[1], settings["start_to"]),
+        mask_between(collisions, start, stop),
+    )
     if early.sum() >= 4:
         row["start_rate"] = mean_of([_initial_rate(collisions[early], values[early]) for values in samples])
     elif late.sum() >= 4:  # what is sampled finely is too short for the tail

@@ -1,10 +1,10 @@
 """Equation of state."""
 
-from gaspart.keys import count, flag, listed, positive, record
+from gaspart.keys import count, flag, list_of, positive, record
 
 TITLE = "Equation of state"
 CHAPTER = "Equation of state and structure"
-_FITS = listed(
+_FITS = list_of(
     record(
         {
             "free": count("highest coefficient left free", minimum=4, maximum=9),
