@@ -14,7 +14,7 @@ from gaspart.analysis.bulk import EXACT
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.expected.equilibrium import describe, equation_of
 from gaspart.analysis.impulses import estimator, mixture
-from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable
+from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable, with_freedom
 from gaspart.analysis.observables import KEPT, require_defined
 from gaspart.analysis.run import Run, Source, open_run, require_collisions
 from gaspart.analysis.statistics import correlated_mean, histogram_means
@@ -290,7 +290,7 @@ def rdf(
         result = observable("rdf", along, values, errors, **about)
         tally = PairImpulseTally(float(end), 200, 0.1)
         result.attrs |= estimator(run, "counts", "counts and impulses", parts is not None, tally)
-        return result
+        return with_freedom(result, STRETCHES - 1.0)
 
 
 def chosen_frames(run: Run, values: np.ndarray) -> np.ndarray:
