@@ -1,7 +1,8 @@
 """The pictures of the gallery of scenes: python docs/scene_pictures.py FOLDER [NAME ...]
 
 Each template is run by its own command, and the last frame drawn; of some a film is made as well, which the
-gallery shows instead. Without names: all templates.
+gallery shows instead. Scenes whose faces or walls have looks of their own get labels, with the legend of
+these. Without names: all templates.
 """
 
 import sys
@@ -13,6 +14,8 @@ from PIL import Image, ImageSequence
 import gaspart as gp
 from gaspart.cli.new import templates
 from gaspart.cli.view import colour_of, run_template
+from gaspart.rendering.surfaces import surfaces_of
+from gaspart.yaml_text import parse_yaml
 
 WIDTH, HEIGHT = 640, 480  # pixels
 PALETTE = 128  # colours of a PNG file
@@ -26,7 +29,8 @@ def draw(name, folder):
     template = templates()[name]
     with tempfile.TemporaryDirectory() as scratch:
         run = run_template(template, Path(scratch))
-        pixels = gp.render(run, size=(WIDTH, HEIGHT), colour=colour_of(template))
+        labels = bool(surfaces_of(gp.Scene.from_dict(parse_yaml(template.text))))
+        pixels = gp.render(run, size=(WIDTH, HEIGHT), colour=colour_of(template), clock=labels)
         if name in FILMED:
             film(run, colour_of(template), folder / f"{name}.webp")
     Image.fromarray(pixels).quantize(PALETTE).save(folder / f"{name}.png", optimize=True)

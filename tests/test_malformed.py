@@ -91,7 +91,7 @@ def test_the_kind_of_a_face_and_of_an_engine_is_text():
 
 def test_a_scene_of_more_particles_than_can_be_numbered_is_refused():
     kinds = [gp.Species(2**31 - 1, 1e-6), gp.Species(1, 1e-6)]
-    with pytest.raises(SceneError, match="count = 2147483648: there may be 2147483647 particles"):
+    with pytest.raises(SceneError, match="count = 2147483648: must be at most 2147483647"):
         gp.Scene(gp.Container((1e5, 1e5)), kinds)
 
 

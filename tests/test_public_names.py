@@ -86,7 +86,7 @@ def test_an_alias_names_its_observable(name):
 
 def test_an_accuracy_takes_aliases():
     assert gp.Accuracy("compressibility_factor", 1e-2).observable == "Z"
-    with pytest.raises(gp.SceneError, match="temperature.*ends no run.*give a duration, and measure"):
+    with pytest.raises(gp.SceneError, match="temperature.*does not end a run.*give a duration and measure"):
         gp.Accuracy("temperature", 1e-2)
 
 

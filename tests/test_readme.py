@@ -1,7 +1,9 @@
 """What the README shows runs to its end as printed, and so does its scene with other seeds."""
 
+import json
 import re
 import shlex
+from ast import literal_eval
 from pathlib import Path
 
 import numpy as np
@@ -65,3 +67,30 @@ def test_the_second_scene_runs_with_other_seeds(names, seed):
     sim.advance(duration=1000.0)
     sim.check_invariants()
     assert np.isfinite(sim.state.positions).all()
+
+
+WORDS = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"]
+
+
+def test_numbers_on_pages_are_those_of_the_project():
+    root = README.parent
+    pages = {path.name: path.read_text(encoding="utf-8") for path in (root / "docs").glob("*.md")}
+    text, changes = README.read_text(encoding="utf-8"), (root / "CHANGELOG.md").read_text(encoding="utf-8")
+    table = re.search(
+        r"^\| packing fraction \| to 10 %.*?\n\n", pages["accuracy.md"], re.DOTALL | re.MULTILINE
+    )
+    rows = [re.findall(r"[\d.]+", line) for line in table[0].splitlines()[2:] if line]
+    highest = max(float(cost) for _, *costs in rows for cost in costs)
+    assert f"can cost {highest:g} times as much" in text
+    shown = re.search(r"^SHOWN = (.*)", (root / "docs/contact_sheet.py").read_text("utf-8"), re.MULTILINE)[1]
+    assert f"![{WORDS[len(literal_eval(shown))].capitalize()} scenes: " in text
+    notebooks = {path.stem for path in (root / "docs/notebooks").glob("*.ipynb")}
+    tutorials = set(re.findall(r"docs/notebooks/(\w+)\.ipynb", text))
+    classics = notebooks - tutorials
+    assert f"{WORDS[len(tutorials)].capitalize()} [notebooks](docs/notebooks/index.md)" in text
+    assert f"{WORDS[len(tutorials)].capitalize()} tutorials and {WORDS[len(classics)]} classics" in changes
+    assert f"documentation has {len(pages)} pages" in changes
+    exact = json.loads((root / "tests/exact/values.json").read_text(encoding="utf-8"))
+    assert f"exact values ({len(exact)} kinds of scenes)" in changes
+    programs = {name.removesuffix("_xyz") for name in re.findall(r"^def with_(\w+)", pages["tools.md"], re.M)}
+    assert f"recipes for {WORDS[len(programs)]} programs" in changes

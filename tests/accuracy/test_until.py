@@ -306,7 +306,7 @@ def test_the_default_interval_is_the_time_between_collisions(tmp_path):
         ({"duration": 8.0}, "duration = 8.0: excludes until"),
         ({"until": ()}, r"until = \(\): must be a gaspart.Accuracy"),
         ({"until": "Z=0.1"}, "until = \\('Z=0.1',\\): must be a gaspart.Accuracy"),
-        ({"until": (ASKED[0], ASKED[0])}, "until = 'Z': is asked for twice"),
+        ({"until": (ASKED[0], ASKED[0])}, "until = 'Z': must be requested only once"),
         ({"at_most": 0.3}, "at_most = 0.3: must be at least the sample_interval, 0.4"),
         ({"at_most": -1.0}, "at_most = -1.0: must be positive"),
         ({"until": None, "at_most": 8.0}, "at_most = 8.0: needs until"),

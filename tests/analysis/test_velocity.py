@@ -193,7 +193,7 @@ def test_the_command_line_has_them(path, capsys):
     components = printed("field", "--of", "velocity", "--cells", "3")
     assert [line.split(" in ")[0] for line in components[:3]] == ["velocity x", "velocity y", "velocity z"]
     for arguments, rule in (
-        (("Z", "--axes", "x"), "--axes is of field only"),
+        (("Z", "--axes", "x"), "--axes is defined only for field"),
         (("field", "--of", "speed"), "of = 'speed'"),
         (("field", "--axis", "x"), "axis = 'x'"),
         (("field", "--axes", "xx"), "each once"),

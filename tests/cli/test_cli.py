@@ -100,7 +100,10 @@ def test_resume_and_info_of_an_unfinished_run(folder, capsys):
             id="overlapping particles",
         ),
         pytest.param(
-            GAS.replace("0.5", "7.0"), [], "radius = 7.0: a particle must fit", id="particle too large"
+            GAS.replace("0.5", "7.0"),
+            [],
+            "radius = 7.0: is too large for the container",
+            id="particle too large",
         ),
         pytest.param(
             GAS, ["--boxes-per-side", "13"], "boxes_per_side = 13: boxes must not", id="narrow boxes"
@@ -292,7 +295,7 @@ def test_export_prints_the_path(folder, capsys):
     assert capsys.readouterr().out == "state.gsd\n"
     assert main(["export", "run.nc", "-o", "state.pdb"]) == 2
     assert main(["export", "run.nc", "-o", "state.gsd", "--frame", "3"]) == 2
-    assert "frame = 3: the trajectory has 3" in capsys.readouterr().err
+    assert "frame = 3: must be one of 3 frames" in capsys.readouterr().err
 
 
 def test_advice_names_engine_length_cost_and_reason(folder, capsys):

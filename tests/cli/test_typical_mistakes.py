@@ -58,7 +58,7 @@ MISTAKES = {
     ),
     "accuracy of what ends no run": (
         line(*RUN[:4], "--until", "temperature=1e-2"),
-        "'temperature': ends no run: those that do are Z, pressure",
+        "'temperature': does not end a run; use Z, pressure",
     ),
     "misspelt option": (line(*RUN, "--sede", "1"), "--sede: unknown option; did you mean --seed?"),
     "option of another command": (line(*RUN, "--eta", "1"), "--eta: unknown option"),
@@ -85,7 +85,10 @@ MISTAKES = {
         "sample_interval = 0.5: must be a whole multiple of time_step, 0.7",
     ),
     "too many boxes": (line(*RUN, "--boxes-per-side", "13"), "boxes_per_side = 13"),
-    "following too many": (line(*RUN, "--follow", "21"), "follow = 21: there are 20 particles"),
+    "following too many": (
+        line(*RUN, "--follow", "21"),
+        "follow = 21: must be at most 20, the number of particles",
+    ),
     "correlations without lags": (line(*RUN, "--correlations", "0.5"), "--correlations: must be an interval"),
     "half a lag": (line(*RUN, "--correlations", "0.5,1.5"), "--correlations: must be an interval"),
     "no such scene": (line("check", "gas.yaml"), "gas.yaml"),
@@ -109,7 +112,7 @@ MISTAKES = {
     "no interval": (line(*RUN[:6]), "required: --sample-interval, or --until; for this scene --duration"),
     "piston beyond the gas": (
         (GAS + "faces: {x_low: {kind: piston, speed: 1.5}}\n", [*RUN[:4], "--duration", "9", *RUN[6:]]),
-        "leaves no room for the particles at 7.",
+        "must be before 7.",
     ),
     "theory without density": (line("theory", "Z"), "required: --eta"),
     "unknown template": (line("new", "a.yaml", "--template", "haet"), "did you mean heat?"),
@@ -145,7 +148,7 @@ MISTAKES = {
         scene("count: 20", "count: 150"),
         "scene.yaml: species[0].count = 150: does not fit by random insertion",
     ),
-    "particle too large": (scene("0.5", "7.0"), "radius = 7.0: a particle must fit"),
+    "particle too large": (scene("0.5", "7.0"), "radius = 7.0: is too large for the container"),
     "unknown face": (
         added("faces: {left: {kind: thermal, temperature: 1.0}}"),
         "faces.left = 'thermal': unknown face; here it is x_low",
@@ -153,7 +156,7 @@ MISTAKES = {
     "open face passed by surfaces": (added("faces: {x_low: {kind: open}}"), "needs centres_to_walls: true"),
     "reservoir without a temperature": (
         added("centres_to_walls: true\nfaces: {x_low: {kind: open, activity: 0.1}}"),
-        "faces.x_low.temperature = None: a reservoir has an activity and a temperature",
+        "faces.x_low.temperature = None: must be given together with activity",
     ),
     "reservoir of two species": (
         added(f"centres_to_walls: true\nfaces: {{x_low: {RESERVOIR}}}", GAS + GAS.splitlines()[-1] + "\n"),
@@ -165,7 +168,7 @@ MISTAKES = {
     ),
     "piston with a speed and a mass": (
         added("faces: {x_low: {kind: piston, speed: 1.5, mass: 10.0}}"),
-        "a piston has a mass and a pressure, or a speed alone",
+        "must be mass and pressure, or speed alone",
     ),
     "piston that recedes": (added("faces: {x_low: {kind: piston, speed: -1.5}}"), "must be positive"),
     "piston by its velocity": (added("faces: {x_low: {kind: piston, velocity: 1.5}}"), "here it is speed"),

@@ -275,7 +275,7 @@ def test_what_a_wall_that_moves_does_not_go_with_is_refused():
     (wall,) = scene.walls
     for walls, rule in (
         ([wall, gp.Wall((1.0, 1.0), (2.0, 1.0))], "must be the only interior wall"),
-        ([replace(wall, temperature=1.0)], "has no temperature"),
+        ([replace(wall, temperature=1.0)], "excludes a temperature"),
         ([gp.Wall((8.0, 0.0), (8.0, 5.0), mass=1.0)], "must reach across the whole container"),
         ([gp.Wall((8.0, 0.0), (8.5, 6.0), mass=1.0)], "must reach across the whole container"),
         ([across(3.0, 16.0, 1.0, axis=1)], "needs walls across y"),
@@ -312,7 +312,7 @@ def test_a_given_state_must_have_the_same_piston():
     assert placed.positions[placed.positions[:, 0] < 8.0, 0].max() == pytest.approx(nearest - 4e-7, abs=1e-12)
     with pytest.raises(gp.SceneError, match="is not inside the container, or beyond the piston at"):
         gp.Simulation(scene, EVENT, initial=replace(state, piston=np.array([nearest + 0.2, 0.0])))
-    with pytest.raises(gp.SceneError, match="must be a place from 0 to 16 and a velocity"):
+    with pytest.raises(gp.SceneError, match="must be a position from 0 to 16 and a velocity"):
         gp.Simulation(scene, EVENT, initial=replace(state, piston=np.array([17.0, 0.0])))
 
 

@@ -414,7 +414,7 @@ def test_scenes_that_are_refused(changes, rule):
     "settings", [{"activity": 0.1}, {"temperature": 1.0}, {"activity": -1.0, "temperature": 1.0}]
 )
 def test_reservoirs_that_are_refused(settings):
-    with pytest.raises(gp.SceneError, match="a reservoir has an activity and a temperature|must be positive"):
+    with pytest.raises(gp.SceneError, match="must be given together with activity|must be positive"):
         gp.Open(**settings)
 
 

@@ -250,7 +250,7 @@ def test_a_file_has_the_optional_tallies_that_its_recipe_lists(tmp_path):
     sim = simulation_of(asked)
     sim.advance(until=1.0)
     assert np.array_equal(sim.sums_of("stress")[-3:], sim.tally.heat_sum)
-    with pytest.raises(gp.SceneError, match="stress = False: was not asked for"):
+    with pytest.raises(gp.SceneError, match="stress = False: was not requested"):
         gp.Simulation(asked.scene, asked.engine, 1).sums_of("stress")
 
 

@@ -136,7 +136,7 @@ def test_what_does_not_fit_is_refused_in_one_line(tmp_path, state):
     assert "has no velocities in its last frame" in refused(write_xyz(path, state, "charge:R:3"), PLAIN)
     write_xyz(path, state, radius=True)
     assert "has 40 particles, and the scene 41" in refused(path, gas(3, 41, 0.2))
-    assert "the container of the scene is (" in refused(path, gas(3, 40, 0.1))
+    assert "must be the container of the scene, (" in refused(path, gas(3, 40, 0.1))
     small = replace(PLAIN, species=[replace(PLAIN.species[0], radius=0.4)])
     assert "radius = 0.5: no particle of the file has the radius of particle 0 of the scene, 0.4" in refused(
         path, small
@@ -168,7 +168,7 @@ def test_coordinates_of_few_digits_that_overlap_are_refused(tmp_path):
     side = scene.container.lengths[0]
     lattice = f"{side!r} 0 0 0 {side!r} 0 0 0 {side!r}"
     path = write_xyz(tmp_path / "gas.xyz", sim.state, lattice=lattice, digits=2)
-    with pytest.raises(gp.SceneError, match="is the part of their distance by which particles overlap"):
+    with pytest.raises(gp.SceneError, match="is the relative overlap of two particles"):
         gp.run(scene, EVENT, 3, 1.0, 0.5, tmp_path / "run.nc", initial=path)
     assert not list(tmp_path.glob("run.nc*"))
 

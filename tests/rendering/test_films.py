@@ -46,7 +46,7 @@ def test_a_film_of_a_part_has_its_frames(runs):
             data, runs / "part.gif", size=(64, 48), clock=False, start=times[1], stop=times[4], every=2
         )
         chosen = gp.film(data.isel(frame=[1, 3]), runs / "chosen.gif", size=(64, 48), clock=False)
-        with pytest.raises(gp.SceneError, match="start = 1000000000.0: there is no frame"):
+        with pytest.raises(gp.SceneError, match="start = 1000000000.0: must have a frame between it and"):
             gp.film(data, runs / "none.gif", start=1e9)
     assert part.read_bytes() == chosen.read_bytes()
 
@@ -174,11 +174,14 @@ def test_the_command_line_makes_pictures_and_films(runs, capsys):
     [
         (["discs.nc", "-o", "a.jpg"], "output = 'a.jpg': must end in .png, .mp4, .gif"),
         (["none.nc", "-o", "new.png"], "file = 'none.nc': cannot be read: No such file"),
-        (["discs.nc", "-o", "new.png", "--frame", "5"], "frame = 5: the trajectory has 5, counted from 0"),
+        (["discs.nc", "-o", "new.png", "--frame", "5"], "frame = 5: must be one of 5 frames, counted from 0"),
         (["discs.nc", "-o", "new.gif", "--frame", "1"], "frame = 1: has no meaning for a film"),
         (["discs.nc", "-o", "new.png", "--trail", "1"], "trail = 1: has no meaning for a picture"),
-        (["discs.nc", "-o", "new.gif", "--trail", "21"], "trail = 21: the trajectory has 21 particles"),
-        (["spheres.nc", "-o", "new.gif", "--trail", "0"], "trail = 0: is drawn among discs only"),
+        (
+            ["discs.nc", "-o", "new.gif", "--trail", "21"],
+            "trail = 21: must be below 21, the number of particles",
+        ),
+        (["spheres.nc", "-o", "new.gif", "--trail", "0"], "trail = 0: requires discs"),
         (["discs.nc", "-o", "new.png", "--camera", "0,90"], "camera = (0.0, 90.0): is for spheres"),
         (["spheres.nc", "-o", "new.gif", "--camera", "0,91"], "camera = 91.0: an azimuth must be from"),
         (["spheres.nc", "-o", "new.png", "--camera", "9"], "camera = (9.0,): must be an azimuth and an"),

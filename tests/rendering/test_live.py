@@ -313,12 +313,56 @@ def test_a_missing_package_is_named_with_its_extra(scene, monkeypatch):
         live(scene)
 
 
-def test_it_runs_in_a_notebook_between_its_cells():
+def updated(widget, **state):
+    """Send a frontend's message that changes a widget, as a browser does when its user moves a slider."""
+    data = {"method": "update", "state": state, "buffer_paths": []}
+    widget.comm.handle_msg({"content": {"data": data}, "buffers": []})
+
+
+def test_messages_of_a_frontend_change_the_gas(monkeypatch):
+    gases = []
+    monkeypatch.setattr(
+        "gaspart.rendering.live.LiveGas", lambda *args: gases.append(LiveGas(*args)) or gases[0]
+    )
+    scene = gp.Scene(gp.Container((20.0, 12.0)), [gp.Species(60, 0.3, temperature=1.0)])
+    image, _, sliders, note = parts(live(scene, size=(80, 60)))
+    (gas,) = gases
+    before = gas.simulation.state
+    updated(sliders["gravity"], value=0.25)
+    assert gas.simulation.scene.gravity == (0.0, -0.25)
+    updated(sliders["gravity"], value=0.0)
+    updated(sliders["temperature of walls"], value=2.0)
+    assert gas.simulation.scene.gravity is None
+    assert {face.temperature for face in gas.simulation.scene.faces.values()} == {2.0}
+    assert np.array_equal(gas.simulation.state.positions, before.positions)
+    shown = image.value
+    updated(sliders["packing fraction"], value=0.04)
+    assert gas.simulation.scene.packing_fraction == pytest.approx(0.04, abs=0.003)
+    assert image.value != shown and note.value == ""
+
+
+def test_it_runs_in_a_notebook_between_its_cells_and_hears_its_sliders():
     scene = "gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(9, 0.5, speed=1.0)])"
     make = f"import gaspart as gp; film = gp.live({scene})"
     begin = "image, button = film.children[0].children[0], film.children[1].children[0]\n"
     begin += "first = image.value; button.value = True; film"
     wait = "import asyncio\nwhile image.value == first:\n    await asyncio.sleep(0.1)"
-    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(one) for one in (make, begin, wait)])
-    NotebookClient(notebook, timeout=120, kernel_name="python3").execute()
-    assert "application/vnd.jupyter.widget-view+json" in notebook.cells[1].outputs[0].data
+    names = (
+        "button.value = False\nsliders = {one.description: one for one in film.children[1].children[2:]}\n"
+    )
+    names += "slider = sliders['packing fraction']; before = image.value; print(slider.comm.comm_id)"
+    heard = "print(slider.value, image.value != before, film.children[2].value == '')"
+    cells = [nbformat.v4.new_code_cell(text) for text in (make, begin, wait, names, heard)]
+    notebook = nbformat.v4.new_notebook(cells=cells)
+    client = NotebookClient(notebook, timeout=120, kernel_name="python3")
+    with client.setup_kernel():
+        for n, cell in enumerate(cells):
+            client.execute_cell(cell, n)
+            if n == 3:  # the user moves the slider: the message of a browser, to the kernel
+                content = {
+                    "comm_id": cell.outputs[0].text.strip(),
+                    "data": {"method": "update", "state": {"value": 0.05}, "buffer_paths": []},
+                }
+                client.kc.shell_channel.send(client.kc.session.msg("comm_msg", content))
+    assert "application/vnd.jupyter.widget-view+json" in cells[1].outputs[0].data
+    assert cells[4].outputs[0].text == "0.05 True True\n"

@@ -245,7 +245,8 @@ def test_an_interior_wall_that_moves_is_drawn_where_it_is(tmp_path):
             assert walls.shape == (sides, 2, len(lengths))
             assert np.allclose(walls[..., 0], 5.5)
             assert np.ptp(walls[..., 1]) == 6.0
-        assert parameters_of(scene)[-1] == "a wall of mass 1 moves"
+            (surface,) = particles_of(run).surfaces
+            assert surface.text == "wall: mass 1, moves freely" and np.allclose(surface.ends[:, 0], 5.5)
 
 
 def test_moving_faces_are_in_the_legend_not_among_the_parameters():

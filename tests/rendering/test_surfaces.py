@@ -1,11 +1,13 @@
 """Each kind of surface has a look of its own, and a line in the legend."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
 import gaspart as gp
 from gaspart.rendering.particles import Labels
-from gaspart.rendering.surfaces import INK, colour_of, surfaces_of
+from gaspart.rendering.surfaces import INK, arrow_lines, colour_of, surfaces_of
 
 LENGTHS = (20.0, 10.0)
 
@@ -67,6 +69,82 @@ def test_a_piston_is_drawn_where_it_is_with_the_container_shaded_behind():
     assert surface.ends[:, 0].tolist() == [18.0, 18.0] and surface.depth == 2.0
     assert surface.motion.tolist() == [-1.0, 0.0] and surface.hatched
     assert simulation.scene is made
+
+
+SPANNING = gp.Wall(start=(5.0, 0.0), end=(5.0, 10.0), mass=4.0)
+
+
+def test_a_wall_between_two_gases_is_drawn_where_it_is_with_an_arrow_both_ways():
+    gases = [
+        gp.Species(count=2, radius=0.3, temperature=1.0, region=((x, 0.0), (x + 5.0, 10.0)))
+        for x in (0.0, 5.0)
+    ]
+    made = gp.Scene(gp.Container(LENGTHS), gases, walls=[SPANNING])
+    (at_start,), (later,) = surfaces_of(made), surfaces_of(made, 2.0, 8.0)
+    assert at_start.text == later.text == "wall: mass 4, moves freely"
+    assert at_start.ends[:, 0].tolist() == [5.0, 5.0] and later.ends[:, 0].tolist() == [8.0, 8.0]
+    assert later.motion.tolist() == [1.0, 0.0] and later.to_and_fro and later.hatched
+    pictures = [gp.render(each, size=(320, 160), colour=np.ones((4, 3))) for each in (made, at_rest(made))]
+    beside = np.abs(pictures[0].astype(int) - pictures[1])[:, :, 0] > 100
+    columns = np.flatnonzero(beside.any(axis=0))
+    wall = np.interp(5.0, [0.0, 20.0], [10.0, 310.0])  # in pixels: about, by the margins
+    assert columns.min() < wall - 10 and columns.max() > wall + 10, "hatching and arrow on both sides"
+
+
+def at_rest(made):
+    """The scene whose wall has no mass, in a frame with the particles at the same positions."""
+    return dataclasses.replace(made, walls=[gp.Wall(start=SPANNING.start, end=SPANNING.end)])
+
+
+@pytest.mark.parametrize(("rate", "along"), [(0.2, 1.0), (-0.2, -1.0)])
+def test_images_that_slide_have_arrows_along_the_flow(rate, along):
+    around = gp.Container(LENGTHS, boundary="periodic")
+    gas = gp.Species(count=5, radius=0.3, temperature=1.0)
+    made = gp.Scene(around, [gas], faces={"y_high": gp.LeesEdwards(shear_rate=rate)})
+    high, low = surfaces_of(made)
+    assert [high.text, low.text] == [
+        f"y high: images above slide at {10.0 * rate:g}",
+        f"y low: images below slide at {-10.0 * rate:g}",
+    ]
+    assert high.motion.tolist() == [along, 0.0] and low.motion.tolist() == [-along, 0.0]
+    assert high.ends[:, 1].tolist() == [10.0, 10.0] and low.ends[:, 1].tolist() == [0.0, 0.0]
+    assert high.dashed and not high.hatched  # no solid wall
+    sheared, still = (
+        gp.render(each, size=(320, 160), colour=np.ones((5, 3))).astype(int)
+        for each in (made, gp.Scene(around, [gas]))
+    )
+    upper, lower = (
+        np.flatnonzero(np.abs(sheared - still)[rows].any(axis=(0, 2)))
+        for rows in (slice(0, 40), slice(120, 160))
+    )
+    assert len(upper) and len(lower)
+    stopped = gp.Scene(around, [gas], faces={"y_high": gp.LeesEdwards(shear_rate=0.0)})
+    assert [surface.motion for surface in surfaces_of(stopped)] == [None, None]
+
+
+def test_a_vibrating_face_moves_to_and_fro():
+    (surface,) = surfaces_of(scene({"y_low": gp.Vibrating(amplitude=0.5, period=2.0)}))
+    assert surface.motion.tolist() == [0.0, 1.0] and surface.to_and_fro
+
+
+def test_arrows_have_heads_where_they_point():
+    tail, head = np.array([0.0, 0.0]), np.array([8.0, 0.0])
+    shaft, *barbs = arrow_lines(tail, head, two_heads=False)
+    assert shaft.tolist() == [[0.0, 0.0], [8.0, 0.0]]
+    assert [barb.tolist() for barb in barbs] == [[[6.0, 1.2], [8.0, 0.0]], [[6.0, -1.2], [8.0, 0.0]]]
+    tips = [barb[1].tolist() for barb in arrow_lines(tail, head, two_heads=True)[1:]]
+    assert tips == [[8.0, 0.0], [8.0, 0.0], [0.0, 0.0], [0.0, 0.0]]
+
+
+def test_spheres_between_sliding_walls_have_arrows():
+    container = gp.Container(lengths=(4.0, 4.0, 4.0), boundary=("periodic", "wall", "periodic"))
+    gas = [gp.Species(count=3, radius=0.3, temperature=1.0)]
+    slides, rests = (
+        gp.render(gp.Scene(container, gas, faces={"y_low": face}), size=(320, 240)).astype(int)
+        for face in (gp.Thermal(1.0, velocity=(1.0, 0.0, 0.0)), gp.Thermal(1.0))
+    )
+    changed = (np.abs(slides - rests).sum(axis=2) > 60).sum()
+    assert 60 < changed < 1500
 
 
 def test_a_warm_wall_has_the_colour_of_its_temperature():

@@ -180,6 +180,7 @@ def test_faces_have_the_looks_of_pictures_where_they_are(faces):
         "x high: T = 2, accommodation 0.5",
     ]
     assert data["surfaces"][0]["hatched"] and data["surfaces"][1]["dashed"]
+    assert data["surfaces"][0]["motion"] == [1.0, 0.0, 0.0] and not data["surfaces"][0]["to_and_fro"]
     for time, (piston, hot) in zip(data["time"], data["surface_ends"], strict=True):
         assert piston["depth"] == pytest.approx(0.5 * time, abs=1e-5)
         assert {corner[0] for corner in hot["corners"]} == {14.0}

@@ -186,8 +186,8 @@ HOLED = {"x_low": gp.Well(1.0, 2.0), "x_high": gp.Well(1.0, 2.0)}
         (lambda: gp.Plate((1.0, 1.0, 1.0), ((1.0, 0.0, 0.0),)), "edges = .*: must be two lists of 3"),
         (lambda: gp.Plate((1.0, 1.0, 1.0), ((1, 0, 0), (0, 0, 0))), "must have a length and a width"),
         (lambda: gp.Plate((1.0, 1.0, 1.0), ((1, 0, 0), (1, 1, 0))), "must be at right angles"),
-        (lambda: gp.Particle((1.0, 1.0), (1.0, 0.0), 0.5, fixed=True), "a fixed particle has none"),
-        (lambda: gp.Particle((1.0, 1.0), (0.0, 0.0), 0.5, vibration=1.0), "only a fixed particle vibrates"),
+        (lambda: gp.Particle((1.0, 1.0), (1.0, 0.0), 0.5, fixed=True), "must be zero for a fixed particle"),
+        (lambda: gp.Particle((1.0, 1.0), (0.0, 0.0), 0.5, vibration=1.0), "requires fixed: true"),
         (lambda: gp.Species(1, 1e70), "choose other units"),
         (lambda: gp.TimeStepped(0.1, skin=0.1, boxes_per_side=3), "skin = 0.1: excludes boxes_per_side"),
         (lambda: gp.TimeStepped(0.1, near_boxes=True), "needs boxes_per_side"),
@@ -213,7 +213,7 @@ FIXED, KICKS = gp.Species(1, 0.5, fixed=True), gp.Thermostat(1.0, 0.1)
     [
         (
             lambda: gp.Scene(AROUND, faces={"x_high": SHEARED["y_high"]}),
-            "x_high = .*: state it of y_high",
+            "x_high = .*: must be stated for y_high",
         ),
         (
             lambda: gp.Scene(HALF, faces=SHEARED),

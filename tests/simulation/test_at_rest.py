@@ -41,7 +41,7 @@ def test_a_gas_that_something_moves_does_not(scene):
 
 
 def test_the_mass_has_no_position():
-    with pytest.raises(gp.SceneError, match=r"argument 3 = 1.0: is too much for Species"):
+    with pytest.raises(gp.SceneError, match=r"argument 3 = 1.0: is one argument too many: Species takes"):
         gp.Species(10, 0.5, 1.0)
 
 

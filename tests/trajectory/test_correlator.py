@@ -121,8 +121,11 @@ def test_a_run_that_was_cut_short_continues_to_the_same_bytes(tmp_path, monkeypa
         ({"start": -1.0}, "correlations.start = -1.0: must not be negative"),
         ({"start": 0.3}, "correlations.start = 0.3: must be a whole multiple of correlations.interval, 0.25"),
         ({"interval": 0.3}, "sample_interval = 1.0: must be a whole multiple of correlations.interval, 0.3"),
-        ({"lags": 17}, "correlations.lags = 17: there are 16 intervals of 0.25 from 2 on"),
-        ({"start": 9.0}, "correlations.lags = 6: there are 0 intervals"),
+        (
+            {"lags": 17},
+            "correlations.lags = 17: must be at most 16, the number of intervals of 0.25 from 2 on",
+        ),
+        ({"start": 9.0}, "correlations.lags = 6: must be at most 0, the number of intervals"),
     ],
 )
 def test_impossible_correlations_are_refused(tmp_path, change, complaint):

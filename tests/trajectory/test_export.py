@@ -59,7 +59,7 @@ def test_invalid_exports_are_refused(state):
     folder, _ = state
     for path, frame, complaint in (
         ("a.pdb", -1, "must end in .gsd, .xyz, .data"),
-        ("a.gsd", 3, "the trajectory has 3"),
+        ("a.gsd", 3, "must be one of 3 frames"),
         ("nowhere/a.gsd", -1, "cannot be written: No such file"),
     ):
         with pytest.raises(gp.SceneError, match=complaint):

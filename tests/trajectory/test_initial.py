@@ -129,10 +129,10 @@ def refusal(scene, state, engine=ENGINES[0]):
 
 def test_what_does_not_match_is_refused_in_one_line(tmp_path):
     state = gp.Simulation(PLAIN, gp.EventDriven(), 3).state
-    assert "initial = '99 particles in 3 dimensions': the scene has 100" in refusal(
+    assert "initial = '99 particles in 3 dimensions': must be as in the scene, 100" in refusal(
         PLAIN, gp.Simulation(gas(3, 99, 0.3), ENGINES[0]).state
     )
-    assert "the container of the scene is (" in refusal(gas(3, 100, 0.2), state)
+    assert "must be the container of the scene, (" in refusal(gas(3, 100, 0.2), state)
     heavy = replace(PLAIN, species=[replace(PLAIN.species[0], mass=2.0)])
     assert "particle 0 has this mass, and 2 in the scene: species must be the same" in refusal(heavy, state)
     small = replace(PLAIN, species=[replace(PLAIN.species[0], radius=0.4)])
@@ -143,7 +143,7 @@ def test_what_does_not_match_is_refused_in_one_line(tmp_path):
     assert "initial = 'velocities': must be finite numbers" in refusal(PLAIN, changed)
     changed = state.copy()
     changed.positions[3] = changed.positions[4] + 0.9 / np.sqrt(3.0)
-    assert "the part of their distance by which particles overlap" in refusal(PLAIN, changed)
+    assert "is the relative overlap of two particles" in refusal(PLAIN, changed)
     gp.Simulation(PLAIN, ENGINES[2], initial=changed)  # whose particles may overlap
     walled = replace(PLAIN, container=gp.Container(PLAIN.container.lengths, "wall"))
     assert "is not inside the container" in refusal(walled, state)

@@ -99,7 +99,7 @@ def test_another_shear_rate_keeps_velocities_about_the_flow_and_the_displacement
 
 def test_images_that_are_displaced_have_no_place_in_a_plain_container():
     state = after(3.3, sheared(0.2)).state
-    rule = "initial = 6.6: is by how much the images above are displaced, which those of the scene are not"
+    rule = "initial = 6.6: is the displacement of images in a sheared gas; the images of the scene are not"
     assert rule in refusal(PLAIN, replace(state, displaced=6.6))
     for name in ("displaced", "shear_rate"):
         assert f"initial = inf: must have a finite {name}" in refusal(PLAIN, replace(state, **{name: np.inf}))
@@ -113,7 +113,7 @@ def test_particles_that_overlap_across_a_sheared_face_are_refused():
     state.positions[:] = [[1.0, 9.8], [9.0, 0.3]]  # 7.5 below the first is its image
     scene = replace(sheared(0.2), species=[gp.Species(2, 0.5)])
     gp.Simulation(scene, EVENT, initial=replace(state, displaced=1.0))
-    assert "by which particles overlap" in refusal(scene, replace(state, displaced=4.2))
+    assert "relative overlap of two particles" in refusal(scene, replace(state, displaced=4.2))
 
 
 def test_a_gas_between_walls_is_pushed_by_a_piston_at_its_side():
@@ -154,7 +154,7 @@ def test_what_a_piston_excludes_is_refused_in_one_line():
     touching = replace(state, piston=np.array([highest + 0.5 - 4e-7, 0.0]))  # as in single precision
     assert state_at_time_zero(pushed(), touching).positions[:, 1].max() == touching.piston[0] - 0.5
     for wrong in ([11.0, 0.0], [-1.0, 0.0], [9.0, np.nan], [9.0]):
-        assert "must be a place from 0 to 10 and a velocity" in refusal(
+        assert "must be a position from 0 to 10 and a velocity" in refusal(
             pushed(), replace(state, piston=np.array(wrong))
         )
 

@@ -44,7 +44,7 @@ def test_no_frame_is_lost_to_rounding(tmp_path):
             {"engine": gp.TimeStepped(0.2)},
             "sample_interval = 0.5: must be a whole multiple of time_step, 0.2",
         ),
-        ({"follow": 5}, "follow = 5: there are 4 particles"),
+        ({"follow": 5}, "follow = 5: must be at most 4, the number of particles"),
         ({"follow": 0}, "follow = 0: must be a whole number of at least 1"),
         ({"seed": -1}, "seed = -1: must be a whole number"),
         ({"scene": gp.Scene(gp.Container((5.0, 5.0)))}, "a run needs at least one particle"),

@@ -155,7 +155,7 @@ def _field_of(options: argparse.Namespace) -> dict[str, Any]:
         key: getattr(options, key) for key in ("of", "axes", "cells") if getattr(options, key) is not None
     }
     if stated and _FIELD not in options.words:
-        raise UsageError(f"--{next(iter(stated))} is of {_FIELD} only")
+        raise UsageError(f"--{next(iter(stated))} is defined only for {_FIELD}")
     if len(stated.get("cells", [])) == 1:
         (stated["cells"],) = stated["cells"]
     return stated
@@ -178,7 +178,7 @@ def _measure_each(
 
     if len(files) > 1:
         if _FIELD in names:
-            raise UsageError(f"{_FIELD} is of one file")
+            raise UsageError(f"{_FIELD}: requires one file; give one file at a time")
         for name in names:
             with waiting(f"measuring {name} of {len(files)} files"):
                 observable = replicas(name, files, *times, **selection)

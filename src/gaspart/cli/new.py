@@ -22,7 +22,16 @@ _CHAPTERS = {
     "Gases and fluids": ("gas", "spheres", "rarefied", "brownian", "rough"),
     "Walls": ("chambers", "plates", "slit", "piston", "shock", "divided", "adsorption", "sticky"),
     "Gravity": ("atmosphere", "separation"),
-    "Heat and flow": ("heat", "metal", "shear", "channel", "gradient", "radiator", "effusion"),
+    "Heat and flow": (
+        "heat",
+        "accommodation",
+        "metal",
+        "shear",
+        "channel",
+        "gradient",
+        "radiator",
+        "effusion",
+    ),
     "Crystals and packings": ("crystal", "melting", "packing"),
     "Grains": ("cooling", "hourglass", "shaken", "sheared", "incline"),
 }

@@ -46,7 +46,7 @@ def _formula(name: str, takes: tuple[str, ...]) -> Callable[[Gas, str], float]:
         from gaspart import theory
 
         if equation != "exact":
-            raise SceneError("equation", equation, "this quantity is that of particles that touch")
+            raise SceneError("equation", equation, "must be exact for this quantity")
         properties = {key: gas.particle[key] for key in takes}
         return float(getattr(theory, name)(gas.packing_fraction, gas.dimension, **properties))
 
@@ -172,11 +172,9 @@ def _of_mixture(options: argparse.Namespace) -> None:
     name = _QUANTITIES[options.quantity].mixture
     if not name:
         able = (key for key, quantity in _QUANTITIES.items() if quantity.mixture)
-        raise SceneError("quantity", options.quantity, f"of mixtures there are {', '.join(able)}")
+        raise SceneError("quantity", options.quantity, f"is not defined for mixtures; use {', '.join(able)}")
     if options.equation != "exact":
-        raise SceneError(
-            "equation", options.equation, "of mixtures there is the theory of particles that touch"
-        )
+        raise SceneError("equation", options.equation, "must be exact for mixtures")
     takes = ("temperature",) if _QUANTITIES[options.quantity].takes else ()
     properties = {key: getattr(options, key) for key in _PARTICLE if getattr(options, key) is not None}
     for key in properties:

@@ -166,7 +166,7 @@ def _mistake(function: Callable, title: str, arguments: tuple, named: dict[str, 
             return SceneError(name, value, f"is given twice to {title}")
     if len(arguments) - shift > len(first):
         rest = [name for name in accepted if name not in first]
-        rule = f"is too much for {title}, which takes {', '.join(first) or 'nothing'} without names"
+        rule = f"is one argument too many: {title} takes {', '.join(first) or 'nothing'} by position"
         rule += f", and by name {', '.join(rest)}" if rest else ""
         return SceneError(f"argument {len(first) + 1}", arguments[len(first) + shift], rule)
     absent = first[len(arguments) - shift :] + [name for name in accepted if name not in first]

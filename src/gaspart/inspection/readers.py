@@ -63,7 +63,7 @@ def read_frames(
 
 
 def is_open_run(path: str | Path) -> bool:
-    """Return True for a trajectory of gaspart with open faces, which `open_runs.judge_open` checks."""
+    """Return True for a trajectory of gaspart with open faces, which `checks.judge_open` checks."""
     path = Path(path)
     with _reading(path):
         netcdf = _READERS.get(path.suffix.lower()) is read_netcdf
@@ -235,7 +235,7 @@ def _check_container(contents: Contents, scene: Scene, path: Path) -> None:
     movable = np.isin(np.arange(scene.dimension), [number // 2 for number, _ in scene.pistons])
     within = (stated == 0.0) | (movable & (stated < lengths)) | (np.abs(stated - lengths) <= _SAME * lengths)
     if not within.all():
-        rule = f"the container of the scene is {scene.container.lengths}"
+        rule = f"must be the container of the scene, {scene.container.lengths}"
         raise SceneError("lengths", tuple(stated.tolist()), rule, str(path))
 
 

@@ -295,7 +295,7 @@ def instances(key: str, value: Any, kinds: type | tuple[type, ...], rule: str) -
             raise SceneError(f"{key}[{len(items)}]", item, rule)
         items.append(item)
     if len(items) > MOST_LISTED:
-        raise SceneError(key, len(items), f"there may be {MOST_LISTED} at most")
+        raise SceneError(key, len(items), f"must be at most {MOST_LISTED} items")
     return tuple(items)
 
 

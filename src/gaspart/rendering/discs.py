@@ -8,7 +8,7 @@ from itertools import pairwise, product
 import numpy as np
 
 from gaspart.kernels.drawing.ray_tracing import draw_discs, draw_segments
-from gaspart.rendering.surfaces import INK, DrawnSurface
+from gaspart.rendering.surfaces import INK, DrawnSurface, arrow_lines
 
 _MARGIN = 0.02  # of the picture's shorter side
 PAPER = (1.0, 1.0, 1.0)
@@ -100,10 +100,13 @@ class Canvas:
         if surface.band:
             self._stroke(surface.ends + surface.band * surface.inward, colour, unit)
         if surface.hatched:
+            has_one_side = surface.inward.any()  # a wall between two gases is hatched on both sides
+            normal = surface.inward if has_one_side else np.array([-along[1], along[0]])
             count = max(2, int(np.linalg.norm(end - start) / (4.0 * unit)))
             for part in np.linspace(0.0, 1.0, count):
                 foot = start + part * (end - start)
-                self.line(np.array([foot, foot - 2.5 * unit * (surface.inward + along)]), INK)
+                tick = 2.5 * unit * (normal + along)
+                self.line(np.array([foot if has_one_side else foot + tick, foot - tick]), INK)
         arrows = [(0.5, surface.motion)] if surface.motion is not None else []
         fractions = np.linspace(0.0, 1.0, 2 * len(surface.through) + 3)[1:-1]
         arrows += [
@@ -111,7 +114,8 @@ class Canvas:
         ]
         for part, direction in arrows:
             middle = start + part * (end - start) + 5.0 * unit * surface.inward  # the margin is narrow
-            self._arrow(middle - 8.0 * unit * direction, middle + 8.0 * unit * direction, colour)
+            ends = middle - 8.0 * unit * direction, middle + 8.0 * unit * direction
+            self._arrow(*ends, colour, surface.to_and_fro)
 
     @property
     def _thickness(self) -> int:
@@ -129,11 +133,9 @@ class Canvas:
         for n in range(0, count, 2):
             self.line(marks[n : n + 2], colour, self._thickness)
 
-    def _arrow(self, tail: np.ndarray, head: np.ndarray, colour: tuple[float, ...]) -> None:
+    def _arrow(self, tail: np.ndarray, head: np.ndarray, colour: tuple[float, ...], two_heads: bool) -> None:
         """Draw an arrow with a bright border, which is visible on discs of any colour."""
-        back = 0.25 * (tail - head)
-        barbs = [head + back + sign * 0.6 * np.array([-back[1], back[0]]) for sign in (-1.0, 1.0)]
-        lines = [np.array([tail, head]), *(np.array([barb, head]) for barb in barbs)]
+        lines = arrow_lines(tail, head, two_heads)
         for shade, width in ((PAPER, self._thickness + 2), (colour, self._thickness)):
             for line in lines:
                 self.line(line, shade, width)

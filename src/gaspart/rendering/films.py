@@ -17,7 +17,7 @@ from gaspart.keys.values import count_of, number
 from gaspart.rendering.frames import Film, open_source, particles_of, scene_of
 from gaspart.rendering.particles import FASTEST, Labels, colours_of, legend_of, time_format
 from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, picture, pixels_per_length
-from gaspart.scene.open_faces import refuse_open
+from gaspart.scene.face_checks import refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.state import State
@@ -175,7 +175,7 @@ def _part(source: xr.Dataset, start: float | None, stop: float | None, every: in
     slack = 1e-9 * abs(float(time[-1]))
     frames = np.flatnonzero((time >= first - slack) & (time <= last + slack))
     if not frames.size:
-        raise SceneError("start", start, f"there is no frame from it until {last:g}")
+        raise SceneError("start", start, f"must have a frame between it and {last:g}")
     return source.isel(frame=frames[:: count_of("every", every, least=1)])
 
 
@@ -194,9 +194,9 @@ def _check_arguments(
     if trail is not None:
         refuse_open(scene_of(trajectory), "changes the particles: a trail is of one that stays")
         if count_of("trail", trail) >= len(first.radii):
-            raise SceneError("trail", trail, f"the trajectory has {len(first.radii)} particles")
+            raise SceneError("trail", trail, f"must be below {len(first.radii)}, the number of particles")
         if first.dimension != 2:
-            raise SceneError("trail", trail, "is drawn among discs only")
+            raise SceneError("trail", trail, "requires discs")
     return direction
 
 

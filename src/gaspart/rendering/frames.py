@@ -218,7 +218,7 @@ def particles_of(source: State | Simulation | Scene | xr.Dataset, frame: int = -
         return _of_state(initial_state(source, 0), source)
     frames = source.sizes["frame"]
     if not -frames <= count_of("frame", frame, least=-frames) < frames:
-        raise SceneError("frame", frame, f"the trajectory has {frames}, counted from 0")
+        raise SceneError("frame", frame, f"must be one of {frames} frames, counted from 0")
     names = ("coordinates", "velocities", "time", "piston_position")
     # Of these alone: xarray takes milliseconds for a frame of the whole.
     variables = {name: source.variables[name][frame].values for name in names if name in source.variables}
@@ -264,8 +264,6 @@ def parameters_of(scene: Scene) -> tuple[str, ...]:
         texts.append(f"gravity {math.hypot(*scene.gravity):.3g}")
     if scene.restitution is not None:
         texts.append(f"restitution {scene.restitution.normal:.3g}")
-    if wall := scene.moving_wall:
-        texts.append(f"a wall of mass {wall.mass:.3g} moves")
     return tuple(texts)
 
 

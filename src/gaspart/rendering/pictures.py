@@ -12,6 +12,7 @@ from gaspart.files import FileKind, begins_with
 from gaspart.keys.values import count_of, number
 from gaspart.rendering.camera import CAMERA, Camera, camera_for
 from gaspart.rendering.particles import DrawnParticles
+from gaspart.rendering.surfaces import arrow_lines
 
 PICTURE = FileKind("a PNG picture", begins_with(b"\x89PNG\r\n\x1a\n"))
 SIZE = (1000, 750)
@@ -75,7 +76,7 @@ def picture(
 
 
 def _with_surfaces(image: np.ndarray, particles: DrawnParticles, camera: Camera) -> np.ndarray:
-    """Return a picture of spheres with the outlines of the surfaces over it, in their colours."""
+    """Return a picture of spheres with the outlines of the surfaces over it, and arrows of their motion."""
     if not particles.surfaces:
         return image
     from PIL import Image, ImageDraw
@@ -83,6 +84,7 @@ def _with_surfaces(image: np.ndarray, particles: DrawnParticles, camera: Camera)
     height, width = image.shape[:2]
     paper = Image.fromarray(image)
     draw = ImageDraw.Draw(paper)
+    thick = max(2, min(width, height) // 250)
     for surface in particles.surfaces:
         middle = surface.ends.mean(axis=0)
         around = middle + 0.985 * (surface.ends - middle)  # beside the edges that other faces share
@@ -92,7 +94,14 @@ def _with_surfaces(image: np.ndarray, particles: DrawnParticles, camera: Camera)
             for n in range(0, parts, 2 if surface.dashed else 1):
                 shade = surface.colours[n * len(surface.colours) // parts]
                 fill = tuple(np.rint(255.0 * shade).astype(int).tolist())
-                draw.line([tuple(marks[n]), tuple(marks[n + 1])], fill, max(2, min(width, height) // 250))
+                draw.line([tuple(marks[n]), tuple(marks[n + 1])], fill, thick)
+        if surface.motion is not None:
+            half = 0.12 * min(particles.lengths) * surface.motion
+            ends = camera.pixels(np.array([middle - half, middle + half]), (width, height))
+            lines = arrow_lines(*ends, surface.to_and_fro)
+            for ink, wide in (((255, 255, 255), thick + 2), (fill, thick)):  # visible on any colour
+                for line in lines:
+                    draw.line([tuple(line[0]), tuple(line[1])], ink, wide)
     return np.asarray(paper)
 
 

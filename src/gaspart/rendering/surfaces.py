@@ -3,8 +3,9 @@
 A hard wall at rest is a thin dark line. A surface at a temperature is thick, from blue (the coldest of the
 scene) to red (the hottest), or orange if all have one temperature; it is dashed if it draws only part of the
 velocities. An open face is dashed, with arrows for particles that leave and enter. A surface that moves has
-hatching, and an arrow in the direction of its motion; behind a piston the container is shaded. A sticky face
-is green, and the edge of a well is dotted.
+hatching, and an arrow in the direction of its motion, with two heads if it moves to and fro; behind a piston
+the container is shaded. Faces whose images slide are dashed, with an arrow. A sticky face is green, and the
+edge of a well is dotted.
 """
 
 from __future__ import annotations
@@ -14,7 +15,18 @@ from typing import Any
 
 import numpy as np
 
-from gaspart.scene.faces import LeesEdwards, Open, Piston, Sticky, Surface, Thermal, Vibrating, Well
+from gaspart.scene.faces import (
+    FLOW,
+    GRADIENT,
+    LeesEdwards,
+    Open,
+    Piston,
+    Sticky,
+    Surface,
+    Thermal,
+    Vibrating,
+    Well,
+)
 from gaspart.scene.scene import Scene
 
 Colour = tuple[float, float, float]
@@ -34,7 +46,7 @@ class DrawnSurface:
     ends : ndarray, shape (2, 2) or (4, 3), [length]
         Ends of the line in the plane; in space the corners around the rectangle.
     inward : ndarray, shape (d,)
-        Unit vector into the container.
+        Unit vector into the container; 0 for a wall, which has a gas on both sides.
     colours : ndarray, shape (M, 3)
         Red, green and blue from 0 to 1, of equal pieces along it.
     text : str
@@ -43,6 +55,8 @@ class DrawnSurface:
         Dashes, and hatching of its outer side.
     motion : ndarray, shape (d,), optional
         Unit vector in the direction of motion.
+    to_and_fro : bool
+        True if the surface moves in both directions.
     through : tuple of int
         Arrows across it: -1 outwards, 1 inwards.
     depth : float, [length]
@@ -58,6 +72,7 @@ class DrawnSurface:
     dashed: bool = False
     hatched: bool = False
     motion: np.ndarray | None = None
+    to_and_fro: bool = False
     through: tuple[int, ...] = ()
     depth: float = 0.0
     band: float = 0.0
@@ -79,7 +94,8 @@ def surfaces_of(scene: Scene, time: float = 0.0, piston: float | None = None) ->
     drawn = []
     for name, face in scene.faces.items():
         if isinstance(face, LeesEdwards):
-            continue  # its images slide; there is no surface
+            drawn += _sliding_images(face, lengths)
+            continue
         axis, upper = "xyz".index(name[0]), "high" in name
         side = float(lengths[axis]) if upper else 0.0
         position = side
@@ -96,7 +112,7 @@ def surfaces_of(scene: Scene, time: float = 0.0, piston: float | None = None) ->
                 _outline(lengths, axis, position), inward, text=text, depth=abs(position - side), **look
             )
         )
-    return (*drawn, *_warm_walls(scene))
+    return (*drawn, *_warm_walls(scene), *_moving_walls(scene, piston))
 
 
 def _look_of(face: Surface, scene: Scene, inward: np.ndarray) -> dict[str, Any]:
@@ -115,7 +131,7 @@ def _look_of(face: Surface, scene: Scene, inward: np.ndarray) -> dict[str, Any]:
         return {"text": f"piston, {stated}", "colours": _one(INK), "hatched": True, "motion": inward}
     if isinstance(face, Vibrating):
         text = f"vibrates, amplitude {face.amplitude:.3g}, period {face.period:.3g}"
-        return {"text": text, "colours": _one(INK), "hatched": True}
+        return {"text": text, "colours": _one(INK), "hatched": True, "motion": inward, "to_and_fro": True}
     if isinstance(face, Sticky):
         return {"text": f"sticky below momentum {face.momentum:.3g}", "colours": _one(_STICKY)}
     if isinstance(face, Well):
@@ -148,7 +164,7 @@ def _thermal_look(face: Thermal, scene: Scene) -> dict[str, Any]:
 
 
 def _warm_walls(scene: Scene) -> tuple[DrawnSurface, ...]:
-    """Return the looks of interior walls that have a temperature or move."""
+    """Return the looks of interior walls at a temperature."""
     drawn = []
     for wall in scene.walls:
         if wall.temperature is None:
@@ -158,6 +174,38 @@ def _warm_walls(scene: Scene) -> tuple[DrawnSurface, ...]:
         colours, text = _one(colour_of(wall.temperature, scene)), f"wall: T = {wall.temperature:.3g}"
         drawn.append(DrawnSurface(np.array(around, float), np.zeros(scene.dimension), colours, text))
     return tuple(drawn)
+
+
+def _moving_walls(scene: Scene, position: float | None) -> tuple[DrawnSurface, ...]:
+    """Return the look of the interior wall that moves, at this coordinate or where it starts."""
+    wall = scene.moving_wall
+    if wall is None:
+        return ()
+    ends = _outline(
+        np.array(scene.container.lengths), wall.axis, wall.position if position is None else position
+    )
+    text = f"wall: mass {wall.mass:.3g}, moves freely"
+    along, aside = np.eye(scene.dimension)[wall.axis], np.zeros(scene.dimension)
+    return (DrawnSurface(ends, aside, _one(INK), text, hatched=True, motion=along, to_and_fro=True),)
+
+
+def _sliding_images(face: LeesEdwards, lengths: np.ndarray) -> list[DrawnSurface]:
+    """Return the looks of the two faces beyond which the images of a sheared gas slide."""
+    drawn = []
+    for side, name, region in ((1.0, "high", "above"), (-1.0, "low", "below")):
+        speed = side * face.shear_rate * lengths[GRADIENT]
+        axes = np.eye(len(lengths))
+        drawn.append(
+            DrawnSurface(
+                _outline(lengths, GRADIENT, lengths[GRADIENT] if side > 0.0 else 0.0),
+                -side * axes[GRADIENT],
+                _one(INK),
+                f"y {name}: images {region} slide at {speed:.3g}",
+                dashed=True,
+                motion=np.sign(speed) * axes[FLOW] if speed else None,
+            )
+        )
+    return drawn
 
 
 def colour_of(temperature: float, scene: Scene) -> Colour:
@@ -178,3 +226,12 @@ def _outline(lengths: np.ndarray, axis: int, position: float) -> np.ndarray:
     """Return the ends of a face in the plane, or the corners around it in space."""
     corners = {2: ((0,), (1,)), 3: ((0, 0), (1, 0), (1, 1), (0, 1))}[len(lengths)]
     return np.insert(np.array(corners) * np.delete(lengths, axis), axis, position, axis=1).astype(float)
+
+
+def arrow_lines(tail: np.ndarray, head: np.ndarray, two_heads: bool) -> list[np.ndarray]:
+    """Return the lines of an arrow in the plane, each of the shape (2, 2): its shaft and its barbs."""
+    lines = [np.array([tail, head])]
+    for tip, back in ((head, 0.25 * (tail - head)), (tail, 0.25 * (head - tail)))[: 1 + two_heads]:
+        barbs = [tip + back + sign * 0.6 * np.array([-back[1], back[0]]) for sign in (-1.0, 1.0)]
+        lines += [np.array([barb, tip]) for barb in barbs]
+    return lines

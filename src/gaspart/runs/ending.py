@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import Self
 
-from gaspart.accuracy.steady import require_steady
+from gaspart.accuracy.conditions import require_steady
 from gaspart.analysis.observables import (
     OBSERVABLES,
     observable_name,
@@ -70,7 +70,7 @@ class Accuracy(Requirement):
             raise error.inside("until") from None
         able = observables_with(ends_runs=True)
         if name not in able:
-            rule = f"ends no run: those that do are {', '.join(able)}; give a duration, and measure {name}"
+            rule = f"does not end a run; use {', '.join(able)}, or give a duration and measure {name}"
             raise SceneError("until.observable", self.observable, rule)
         object.__setattr__(self, "observable", name)
         super().__post_init__()

@@ -172,7 +172,7 @@ class Thermal(Surface):
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.components == "normal" and self.slides:
-            raise SceneError("velocity", self.velocity, 'needs components "all": no other drags particles')
+            raise SceneError("velocity", self.velocity, 'requires components "all"')
         if self.accommodation == 1.0:  # absent everywhere, so that no other place has to ask
             set_fields(self, accommodation=None)
 
@@ -519,7 +519,7 @@ class Piston(Surface):
         loaded = [value is not None for value in (self.mass, self.pressure)]
         if any(loaded) if self.speed is not None else not all(loaded):
             stated = {key: value for key, value in vars(self).items() if value is not None}
-            raise SceneError("speed", stated, "a piston has a mass and a pressure, or a speed alone")
+            raise SceneError("speed", stated, "must be mass and pressure, or speed alone")
 
     def acceleration(self, scene: Scene, axis: int) -> float:
         """Return the inward acceleration due to the load; 0 if the speed is prescribed.
@@ -631,7 +631,7 @@ class Open(Surface):
     def __post_init__(self) -> None:
         super().__post_init__()
         if (self.activity is None) != (self.temperature is None):
-            raise SceneError("temperature", self.temperature, "a reservoir has an activity and a temperature")
+            raise SceneError("temperature", self.temperature, "must be given together with activity")
 
     @property
     def smooth(self) -> bool:

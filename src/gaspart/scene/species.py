@@ -53,7 +53,7 @@ def _check_matter(particle: Species | Particle) -> None:
             rule = f"must be from {SMALLEST:g} to {LARGEST:g} times the mass times the radius squared"
             raise SceneError("moment_of_inertia", particle.moment_of_inertia, rule)
     if particle.vibration is not None and not particle.fixed:
-        raise SceneError("vibration", particle.vibration, "only a fixed particle vibrates")
+        raise SceneError("vibration", particle.vibration, "requires fixed: true")
 
 
 @dataclass(frozen=True)
@@ -182,7 +182,7 @@ class Species:
         if self.speed is not None and self.temperature is not None:
             raise SceneError("temperature", self.temperature, "give speed or temperature, not both")
         if self.fixed and self.speed:
-            raise SceneError("speed", self.speed, "a fixed species has none")
+            raise SceneError("speed", self.speed, "must be 0 for a fixed species")
         if self.exact_temperature and (self.temperature is None or self.fixed):
             raise SceneError("exact_temperature", True, "needs the temperature of a species that moves")
         if self.vibration is not None and self.temperature is not None:
@@ -197,10 +197,10 @@ class Species:
             if self.radius_distribution is not None:
                 raise SceneError("radius_distribution", self.radius_distribution, "needs a polydispersity")
         elif self.radius_distribution == "uniform" and not self.polydispersity < MOST_UNIFORM:
-            rule = f"of a uniform distribution must be below {MOST_UNIFORM:.4g}, where radii would be zero"
+            rule = f"must be below {MOST_UNIFORM:.4g} for a uniform distribution; radii must be positive"
             raise SceneError("polydispersity", self.polydispersity, rule)
         elif self.moment_of_inertia is not None:
-            rule = "of a polydisperse species is that of uniform discs or spheres"
+            rule = "must be absent for a polydisperse species, whose particles are uniform discs or spheres"
             raise SceneError("moment_of_inertia", self.moment_of_inertia, rule)
 
     @property
@@ -385,7 +385,7 @@ class Particle:
             set_fields(self, spin=spin)
         for key, value in (("velocity", self.velocity), ("spin", self.spin_vector)):
             if self.fixed and any(value):
-                raise SceneError(key, value, "a fixed particle has none")
+                raise SceneError(key, value, "must be zero for a fixed particle")
 
     @property
     def radii(self) -> np.ndarray:

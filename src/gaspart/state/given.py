@@ -13,9 +13,9 @@ import numpy as np
 from gaspart.errors import SceneError
 from gaspart.scene.faces import FACES, FLOW, GRADIENT
 from gaspart.scene.features import FEATURES
-from gaspart.scene.moving_walls import MOVING_WALL
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import flow_of_rate
+from gaspart.scene.walls import MOVING_WALL
 from gaspart.state.boxes import deepest_overlap
 from gaspart.state.initial import assemble_state, in_flow, masses_of
 from gaspart.state.insertion import per_particle
@@ -131,13 +131,15 @@ def state_at_time_zero(scene: Scene, other: State) -> State:
         raise SceneError("initial", type(other).__name__, "must be a State, as of Simulation.state")
     if other.positions.shape != (scene.count, scene.dimension):
         has = f"{other.count} particles in {other.dimension} dimensions"
-        raise SceneError("initial", has, f"the scene has {scene.count} in {scene.dimension}")
+        raise SceneError("initial", has, f"must be as in the scene, {scene.count} in {scene.dimension}")
     for name in ("displaced", "shear_rate"):
         if not math.isfinite(getattr(other, name) or 0.0):
             raise SceneError("initial", getattr(other, name), f"must have a finite {name}")
     lengths = scene.container.lengths
     if tuple(other.lengths) != lengths:
-        raise SceneError("initial", tuple(other.lengths.tolist()), f"the container of the scene is {lengths}")
+        raise SceneError(
+            "initial", tuple(other.lengths.tolist()), f"must be the container of the scene, {lengths}"
+        )
     for name, its, mine in (
         ("radius", other.radii, per_particle(scene, "radius").astype(float)),
         ("mass", other.masses, masses_of(scene)),
@@ -172,7 +174,7 @@ def _image_displacement(scene: Scene, other: State) -> float | None:
         return here
     if here != 0.0 and scene.container.periodic[GRADIENT]:
         rule = (
-            "is by how much the images above are displaced, which those of the scene are not: "
+            "is the displacement of images in a sheared gas; the images of the scene are not displaced: "
             "give it the face y_high of kind lees_edwards, to stop the flow with shear_rate: 0"
         )
         raise SceneError("initial", here, rule)
@@ -207,7 +209,7 @@ def _checked_piston(scene: Scene, piston: np.ndarray | None) -> np.ndarray | Non
     for axis in axes if piston is not None else ():
         values, length = np.asarray(piston), scene.container.lengths[axis]
         if values.shape != (2,) or not np.isfinite(values).all() or not 0.0 <= values[0] <= length:
-            rule = f"must be a place from 0 to {length:g} and a velocity of the piston"
+            rule = f"must be a position from 0 to {length:g} and a velocity of the piston"
             raise SceneError("initial", values.tolist(), rule)
     return piston
 
@@ -231,7 +233,7 @@ def check_apart(scene: Scene, state: State) -> None:
     allowed = 2.0 * np.sqrt(state.dimension) * _SINGLE * max(scene.container.lengths)  # of two particles
     if depth * 2.0 * state.radii.min() > allowed:
         rule = (
-            "is the part of their distance by which particles overlap, more than the rounding of frames: "
+            "is the relative overlap of two particles; it exceeds the rounding of frames: "
             "take the state of a run of the event engine"
         )
         raise SceneError("initial", float(f"{depth:.3g}"), rule)

@@ -157,7 +157,7 @@ def _snapshots(path: Path, frame: int | str) -> Iterator[Snapshot]:
     if frame == ALL:
         numbers = range(there)
     elif not -there <= count_of("frame", frame, least=-there) < there:
-        raise SceneError("frame", frame, f"the trajectory has {there}")
+        raise SceneError("frame", frame, f"must be one of {there} frames")
     else:
         frame = int(frame) % there  # netCDF counts -1 from the allocated frames of an unfinished file
         numbers = range(frame, frame + 1)

@@ -20,7 +20,7 @@ def pairs_of(scene: Scene) -> list[tuple[int, int]]:
     """
     if scene.particles:
         raise SceneError(
-            "particles", len(scene.particles), "pairs are those of species: there are single particles"
+            "particles", len(scene.particles), "excludes pairs, which are counted for species only"
         )
     return list(combinations_with_replacement(range(len(scene.species)), 2))
 

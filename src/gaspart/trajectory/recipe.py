@@ -14,8 +14,7 @@ from gaspart.engines import Engine, engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
 from gaspart.keys.values import number
-from gaspart.scene.face_checks import check_piston_end
-from gaspart.scene.open_faces import refuse_open
+from gaspart.scene.face_checks import check_piston_end, refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.state.given import state_at_time_zero, state_from_arrays
@@ -112,7 +111,9 @@ class Recipe:
             if (value := getattr(self, key, None)) is not None:
                 object.__setattr__(self, key, kind.check(key, value))
         if self.follow is not None and self.follow > self.scene.count:
-            raise SceneError("follow", self.follow, f"there are {self.scene.count} particles")
+            raise SceneError(
+                "follow", self.follow, f"must be at most {self.scene.count}, the number of particles"
+            )
         if self.keep and self.until:
             raise SceneError("keep", self.keep, "has no meaning with until, which measures what is there")
         for key in ("follow", "correlations", "displacements", "pairs"):
@@ -150,8 +151,8 @@ class Recipe:
             multiple("correlations.start", correlations.start, *interval)
         samples = (self.frames - 1) * self.samples_per_frame - correlations.first
         if correlations.lags > samples:
-            rule = f"there are {max(0, samples)} intervals of {correlations.interval:g} "
-            rule += f"from {correlations.start:g} on"
+            rule = f"must be at most {max(0, samples)}, the number of intervals "
+            rule += f"of {correlations.interval:g} from {correlations.start:g} on"
             raise SceneError("correlations.lags", correlations.lags, rule)
 
     @property

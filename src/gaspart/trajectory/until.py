@@ -67,7 +67,7 @@ class Until:
         names = [requirement.name for requirement in self.accuracies]
         for name in names:
             if names.count(name) > 1:
-                raise SceneError("until", name, "is asked for twice")
+                raise SceneError("until", name, "must be requested only once")
         if self.at_most is not None:
             longest = number("at_most", self.at_most, "must be positive", above=0.0)
             object.__setattr__(self, "at_most", longest)

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from gaspart import theory
 from gaspart.rendering import style
 from gaspart.reproduction.families.mixtures.claims import deviations
-from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.families.shared import PARTICLES
 from gaspart.reproduction.table import Table
 from gaspart.scene.sizes import relative_radii
 

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.rendering import style
-from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.families.shared import PARTICLES
 from gaspart.reproduction.table import Row, Table
 
 SHIFT = 0.006

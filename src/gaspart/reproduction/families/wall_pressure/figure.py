@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.rendering import style
-from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.families.shared import PARTICLES
 from gaspart.reproduction.table import Table
 
 Z = r"$P/(n k_\mathrm{B}T)$"
