@@ -21,12 +21,13 @@ def judge_conserved(frames: Frames) -> list[Check]:
     assert frames.velocities is not None, "see `why_not_speeds`"
     if len(frames.positions) < 2:
         return [Check(name, None, "needs two frames") for name in names]
-    root = float(np.sqrt((frames.velocities**2).sum(axis=2).mean()))
+    root = float(np.sqrt(frames.squares.mean()))
     allowed = DRIFT + 2.0 * resolution(frames.velocities) / root
-    energy = (frames.velocities**2).sum(axis=(1, 2)) / (frames.count * root**2)
+    energy = frames.squares.sum(axis=1) / (frames.count * root**2)
     checks = [_steady("energy", np.abs(np.diff(energy)), allowed, frames.isolated)]
     if any(frames.periodic):
-        mean = frames.velocities.mean(axis=1)[:, np.array(frames.periodic)] / root
+        axes = np.flatnonzero(frames.periodic)
+        mean = np.stack([frames.velocities[..., k].mean(axis=1) for k in axes], axis=1) / root
         change = np.sqrt((np.diff(mean, axis=0) ** 2).sum(axis=1))
         checks.append(_steady("momentum", change, allowed, frames.isolated))
     else:
