@@ -114,3 +114,15 @@ def test_many_particles_have_the_verdict_of_few(gap, walls, monkeypatch):
         verdicts.append(judge_places(frames)[0])
     assert verdicts[0] == verdicts[1]
     assert bool(verdicts[0].passed) is (gap > -1e-7)
+
+
+def test_many_particles_of_a_coarse_file_have_a_bound_on_their_overlap(monkeypatch):
+    monkeypatch.setattr("gaspart.inspection.checks._MANY", 0)
+    positions = np.full((2, 125, 3), np.arange(125.0)[:, None] % 5.0)
+    positions[..., 1:] = np.stack([np.arange(125.0) // 5.0 % 5.0, np.arange(125.0) // 25.0], axis=1)
+    positions *= 3.0
+    positions[1, 1] = positions[1, 0] + [0.9987, 0.0, 0.0]
+    frames = Frames(positions, np.full(3, 15.0), np.full(125, 0.5), (True,) * 3, resolution=1e-3)
+    assert str(judge_places(frames)[0].text).startswith("the deepest is 0.002 of a contact distance at most")
+    (verdict, _) = judge_places(frames, tolerance=0.0012)
+    assert verdict.passed is False and "0.0013 of a contact distance, in frame 1" in verdict.text

@@ -85,8 +85,12 @@ def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Chec
         return Check("overlaps", None, "contacts are sampled, so that particles may overlap")
     if frames.no_identity and frames.diameter is None and frames.radii_by_frame is None:
         return Check("overlaps", None, frames.no_identity)
+    allowed = _allowed_overlap(frames, tolerance)
     if len(seen) * frames.count > _MANY:
         bounds = np.array([_overlap_bounds(frames.at(n)) for n in seen])
+        if 0.0 < bounds[:, 1].max() <= allowed:
+            text = f"the deepest is {bounds[:, 1].max():.2g} of a contact distance at most"
+            return Check("overlaps", True, f"{text} (up to {allowed:.1g} allowed)")
         seen = seen[(bounds[:, 1] > 0.0) & (bounds[:, 1] >= bounds[:, 0].max())]
     deepest, where = 0.0, 0
     for n in seen:
@@ -94,7 +98,6 @@ def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Chec
         overlap = deepest_overlap(frame.positions[0], frame.radii, frame.lengths, frame.periodic)
         if overlap > deepest:
             deepest, where = overlap, int(n)
-    allowed = _allowed_overlap(frames, tolerance)
     text = (
         f"the deepest is {deepest:.2g} of a contact distance, in frame {where} (up to {allowed:.1g} allowed)"
     )
