@@ -193,7 +193,7 @@ def speed_accuracy(ds: xr.Dataset) -> Figure:
         axes[0].plot([], [], color=style.GREY, ls=line, label=name)
     axes[0].plot(
         [], [], marker="o", ls="none", markerfacecolor="white", markeredgecolor=style.GREY,
-        label="no error seen: bound",
+        label="no error resolved: bound",
     )  # fmt: skip
     axes[3].plot([], [], color=style.GREY, ls=":", label="event-driven, no error")
     axes[3].plot([], [], color=style.GREY, marker="o", lw=0.5, label="time-stepped")
@@ -257,7 +257,7 @@ def time_to_accuracy(ds: xr.Dataset) -> Figure:
         map_of(axis, ds.sel(quantity=quantity))
         style.letter(axis, f"({letter}) {title}")
     draw_breakdown(axes[-1], ds)
-    style.letter(axes[-1], "(f) what makes the error")
+    style.letter(axes[-1], "(f) parts of the error")
     figure.legend(
         handles=keys(), loc="outside upper center", ncols=4 if style.width() > style.COLUMN else 2,
         title=f"cheapest engine; time of a run of {ds['count'].values[0]} spheres",
