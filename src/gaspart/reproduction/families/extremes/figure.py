@@ -130,4 +130,4 @@ def _key(scenes: Table, columns: int) -> str:
     reasons = sorted({_reason(message) for message in scenes.message[scenes.verdict == "refused"]})
     texts = [f"{letter}: {text}" for letter, text in reasons]
     lines = ["; ".join(texts[n : n + columns]) for n in range(0, len(texts), columns)]
-    return "\n".join(["Refused" if texts else "None refused", *lines])
+    return "\n".join(["Rejected" if texts else "None rejected", *lines])
