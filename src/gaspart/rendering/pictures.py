@@ -76,7 +76,7 @@ def picture(
 
 
 def _with_surfaces(image: np.ndarray, particles: DrawnParticles, camera: Camera) -> np.ndarray:
-    """Return a picture of spheres with the outlines of the surfaces over it, and arrows of their motion."""
+    """Draw the outlines of surfaces, and arrows of their motion, over a picture of spheres."""
     if not particles.surfaces:
         return image
     from PIL import Image, ImageDraw
