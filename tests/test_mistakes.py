@@ -37,6 +37,11 @@ WORDS = {
     "species m": (lambda: gp.Species(20, 0.5, m=1.0), "here it is mass"),
     "species misspelt": (lambda: gp.Species(20, 0.5, temprature=1.0), "did you mean temperature?"),
     "species without radius": (lambda: gp.Species(20), "radius = None: is required by Species"),
+    "species n": (lambda: gp.Species(n=10, radius=0.5), "unknown argument of Species; here it is count"),
+    "species mass by position": (
+        lambda: gp.Species(10, 0.5, 1.0),
+        "takes count, radius without names, and by name",
+    ),
     "species alone": (lambda: gp.Species(), "count = None: is required by Species"),
     "species twice": (lambda: gp.Species(20, 0.5, radius=0.5), "radius = 0.5: is given twice to Species"),
     "species of text": (lambda: gp.Species("20", 0.5), "count = '20': must be a whole number"),
@@ -85,6 +90,20 @@ WORDS = {
     "sweep no folder": (lambda: gp.sweep(SCENE, {}, ["Z"]), "folder = None: is required by sweep"),
     "accuracy tolerance": (lambda: gp.Accuracy("Z", tolerance=0.1), "here it is accuracy"),
     "film fps": (lambda: gp.film("a.nc", "a.gif", fps=10), "here it is frames_per_second"),
+    "film of a simulation": (
+        lambda: gp.film(SIM, "a.gif"),
+        "a film needs frames; gaspart.run(scene, path=...)",
+    ),
+    "measure before the start": (
+        lambda: gp.analysis.pressure(gp.Simulation(SCENE)),
+        "simulation = 'at time 0': has not advanced; call advance(duration=...) first",
+    ),
+    "walls of an engine without": (
+        lambda: gp.Simulation(
+            gp.Scene(gp.Container((9.0, 9.0)), GAS, walls=[gp.Wall((5, 5), (5, 9))]), gp.DSMC()
+        ),
+        'needs the "event" engine; this one has none',
+    ),
     "film by place": (lambda: gp.film("a.nc", "a.gif", (9, 9)), "takes trajectory, path by position"),
     "render color": (lambda: gp.render(SCENE, color="speed"), "here it is colour"),
     "advance t": (lambda: SIM.advance(t=1.0), "of Simulation.advance; here it is duration"),
