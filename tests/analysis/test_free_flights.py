@@ -34,6 +34,9 @@ def test_flights_are_those_counted_by_hand():
     assert float(found["mean_free_path"]) == pytest.approx(flights[:, 3].mean())
     density = np.histogram(flights[:, 2], 10, (0, 5 * mean))[0] / len(flights)
     assert np.allclose(found.estimate, density / (0.5 * mean))
+    filled = density > 0.0
+    freedom = found["free_flight_times_freedom"].values
+    assert (freedom[filled] == 15.0).all() and np.isnan(freedom[~filled]).all()
 
 
 @pytest.mark.parametrize(("dimension", "eta"), [(2, 0.02), (3, 0.002), (3, 0.01)])

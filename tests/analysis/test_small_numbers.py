@@ -4,10 +4,12 @@ import math
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 import gaspart as gp
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.profiles import ratio
 
 A = gp.analysis
 
@@ -45,6 +47,27 @@ def test_empty_bins_state_no_error_but_where_hard_particles_would_overlap(twenty
         empty = found.estimate.values == 0.0
         assert empty.any() and np.isnan(found.error.values[empty]).all()
         assert (found.error.values[~empty] > 0.0).all()
+
+
+@pytest.mark.parametrize("name", ["speeds", "rdf", "structure_factor", "msd", "vacf", "D"])
+def test_errors_from_the_scatter_of_groups_state_their_degrees_of_freedom(name, twenty):
+    result = gp.measure(twenty, name)
+    freedom = result[f"{result.attrs['quantity']}_freedom"]
+    assert freedom.dims == result.estimate.dims
+    known = np.isfinite(result.error.values)
+    assert known.any() and (freedom.values[known] == 15.0).all() and np.isnan(freedom.values[~known]).all()
+
+
+def test_cells_state_no_more_degrees_of_freedom_than_their_common_correlation_allows():
+    """Series of 193 frames with five independent ones, as of a dense fluid in a short run."""
+    generator, deviations, phi = np.random.default_rng(5), [], 0.95
+    for _ in range(30):
+        series = lfilter([1.0], [1.0, -phi], generator.normal(size=(1193, 40)), axis=0)[1000:]
+        means = ratio(series, np.ones_like(series))
+        deviations.append(Estimate(means.values, np.nan_to_num(means.errors), means.freedoms).deviation)
+    z = np.concatenate(deviations)
+    z = z[np.isfinite(z)]
+    assert z.size > 800 and abs(z).max() < 3.5 and 0.75 < np.sqrt((z**2).mean()) < 1.15
 
 
 def test_a_pair_in_an_ideal_gas_has_g_of_one():

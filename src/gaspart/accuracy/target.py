@@ -24,8 +24,8 @@ from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine, reference_engine
 from gaspart.engines.dsmc.defaults import rates
 from gaspart.errors import SceneError
+from gaspart.scene.face_checks import refuse_open
 from gaspart.scene.faces import wall_of
-from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.initial import initial_state

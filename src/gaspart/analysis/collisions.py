@@ -19,7 +19,7 @@ import xarray as xr
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.flow import Grid
-from gaspart.analysis.observable import Observable, observable
+from gaspart.analysis.observable import Observable, observable, with_freedom
 from gaspart.analysis.statistics import histogram_means, mean_of, means_of
 from gaspart.engines import EventDriven
 from gaspart.errors import SceneError, SimulationError
@@ -389,7 +389,7 @@ def free_flight_times(simulation: Simulation, bins: int = 40) -> Observable:
     expected = _theory(simulation, edges)
     if expected:
         about |= {"theory": (expected[0], math.nan), "source": "independent collisions, Enskog's rate"}
-    result = observable("free_flight_times", along, values, errors, **about)
+    result = with_freedom(observable("free_flight_times", along, values, errors, **about), GROUPS - 1.0)
     for n, (name, units) in enumerate((("mean_free_time", "time"), ("mean_free_path", "length"))):
         result[name] = ((), means[n], {"units": units})
         result[f"{name}_error"] = ((), scatter[n], {"units": units, "long_name": "standard uncertainty"})

@@ -20,9 +20,8 @@ from gaspart.analysis.impulses import (
     subtract_controls,
     wall_controls,
 )
-from gaspart.analysis.observable import Observable, observable, scalar
+from gaspart.analysis.observable import Observable, observable, scalar, with_freedom
 from gaspart.analysis.observables import name_of, require_defined
-from gaspart.analysis.profiles import Means, with_freedom
 from gaspart.analysis.run import Run, Source, open_run, require_collisions
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
@@ -196,7 +195,7 @@ def _of_faces(function: str, run: Run, ends: np.ndarray, about: dict[str, Any]) 
     tally = ImpulseTally(str(faces[-1])[0], USUAL_BINS) if serves else None
     of = "wall impulses", "wall impulses, with the known mean of the energy along an axis"
     result.attrs |= estimator(run, *of, bool(improved), tally)
-    return with_freedom(result, Means(values, errors, freedoms)) if improved else result
+    return with_freedom(result, freedoms) if improved else result
 
 
 def controlled_on_walls(run: Run, name: str) -> dict[int, tuple[str, int, np.ndarray]]:

@@ -16,7 +16,7 @@ from gaspart.analysis.conditions import DISCS, GROUPS
 from gaspart.analysis.expected.equilibrium import describe
 from gaspart.analysis.flow import FLOW
 from gaspart.analysis.motion import Groups, axes_of, groups_of, stride_of, unwrap_positions
-from gaspart.analysis.observable import Observable, observable, scalar
+from gaspart.analysis.observable import Observable, observable, scalar, with_freedom
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.run import Run, Source, open_run, select_particles
 from gaspart.analysis.statistics import means_of
@@ -121,13 +121,15 @@ def diffusion_coefficient(
             values, errors = means_of(slopes[:, -1], groups.sizes)
             attributes = describe("D", run, times)
             attributes["long_name"] += f" at the lag {times.mean():.4g}"
-            return observable("diffusion_coefficient", along, values, errors, **attributes)
+            result = observable("diffusion_coefficient", along, values, errors, **attributes)
+            return with_freedom(result, len(slopes) - 1.0)
         last, tail = settled_slope(slopes, groups.sizes)
         values, errors = means_of(slopes[:, last], groups.sizes)
         ends, rate = times[last : last + 2], _rate(run)
         attributes = describe("D", run, None, rate * ends)
         errors = np.hypot(errors, tail)
         result = observable("diffusion_coefficient", along, values, errors, **attributes)
+        result = with_freedom(result, len(slopes) - 1.0)
         collisions = " to ".join(f"{rate * end:.3g}" for end in ends)
         result.attrs["lags"] = ends
         result.attrs["note"] = (

@@ -9,9 +9,9 @@ import numpy as np
 
 from gaspart.analysis.expected.equilibrium import describe
 from gaspart.analysis.impulses import described_density, mixed_density
-from gaspart.analysis.observable import Observable, observable
+from gaspart.analysis.observable import Observable, observable, with_freedom
 from gaspart.analysis.observables import require_defined
-from gaspart.analysis.profiles import Cells, Means, with_freedom
+from gaspart.analysis.profiles import Cells, Means
 from gaspart.analysis.run import Run, Source, open_run, select_particles
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, one_of
@@ -96,7 +96,7 @@ def field(
         }[of]
         result = observable(of, coordinates, means.values, means.errors, units=units, long_name=name)
         result.attrs |= attributes
-        return with_freedom(result, means)
+        return with_freedom(result, means.freedoms)
 
 
 def _axes(run: Run, axes: str | None) -> list[int]:
@@ -181,4 +181,6 @@ def velocity_profile(
         }
         about = describe("velocity", run, "xyz".index(name), positions)
         means = Means(result.estimate.values, result.error.values, result["velocity_freedom"].values)
-        return with_freedom(observable("velocity", along, means.values, means.errors, **about), means)
+        return with_freedom(
+            observable("velocity", along, means.values, means.errors, **about), means.freedoms
+        )

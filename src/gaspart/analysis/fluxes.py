@@ -9,9 +9,9 @@ from gaspart.analysis.conditions import walled_axis_of
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.expected.equilibrium import describe
 from gaspart.analysis.flow import per_area
-from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable, scalar
+from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable, scalar, with_freedom
 from gaspart.analysis.observables import require_defined
-from gaspart.analysis.profiles import Means, with_freedom
+from gaspart.analysis.profiles import Means
 from gaspart.analysis.run import Run, Source, open_run, select_particles
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
@@ -77,7 +77,9 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
         means = _steady(run, faces, heat[:, faces], _energies(run))
         along = {"face": (np.array(face_names(run.dimension))[faces], {"long_name": "face of the container"})}
         about = describe("heat_flux", run, faces)
-        return with_freedom(observable("heat_flux", along, means.values, means.errors, **about), means)
+        return with_freedom(
+            observable("heat_flux", along, means.values, means.errors, **about), means.freedoms
+        )
 
 
 def wall_shear(source: Source, start: float | None = None) -> Observable:
@@ -136,7 +138,9 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
             "component": (np.array(list("xyz"))[axes], {"long_name": "axis along the face"}),
         }
         about = describe("wall_shear", run, faces, axes)
-        return with_freedom(observable("wall_shear", along, means.values, means.errors, **about), means)
+        return with_freedom(
+            observable("wall_shear", along, means.values, means.errors, **about), means.freedoms
+        )
 
 
 def _amounts_per_area(run: Run, name: str, tallied: str) -> np.ndarray:
@@ -297,7 +301,7 @@ def particle_flux(
         along = {"component": (np.array(["xyz"[number]]), {"long_name": "axis"})}
         about = describe("flux", run, number, position, members, beyond)
         means = Means(*(np.array([each]) for each in (estimate.value, estimate.error, estimate.freedom)))
-        return with_freedom(observable("flux", along, means.values, means.errors, **about), means)
+        return with_freedom(observable("flux", along, means.values, means.errors, **about), means.freedoms)
 
 
 def _entered_beyond(run: Run, axis: int) -> np.ndarray | int:

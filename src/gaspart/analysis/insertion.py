@@ -22,10 +22,9 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from gaspart.analysis.expected.equilibrium import describe
-from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable, scalar
+from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable, scalar, with_freedom
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.pairs import STRETCHES
-from gaspart.analysis.profiles import Means, with_freedom
 from gaspart.analysis.run import Run, Source, open_run
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
@@ -342,7 +341,7 @@ def _of_species(run: Run, tried: list[tuple[np.ndarray, dict[str, float]]], abou
     errors[[np.isnan(each["probability_error"]) for _, each in tried]] = np.nan
     along = {"species": (np.unique(run.species), {"long_name": "number of the species"})}
     result = observable("chemical_potential", along, values, errors, **about)
-    result = with_freedom(result, Means(values, errors, freedoms))
+    result = with_freedom(result, freedoms)
     counts = {name: np.array([each[name] for _, each in tried]) for name in tried[0][1]}
     return _with_note(result.assign(_variables(("species",), counts)))
 

@@ -19,7 +19,7 @@ from gaspart.analysis.conditions import GROUPS
 from gaspart.analysis.correlations import Curves, autocorrelation, squared_displacement
 from gaspart.analysis.expected.equilibrium import describe
 from gaspart.analysis.flow import FLOW
-from gaspart.analysis.observable import Observable, observable
+from gaspart.analysis.observable import Observable, observable, with_freedom
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.run import Run, Source, open_run, select_particles
 from gaspart.analysis.statistics import means_of
@@ -50,10 +50,10 @@ def average_correlations(trajectory: xr.Dataset) -> Curves:
     return Curves(last["lag"].values, square, velocity / dimension, crossed / (2 * dimension))
 
 
-def accumulated_mean(run: Run, name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def accumulated_mean(run: Run, name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
     """Compute the mean of one of `SUMS` of a run's correlations, and its error, by lag.
 
-    Returned are the lags, the mean and its standard error, (lags,).
+    Returned are the lags, the mean and its standard error, (lags,), and the error's degrees of freedom.
 
     The mean is over pairs of samples of which the later one is in the measured part; the error is the scatter
     of 16 to 32 consecutive parts of it, of four times the longest lag if it is long enough. It holds for
@@ -75,7 +75,7 @@ def accumulated_mean(run: Run, name: str) -> tuple[np.ndarray, np.ndarray, np.nd
     scale = _of_free_particles(run)
     _, errors = means_of(np.diff(sums, axis=0) / np.diff(pairs[edges], axis=0))
     values = (sums[-1] - sums[0]) / (pairs[edges[-1]] - pairs[edges[0]])
-    return run.data["lag"].values, scale * values, scale * errors
+    return run.data["lag"].values, scale * values, scale * errors, parts - 1.0
 
 
 def _of_free_particles(run: Run) -> float:
@@ -192,15 +192,14 @@ def mean_squared_displacement(
     with open_run(source, start, about=about) as run:
         require_defined("msd", run.scene, species=species, particles=particles, about=about)
         if _accumulates(run, _SQUARES, lags, species, particles) and not per_axis:
-            time, values, errors = accumulated_mean(run, _SQUARES)
-            return _displacement(run, time, values, errors)
+            return _displacement(run, *accumulated_mean(run, _SQUARES))
         groups = groups_of(run, chosen=select_particles(run, species, particles))
         number = _lags(groups, lags)
         axes = [slice(k, k + 1) for k in range(run.dimension)] if per_axis else [slice(None)]
         curves = np.array([[squared_displacement(path[..., k], number) for k in axes] for path in groups])
         time = groups.interval * np.arange(number)
         values, errors = means_of(curves if per_axis else curves[:, 0], groups.sizes)
-        return _displacement(run, time, values, errors)
+        return _displacement(run, time, values, errors, len(curves) - 1.0)
 
 
 def velocity_autocorrelation(
@@ -257,12 +256,13 @@ def velocity_autocorrelation(
     with open_run(source, start, about=about) as run:
         require_defined("vacf", run.scene, species=species, particles=particles, about=about)
         if _accumulates(run, _PRODUCTS, lags, species, particles):
-            time, values, errors = accumulated_mean(run, _PRODUCTS)
-            return _autocorrelation(run, time, values / run.dimension, errors / run.dimension)
+            time, values, errors, freedom = accumulated_mean(run, _PRODUCTS)
+            return _autocorrelation(run, time, values / run.dimension, errors / run.dimension, freedom)
         groups = groups_of(run, paths=False, chosen=select_particles(run, species, particles))
         number = _lags(groups, lags)
         curves = np.array([autocorrelation(velocity, number) for velocity in groups])
-        return _autocorrelation(run, groups.interval * np.arange(number), *means_of(curves, groups.sizes))
+        time, means = groups.interval * np.arange(number), means_of(curves, groups.sizes)
+        return _autocorrelation(run, time, *means, len(curves) - 1.0)
 
 
 def _accumulates(
@@ -278,17 +278,23 @@ def _accumulates(
     return not (run.scene.flow_axes if run.is_subset else run.flow_axes)  # some particles show no wind
 
 
-def _displacement(run: Run, time: np.ndarray, values: np.ndarray, errors: np.ndarray) -> Observable:
+def _displacement(
+    run: Run, time: np.ndarray, values: np.ndarray, errors: np.ndarray, freedom: float
+) -> Observable:
     """Return the mean-squared displacement (lag,) or (axis, lag), with theory."""
     attributes = describe("msd", run, time, axes=values.ndim > 1)
     along = {**(axes_of(run) if values.ndim > 1 else {}), **_lag(time)}
-    return observable("mean_squared_displacement", along, values, errors, **attributes)
+    result = observable("mean_squared_displacement", along, values, errors, **attributes)
+    return with_freedom(result, freedom)
 
 
-def _autocorrelation(run: Run, time: np.ndarray, values: np.ndarray, errors: np.ndarray) -> Observable:
+def _autocorrelation(
+    run: Run, time: np.ndarray, values: np.ndarray, errors: np.ndarray, freedom: float
+) -> Observable:
     """Return the velocity autocorrelation (lag,), with theory."""
     about = describe("vacf", run, time)
-    return observable("velocity_autocorrelation", _lag(time), values, errors, **about)
+    result = observable("velocity_autocorrelation", _lag(time), values, errors, **about)
+    return with_freedom(result, freedom)
 
 
 def axes_of(run: Run, chosen: np.ndarray | slice = slice(None)) -> dict[str, Any]:

@@ -403,3 +403,15 @@ def observable(
         coords={key: (key, coordinate, attributes) for key, (coordinate, attributes) in along.items()},
         attrs={"quantity": name} | ({"source": source} if source else {}),
     )
+
+
+def with_freedom(result: Observable, freedom: np.ndarray | float) -> Observable:
+    """Add the degrees of freedom of its errors to a result, by the suffix _freedom.
+
+    freedom : of each value, or of all values with a known error.
+    """
+    if not isinstance(freedom, np.ndarray):
+        freedom = np.where(np.isnan(result.error), np.nan, freedom)
+    about = {"units": "1", "long_name": "degrees of freedom of the uncertainty"}
+    result[f"{result.attrs['quantity']}_freedom"] = result.estimate.dims, freedom, about
+    return result

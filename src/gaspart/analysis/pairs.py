@@ -14,13 +14,13 @@ from gaspart.analysis.bulk import EXACT
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.expected.equilibrium import describe, equation_of
 from gaspart.analysis.impulses import estimator, mixture
-from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable
+from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable, with_freedom
 from gaspart.analysis.observables import KEPT, require_defined
 from gaspart.analysis.run import Run, Source, open_run, require_collisions
 from gaspart.analysis.statistics import correlated_mean, histogram_means
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number
-from gaspart.scene.impulses import FURTHEST
+from gaspart.scene.features import FURTHEST
 from gaspart.state.optional_tallies import PairImpulseTally, stored_tally
 from gaspart.theory.geometry import unit_sphere_surface
 from gaspart.theory.speeds import mean_speed_factor
@@ -290,7 +290,7 @@ def rdf(
         result = observable("rdf", along, values, errors, **about)
         tally = PairImpulseTally(float(end), 200, 0.1)
         result.attrs |= estimator(run, "counts", "counts and impulses", parts is not None, tally)
-        return result
+        return with_freedom(result, STRETCHES - 1.0)
 
 
 def chosen_frames(run: Run, values: np.ndarray) -> np.ndarray:

@@ -15,9 +15,8 @@ from functools import cached_property
 import numpy as np
 
 from gaspart.analysis.flow import Grid, mean_motion, sides
-from gaspart.analysis.observable import Observable
 from gaspart.analysis.run import Run
-from gaspart.analysis.statistics import correlated_mean
+from gaspart.analysis.statistics import common_freedom, correlated_mean
 from gaspart.errors import SceneError
 
 LEAST_FRAMES = 16
@@ -48,17 +47,11 @@ class Means:
         return Means(factor * self.values, factor * self.errors, self.freedoms)
 
 
-def with_freedom(result: Observable, means: Means) -> Observable:
-    """Add the degrees of freedom of its errors to a result, by the suffix _freedom."""
-    about = {"units": "1", "long_name": "degrees of freedom of the uncertainty"}
-    result[f"{result.attrs['quantity']}_freedom"] = result.estimate.dims, means.freedoms, about
-    return result
-
-
 def ratio(above: np.ndarray, below: np.ndarray, still: bool = False) -> Means:
     """Compute sum A / sum B of series (K, ...) of K consecutive blocks.
 
-    There are at least 16 blocks. `still` states that nothing moves.
+    There are at least 16 blocks. `still` states that nothing moves. No cell has more degrees of freedom than
+    the correlation of all cells together allows.
     """
     total = below.sum(axis=0)
     values = np.divide(above.sum(axis=0), total, out=np.full(total.shape, np.nan), where=total > 0.0)
@@ -68,6 +61,7 @@ def ratio(above: np.ndarray, below: np.ndarray, still: bool = False) -> Means:
         rest = (above - values * below) / np.where(total > 0.0, total, np.nan) * len(below)
     defined = values[total > 0.0]
     exact = still or bool((np.abs(defined - defined[:1]) <= _ROUNDING * np.abs(defined)).all())
+    common = common_freedom(rest[:, filled > _LEAST_FREEDOM])
     for cell in np.argwhere(filled > _LEAST_FREEDOM):
         at = tuple(cell)
         series = rest[(slice(None), *at)]
@@ -75,7 +69,7 @@ def ratio(above: np.ndarray, below: np.ndarray, still: bool = False) -> Means:
             errors[at], freedoms[at] = (0.0, freedoms[at]) if exact else (np.nan, 0.0)
             continue
         estimate = correlated_mean(series, LEAST_FRAMES).estimate
-        freedoms[at] = min(estimate.freedom, freedoms[at])
+        freedoms[at] = min(estimate.freedom, common, freedoms[at])
         errors[at] = estimate.error if freedoms[at] >= _LEAST_FREEDOM else np.nan
     return Means(values, errors, freedoms)
 

@@ -20,8 +20,8 @@ from gaspart.engines import engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
 from gaspart.scene.accessible import Accessible
+from gaspart.scene.face_checks import refuse_open
 from gaspart.scene.gas import Gas, Mixture
-from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.simulation import Simulation

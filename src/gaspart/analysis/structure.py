@@ -12,10 +12,10 @@ import numpy as np
 from gaspart.analysis.expected.equilibrium import describe
 from gaspart.analysis.flow import FLOW, Grid, accessible_fraction, mean_motion
 from gaspart.analysis.impulses import default_bins, described_density, mixed_density
-from gaspart.analysis.observable import Observable, observable, scalar
+from gaspart.analysis.observable import Observable, observable, scalar, with_freedom
 from gaspart.analysis.observables import observables_with, require_defined
 from gaspart.analysis.pairs import STRETCHES, chosen_frames
-from gaspart.analysis.profiles import Cells, Means, with_freedom
+from gaspart.analysis.profiles import Cells, Means
 from gaspart.analysis.run import Run, Source, open_run, select_particles
 from gaspart.analysis.statistics import histogram_means
 from gaspart.errors import SceneError
@@ -95,7 +95,8 @@ def speed_distribution(
             attributes["long_name"] += " about the local flow"
         middle = 0.5 * (edges[1:] + edges[:-1])
         along = {"speed": (middle, {"units": "length / time", "long_name": "speed"})}
-        return observable("speed_distribution", along, values, errors, **attributes)
+        result = observable("speed_distribution", along, values, errors, **attributes)
+        return with_freedom(result, STRETCHES - 1.0)
 
 
 def _speeds(run: Run, grid: Grid) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -206,7 +207,7 @@ def profile(
         result = observable(of, along, means.values, means.errors, **attributes)
         if of == "density":
             result.attrs |= described_density(run, k, bins, by_impulses is not None)
-        return with_freedom(result, means)
+        return with_freedom(result, means.freedoms)
 
 
 def density(source: Source, start: float | None = None, **selection: Any) -> Observable:

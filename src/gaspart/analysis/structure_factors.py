@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from gaspart.analysis.expected.equilibrium import describe
-from gaspart.analysis.observable import Observable, observable
+from gaspart.analysis.observable import Observable, observable, with_freedom
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.pairs import STRETCHES, stretches_of
 from gaspart.analysis.run import Run, Source, open_run
@@ -211,7 +211,8 @@ def structure_factor(
             run, bins, highest, lambda frames, waves: factors(frames, lengths, waves)
         )
         about = describe("structure_factor", run, along["wave_number"][0])
-        return observable("structure_factor", along, *means_of(means), **about)
+        result = observable("structure_factor", along, *means_of(means), **about)
+        return with_freedom(result, len(means) - 1.0)
 
 
 def partial_structure_factors(
@@ -281,7 +282,9 @@ def partial_structure_factors(
         means, along = _average_products(run, bins, highest, of_pairs)
         names = np.array(pair_names(run.scene)), {"long_name": "numbers of two species, from 0"}
         about = describe("partial_structure_factors", run, along["wave_number"][0])
-        return observable("partial_structure_factors", {"pair": names, **along}, *means_of(means), **about)
+        along = {"pair": names, **along}
+        result = observable("partial_structure_factors", along, *means_of(means), **about)
+        return with_freedom(result, len(means) - 1.0)
 
 
 def _average_products(

@@ -91,8 +91,7 @@ def _is_healthy(options: argparse.Namespace, file: str) -> bool:
 
 def _check_frames(file: str, options: argparse.Namespace) -> tuple[str, list]:
     """Check a trajectory. Returns a line that names its particles, and the checks."""
-    from gaspart.inspection.checks import judge
-    from gaspart.inspection.open_runs import judge_open
+    from gaspart.inspection.checks import judge, judge_open
     from gaspart.inspection.readers import is_open_run, read_frames
 
     stated = {key: getattr(options, key) for key in ("radius", "lengths", "boundary", "time_step", "origin")}
@@ -110,7 +109,7 @@ def _check_frames(file: str, options: argparse.Namespace) -> tuple[str, list]:
 def _written(file: str, tolerance: float | None) -> tuple[list, list[str]]:
     """Check a YAML file: a scene, with the lines of its scales, or a config."""
     from gaspart.accuracy.scales import scales
-    from gaspart.inspection.written import judge_scene
+    from gaspart.inspection.checks import judge_scene
 
     content, path = read_yaml(file), Path(file)
     if isinstance(content, dict) and ("experiments" in content or "figures" in content):

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from gaspart.inspection.flights import WRONG, flights
+from gaspart.inspection.conserved import WRONG, flights
 from gaspart.inspection.frames import Frames
 from gaspart.inspection.statistics import steps
 

@@ -12,7 +12,7 @@ import numpy as np
 from gaspart.analysis.flow import Peculiar, about_the_mean
 from gaspart.engines import Engine
 from gaspart.scene.gas import Gas
-from gaspart.scene.geometry import ball_volume
+from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
 
 

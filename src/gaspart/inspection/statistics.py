@@ -21,7 +21,7 @@ from gaspart.analysis.statistics import histogram_chi_square, mean_of
 from gaspart.inspection.frames import Frames
 from gaspart.inspection.verdict import Check, compare_with_theory
 from gaspart.scene.gas import Gas
-from gaspart.scene.geometry import ball_volume
+from gaspart.scene.limits import ball_volume
 
 UNEVEN = 20.0
 """Power of a long wave, 1 on average if particles are independent, from which on a gas is not uniform: by

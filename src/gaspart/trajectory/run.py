@@ -31,6 +31,7 @@ from gaspart.trajectory.checkpoint import (
     remove_checkpoint,
     write_checkpoint,
 )
+from gaspart.trajectory.native_kernels import replace_shipped_kernels
 from gaspart.trajectory.opening import (
     TRAJECTORY,
     UNFINISHED,
@@ -377,6 +378,14 @@ def simulation_of(recipe: Recipe) -> Simulation:
 
 
 def _carry_out(recipe: Recipe, path: Path, options: WriteOptions) -> Path:
+    """Finish a trajectory from its present state, and store native kernels if this pays."""
+    start = time.thread_time()
+    _finish(recipe, path, options)
+    replace_shipped_kernels(time.thread_time() - start)
+    return path
+
+
+def _finish(recipe: Recipe, path: Path, options: WriteOptions) -> None:
     """Finish a trajectory from its present state."""
     partial, checkpoint = partial_path(path), checkpoint_path(path)
     with writing(path):
@@ -385,7 +394,7 @@ def _carry_out(recipe: Recipe, path: Path, options: WriteOptions) -> Path:
         if is_finished(recipe, path, options.examiner, options.overwrite):
             if not partial.exists() and not options.keep_checkpoint:
                 remove_checkpoint(checkpoint)
-            return path
+            return
         may_replace(checkpoint, CHECKPOINT, overwrite=True)  # before the work; each checkpoint asks it again
         simulation = simulation_of(recipe)
         with open_locked(partial) as file:
@@ -396,7 +405,6 @@ def _carry_out(recipe: Recipe, path: Path, options: WriteOptions) -> Path:
                 place(partial, path, TRAJECTORY, options.overwrite or is_beginning(path, recipe))
                 if not options.keep_checkpoint:
                     remove_checkpoint(checkpoint)
-    return path
 
 
 def _can_keep(partial: Path, frames: int, overwrite: bool) -> bool:

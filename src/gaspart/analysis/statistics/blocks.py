@@ -170,6 +170,35 @@ def count_changes(series: np.ndarray) -> int:
     return int(np.count_nonzero(np.abs(np.diff(series)) > _ROUNDING * np.abs(series).max()))
 
 
+def common_freedom(series: np.ndarray) -> float:
+    """Compute the degrees of freedom of the errors of several series with similar correlations.
+
+    A series whose correlation time comes out too small by chance states too many degrees of freedom with an
+    error that is too small. The mean autocorrelation of all series states how many there are. Of 40 cells of
+    a dense fluid over 13 correlation times, 1.8 % deviate by more than three standard deviations with the
+    degrees of freedom of their own fits, .7 % with at most the common ones
+    (`tests/analysis/test_small_numbers.py`).
+
+    series : (n, m); series that do not change do not count. Infinite if none changes.
+    """
+    number = len(series)
+    centred = series - series.mean(axis=0)
+    variances = (centred**2).mean(axis=0)
+    centred = centred[:, variances > 0.0] / np.sqrt(variances[variances > 0.0])
+    if not centred.size:
+        return math.inf
+    lags = range(_order(number) + 1)
+    covariances = np.array([(centred[: number - lag] * centred[lag:]).sum() for lag in lags]) / centred.size
+    first, _ = _autoregression(covariances)
+    _, variance = _autoregression(covariances + first / number)
+    return number / (1.0 + 2.0 * variance)
+
+
+def _order(number: int) -> int:
+    """Return the order of the autoregressive process that is fitted to a number of samples."""
+    return round(ORDER * number ** (1.0 / 3.0))
+
+
 def _spectrum(series: np.ndarray) -> tuple[float, float]:
     """Compute the sum of a series' autocovariances over all lags.
 
@@ -179,7 +208,7 @@ def _spectrum(series: np.ndarray) -> tuple[float, float]:
     first estimate of it, and the fit is repeated.
     """
     number = series.size
-    order = round(ORDER * number ** (1.0 / 3.0))
+    order = _order(number)
     centred = series - series.mean()
     changes = count_changes(series)
     if not changes:

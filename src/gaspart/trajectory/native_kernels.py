@@ -1,0 +1,117 @@
+"""Kernels compiled for this processor, in place of the kernels that came with the package.
+
+The kernels of a wheel run on every processor of the level x86-64-v3. On a processor with AVX-512 kernels
+compiled there are faster, to the same bits. A run that took so long that another one of its kind would gain
+more than the compilation costs compiles them after its end. They are stored in the kernel cache, where
+kernels of this user come before those of the package, so that the next process uses them.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from gaspart.kernels.compile import cache
+from gaspart.workers import in_processes
+
+Kernel = tuple[str, str, tuple]
+"""Module and name of a kernel, and the types of its arguments."""
+
+GAIN = 1.2
+"""Speed of the event-driven engine with native kernels, divided by its speed with those of a wheel.
+
+Measured on a processor with AVX-512, 1000 spheres at a packing fraction of 0.2.
+"""
+COMPILATION = 20.0
+"""CPU time of compiling the kernels of a run, in seconds."""
+_STORED = "native"  # folder of the cache with an empty file for each set of kernels that was compiled
+
+
+def pays(seconds: float, features: dict[str, bool]) -> bool:
+    """Return True if a run of this length gains more by native kernels than their compilation costs.
+
+    features : features of the processor by their LLVM names.
+    """
+    return features.get("avx512f", False) and seconds * (1.0 - 1.0 / GAIN) > COMPILATION
+
+
+def replace_shipped_kernels(seconds: float) -> bool:
+    """Compile the kernels of this process for this processor, if that pays after a run of this length.
+
+    Returns True if native kernels were stored. Nothing is compiled without kernels of a package, where
+    numba's own settings name the processor, and while another process compiles the same kernels.
+    """
+    if not (cache.FOLDER / cache.LIST).exists() or not pays(seconds, _features()):
+        return False
+    kernels = loaded_kernels()
+    stamp = _stamp(kernels)
+    if stamp is None:
+        return False
+    try:
+        stamp.parent.mkdir(exist_ok=True)
+        stamp.touch(exist_ok=False)
+    except OSError:  # they are stored, or the cache cannot be written
+        return False
+    results: list[Any] = []
+    try:
+        in_processes(compile_kernels, [(kernels,)], 1, lambda _, result: results.append(result))
+    finally:
+        is_stored = results == [len(kernels)]
+        if not is_stored:
+            stamp.unlink(missing_ok=True)
+    return is_stored
+
+
+def _features() -> dict[str, bool]:
+    """Return the features of this processor; none if numba's settings name a processor."""
+    config = cache.load_numba().config
+    if config.CPU_NAME is not None or config.CPU_FEATURES is not None:
+        return {}
+    return dict(import_module("llvmlite.binding").get_host_cpu_features())
+
+
+def loaded_kernels() -> list[Kernel]:
+    """Return the kernels that this process has read from files, of the cache or of the package."""
+    kernels = {
+        (function.__module__, function.__name__, types)
+        for function in _dispatchers()
+        for types in function.signatures
+        if function.stats.cache_hits.get(types)
+    }
+    return sorted(kernels, key=str)
+
+
+def _dispatchers() -> list[Any]:
+    """Return all compiled functions of the modules of `kernels` that this process has imported."""
+    modules = [module for name, module in list(sys.modules.items()) if name.startswith("gaspart.kernels.")]
+    return [
+        value
+        for module in modules
+        for value in list(vars(module).values())
+        if hasattr(value, "signatures") and hasattr(value, "stats")
+    ]
+
+
+def _stamp(kernels: list[Kernel]) -> Path | None:
+    """Return the path of the file that states that native kernels are stored; None without a cache."""
+    folders = (function.stats.cache_path for function in _dispatchers())
+    folder = next(filter(None, folders), None)
+    if folder is None or not kernels:
+        return None
+    return Path(folder).parent / _STORED / hashlib.sha256(str(kernels).encode()).hexdigest()[:24]
+
+
+def compile_kernels(send: Callable[[Any], None], kernels: list[Kernel]) -> int:
+    """Compile kernels for this processor, in a process of its own; return their number.
+
+    Kernels that are in the cache are not compiled again.
+    """
+    cache.FOLDER = Path(os.devnull)  # this process reads no kernel of the package
+    for module, name, types in kernels:
+        getattr(import_module(module), name).compile(types)
+    return len(kernels)
