@@ -11,7 +11,6 @@ import numpy as np
 from gaspart.accuracy.conditions import Conditions, known_conditions
 from gaspart.analysis.diffusion import LINEAR_FROM
 from gaspart.analysis.impulses import USUAL_BINS, knows_energies
-from gaspart.analysis.motion import MOST_FRAMES
 from gaspart.analysis.observables import (
     OBSERVABLES,
     Named,
@@ -20,6 +19,7 @@ from gaspart.analysis.observables import (
     require_steady_value,
     walls_of,
 )
+from gaspart.analysis.paths import MOST_FRAMES
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine, reference_engine
 from gaspart.engines.dsmc.defaults import rates

@@ -15,9 +15,10 @@ from gaspart.analysis import series
 from gaspart.analysis.conditions import DISCS, GROUPS
 from gaspart.analysis.expected.equilibrium import describe
 from gaspart.analysis.flow import FLOW
-from gaspart.analysis.motion import Groups, axes_of, groups_of, stride_of, unwrap_positions
+from gaspart.analysis.motion import axes_of
 from gaspart.analysis.observable import Observable, observable, scalar, with_freedom
 from gaspart.analysis.observables import require_defined
+from gaspart.analysis.paths import Groups, groups_of, stride_of, unwrap_positions
 from gaspart.analysis.run import Run, Source, open_run, select_particles
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
@@ -254,8 +255,12 @@ def _lasting_momentum(run: Run, lag: int) -> np.ndarray:
     These are the axes where it is conserved, and where more than half of it remains, for example with a few
     obstacles among many particles.
     """
-    velocities = run.motion.velocities if run.flow_axes else run.velocities[:, run.moving]
-    momentum = np.einsum("tnd,n->td", velocities, run.masses[run.moving])
+    masses = run.masses[run.moving]
+    if run.flow_axes:
+        momentum = np.einsum("tnd,n->td", run.motion.velocities, masses)
+    else:
+        parts = (part.velocities[:, run.moving] for _, part in run.parts())
+        momentum = np.concatenate([np.einsum("tnd,n->td", part, masses) for part in parts])
     correlation = (momentum[lag:] * momentum[:-lag]).mean(axis=0)
     return run.conserved | (run.periodic & (correlation > 0.5 * (momentum**2).mean(axis=0)))
 
@@ -265,8 +270,10 @@ def _slopes(groups: Groups, lags: tuple[int, ...]) -> np.ndarray:
 
     The shape is (G, stretches, d).
     """
-    squares = np.array(
-        [[((path[lag:] - path[: len(path) - lag]) ** 2).mean(axis=(0, 1)) for lag in lags] for path in groups]
+    squares = groups.means(
+        lambda paths: np.array(
+            [((paths[lag:] - paths[: len(paths) - lag]) ** 2).mean(axis=(0, 1)) for lag in lags]
+        )
     )
     return 0.5 * np.diff(squares, axis=1) / (groups.interval * np.diff(lags))[:, None]
 
@@ -359,8 +366,9 @@ def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
 
 def _separation(run: Run) -> np.ndarray:
     """Compute X_1 - X_2, the separation of the centres of two species, shape (T, d)."""
-    paths = unwrap_positions(run)
-    return np.subtract(*(paths[:, run.species == kind].mean(axis=1) for kind in (0, 1)))
+    members = [run.species == kind for kind in (0, 1)]
+    centres = [[path[chosen].mean(axis=0) for chosen in members] for path in unwrap_positions(run)]
+    return np.array([first - second for first, second in centres])
 
 
 def _squares(path: np.ndarray, lag: int) -> np.ndarray:

@@ -16,6 +16,7 @@ from gaspart.cli.arguments import (
     set_command,
     several,
 )
+from gaspart.cli.progress import waiting
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.yaml_text import read_yaml
@@ -80,7 +81,8 @@ def _is_healthy(options: argparse.Namespace, file: str) -> bool:
                 raise SceneError(key, getattr(options, key), "has a meaning for trajectories only")
         checks, scales = _written(file, options.tolerance)
     else:
-        title, checks = _check_frames(file, options)
+        with waiting(f"checking {file}"):
+            title, checks = _check_frames(file, options)
         print_line(title)
         scales = []
     for check in checks:

@@ -300,9 +300,9 @@ def _positions(
         raise SceneError("file", str(path), f"has no frame of {name}")
     if positions.shape[2] == 3 and np.isnan(positions[:, :, 2]).all():
         positions = positions[:, :, :2]
-    present = np.isfinite(positions).all(axis=2)
-    for n, count in enumerate(present.sum(axis=1)):
-        if count != positions.shape[1]:
+    for n, frame in enumerate(positions):
+        if not np.isfinite(frame).all():
+            count = np.isfinite(frame).all(axis=1).sum()
             rule = f"has {count} particles in frame {n}, of {positions.shape[1]}"
             raise SceneError("file", str(path), f"{rule}: a changing number cannot be checked")
     scale = 1.0
