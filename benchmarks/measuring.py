@@ -1,8 +1,10 @@
 """Measuring beside what else a user would take: processor time, in turns in one process, medians.
 
-    OMP_NUM_THREADS=1 python benchmarks/measuring.py [--file run.nc] [--rounds 5] [--threads 2]
+    OMP_NUM_THREADS=1 python benchmarks/measuring.py [--file run.nc] [--rounds 5] [--threads 2] [--large]
 
 Without a file, it first makes one: 4000 spheres at a packing fraction of 0.3, 501 frames with displacements.
+With --large, only rows of 10^6 spheres in 13 frames are made, each work in a process of its own, with its
+processor time from start to end and its largest memory.
 freud, MDAnalysis and tidynamics are timed where they are installed, from arrays in memory. gaspart takes the
 same arrays, and in the last rows measures the file from its opening to the result. Each row is a line of a
 table in Markdown: the work, and of each program its time and how far its result is from gaspart's.
@@ -12,18 +14,23 @@ from __future__ import annotations
 
 import argparse
 import importlib.util
+import os
 import statistics
+import subprocess
+import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import netCDF4
 import numpy as np
 
 import gaspart as gp
 from gaspart.analysis.correlations import autocorrelation, squared_displacement
 from gaspart.analysis.pairs import radial_distribution
 from gaspart.analysis.structure_factors import factors, shells_of
+from gaspart.yaml_text import dump_yaml, parse_yaml
 
 BINS, FURTHEST, HIGHEST = 100, 5.0, 20.0
 PAIRED, WAVED = 20, 4
@@ -31,12 +38,15 @@ PAIRED, WAVED = 20, 4
 Work = Callable[[], np.ndarray]
 
 
+def gas(count: int) -> gp.Scene:
+    """Return the scene of this many spheres."""
+    side = (count * np.pi / 6.0 / 0.3) ** (1.0 / 3.0)
+    return gp.Scene(gp.Container((side,) * 3, "periodic"), [gp.Species(count, 0.5, temperature=1.0)])
+
+
 def make(path: Path) -> Path:
     """Run the gas that is measured."""
-    count = 4000
-    side = (count * np.pi / 6.0 / 0.3) ** (1.0 / 3.0)
-    scene = gp.Scene(gp.Container((side,) * 3, "periodic"), [gp.Species(count, 0.5, temperature=1.0)])
-    return gp.run(scene, gp.EventDriven(), 1, 50.0, 0.1, path, displacements=True)
+    return gp.run(gas(4000), gp.EventDriven(), 1, 50.0, 0.1, path, displacements=True)
 
 
 def is_installed(name: str) -> bool:
@@ -147,6 +157,86 @@ def vacf_works(velocities: np.ndarray) -> dict[str, Work]:
     return works
 
 
+def walk_works(path: Path) -> dict[str, Work]:
+    """Ways to all frames of a file, one after the other; by gaspart in blocks of 40 frames, or each alone."""
+
+    def by_netcdf() -> np.ndarray:
+        with netCDF4.Dataset(path) as file:
+            vectors = file["coordinates"], file["velocities"]
+            return np.array([[each[n].sum() for each in vectors] for n in range(len(vectors[0]))])
+
+    def in_blocks() -> np.ndarray:
+        rows = []
+        with gp.open_trajectory(path) as data:
+            for first in range(0, data.sizes["frame"], 40):
+                block = data[["coordinates", "velocities"]].isel(frame=slice(first, first + 40)).load()
+                vectors = block["coordinates"].values, block["velocities"].values
+                rows += [[each[n].sum() for each in vectors] for n in range(len(vectors[0]))]
+        return np.array(rows)
+
+    def one_by_one() -> np.ndarray:
+        with gp.open_trajectory(path) as data:
+            vectors = data.variables["coordinates"], data.variables["velocities"]
+            return np.array([[each[n].values.sum() for each in vectors] for n in range(len(vectors[0]))])
+
+    return {"gaspart": in_blocks, "gaspart, one by one": one_by_one, "netCDF4": by_netcdf}
+
+
+LARGE = {
+    "start of gaspart": "import gaspart.analysis.observables, gaspart.trajectory.reading; import xarray",
+    "speeds": "import gaspart as gp; gp.measure(RUN, 'speeds')",
+    "speeds, numpy": """
+import netCDF4, numpy as np
+velocities, counts = netCDF4.Dataset(RUN)["velocities"], 0
+velocities.set_auto_mask(False)
+for n in range(len(velocities) // 4, len(velocities)):
+    v = velocities[n].astype(float)
+    v -= v.mean(axis=0)
+    counts += np.histogram(np.sqrt((v**2).sum(axis=1)), 40, (0.0, 4.0))[0]
+""",
+    "msd": "import gaspart as gp; gp.measure(RUN, 'msd')",
+    "msd, numpy": """
+import netCDF4, numpy as np
+file = netCDF4.Dataset(RUN)
+positions, side = file["coordinates"], file["cell_lengths"][0, 0]
+positions.set_auto_mask(False)
+r = positions[len(positions) // 4 :].astype(float)
+steps = np.diff(r, axis=0)
+steps -= side * np.round(steps / side)
+paths = np.concatenate([np.zeros_like(r[:1]), np.cumsum(steps, axis=0)])
+paths -= paths.mean(axis=1, keepdims=True)
+msd = [((paths[lag:] - paths[: len(paths) - lag]) ** 2).sum(axis=2).mean() for lag in range(len(paths) // 2)]
+""",
+    "vacf": "import gaspart as gp; gp.measure(RUN, 'vacf')",
+    "check of the file": "from gaspart.cli import main; sys.argv[1:] = ['check', RUN]; main()",
+    "check of the scene": "from gaspart.cli import main; sys.argv[1:] = ['check', SCENE]; main()",
+    "Simulation()": "import gaspart as gp; gp.Simulation(gp.Scene.from_file(SCENE), seed=1)",
+}
+"""Programs that measure 10^6 spheres, by their names."""
+
+
+def print_large(folder: Path, rounds: int) -> None:
+    """Print the processor time and the largest memory of each program of `LARGE`."""
+    scene = gas(1_000_000)
+    (folder / "scene.yaml").write_text(dump_yaml(scene.to_dict()))
+    path = gp.run(scene, gp.EventDriven(), 1, 0.6, 0.05, folder / "run.nc")
+    for name, program in LARGE.items():
+        used = [spend(f"import sys\nRUN, SCENE = sys.argv[1:3]\n{program}", path) for _ in range(rounds)]
+        seconds, memory = np.array(used).T
+        cell = f"{np.median(seconds):.3g} s ({seconds.min():.3g} to {seconds.max():.3g})"
+        print(f"| {name} | {cell} | {np.median(memory):.0f} MB |", flush=True)
+
+
+def spend(program: str, path: Path) -> tuple[float, float]:
+    """Run a program; return its processor time and its largest memory in MB."""
+    arguments = [sys.executable, "-c", program, str(path), str(path.with_name("scene.yaml"))]
+    child = subprocess.Popen(arguments, stdout=subprocess.DEVNULL)
+    _, status, used = os.wait4(child.pid, 0)
+    if status:
+        raise SystemExit(f"{program}\nended with status {status}")
+    return used.ru_utime + used.ru_stime, used.ru_maxrss / 1024.0
+
+
 def timed(works: dict[str, Work], rounds: int) -> tuple[dict[str, list[float]], dict[str, np.ndarray]]:
     """Return the times of each work in turns, without a first turn that compiles, and its result."""
     times: dict[str, list[float]] = {name: [] for name in works}
@@ -183,8 +273,12 @@ def main() -> None:
     parser.add_argument("--file", type=Path)
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--large", action="store_true")
     given = parser.parse_args()
     with TemporaryDirectory() as folder:
+        if given.large:
+            print_large(Path(folder), given.rounds)
+            return
         path = given.file or make(Path(folder) / "run.nc")
         with gp.open_trajectory(path) as data:
             lengths = np.array([float(one) for one in scene_of(data).container.lengths])
@@ -196,6 +290,7 @@ def main() -> None:
         print_row(f"S(k), {WAVED} frames", wave_works(positions[:WAVED], lengths), given.rounds)
         print_row(f"msd, {len(paths)} frames", msd_works(paths), given.rounds)
         print_row(f"vacf, {len(velocities)} frames", vacf_works(velocities), given.rounds)
+        print_row("frames in their order", walk_works(path), given.rounds)
         for name in ("rdf", "structure_factor", "msd", "vacf", "speeds", "density", "temperature"):
             work = {"gaspart": lambda name=name: np.asarray(gp.measure(path, name).estimate)}
             print_row(f"{name}, file", work, given.rounds)
@@ -203,8 +298,6 @@ def main() -> None:
 
 def scene_of(data) -> gp.Scene:
     """The scene of an open trajectory."""
-    from gaspart.yaml_text import parse_yaml
-
     return gp.Scene.from_dict(parse_yaml(data.attrs["scene"]))
 
 

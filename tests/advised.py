@@ -21,9 +21,9 @@ import numpy as np
 import uneven
 
 import gaspart as gp
+from gaspart.accuracy.conditions import keeps_energy
 from gaspart.accuracy.pilot import speed_of
 from gaspart.accuracy.plan import plan
-from gaspart.accuracy.steady import keeps_energy
 from gaspart.accuracy.target import Target
 from gaspart.analysis import observables
 from gaspart.analysis.measuring import measure

@@ -21,6 +21,7 @@ from gaspart.runs.ending import Accuracy as Accuracy
 from gaspart.runs.entry import resume as resume
 from gaspart.runs.entry import run as run
 from gaspart.scene.container import Container as Container
+from gaspart.scene.driving import Thermostat as Thermostat
 from gaspart.scene.faces import LeesEdwards as LeesEdwards
 from gaspart.scene.faces import Open as Open
 from gaspart.scene.faces import Piston as Piston
@@ -32,7 +33,6 @@ from gaspart.scene.restitution import Restitution as Restitution
 from gaspart.scene.scene import Scene as Scene
 from gaspart.scene.species import Particle as Particle
 from gaspart.scene.species import Species as Species
-from gaspart.scene.thermostat import Thermostat as Thermostat
 from gaspart.scene.walls import Plate as Plate
 from gaspart.scene.walls import Wall as Wall
 from gaspart.simulation import Simulation as Simulation

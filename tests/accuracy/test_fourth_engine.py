@@ -9,7 +9,7 @@ import gaspart as gp
 from gaspart.accuracy import pilot, plan, table
 from gaspart.accuracy.conditions import even_conditions
 from gaspart.accuracy.option import candidates
-from gaspart.accuracy.price import price_of
+from gaspart.accuracy.table import price_of
 from gaspart.accuracy.target import Target
 from gaspart.cli.advise import _lines
 from gaspart.engines import ENGINES, EventDriven

@@ -9,7 +9,7 @@ import pytest
 import gaspart as gp
 from gaspart.accuracy import pilot, plan
 from gaspart.accuracy import target as target_module
-from gaspart.accuracy.column import gravity_column
+from gaspart.accuracy.conditions import gravity_column
 from gaspart.accuracy.estimates import Component
 from gaspart.accuracy.option import Option, candidates, suitable_engines
 from gaspart.accuracy.pilot import Pilot, Trials, raised_bias

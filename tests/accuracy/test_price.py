@@ -4,7 +4,7 @@ import pytest
 
 import gaspart as gp
 from gaspart.accuracy import table
-from gaspart.accuracy.price import price_of
+from gaspart.accuracy.table import price_of
 from gaspart.cli import main
 
 GAS = gp.Scene(gp.Container((12.0,) * 3, "periodic"), [gp.Species(200, 0.5, temperature=1.0)])

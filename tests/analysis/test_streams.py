@@ -1,4 +1,4 @@
-"""Frames are read in parts: equal bits for parts of any length, in memory that does not grow with the run."""
+"""Runs are read in parts: equal results for parts of any length, in memory that does not grow with a run."""
 
 import subprocess
 import sys
@@ -45,17 +45,73 @@ def test_results_have_the_same_bits_for_parts_of_any_length(tmp_path, monkeypatc
             np.testing.assert_array_equal(values, whole)
 
 
+PERIODIC = gp.Container((9.0, 9.0, 9.0), "periodic")
+CORRELATED = {
+    "species": gp.Scene(PERIODIC, [gp.Species(100, 0.5, temperature=1.0)]),
+    "mixture": gp.Scene(
+        PERIODIC, [gp.Species(40, r, temperature=1.0, mass=m) for r, m in ((0.5, 1), (0.4, 2))]
+    ),
+    "obstacles": SCENES["fixed"],
+}
+
+
+def correlations(path):
+    """All values of the correlations of paths and velocities, also of some particles."""
+    lag = 1.0
+    tables = [
+        *gp.measure(path, ["msd", "vacf"]).values(),
+        gp.analysis.mean_squared_displacement(path, per_axis=True, about="rest"),
+        gp.analysis.mean_squared_displacement(path, particles=[1, 5, 29]),
+        gp.analysis.velocity_autocorrelation(path, species=0),
+        gp.analysis.diffusion_coefficient(path, lag=lag),
+    ]
+    return [variable.values for table in tables for variable in table.data_vars.values()]
+
+
+@pytest.mark.parametrize("displacements", [False, True])
+@pytest.mark.parametrize("name", CORRELATED)
+def test_correlations_of_blocks_of_particles_are_those_of_all(tmp_path, monkeypatch, name, displacements):
+    path = gp.run(CORRELATED[name], seed=1, duration=24.0, sample_interval=0.1, path=tmp_path / "run.nc",
+                  displacements=displacements)  # fmt: skip
+    whole = correlations(path)
+    monkeypatch.setattr("gaspart.analysis.paths._WHOLE", 0)
+    for numbers in (3_000, 20_000):  # of five particles, of some more
+        monkeypatch.setattr("gaspart.analysis.paths._BLOCK", numbers)
+        for values, expected in zip(correlations(path), whole, strict=True):
+            assert values == pytest.approx(expected, rel=1e-10, abs=1e-12, nan_ok=True)
+
+
+@pytest.mark.parametrize("displacements", [False, True])
+def test_every_third_frame_is_the_same_in_blocks(tmp_path, monkeypatch, displacements):
+    path = gp.run(CORRELATED["mixture"], seed=1, duration=30.0, sample_interval=0.1, path=tmp_path / "run.nc",
+                  displacements=displacements)  # fmt: skip
+    monkeypatch.setattr("gaspart.analysis.paths.MOST_FRAMES", 80)
+    whole = gp.measure(path, "msd")
+    monkeypatch.setattr("gaspart.analysis.paths._WHOLE", 0)
+    monkeypatch.setattr("gaspart.analysis.paths._BLOCK", 5000)
+    monkeypatch.setattr("gaspart.analysis.run._BLOCK", 700)
+    found = gp.measure(path, "msd")
+    assert len(found["lag"]) == len(whole["lag"]) < 40
+    assert found.estimate.values == pytest.approx(whole.estimate.values, rel=1e-10)
+
+
 _CHILD = """
 import resource, sys
 import numpy as np
 import gaspart as gp
 
-names = ["speeds", "density", "temperature"]
+names = ["speeds", "density", "temperature", "msd", "vacf"]
 small, large = sys.argv[1:]
-gp.measure(small, names)  # loads what is loaded once
+
+
+def measure(path):
+    return [*gp.measure(path, names).values(), gp.analysis.diffusion_coefficient(path, lag=5e-4)]
+
+
+measure(small)  # loads what is loaded once
 used = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
 resource.setrlimit(resource.RLIMIT_AS, (used + 100_000_000,) * 2)
-for observable in gp.measure(large, names).values():
+for observable in measure(large):
     assert np.isfinite(observable.estimate.values).any()
 with gp.open_trajectory(large) as trajectory:
     try:

@@ -9,7 +9,7 @@ from exact.planting import Plant
 _RUN, _SERIES, _TALLY = "analysis.run", "analysis.series", "state.tally"
 _PRESSURE, _ROOM, _FLUXES = "analysis.counters", "analysis.flow", "analysis.fluxes"
 _MIXTURES, _PROFILES, _STRUCTURE = "analysis.pairs", "analysis.profiles", "analysis.structure"
-_MOTION, _ORDER, _TRANSPORT = "analysis.motion", "analysis.bond_order", "analysis.transport"
+_PATHS, _ORDER, _TRANSPORT = "analysis.paths", "analysis.bond_order", "analysis.transport"
 _LONE = "self.dimension * moving - int(self.conserved.sum())"
 _PAIRS = "counts[i] / (2.0 if i == j else 1.0)"
 _INSIDE = "self._values(part.positions)[..., self.axes]"
@@ -201,16 +201,16 @@ PLANTS = [
     ),
     Plant(
         "drift left in",
-        _MOTION,
-        "np.where(about, centre, 0.0)[frames, None]",
-        "np.where(about, 0.0 * centre, 0.0)[frames, None]",
+        _PATHS,
+        "np.where(about, centre, 0.0)[:, None]",
+        "np.where(about, 0.0 * centre, 0.0)[:, None]",
         ("wind", "vacf"),
     ),
     Plant(
         "motion about rest in a flow",
-        _MOTION,
-        "velocities = peculiar / np.sqrt",
-        "velocities = velocities / np.sqrt",
+        _PATHS,
+        "(peculiar / np.sqrt",
+        "(run.velocities[:, moving] / np.sqrt",
         ("masses_slit", "vacf"),
     ),
     Plant("speeds per bin", _STRUCTURE, "sizes[:, None] / grid.volume", "sizes[:, None]", ("wind", "speeds")),
@@ -351,8 +351,8 @@ PLANTS = [
     Plant(
         "mean mass in the temperature",
         "analysis.flow",
-        "masses * (self.velocities**2)",
-        "masses.mean() * (self.velocities**2)",
+        "masses * sum_squares(self.velocities)",
+        "masses.mean() * sum_squares(self.velocities)",
         ("masses_slit", "temperature"),
     ),
     Plant(

@@ -147,7 +147,9 @@ def deviation_of(observable, kind, result, part, right):
         value, error, freedom = (_at(names_in, one) for one in (value, error, freedom))
     if part == "lag 0" or part.startswith("first "):
         at_lag = int(part.split()[1])
-        value, error = value[at_lag : at_lag + 1], error[at_lag : at_lag + 1]
+        chosen = slice(at_lag, at_lag + 1)
+        value, error = value[chosen], error[chosen]
+        freedom = freedom[chosen] if np.ndim(freedom) else freedom
     value, error = np.asarray(value, float), np.asarray(error, float)
     freedom = np.broadcast_to(np.asarray(freedom, float), value.shape)
     return compared(

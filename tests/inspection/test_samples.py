@@ -17,7 +17,6 @@ from gaspart.inspection.statistics import (
     density_modulation,
     first_relaxed_frame,
     independent,
-    path,
 )
 
 
@@ -54,7 +53,7 @@ def test_ways_are_followed_across_faces():
     steps = np.full((30, 5, 2), 0.3)
     steps[:, 0] = -1.2  # the centre of mass stays
     frames = Frames(np.cumsum(steps, axis=0) % 4.0, np.full(2, 4.0), np.ones(5), (True, True))
-    way = path(frames)
+    way = frames.path
     assert way[-1, 0] == pytest.approx(29 * np.array([-1.2, -1.2]))
     assert (
         first_relaxed_frame(way, 1e3) is None and first_relaxed_frame(way, 2.0) == 3
@@ -98,16 +97,32 @@ def test_contact_values_are_those_of_all_pairs(dimension):
         assert value == pytest.approx(expected, rel=1e-4)
 
 
+@pytest.mark.parametrize("walls", [(), (2,), (0, 1, 2)])
 @pytest.mark.parametrize("gap", [-1e-3, -1e-8, 1e-8])
-def test_many_particles_have_the_verdict_of_few(gap, monkeypatch):
+def test_many_particles_have_the_verdict_of_few(gap, walls, monkeypatch):
     """In many frames pairs are counted first, and only overlapping pairs are searched for the deepest."""
     axes = np.stack(np.meshgrid(*[np.arange(5.0)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     positions = np.repeat(3.0 * axes[None], 3, axis=0)
     positions[1, 1] = positions[1, 0] - [0.0, 0.0, 1.0 + gap]
-    frames = Frames(positions % 15.0, np.full(3, 15.0), np.full(125, 0.5), (True,) * 3)
+    positions[2, 7] = positions[2, 8] - [0.0, 0.0, 1.0 + 0.9 * gap]
+    positions[:, :, 2] += 2.0 * bool(walls)  # else the pairs touch across the face
+    periodic = tuple(k not in walls for k in range(3))
+    frames = Frames(positions % 15.0, np.full(3, 15.0), np.full(125, 0.5), periodic)
     verdicts = []
     for many in (0, 10**9):
         monkeypatch.setattr("gaspart.inspection.checks._MANY", many)
         verdicts.append(judge_places(frames)[0])
     assert verdicts[0] == verdicts[1]
     assert bool(verdicts[0].passed) is (gap > -1e-7)
+
+
+def test_many_particles_of_a_coarse_file_have_a_bound_on_their_overlap(monkeypatch):
+    monkeypatch.setattr("gaspart.inspection.checks._MANY", 0)
+    positions = np.full((2, 125, 3), np.arange(125.0)[:, None] % 5.0)
+    positions[..., 1:] = np.stack([np.arange(125.0) // 5.0 % 5.0, np.arange(125.0) // 25.0], axis=1)
+    positions *= 3.0
+    positions[1, 1] = positions[1, 0] + [0.9987, 0.0, 0.0]
+    frames = Frames(positions, np.full(3, 15.0), np.full(125, 0.5), (True,) * 3, resolution=1e-3)
+    assert str(judge_places(frames)[0].text).startswith("the deepest is 0.002 of a contact distance at most")
+    (verdict, _) = judge_places(frames, tolerance=0.0012)
+    assert verdict.passed is False and "0.0013 of a contact distance, in frame 1" in verdict.text

@@ -7,7 +7,7 @@ from reproduction.claims.data import claim
 from gaspart.reproduction import allocation
 from gaspart.reproduction import cost as budget
 from gaspart.reproduction.allocation import IN_HAND, LONGEST, SHORTEST, Demand, allocate
-from gaspart.reproduction.points.lengths import scale_length
+from gaspart.reproduction.points.points import scale_length
 from gaspart.reproduction.table import Table, table
 
 COST = {"gas/a": 1.0, "gas/b": 4.0, "gas/c": 10.0}

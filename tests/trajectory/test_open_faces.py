@@ -19,8 +19,8 @@ from gaspart.accuracy.plan import plan
 from gaspart.analysis.conditions import VARYING
 from gaspart.analysis.observables import OBSERVABLES
 from gaspart.cli import main
+from gaspart.inspection.checks import judge_open
 from gaspart.inspection.energy import certificate
-from gaspart.inspection.open_runs import judge_open
 from gaspart.inspection.readers import read_frames
 from gaspart.simulation import Simulation
 from gaspart.trajectory.export import export
@@ -291,7 +291,7 @@ def test_a_damaged_run_is_found(trajectory, monkeypatch, name, frame, change, wr
     same_velocity = (velocities[frame] == velocities[frame - 1]).all(axis=1)
     particle = int(np.flatnonzero(same_velocity)[0]) if name == "coordinates" else 0
     damaged[name].values[frame, particle] += change
-    monkeypatch.setattr("gaspart.inspection.open_runs.open_trajectory", lambda _: damaged)
+    monkeypatch.setattr("gaspart.inspection.checks.open_trajectory", lambda _: damaged)
     assert wrong in {check.name for check in judge_open(path)[1] if check.passed is False}
 
 

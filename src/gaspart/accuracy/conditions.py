@@ -1,8 +1,8 @@
-"""Local density and temperature of a steady scene, which bound the errors of DSMC.
+"""Local density and temperature of a steady scene, its steady state, and columns under gravity.
 
 A homogeneous gas has its mean values everywhere; a gas under gravity has the profiles of hydrostatics
-(`column`), where theory knows them; any other gas has the values that a pilot run of the exact engine
-measures.
+(`gaspart.theory.columns`), where theory knows them; any other gas has the values that a pilot run of the
+exact engine measures. They bound the errors of DSMC.
 """
 
 from __future__ import annotations
@@ -15,13 +15,67 @@ from pathlib import Path
 import numpy as np
 
 from gaspart import theory
-from gaspart.accuracy.column import Column, GravityColumn, compare_columns, gravity_column
+from gaspart.analysis.observables import OBSERVABLES
 from gaspart.analysis.run import open_run
 from gaspart.engines.conditions import Layers
 from gaspart.engines.dsmc.defaults import accessible
-from gaspart.scene.faces import Thermal
+from gaspart.errors import SceneError
+from gaspart.scene.faces import LeesEdwards, Thermal, Vibrating
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
+from gaspart.theory.columns import Column, GravityColumn
+
+# Columns of gas in equilibrium under gravity, by hydrostatics at the temperature of their energy.
+
+
+def gravity_column(scene: Scene) -> GravityColumn | None:
+    """Return the column of a scene under gravity, or None if theory does not know it.
+
+    Theory knows particles of one size that lose no energy, between hard walls, or walls at one temperature.
+    """
+    pull = [(k, g) for k, g in enumerate(scene.gravity or ()) if g]
+    kinds = [kind for kind in scene.kinds if kind.count]
+    law, thermal = scene.restitution, scene.face_temperatures
+    if len(pull) != 1 or scene.thermostat is not None or scene.walls or not kinds:
+        return None
+    if law is not None and (law.dissipative or law.rough):
+        return None
+    if len({kind.radius for kind in kinds}) > 1 or not all(kind.alike and not kind.fixed for kind in kinds):
+        return None
+    if len(thermal) > 1 or any(not isinstance(face, Thermal) or face.slides for face in scene.faces.values()):
+        return None
+    (k, g), (lower, upper) = pull[0], accessible(scene)
+    sides = upper - lower
+    masses = sorted({kind.mass for kind in kinds})
+    counts = [sum(kind.count for kind in kinds if kind.mass == mass) for mass in masses]
+    return GravityColumn(
+        scene.dimension, k, g < 0.0, abs(g), float(sides[k]), float(np.delete(sides, k).prod()),
+        np.array(masses), np.array(counts, dtype=float), 2.0 * kinds[0].radius,
+    )  # fmt: skip
+
+
+def compare_columns(real: Column, ideal: Column, observable: str, top: bool | None) -> float:
+    """Compute the relative difference of an observable between columns of points and of particles.
+
+    For a pressure, `top` is True at the top, None for any wall.
+    """
+    differences = {
+        "collision_rate": abs(ideal.collisions / real.collisions - 1.0),
+        "temperature": abs(ideal.temperature / real.temperature - 1.0),
+        "density": _of_profiles(real, ideal),
+    }
+    if OBSERVABLES[observable].of_impulses and top is not None:
+        exact = real.pressure(top)
+        return abs(ideal.pressure(top) / exact - 1.0) if exact > 0.0 else math.inf
+    return differences.get(observable, max(differences.values()))
+
+
+def _of_profiles(real: Column, ideal: Column) -> float:
+    """Compute the root mean square of the difference of two densities, relative to the first."""
+    exact = real.numbers.sum(axis=0)
+    other = np.interp(real.heights, ideal.heights, ideal.numbers.sum(axis=0), right=0.0)
+    return float(np.sqrt(((other - exact) ** 2).sum() / (exact**2).sum()))
+
 
 _LAYERS = 12
 """Number of equally populated layers of a measured profile, in each axis."""
@@ -174,3 +228,46 @@ def _along(scene: Scene, axis: int, positions: np.ndarray, thermal: np.ndarray) 
     certain = np.maximum(change - _CERTAIN * error, 0.0) / (middle[second] - middle[first])
     scale = 1.0 / float(certain.max()) if certain.max() > 0.0 else math.inf
     return Conditions(scene, share, crowding, temperature, axis, scale)
+
+
+# Energy of a scene: its sources and sinks, and the existence of a steady state.
+
+
+def require_steady(scene: Scene) -> None:
+    """Raise SceneError for an empty scene, and for a scene that cools or heats.
+
+    The observables of the latter depend on the time.
+    """
+    if not scene.count:
+        raise SceneError("count", 0, "advice is for a gas: the scene is empty")
+    law = scene.restitution
+    loses = law is not None and law.dissipative
+    if law is not None and loses and not is_driven(scene):
+        rule = "loses energy that nothing returns: there is no steady state to measure; give a duration"
+        raise SceneError("restitution.normal", law.normal, rule)
+    moved = any(isinstance(face, Vibrating | LeesEdwards) for face in scene.faces.values())
+    if (moved or scene.thermostat is not None) and not loses and not at_temperature(scene):
+        rule = "nothing takes the energy that the scene is given: there is no steady state; give a duration"
+        raise SceneError("restitution", None, rule)
+
+
+def is_driven(scene: Scene) -> bool:
+    """Return True if something exchanges energy with the particles.
+
+    It is a thermostat, or a face that is at a temperature or moves.
+    """
+    moves = any(face.moves for face in scene.faces.values())
+    return scene.thermostat is not None or moves or at_temperature(scene)
+
+
+def at_temperature(scene: Scene) -> bool:
+    """Return True if a face or an interior wall draws velocities at a temperature."""
+    return bool(scene.face_temperatures)
+
+
+def keeps_energy(scene: Scene) -> bool:
+    """Return True if a run keeps its initial energy, or its enthalpy under a loaded piston."""
+    loaded = [piston for _, piston in scene.pistons if piston.pressure is not None]
+    moved = any(face.moves for face in scene.faces.values() if face not in loaded)
+    exchanged = moved or at_temperature(scene) or scene.thermostat is not None or scene.is_open
+    return not exchanged and not scene.dissipates

@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 from gaspart import theory
 from gaspart.accuracy import PILOT_SECONDS
 from gaspart.accuracy import tabulated as known
+from gaspart.accuracy.conditions import require_steady
 from gaspart.accuracy.option import Option, replicas_of, sort_by_cost, suitable_engines
 from gaspart.accuracy.pilot import Announce, Pilot, Trials
 from gaspart.accuracy.scatter import Scatter, start_scatter
-from gaspart.accuracy.steady import require_steady
 from gaspart.accuracy.table import EQUILIBRATION as EQUILIBRATED
 from gaspart.accuracy.table import LEAST
 from gaspart.accuracy.target import Target, rounded_to_12_digits

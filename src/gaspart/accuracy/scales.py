@@ -11,9 +11,8 @@ from dataclasses import dataclass
 
 from gaspart import theory
 from gaspart.engines.dsmc.defaults import rates, square_of
-from gaspart.scene.face_checks import piston_end
+from gaspart.scene.face_checks import attempt_rate, piston_end
 from gaspart.scene.faces import Open
-from gaspart.scene.open_faces import attempt_rate
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Particle, Species
 

@@ -14,12 +14,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart import theory
-from gaspart.accuracy.column import Column, gravity_column
-from gaspart.accuracy.conditions import kinetic_temperature
-from gaspart.accuracy.steady import keeps_energy
+from gaspart.accuracy.conditions import gravity_column, keeps_energy, kinetic_temperature
 from gaspart.accuracy.target import Target
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
+from gaspart.theory.columns import Column
 from gaspart.trajectory.reading import GIVEN_START
 from gaspart.yaml_text import parse_yaml
 

@@ -12,7 +12,6 @@ import numpy as np
 from gaspart.accuracy.conditions import Conditions, known_conditions
 from gaspart.analysis.diffusion import LINEAR_FROM
 from gaspart.analysis.impulses import USUAL_BINS, knows_energies
-from gaspart.analysis.motion import MOST_FRAMES
 from gaspart.analysis.observables import (
     OBSERVABLES,
     Named,
@@ -21,12 +20,13 @@ from gaspart.analysis.observables import (
     require_steady_value,
     walls_of,
 )
+from gaspart.analysis.paths import MOST_FRAMES
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine, reference_engine
 from gaspart.engines.dsmc.defaults import rates
 from gaspart.errors import SceneError
+from gaspart.scene.face_checks import refuse_open
 from gaspart.scene.faces import wall_of
-from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.initial import initial_state

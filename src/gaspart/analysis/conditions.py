@@ -12,11 +12,11 @@ from typing import Any
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
 from gaspart.scene.faces import FACES, Open
+from gaspart.scene.features import require_tallied
 from gaspart.scene.gas import plain_mixture
-from gaspart.scene.moving_walls import MOVING_WALL
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
-from gaspart.scene.stress import require_tallied
+from gaspart.scene.walls import MOVING_WALL
 
 Selection = Mapping[str, Any]
 GROUPS = 16

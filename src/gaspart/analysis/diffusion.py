@@ -16,9 +16,10 @@ from gaspart.analysis import series
 from gaspart.analysis.conditions import DISCS, GROUPS
 from gaspart.analysis.expected.equilibrium import describe
 from gaspart.analysis.flow import FLOW
-from gaspart.analysis.motion import Groups, axes_of, groups_of, stride_of, unwrap_positions
+from gaspart.analysis.motion import axes_of
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable, scalar, with_freedom
 from gaspart.analysis.observables import require_defined
+from gaspart.analysis.paths import Groups, groups_of, stride_of, unwrap_positions
 from gaspart.analysis.run import Run, Source, open_run, select_particles
 from gaspart.analysis.statistics import correlated_mean, means_of
 from gaspart.errors import SceneError
@@ -139,10 +140,10 @@ def _all_lags(run: Run, stride: int, parts: int) -> tuple[int, ...]:
     The longest lag is at most half of the frames of each of the parts of a run. Raises SceneError as
     `lags_of_slopes`.
     """
-    return _doubled(lags_of_slopes(run, stride, parts), len(run.time) // (stride * parts))
+    return _extend_lags(lags_of_slopes(run, stride, parts), len(run.time) // (stride * parts))
 
 
-def _doubled(lags: tuple[int, ...], frames: int) -> tuple[int, ...]:
+def _extend_lags(lags: tuple[int, ...], frames: int) -> tuple[int, ...]:
     """Return lags with further ones, each twice the one before, up to half of a number of frames."""
     while 4 * lags[-1] <= frames:
         lags = (*lags, 2 * lags[-1])
@@ -263,8 +264,12 @@ def _lasting_momentum(run: Run, lag: int) -> np.ndarray:
     These are the axes where it is conserved, and where more than half of it remains, for example with a few
     obstacles among many particles.
     """
-    velocities = run.motion.velocities if run.flow_axes else run.velocities[:, run.moving]
-    momentum = np.einsum("tnd,n->td", velocities, run.masses[run.moving])
+    masses = run.masses[run.moving]
+    if run.flow_axes:
+        momentum = np.einsum("tnd,n->td", run.motion.velocities, masses)
+    else:
+        parts = (part.velocities[:, run.moving] for _, part in run.parts())
+        momentum = np.concatenate([np.einsum("tnd,n->td", part, masses) for part in parts])
     correlation = (momentum[lag:] * momentum[:-lag]).mean(axis=0)
     return run.conserved | (run.periodic & (correlation > 0.5 * (momentum**2).mean(axis=0)))
 
@@ -274,8 +279,10 @@ def _slopes(groups: Groups, lags: tuple[int, ...]) -> np.ndarray:
 
     The shape is (G, stretches, d).
     """
-    squares = np.array(
-        [[((path[lag:] - path[: len(path) - lag]) ** 2).mean(axis=(0, 1)) for lag in lags] for path in groups]
+    squares = groups.means(
+        lambda paths: np.array(
+            [((paths[lag:] - paths[: len(paths) - lag]) ** 2).mean(axis=(0, 1)) for lag in lags]
+        )
     )
     return 0.5 * np.diff(squares, axis=1) / (groups.interval * np.diff(lags))[:, None]
 
@@ -360,7 +367,7 @@ def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
     """
     with open_run(source, start) as run:
         require_defined("mutual_diffusion", run.scene)
-        lags = _doubled(lags_of_slopes(run), len(run.time) // GROUPS)
+        lags = _extend_lags(lags_of_slopes(run), len(run.time) // GROUPS)
         first, second = (kind.count / run.count for kind in run.scene.species)
         factor = first * second * run.count / (2.0 * run.dimension * run.interval)
         rises = [factor * rise for rise in _rises(_separation(run), lags)]
@@ -403,8 +410,9 @@ def _settled_rise(rises: list[np.ndarray]) -> tuple[int, float]:
 
 def _separation(run: Run) -> np.ndarray:
     """Compute X_1 - X_2, the separation of the centres of two species, shape (T, d)."""
-    paths = unwrap_positions(run)
-    return np.subtract(*(paths[:, run.species == kind].mean(axis=1) for kind in (0, 1)))
+    members = [run.species == kind for kind in (0, 1)]
+    centres = [[path[chosen].mean(axis=0) for chosen in members] for path in unwrap_positions(run)]
+    return np.array([first - second for first, second in centres])
 
 
 def _squares(path: np.ndarray, lag: int) -> np.ndarray:

@@ -293,12 +293,24 @@ class Peculiar:
 
     def energies(self, masses: np.ndarray) -> np.ndarray:
         """Compute twice the kinetic energy (T, M) of each particle of masses (M,)."""
-        return np.asarray(masses * (self.velocities**2).sum(axis=2))
+        return masses * sum_squares(self.velocities)
 
     def freedoms(self) -> np.ndarray:
         """Return the degrees of freedom of each particle, shape (T, M)."""
-        freedom = np.broadcast_to(self.freedom, self.velocities.shape)
-        return np.asarray(freedom.sum(axis=2))
+        components = (*self.freedom.shape[:2], self.velocities.shape[2])
+        freedom = np.broadcast_to(self.freedom, components).sum(axis=2)
+        return np.broadcast_to(freedom, self.velocities.shape[:2])
+
+
+def sum_squares(vectors: np.ndarray) -> np.ndarray:
+    """Sum the squares of the components of vectors (..., d).
+
+    It sums by axis: a short last axis is slow to sum.
+    """
+    total = vectors[..., 0] ** 2
+    for k in range(1, vectors.shape[-1]):
+        total += vectors[..., k] ** 2
+    return np.asarray(total)
 
 
 def about_the_whole(run: Run) -> Peculiar:
@@ -317,7 +329,11 @@ def about_the_mean(velocities: np.ndarray, masses: np.ndarray, axes: np.ndarray)
     """
     total = masses.sum() or 1.0  # of none: nothing
     drift = np.einsum("tnd,n->td", velocities, masses) / total
-    apart = velocities - np.where(axes, drift, 0.0)[:, None]
+    apart = velocities.copy()
+    for k in np.flatnonzero(axes):
+        apart[..., k] -= drift[:, k, None]
+    if (masses == masses[:1]).all():  # one number for all particles
+        masses = masses[:1]
     return Peculiar(apart, np.where(axes, 1.0 - masses[:, None] / total, 1.0)[None])
 
 

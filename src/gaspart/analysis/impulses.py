@@ -19,7 +19,7 @@ from gaspart.analysis.profiles import BLOCKS, LEAST_FRAMES, Cells, Means, ratio
 from gaspart.analysis.run import Run
 from gaspart.engines import ENGINES, Engine
 from gaspart.errors import SceneError
-from gaspart.scene.impulses import shares_energy_evenly
+from gaspart.scene.features import shares_energy_evenly
 from gaspart.scene.scene import Scene
 from gaspart.state.optional_tallies import (
     ImpulseTally,

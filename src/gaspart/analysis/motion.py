@@ -8,19 +8,18 @@ particles, which are taken as independent.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from gaspart.analysis.conditions import GROUPS
 from gaspart.analysis.correlations import Curves, autocorrelation, squared_displacement
 from gaspart.analysis.expected.equilibrium import describe
 from gaspart.analysis.flow import FLOW
 from gaspart.analysis.observable import Observable, observable, with_freedom
 from gaspart.analysis.observables import require_defined
+from gaspart.analysis.paths import Groups, groups_of
 from gaspart.analysis.run import Run, Source, open_run, select_particles
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
@@ -101,35 +100,7 @@ def line(x: np.ndarray, y: np.ndarray) -> float:
     return float(np.polyfit(x, y, 1)[0]) if len(x) >= 4 else math.nan
 
 
-MOST_FRAMES = 1000
-"""Maximum number of frames that are correlated of each group; a longer run has every second or third ..."""
 _SQUARES, _PRODUCTS = "squared_displacement_sum", "velocity_product_sum"
-_FARTHEST = 0.45  # of a side: the longest way between frames by which a particle is followed
-
-
-@dataclass(frozen=True)
-class Groups:
-    """Paths or velocities (T, n, d) of groups of moving particles, made on iteration.
-
-    Parameters
-    ----------
-    sizes : list of int
-        Numbers of particles of the groups.
-    frames : int
-        Number of frames.
-    interval : float, [time]
-        Time between frames.
-    make : callable
-        Function that returns a group, by its number.
-    """
-
-    sizes: list[int]
-    frames: int
-    interval: float
-    make: Callable[[int], np.ndarray]
-
-    def __iter__(self) -> Iterator[np.ndarray]:
-        return (self.make(number) for number in range(len(self.sizes)))
 
 
 def mean_squared_displacement(
@@ -196,7 +167,9 @@ def mean_squared_displacement(
         groups = groups_of(run, chosen=select_particles(run, species, particles))
         number = _lags(groups, lags)
         axes = [slice(k, k + 1) for k in range(run.dimension)] if per_axis else [slice(None)]
-        curves = np.array([[squared_displacement(path[..., k], number) for k in axes] for path in groups])
+        curves = groups.means(
+            lambda paths: np.array([squared_displacement(paths[..., k], number) for k in axes])
+        )
         time = groups.interval * np.arange(number)
         values, errors = means_of(curves if per_axis else curves[:, 0], groups.sizes)
         return _displacement(run, time, values, errors, len(curves) - 1.0)
@@ -260,7 +233,7 @@ def velocity_autocorrelation(
             return _autocorrelation(run, time, values / run.dimension, errors / run.dimension, freedom)
         groups = groups_of(run, paths=False, chosen=select_particles(run, species, particles))
         number = _lags(groups, lags)
-        curves = np.array([autocorrelation(velocity, number) for velocity in groups])
+        curves = groups.means(lambda velocities: autocorrelation(velocities, number))
         time, means = groups.interval * np.arange(number), means_of(curves, groups.sizes)
         return _autocorrelation(run, time, *means, len(curves) - 1.0)
 
@@ -325,156 +298,3 @@ def _lags(groups: Groups, lags: int | None) -> int:
     if number > frames:
         raise SceneError("lags", lags, f"there are {frames} frames")
     return number
-
-
-def groups_of(
-    run: Run,
-    paths: bool = True,
-    about: np.ndarray | None = None,
-    chosen: np.ndarray | None = None,
-    stride: int | None = None,
-) -> Groups:
-    """Return the moving particles in groups, about the centre of mass or the local flow.
-
-    Of fewer than `GROUPS` particles the groups are as many blocks of the run. About the centre of mass, the
-    square of a velocity of a particle of mass m is 1 - m / M of its value without this condition, M the mass
-    of all. Where the gas flows it is about the local flow (`analysis.flow`).
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    paths : bool, default True
-        Paths; otherwise velocities.
-    about : ndarray of bool, shape (d,), optional
-        Axes along which values are about the centre of mass. Default: those along which its velocity is
-        conserved.
-    chosen : ndarray, optional
-        The chosen ones of the moving particles.
-    stride : int, optional
-        One of this number of frames is taken. Default: `stride_of`.
-
-    Returns
-    -------
-    Groups
-        The groups.
-    """
-    moving = run.moving
-    steps = np.diff(run.time)
-    if np.ptp(steps) > 1e-6 * steps.mean():
-        raise SceneError("time", "frames at uneven times", "a correlation needs even ones")
-    about = run.conserved if about is None else about
-    masses = run.masses[moving]
-    chosen = np.arange(len(masses)) if chosen is None else chosen
-    stride = stride_of(run, len(chosen)) if stride is None else stride
-    others = masses.sum() - masses[chosen]
-    if about.any() and not (others > 0.0).all():
-        raise SceneError("count", len(masses), "a single particle keeps its velocity")
-    free = np.where(about, np.sqrt(masses.sum() / np.where(others > 0.0, others, 1.0))[:, None], 1.0)
-
-    values = _values(run, paths, stride)
-    centre = np.array([masses @ frame for frame in values]) / masses.sum()
-
-    def motion(frames: slice, members: np.ndarray) -> np.ndarray:
-        part = values[frames][:, chosen[members]].astype(float)
-        part -= np.where(about, centre, 0.0)[frames, None]
-        part *= free[members]
-        return np.asarray(part)
-
-    interval = float(steps.mean()) * stride
-    if len(chosen) >= GROUPS:
-        alike = _alike(run.species[moving][chosen])
-        sizes = [len(members) for members in alike]
-        return Groups(sizes, len(values), interval, lambda n: motion(slice(None), alike[n]))
-    length, everyone = len(values) // GROUPS, np.arange(len(chosen))
-    if length < 4:
-        rule = f"an error of fewer than {GROUPS} particles needs {4 * GROUPS} frames or more"
-        raise SceneError("frames", len(values), rule)
-    sizes = [len(chosen)] * GROUPS
-    return Groups(sizes, length, interval, lambda n: motion(slice(n * length, (n + 1) * length), everyone))
-
-
-def _values(run: Run, paths: bool, stride: int) -> np.ndarray:
-    """Return paths or velocities (T, M, d) of the moving particles in every `stride`-th frame.
-
-    Where the gas flows they are about the local flow.
-    """
-    moving = run.moving
-    if not run.flow_axes:
-        values = unwrap_positions(run, stride) if paths else run.vectors("velocities")[::stride].values
-        return values if moving.all() else values[:, moving]
-    velocities, peculiar, free_part = run.velocities[:, moving], run.motion.velocities, run.motion.freedom
-    if paths:
-        from scipy.integrate import cumulative_trapezoid
-
-        carried = cumulative_trapezoid(velocities - peculiar, run.time, axis=0, initial=0.0)
-        return np.asarray((unwrap_positions(run)[:, moving] - carried)[::stride])
-    velocities = peculiar / np.sqrt(np.where(free_part > 0.0, free_part, 1.0))
-    return velocities[::stride]
-
-
-def _alike(species: np.ndarray) -> list[np.ndarray]:
-    """Return the indices of particles of these species (M,) in each group.
-
-    Groups of a mixture have the same composition: else the difference between species, which no longer run
-    reduces, would be their scatter.
-    """
-    if np.ptp(species) == 0:
-        return np.array_split(np.arange(len(species)), GROUPS)
-    order = np.argsort(species, kind="stable")
-    return [order[first::GROUPS] for first in range(GROUPS)]
-
-
-def stride_of(run: Run, count: int = GROUPS) -> int:
-    """Return the number of frames of which one is taken, for a number of particles.
-
-    Of fewer than `GROUPS` particles each block of the run is a group.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    count : int, optional
-        Number of particles.
-
-    Returns
-    -------
-    int
-        The number of frames.
-    """
-    return -(-len(run.time) // (MOST_FRAMES * (GROUPS if count < GROUPS else 1)))
-
-
-def unwrap_positions(run: Run, stride: int = 1) -> np.ndarray:
-    """Return positions continued across periodic faces, from the file or by the nearest image.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    stride : int, default 1
-        One of this number of frames is returned.
-
-    Returns
-    -------
-    ndarray, shape (T, N, d)
-        The positions.
-    """
-    if "displacements" in run.data:
-        return run.data["displacements"][::stride].values
-    positions = run.vectors("coordinates").values
-    lengths = np.where(run.periodic, run.scene.container.lengths, np.inf)
-    finite = np.where(run.periodic, run.scene.container.lengths, 1.0)
-    path, last = np.zeros(positions.shape[1:]), positions[0].astype(float)
-    paths = np.zeros((len(range(0, len(positions), stride)), *path.shape))
-    for frame in range(1, len(positions)):
-        present = positions[frame].astype(float)
-        step, last = present - last, present
-        step -= np.where(run.periodic, finite * np.round(step / finite), 0.0)
-        if (np.abs(step) > _FARTHEST * lengths).any():
-            rule = "is too long to follow particles across periodic faces; make the run with --displacements"
-            raise SceneError("sample_interval", float(run.time[1] - run.time[0]), rule)
-        path += step
-        if frame % stride == 0:
-            paths[frame // stride] = path
-    return paths

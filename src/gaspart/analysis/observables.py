@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 from gaspart.analysis import conditions as where
 from gaspart.analysis.declaration import Named, units_in
 from gaspart.errors import SceneError, unknown_word
+from gaspart.scene.face_checks import refuse_open
 from gaspart.scene.faces import Open
-from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene
 
 if TYPE_CHECKING:

@@ -20,7 +20,7 @@ from gaspart.analysis.run import Run, Source, open_run, require_collisions
 from gaspart.analysis.statistics import correlated_mean, histogram_means
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number
-from gaspart.scene.impulses import FURTHEST
+from gaspart.scene.features import FURTHEST
 from gaspart.state.optional_tallies import PairImpulseTally, stored_tally
 from gaspart.theory.geometry import unit_sphere_surface
 from gaspart.theory.speeds import mean_speed_factor

@@ -15,13 +15,13 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis.conditions import SLIDING, VARYING
-from gaspart.analysis.flow import ABOUT, FLOW, Peculiar, about_the_flow, flow_axes, mean_motion
+from gaspart.analysis.flow import ABOUT, FLOW, Peculiar, about_the_flow, flow_axes, mean_motion, sum_squares
 from gaspart.engines import engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
 from gaspart.scene.accessible import Accessible
+from gaspart.scene.face_checks import refuse_open
 from gaspart.scene.gas import Gas, Mixture
-from gaspart.scene.open_faces import refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.simulation import Simulation
@@ -155,14 +155,13 @@ class Run:
             The vectors of the next frames.
         """
         values = self.vectors(name)[frames]
-        for part in self._blocks(len(values)):
+        for part in divide_frames(len(values), self._numbers):
             yield values[part].values
 
-    def _blocks(self, frames: int) -> Iterator[slice]:
-        """Divide a number of frames into blocks of limited memory."""
-        length = max(1, _BLOCK // max(1, self.data.sizes["atom"] * self.dimension))
-        for first in range(0, frames, length):
-            yield slice(first, min(first + length, frames))
+    @property
+    def _numbers(self) -> int:
+        """Numbers of the vectors of a frame."""
+        return self.data.sizes["atom"] * self.dimension
 
     def parts(self) -> Iterator[tuple[slice, Run]]:
         """Divide the run into parts of limited memory, which are read as they are used.
@@ -174,7 +173,7 @@ class Run:
         part : Run
             These frames. Properties that depend on all frames, such as `flow_axes`, hold for the part only.
         """
-        for frames in self._blocks(len(self.time)):
+        for frames in divide_frames(len(self.time), self._numbers):
             yield frames, replace(self, time=self.time[frames], data=self.data.isel(frame=frames))
 
     @cached_property
@@ -297,7 +296,7 @@ class Run:
         masses, about, rows = self.masses[self.moving], mean_motion(self), []
         for _, part in self.parts():
             motion = about(part)
-            squares = (part.velocities[:, self.moving] ** 2).sum(axis=2)
+            squares = sum_squares(part.velocities[:, self.moving])
             energies = motion.energies(masses).sum(axis=1)
             rows.append([energies, (masses * squares).sum(axis=1), motion.freedoms().sum(axis=1)])
         return np.concatenate(rows, axis=1)
@@ -380,6 +379,13 @@ class Run:
         """
         gas = self.fluid
         return replace(gas, temperature=self.temperature) if gas and self.temperature > 0.0 else None
+
+
+def divide_frames(frames: int, numbers: int) -> Iterator[slice]:
+    """Divide frames into blocks of limited memory, for frames of this many numbers."""
+    length = max(1, _BLOCK // max(1, numbers))
+    for first in range(0, frames, length):
+        yield slice(first, min(first + length, frames))
 
 
 def select_particles(run: Run, species: int | None, particles: Sequence[int] | None) -> np.ndarray:

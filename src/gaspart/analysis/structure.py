@@ -114,8 +114,11 @@ def _speeds(run: Run, grid: Grid) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         squares, free = motion.velocities**2, motion.freedom
         is_known = np.broadcast_to((free > 0.0).all(axis=2), squares.shape[:2])  # not alone in its cell
         energy[frames] = squares.sum(axis=(1, 2))
-        squares /= np.where(free > 0.0, free, 1.0)
-        speeds = np.sqrt(squares.sum(axis=2))
+        free = np.broadcast_to(np.where(free > 0.0, free, 1.0), (*free.shape[:2], run.dimension))
+        total = np.zeros(squares.shape[:2])
+        for k in range(run.dimension):  # by axis: a short last axis is slow to sum
+            total += squares[..., k] / free[..., k]
+        speeds = np.sqrt(total)
         cells = np.where(is_known, grid.cells(speeds[..., None]), -1).T
         counts += grid.sums(cells, None, group)
         sizes += np.bincount(group, is_known.sum(axis=0), STRETCHES).astype(int)

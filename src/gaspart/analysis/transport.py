@@ -21,9 +21,9 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis.expected.equilibrium import describe
-from gaspart.analysis.motion import unwrap_positions
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable, scalar
 from gaspart.analysis.observables import KEPT, require_defined
+from gaspart.analysis.paths import unwrap_positions
 from gaspart.analysis.run import Run, Source, open_run
 from gaspart.analysis.statistics import correlated_mean, means_of
 from gaspart.errors import SceneError
@@ -90,10 +90,12 @@ def _sum_displacements(run: Run) -> np.ndarray:
     The shape is (S - 1, T, d): the sum of the last species follows from the others.
     """
     moving, masses = run.moving, run.masses  # raises SceneError if some are not in the file
-    paths = unwrap_positions(run)[:, moving]
-    paths = paths - np.einsum("tnd,n->td", paths, masses / masses.sum())[:, None]
-    kinds = np.unique(run.species)[:-1]
-    return np.array([paths[:, run.species == kind].sum(axis=1) for kind in kinds])
+    members = [run.species == kind for kind in np.unique(run.species)[:-1]]
+    sums = []
+    for path in unwrap_positions(run, np.flatnonzero(moving)):
+        about = path - np.einsum("nd,n->d", path, masses / masses.sum())
+        sums.append([about[chosen].sum(axis=0) for chosen in members])
+    return np.array(sums).swapaxes(0, 1)
 
 
 def _products(flux: np.ndarray, other_flux: np.ndarray, lags: int) -> np.ndarray:

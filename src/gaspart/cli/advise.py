@@ -199,7 +199,7 @@ def _differences(plan: Plan) -> list[str]:
 
 def _extra_cost(plan: Plan) -> str:
     """Describe the cost of a run in addition to the collisions of a plain gas."""
-    from gaspart.accuracy.price import price_of
+    from gaspart.accuracy.table import price_of
 
     price = price_of(plan.target.scene, plan.best.engine, plan.target.observable)
     measured = ", ".join(f"{name} {ratio:.2f}" for name, ratio in price.ratios.items())

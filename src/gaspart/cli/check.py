@@ -16,6 +16,7 @@ from gaspart.cli.arguments import (
     set_command,
     several,
 )
+from gaspart.cli.progress import waiting
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.yaml_text import read_yaml
@@ -80,7 +81,8 @@ def _is_healthy(options: argparse.Namespace, file: str) -> bool:
                 raise SceneError(key, getattr(options, key), "has a meaning for trajectories only")
         checks, scales = _written(file, options.tolerance)
     else:
-        title, checks = _check_frames(file, options)
+        with waiting(f"checking {file}"):
+            title, checks = _check_frames(file, options)
         print_line(title)
         scales = []
     for check in checks:
@@ -91,8 +93,7 @@ def _is_healthy(options: argparse.Namespace, file: str) -> bool:
 
 def _check_frames(file: str, options: argparse.Namespace) -> tuple[str, list]:
     """Check a trajectory. Returns a line that names its particles, and the checks."""
-    from gaspart.inspection.checks import judge
-    from gaspart.inspection.open_runs import judge_open
+    from gaspart.inspection.checks import judge, judge_open
     from gaspart.inspection.readers import is_open_run, read_frames
 
     stated = {key: getattr(options, key) for key in ("radius", "lengths", "boundary", "time_step", "origin")}
@@ -110,7 +111,7 @@ def _check_frames(file: str, options: argparse.Namespace) -> tuple[str, list]:
 def _written(file: str, tolerance: float | None) -> tuple[list, list[str]]:
     """Check a YAML file: a scene, with the lines of its scales, or a config."""
     from gaspart.accuracy.scales import scales
-    from gaspart.inspection.written import judge_scene
+    from gaspart.inspection.checks import judge_scene
 
     content, path = read_yaml(file), Path(file)
     if isinstance(content, dict) and ("experiments" in content or "figures" in content):

@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from gaspart.engines.dsmc.defaults import accessible, contact_values
-from gaspart.scene.geometry import ball_volume
+from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
 
 _FREE = 0.02

@@ -1,17 +1,133 @@
-"""Interface of a scene in progress, and what all engines share: checkpoints and optional tallies."""
+"""Interface of a scene in progress, and what all engines share: events, checkpoints, optional tallies."""
 
 from __future__ import annotations
 
+import hashlib
+import json
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
 
-from gaspart.engines.checkpoint_identity import check_parts
-from gaspart.engines.event_log import EventLog
+from gaspart import __version__
+from gaspart.engines.engine import Engine, engine_to_dict
 from gaspart.engines.features.part import Part, TallyPart, arrays_of
+from gaspart.errors import SceneError
+from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 from gaspart.state.tally import Tally
+
+# Record of the events of a run.
+
+
+_ROOM = 4096  # capacity of the record, in events
+
+
+class EventLog:
+    """Record of events: particles, and positions, velocities and optionally spins just after them."""
+
+    def __init__(self, dimension: int, spins: bool = False) -> None:
+        from gaspart.kernels.event.pair_contact import Record
+
+        self._keys = ("time", "particles", "positions", "velocities", *(("spins",) if spins else ()))
+        self._dimension = dimension
+        self._parts: list[tuple[np.ndarray, ...]] = []
+        self.room = Record(
+            filled=np.zeros(1, dtype=np.int64),
+            time=np.empty(_ROOM),
+            particles=np.empty((_ROOM, 2), dtype=np.int64),
+            positions=np.empty((_ROOM, 2, dimension)),
+            velocities=np.empty((_ROOM, 2, dimension)),
+            spins=np.empty((_ROOM, 2, 3)),
+        )
+
+    def _copy(self, count: int) -> tuple[np.ndarray, ...]:
+        """Copy the first events of the kernel's record; in 2D, spins normal to the plane."""
+        record = {key: getattr(self.room, key)[:count] for key in self._keys}
+        if "spins" in record and self._dimension == 2:
+            record["spins"] = record["spins"][..., 2]
+        return tuple(array.copy() for array in record.values())
+
+    def take(self, start: float) -> None:
+        """Empty the kernel's record, whose times count from `start`."""
+        n = int(self.room.filled[0])
+        self.room.filled[0] = 0
+        if n:
+            time, *others = self._copy(n)
+            self._parts.append((start + time, *others))
+
+    @property
+    def events(self) -> dict[str, np.ndarray]:
+        """Recorded events, as arrays by name.
+
+        time : (M,)
+        particles : (M, 2); the second entry is -1 - face for a hit at a wall
+        positions, velocities : (M, 2, d); the second entry is NaN for a hit at a wall
+        spins : (M, 2) or (M, 2, 3)
+        """
+        parts = zip(*(self._parts or [self._copy(0)]), strict=True)
+        return dict(zip(self._keys, map(np.concatenate, parts), strict=True))
+
+
+# Identity of a checkpoint: the simulation to which it belongs.
+#
+# It decides whether the checkpoint may be restored.
+
+
+def checkpoint_identity(
+    scene: Scene, engine: Engine, seed: int | tuple[int, ...], initial: State | None = None
+) -> dict[str, np.ndarray]:
+    """Return texts of all that the results of a simulation depend on, by checkpoint keys.
+
+    initial : state at time 0, if it does not follow from the scene and the seed
+    """
+    settings = {key: x for key, x in engine_to_dict(engine).items() if key not in engine.neutral_settings}
+    texts = {
+        "version": __version__,
+        "scene": hashlib.sha256(_text(scene.to_dict()).encode()).hexdigest(),
+        "engine": _text(settings),
+        "seed": _text(seed),
+        "initial state": _digest(initial),
+    }
+    return {f"of_{key}": np.array(text) for key, text in texts.items()}
+
+
+def _digest(state: State | None) -> str:
+    if state is None:
+        return "of the seed"
+    moving = state.piston, state.displaced, state.vibrations
+    parts = state.positions, state.velocities, state.spins, *moving
+    there = (np.ascontiguousarray(part).tobytes() for part in parts if part is not None)
+    return hashlib.sha256(b"".join(there)).hexdigest()
+
+
+def _text(value: object) -> str:
+    return json.dumps(value, sort_keys=True, default=int)  # a seed may be an integer of numpy
+
+
+def check_identity(checkpoint: Any, identity: Mapping[str, np.ndarray]) -> None:
+    """Raise SceneError, which names the difference, unless a checkpoint has this `identity`."""
+    if not isinstance(checkpoint, Mapping) or not all(key in checkpoint for key in identity):
+        raise SceneError("checkpoint", checkpoint, "must be what Simulation.checkpoint has returned")
+    for key, text in identity.items():
+        if str(checkpoint[key]) != str(text):
+            subject = key.removeprefix("of_")
+            this = "" if subject == "scene" else f", which has {text}"
+            rule = f"is of another {subject} than this simulation{this}"
+            raise SceneError("checkpoint", str(checkpoint[key]), rule)
+
+
+def check_parts(parts: Mapping[str, np.ndarray], expected: Mapping[str, np.ndarray]) -> None:
+    """Raise SceneError unless a checkpoint has all `expected` arrays.
+
+    Each array must have the shape and the kind of number of the expected array.
+    """
+    for key, array in expected.items():
+        value = parts.get(key)
+        alike = isinstance(value, np.ndarray) and value.shape == np.shape(array)
+        if not alike or value.dtype.kind != np.asarray(array).dtype.kind:  # type: ignore[union-attr]
+            raise SceneError("checkpoint", key, "is missing or of another form: the checkpoint is damaged")
 
 
 class Dynamics(ABC):

@@ -10,8 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import DTypeLike
 
-from gaspart.engines.dynamics import Dynamics
-from gaspart.engines.event_log import EventLog
+from gaspart.engines.dynamics import Dynamics, EventLog
 from gaspart.engines.features.part import sums_of, write_parts
 from gaspart.errors import SceneError
 from gaspart.kernels.physics.running_sum import net

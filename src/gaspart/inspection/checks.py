@@ -7,14 +7,17 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis.counters import compressibility_factor
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.fluxes import particle_numbers
 from gaspart.analysis.pairs import pair_counts
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
-from gaspart.inspection.conserved import judge_conserved
+from gaspart.inspection.conserved import judge_conserved, judge_flights
+from gaspart.inspection.energy import conserved_energy
 from gaspart.inspection.frames import Frames
 from gaspart.inspection.statistics import (
     FIT_ERROR,
@@ -29,12 +32,15 @@ from gaspart.inspection.statistics import (
     first_relaxed_frame,
     groups_of,
     judge_speeds,
-    path,
     why_not,
     why_not_speeds,
 )
 from gaspart.inspection.verdict import Check, compare_with_theory
+from gaspart.scene.scene import Scene
 from gaspart.state.boxes import deepest_overlap
+from gaspart.state.initial import initial_state
+from gaspart.trajectory.reading import open_trajectory
+from gaspart.trajectory.recipe import read_recipe
 
 __all__ = ["Check", "judge", "judge_places"]
 
@@ -45,6 +51,7 @@ COARSEST = 0.1
 MOST_FRAMES = 200
 """Number of frames, evenly spaced, that are searched for overlaps and contact values."""
 _MANY = 100_000  # particles in these frames, from which on loading numba to count pairs pays
+_BINS = 2**20  # of the distance up to contact, at most, in which pairs are counted
 _MARGIN = 1e-9  # of a diameter, by which rounding may change a distance between images
 _LEAST_FRAMES = 16
 _PRESSURE, _DIFFUSION = "pressure Z", "diffusion coefficient D"
@@ -85,32 +92,48 @@ def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Chec
         return Check("overlaps", None, "contacts are sampled, so that particles may overlap")
     if frames.no_identity and frames.diameter is None and frames.radii_by_frame is None:
         return Check("overlaps", None, frames.no_identity)
+    allowed = _allowed_overlap(frames, tolerance)
+    if len(seen) * frames.count > _MANY:
+        bounds = np.array([_overlap_bounds(frames.at(n)) for n in seen])
+        if 0.0 < bounds[:, 1].max() <= allowed:
+            text = f"the deepest is {bounds[:, 1].max():.2g} of a contact distance at most"
+            return Check("overlaps", True, f"{text} (up to {allowed:.1g} allowed)")
+        seen = seen[(bounds[:, 1] > 0.0) & (bounds[:, 1] >= bounds[:, 0].max())]
     deepest, where = 0.0, 0
     for n in seen:
         frame = frames.at(n)
-        if len(seen) * frames.count > _MANY and _are_apart(frame):
-            continue
         overlap = deepest_overlap(frame.positions[0], frame.radii, frame.lengths, frame.periodic)
         if overlap > deepest:
             deepest, where = overlap, int(n)
-    allowed = _allowed_overlap(frames, tolerance)
     text = (
         f"the deepest is {deepest:.2g} of a contact distance, in frame {where} (up to {allowed:.1g} allowed)"
     )
     return Check("overlaps", deepest <= allowed, text)
 
 
-def _are_apart(frame: Frames) -> bool:
-    """Return True if equal particles of a frame in a periodic container do not overlap.
+def _overlap_bounds(frame: Frames) -> tuple[float, float]:
+    """Return bounds on the deepest overlap of equal particles, as a fraction of the contact distance.
 
-    It counts their pairs, in a tenth of the time of `deepest_overlap`. False in other containers.
+    It counts their pairs by distance, in a tenth of the time of `deepest_overlap`. Without a bound, (0, inf).
     """
-    if frame.diameter is None or not all(frame.periodic):
-        return False
+    if frame.diameter is None or not np.isfinite(frame.positions).all():
+        return 0.0, math.inf
     reach = frame.diameter * (1.0 + _MARGIN)
-    if not np.isfinite(frame.positions).all() or reach > 0.5 * float(frame.lengths.min()):
-        return False
-    return not pair_counts(frame.positions, frame.lengths, 1, reach).any()
+    sides = frame.lengths.copy()
+    for k in np.flatnonzero(~np.array(frame.periodic)):
+        x = frame.positions[..., k]
+        if x.min(initial=0.0) < 0.0 or x.max(initial=0.0) > sides[k]:
+            return 0.0, math.inf
+        sides[k] += 2.0 * reach  # no pair is near through the walls
+    if reach > 0.5 * float(sides.min()):
+        return 0.0, math.inf
+    bins = min(8 * frame.count, _BINS)
+    counts = pair_counts(frame.positions, sides, bins, reach)
+    if not counts.any():
+        return 0.0, 0.0
+    nearest = int(np.argmax(counts > 0))
+    low, high = (1.0 - n * (1.0 + _MARGIN) / bins for n in (nearest + 1, nearest))
+    return max(low - _MARGIN, 0.0), high + _MARGIN
 
 
 def _inside(frames: Frames, tolerance: float | None) -> Check:
@@ -143,7 +166,7 @@ def _pressure(frames: Frames) -> Check:
     gas = frames.gas
     assert gas is not None, "see `_no_pressure`"
     eta, d = gas.packing_fraction, gas.dimension
-    way, spacing = path(frames), frames.spacing
+    way, spacing = frames.path, frames.spacing
     first = first_relaxed_frame(way, spacing)
     if first is None:
         return Check(name, None, _describe_motion(way, spacing))
@@ -214,7 +237,7 @@ def _diffusion(frames: Frames) -> Check:
     name = _DIFFUSION
     if reason := why_not_speeds(frames) or why_not(frames):
         return Check(name, None, reason)
-    way, spacing = path(frames), frames.spacing
+    way, spacing = frames.path, frames.spacing
     first = first_relaxed_frame(way, spacing)
     if first is None:
         return Check(name, None, _describe_motion(way, spacing))
@@ -237,3 +260,88 @@ def _diffusion(frames: Frames) -> Check:
     value, error, source = expected_diffusion(used, window)
     basis = f"{source}; {groups_of(used)} groups of particles, {window[0]:.3g} to {window[1]:.3g} collisions"
     return compare_with_theory(name, coefficient, Estimate(value, error), basis)
+
+
+# Checks of a run of gaspart with open faces, in which the number of particles changes.
+
+
+ENERGY_DRIFT = 1e-9
+"""Largest drift of the energy, relative to the energy that particles have had and have carried."""
+_CHANGING = "particles come and go: its theory is of those that stay"
+
+
+def judge_open(path: Path, tolerance: float | None = None) -> tuple[str, list[Check]]:
+    """Check a trajectory with open faces.
+
+    Returns a line that names its particles, and the checks of positions, of the books of particles and of
+    energy, and of flights. `tolerance` is the allowed overlap, as a fraction of a diameter.
+    """
+    scene = read_recipe(path).scene
+    with open_trajectory(path) as data:
+        data.load()
+    counts = particle_numbers(scene, data)
+    kind = "discs" if scene.dimension == 2 else "spheres"
+    title = f"{path}: {counts.min()} to {counts.max()} {kind} in {len(counts)} frames"
+    checks = [_particles(data, counts), _energy(scene, data)]
+    if "keep" not in data.attrs:
+        frames = _frames(scene, data)
+        checks = [*judge_places(frames, tolerance), *checks, judge_flights(frames)]
+    unknown = "speed law", "pressure Z", "diffusion coefficient D"
+    return title, [*checks, *(Check(name, None, _CHANGING) for name in unknown)]
+
+
+def _frames(scene: Scene, data: xr.Dataset) -> Frames:
+    """Return the frames of a run; absent particles have no position (NaN), and are at rest."""
+    lengths = np.array(scene.container.lengths)
+    positions, velocities = (data[name].values.astype(float) for name in ("coordinates", "velocities"))
+    return Frames(
+        positions=positions,
+        lengths=lengths,
+        radii=data["radius"].values.astype(float),
+        periodic=scene.container.periodic,
+        velocities=np.nan_to_num(velocities),
+        time=data["time"].values,
+        resolution=float(np.finfo(np.float32).eps * lengths.max()),
+        scene=scene,
+    )
+
+
+def _particles(data: xr.Dataset, counts: np.ndarray) -> Check:
+    """Compare the particles in each frame with those that have entered and left since the start."""
+    stored = data["coordinates"] if "coordinates" in data else data["velocities"]
+    there = np.isfinite(stored.values[..., 0]).sum(axis=1)
+    wrong = int(np.abs(there - counts).argmax())
+    text = f"{counts[0]} at the start, with those that have entered less those that have left"
+    if there[wrong] == counts[wrong]:
+        return Check("particles", True, f"{text}, are in all frames")
+    text += f", are {counts[wrong]} in frame {wrong}, which has {there[wrong]}"
+    return Check("particles", False, text)
+
+
+def _energy(scene: Scene, data: xr.Dataset) -> Check:
+    """Compare the energy in each frame with what particles and faces have brought and taken."""
+    total = conserved_energy(scene, data)
+    carried = np.abs(data["wall_energy"].values).sum(axis=1)
+    scale = max(float((data["kinetic_energy"].values + carried).max()), np.finfo(float).tiny)
+    drift = float(np.abs(total - total[0]).max()) / scale
+    text = f"changes by {drift:.1e} of itself at most, less what particles and faces have brought and taken"
+    return Check("energy", drift <= ENERGY_DRIFT, text)
+
+
+# Validation of scene files.
+
+
+def judge_scene(path: Path, tolerance: float | None = None) -> list[Check]:
+    """Check a scene, and the placement of its particles; raise SceneError for an invalid scene."""
+    scene = Scene.from_file(path)
+    facts = f"{scene.count} particles, packing fraction {scene.packing_fraction:.6g}"
+    checks = [Check("scene", True, f"{facts}, number density {scene.number_density:.6g}")]
+    if scene.count < 2:
+        return checks
+    try:
+        state = initial_state(scene, 1)
+    except SceneError as error:
+        raise error.inside("", str(path)) from None
+    periodic = scene.container.periodic
+    checks += judge_places(Frames(state.positions[None], state.lengths, state.radii, periodic), tolerance)
+    return checks

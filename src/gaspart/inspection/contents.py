@@ -105,15 +105,11 @@ def complete_frames(contents: Contents, overrides: Overrides, path: str) -> Fram
     d = _dimension(contents, overrides, 2.0 * float(radii.max()))
     sides, container = _container(contents, overrides, d, path)
     origin = _origin(contents, overrides, sides, path)
-    coordinates = contents.positions[:, :, :d].astype(float) - origin[:, None, :]
-    size = sides[:, None, :]
-    wrapped = np.where(container.periodic, coordinates - size * np.floor(coordinates / size), coordinates)
-    wrapped = np.where((wrapped >= size) & container.periodic, 0.0, wrapped)  # rounding of -1e-17
     masses = None if contents.masses is None else _per_frame(contents.masses)
     alike = masses is None or np.ptp(masses) == 0.0
     steady = len(sides) == 1 and len(radii) == 1
     frames = Frames(
-        positions=wrapped,
+        positions=_wrap(contents.positions, origin, sides, container.periodic),
         lengths=sides[0],
         radii=radii[0],
         periodic=container.periodic,
@@ -135,6 +131,27 @@ def complete_frames(contents: Contents, overrides: Overrides, path: str) -> Fram
     if contents.scene is not None:
         return frames
     return continuous(frames, contents.velocities_from_first, contents.ids is not None)
+
+
+def _wrap(
+    positions: np.ndarray, origin: np.ndarray, sides: np.ndarray, periodic: tuple[bool, ...]
+) -> np.ndarray:
+    """Return positions (T, N, d) from the lower corner, on periodic axes in [0, L).
+
+    The corner and the sides are (1, d) or (T, d). Coordinates are wrapped one by one: an axis of 3 is slow to
+    broadcast.
+    """
+    frames, count, _ = positions.shape
+    wrapped = np.empty((frames, count, len(periodic)))
+    for n, frame in enumerate(positions):
+        low, size = origin[n % len(origin)], sides[n % len(sides)]
+        for k, along in enumerate(periodic):
+            x = frame[:, k].astype(float) - low[k]
+            if along:
+                x -= size[k] * np.floor(x / size[k])
+                x[x >= size[k]] = 0.0  # rounding of -1e-17
+            wrapped[n, :, k] = x
+    return wrapped
 
 
 def _origin(contents: Contents, overrides: Overrides, sides: np.ndarray, path: str) -> np.ndarray:

@@ -11,9 +11,8 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from gaspart.inspection.flights import WRONG, flights
+from gaspart.inspection.conserved import WRONG, flights
 from gaspart.inspection.frames import Frames
-from gaspart.inspection.statistics import steps
 
 _MOST = 0.5
 """Fraction of the particles from which on a finding is no coincidence."""
@@ -51,8 +50,8 @@ def _are_copied(frames: Frames, doubtful: bool) -> bool:
         if doubtful:
             return True
         # the time that fits most particles; if none does, they do not move by their velocities
-        squares = np.maximum((velocities[0] ** 2).sum(axis=1), np.finfo(float).tiny)
-        times = np.median((steps(frames) * velocities[0]).sum(axis=2) / squares, axis=1)
+        squares = np.maximum(frames.squares[0], np.finfo(float).tiny)
+        times = [np.median((step * velocities[0]).sum(axis=1) / squares) for step in frames.steps()]
         frames = replace(frames, time=np.concatenate([[0.0], np.cumsum(times)]))
     deviation = flights(frames)
     return deviation.worst > WRONG or not deviation.number
@@ -87,7 +86,7 @@ def _same_velocities_elsewhere(frames: Frames, n: int) -> bool:
     moved = first != then
     if frames.time is not None and moved.any():
         way = frames.velocities[n][first] * (frames.time[n + 1] - frames.time[n])
-        off = _nearest(frames, frames.positions[n + 1][then] - frames.positions[n][first] - way)
+        off = frames.nearest(frames.positions[n + 1][then] - frames.positions[n][first] - way)
         moved &= (off**2).sum(axis=1) < _near(frames, n + 1, _tree(frames, n + 1)) ** 2
     return bool(moved.sum() > max(_MOST * len(moved), 2))
 
@@ -103,7 +102,7 @@ def _predicted_elsewhere(frames: Frames, n: int) -> bool:
     predicted = frames.positions[n] + frames.velocities[n] * (frames.time[n + 1] - frames.time[n])
     tree = _tree(frames, n + 1)
     near = _near(frames, n + 1, tree)
-    own = np.sqrt((_nearest(frames, frames.positions[n + 1] - predicted) ** 2).sum(axis=1))
+    own = np.sqrt((frames.nearest(frames.positions[n + 1] - predicted) ** 2).sum(axis=1))
     if (own < near).mean() > 1.0 - _MOST:
         return False
     distance, row = tree.query(_wrap_positions(frames, predicted), k=1, distance_upper_bound=near)
@@ -127,8 +126,3 @@ def _wrap_positions(frames: Frames, positions: np.ndarray) -> np.ndarray:
         frames.periodic, positions - frames.lengths * np.floor(positions / frames.lengths), positions
     )
     return np.where((inside >= frames.lengths) & frames.periodic, 0.0, inside)
-
-
-def _nearest(frames: Frames, apart: np.ndarray) -> np.ndarray:
-    """Return separations by nearest images."""
-    return apart - np.where(frames.periodic, frames.lengths * np.round(apart / frames.lengths), 0.0)

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
-from gaspart.analysis.flow import Peculiar, about_the_mean
+from gaspart.analysis.flow import sum_squares
 from gaspart.engines import Engine
 from gaspart.scene.gas import Gas
-from gaspart.scene.geometry import ball_volume
+from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
 
 
@@ -104,14 +106,20 @@ class Frames:
         return Gas(self.dimension, self.packing_fraction, self.count, self.diameter, temperature)
 
     @cached_property
-    def motion(self) -> Peculiar:
-        """Velocities of particles of mass 1 about the mean velocity of each frame, along periodic axes.
+    def squares(self) -> np.ndarray:
+        """Squared speeds, shape (T, N)."""
+        assert self.velocities is not None, "requires velocities"
+        return sum_squares(self.velocities)
 
-        Raises ValueError without velocities.
-        """
-        if self.velocities is None:
-            raise ValueError("velocities: None (the file has none)")
-        return about_the_mean(self.velocities, np.ones(self.count), np.array(self.periodic))
+    @cached_property
+    def peculiar_squares(self) -> np.ndarray:
+        """Squared speeds about the mean velocity of each frame along periodic axes, shape (T, N)."""
+        assert self.velocities is not None, "requires velocities"
+        total = np.zeros(self.velocities.shape[:2])
+        for k, periodic in enumerate(self.periodic):
+            along = self.velocities[..., k]
+            total += (along - along.mean(axis=1, keepdims=True) if periodic else along) ** 2
+        return total
 
     @property
     def temperatures(self) -> np.ndarray:
@@ -119,14 +127,39 @@ class Frames:
 
         It is 0 for a particle that cannot move about the mean.
         """
-        energies = self.motion.energies(np.ones(self.count)).sum(axis=1)
         freedom = self.dimension * self.count - sum(self.periodic)
-        return np.asarray(energies / max(freedom, 1))
+        return np.asarray(self.peculiar_squares.sum(axis=1) / max(freedom, 1))
+
+    def steps(self) -> Iterator[np.ndarray]:
+        """Yield the displacements (N, d) to each frame from the one before, by nearest images."""
+        for before, after in pairwise(self.positions):
+            yield self.nearest(after - before)
+
+    def nearest(self, apart: np.ndarray) -> np.ndarray:
+        """Return separations (N, d) by nearest images, in the same array."""
+        for k in np.flatnonzero(self.periodic):
+            apart[:, k] -= self.lengths[k] * np.round(apart[:, k] / self.lengths[k])
+        return apart
+
+    @cached_property
+    def path(self) -> np.ndarray:
+        """The path (T, N, d) of each particle since the first frame.
+
+        It is about the centre of mass along axes on which only particles exchange momentum.
+        """
+        path = np.zeros(self.positions.shape)
+        for n, step in enumerate(self.steps()):
+            np.add(path[n], step, out=path[n + 1])
+        for k in np.flatnonzero(self.periodic):
+            path[..., k] -= path[..., k].mean(axis=1, keepdims=True)
+        return path
 
     def at(self, frame: int) -> Frames:
         """Return one frame, with the container and the radii that it has, and without absent particles."""
         lengths, radii, moving = self.lengths_by_frame, self.radii_by_frame, self.velocities
-        there = np.isfinite(self.positions[frame]).all(axis=1)
+        there: np.ndarray | slice = slice(None)
+        if not np.isfinite(self.positions[frame]).all():
+            there = np.isfinite(self.positions[frame]).all(axis=1)
         return replace(
             self,
             positions=self.positions[frame][None, there],

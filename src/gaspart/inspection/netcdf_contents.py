@@ -19,7 +19,7 @@ import numpy as np
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
 from gaspart.inspection.contents import Contents, Overrides
-from gaspart.scene.open_faces import refuse_open
+from gaspart.scene.face_checks import refuse_open
 from gaspart.state.insertion import per_particle
 from gaspart.trajectory.amber import BOOKKEEPING
 from gaspart.trajectory.opening import check_frames, open_descriptor, open_netcdf_file
@@ -300,9 +300,9 @@ def _positions(
         raise SceneError("file", str(path), f"has no frame of {name}")
     if positions.shape[2] == 3 and np.isnan(positions[:, :, 2]).all():
         positions = positions[:, :, :2]
-    present = np.isfinite(positions).all(axis=2)
-    for n, count in enumerate(present.sum(axis=1)):
-        if count != positions.shape[1]:
+    for n, frame in enumerate(positions):
+        if not np.isfinite(frame).all():
+            count = np.isfinite(frame).all(axis=1).sum()
             rule = f"has {count} particles in frame {n}, of {positions.shape[1]}"
             raise SceneError("file", str(path), f"{rule}: a changing number cannot be checked")
     scale = 1.0

@@ -63,7 +63,7 @@ def read_frames(
 
 
 def is_open_run(path: str | Path) -> bool:
-    """Return True for a trajectory of gaspart with open faces, which `open_runs.judge_open` checks."""
+    """Return True for a trajectory of gaspart with open faces, which `checks.judge_open` checks."""
     path = Path(path)
     with _reading(path):
         netcdf = _READERS.get(path.suffix.lower()) is read_netcdf

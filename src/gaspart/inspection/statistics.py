@@ -8,6 +8,7 @@ and the program does not matter.
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 
@@ -16,12 +17,13 @@ from gaspart.analysis.bulk import EXACT, collision_rate
 from gaspart.analysis.diffusion import linear_lags, settled_slope
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.expected.transport import diffusion_in_cube
+from gaspart.analysis.flow import sum_squares
 from gaspart.analysis.pairs import pair_counts
 from gaspart.analysis.statistics import histogram_chi_square, mean_of
 from gaspart.inspection.frames import Frames
 from gaspart.inspection.verdict import Check, compare_with_theory
 from gaspart.scene.gas import Gas
-from gaspart.scene.geometry import ball_volume
+from gaspart.scene.limits import ball_volume
 
 UNEVEN = 20.0
 """Power of a long wave, 1 on average if particles are independent, from which on a gas is not uniform: by
@@ -39,14 +41,18 @@ def count_collisions(frames: Frames) -> np.ndarray:
     """
     velocities = frames.velocities
     assert velocities is not None, "requires velocities"
-    square = (velocities**2).sum(axis=(1, 2))
+    square = frames.squares.sum(axis=1)
     least = 0.5 / frames.count
     small = np.maximum(_CHANGED**2 * square / frames.count, np.finfo(float).tiny)
-    reflected = np.where(frames.periodic, velocities, np.abs(velocities))
-    changed = ((reflected[1:] - reflected[:-1]) ** 2).sum(axis=2) > small[1:, None]
-    correlation = (velocities[1:] * velocities[:-1]).sum(axis=(1, 2))
-    correlation /= np.maximum(np.sqrt(square[1:] * square[:-1]), np.finfo(float).tiny)
-    unhit = -np.log(np.clip(1.0 - changed.mean(axis=1), least, 1.0))
+    changed, products = np.zeros(len(velocities) - 1), np.zeros(len(velocities) - 1)
+    for n, (before, after) in enumerate(pairwise(velocities)):
+        apart = np.zeros(frames.count)
+        for v, w, periodic in zip(before.T, after.T, frames.periodic, strict=True):
+            apart += (w - v if periodic else np.abs(w) - np.abs(v)) ** 2
+        changed[n] = (apart > small[n + 1]).mean()
+        products[n] = np.vdot(before, after)
+    correlation = products / np.maximum(np.sqrt(square[1:] * square[:-1]), np.finfo(float).tiny)
+    unhit = -np.log(np.clip(1.0 - changed, least, 1.0))
     kept = -0.5 * frames.dimension * np.log(np.clip(correlation, least, 1.0))
     return np.concatenate([[0.0], np.cumsum(np.minimum(unhit, kept))]) + 0.0  # no -0
 
@@ -65,21 +71,6 @@ def independent(times: np.ndarray, rate: float) -> float:
     return len(times) ** 2 / total
 
 
-def steps(frames: Frames) -> np.ndarray:
-    """Compute displacements (T - 1, N, d) from frame to frame, by nearest images."""
-    apart = np.diff(frames.positions, axis=0)
-    return apart - np.where(frames.periodic, frames.lengths * np.round(apart / frames.lengths), 0.0)
-
-
-def path(frames: Frames) -> np.ndarray:
-    """Compute the path (T, N, d) of each particle since the first frame.
-
-    It is about the centre of mass along axes on which only particles exchange momentum.
-    """
-    way = np.concatenate([np.zeros_like(frames.positions[:1]), np.cumsum(steps(frames), axis=0)])
-    return way - np.where(frames.periodic, way.mean(axis=1, keepdims=True), 0.0)
-
-
 def decorrelated_frames(way: np.ndarray, distance: float, first: int = 0) -> list[int]:
     """Return frames, from `first` on, between which particles have moved by `distance`.
 
@@ -87,7 +78,7 @@ def decorrelated_frames(way: np.ndarray, distance: float, first: int = 0) -> lis
     """
     chosen = [first]
     for n in range(first + 1, len(way)):
-        if ((way[n] - way[chosen[-1]]) ** 2).sum(axis=1).mean() >= distance**2:
+        if sum_squares(way[n] - way[chosen[-1]]).mean() >= distance**2:
             chosen.append(n)
     return chosen
 
@@ -97,8 +88,7 @@ def first_relaxed_frame(way: np.ndarray, distance: float) -> int | None:
 
     The distance is a root mean square.
     """
-    far = np.flatnonzero((way**2).sum(axis=2).mean(axis=1) >= distance**2)
-    return int(far[0]) if far.size else None
+    return next((n for n, moved in enumerate(way) if sum_squares(moved).mean() >= distance**2), None)
 
 
 def density_modulation(frames: Frames, n: int, of: np.ndarray | None = None) -> float:
@@ -113,9 +103,12 @@ def density_modulation(frames: Frames, n: int, of: np.ndarray | None = None) -> 
         return 0.0
     largest = 0.0
     for x, side, periodic in zip(frames.positions[n].T, frames.lengths, frames.periodic, strict=True):
-        phases = np.pi * np.outer((2.0, 4.0) if periodic else (1.0, 2.0), x / side)
-        powers = (np.cos(phases) @ weights) ** 2
-        powers = powers + (np.sin(phases) @ weights) ** 2 if periodic else 2.0 * powers
+        phase = np.pi * (2.0 if periodic else 1.0) * x / side
+        cosine, sine = np.cos(phase), np.sin(phase)
+        # of the longest wave, and of half its length by the double angle
+        waves = [cosine @ weights, (2.0 * cosine**2 - 1.0) @ weights]
+        others = [sine @ weights, (2.0 * sine * cosine) @ weights]
+        powers = np.square(waves) + np.square(others) if periodic else 2.0 * np.square(waves)
         largest = max(largest, float(powers.max()))
     return largest / total
 
@@ -136,9 +129,9 @@ def why_not_speeds(frames: Frames) -> str | None:
     """Return the reason why speeds cannot be checked; None if they can."""
     if frames.velocities is None:
         return frames.no_velocities
-    if not np.any(frames.velocities):
+    if not frames.squares.any() and not np.any(frames.velocities):
         return "all velocities are 0"
-    if not np.isfinite(frames.velocities).all():
+    if not np.isfinite(frames.squares).all() and not np.isfinite(frames.velocities).all():
         return "not all velocities are finite"
     if frames.gas is None:
         return "particles differ, or are moved by more than elastic contacts"
@@ -198,8 +191,8 @@ def _law(frames: Frames) -> Check:
 
 
 def _squares(frames: Frames, n: int) -> np.ndarray:
-    """Compute squared speeds (N,) in a frame, about the centre of mass along periodic axes."""
-    return np.asarray((frames.motion.velocities[n] ** 2).sum(axis=1))
+    """Return squared speeds (N,) in a frame, about the centre of mass along periodic axes."""
+    return np.asarray(frames.peculiar_squares[n])
 
 
 def _kurtosis(frames: Frames) -> np.ndarray:
@@ -305,7 +298,7 @@ def why_not(frames: Frames) -> str | None:
     interval = np.diff(frames.time)
     if len(interval) == 0 or np.ptp(interval) > 1e-3 * interval.mean():
         return "needs frames at even times"
-    if np.abs(steps(frames)).max() > 0.45 * frames.lengths[0]:
+    if max(np.abs(step).max() for step in frames.steps()) > 0.45 * frames.lengths[0]:
         return "frames are too far apart to follow a particle across the boundary"
     _, first, last = _lags(frames)
     if last - first < 1 or len(interval) < 2 * last:
@@ -327,7 +320,7 @@ def diffusion(frames: Frames) -> tuple[Estimate, tuple[float, float]]:
     1) / N of its value without this condition; this is corrected. The error is the scatter of groups of
     particles.
     """
-    way, n = path(frames), frames.count
+    way, n = frames.path, frames.count
     lags = _lags(frames)
     while 4 * lags[-1] <= len(way):
         lags = [*lags, 2 * lags[-1]]

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import Self
 
-from gaspart.accuracy.steady import require_steady
+from gaspart.accuracy.conditions import require_steady
 from gaspart.analysis.observables import (
     OBSERVABLES,
     observable_name,

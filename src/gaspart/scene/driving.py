@@ -1,14 +1,17 @@
-"""Uniform force along a periodic axis, which drives a flow: sinks of its momentum and energy."""
+"""Drives of a gas: a uniform force along a periodic axis, and a stochastic thermostat."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
+from gaspart.keys import declare, positive, validate
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
     from gaspart.scene.walls import Plate, Wall
+
 
 _MOMENTUM = (
     "fixed particles, interior walls across it, rough contacts with walls, or faces or walls at a temperature"
@@ -61,3 +64,57 @@ def _spans(wall: Wall | Plate, axis: int, length: float) -> bool:
     first, *others = wall.corners.values()
     edges = ([b - a for a, b in zip(first, corner, strict=True)] for corner in others)
     return any(abs(edge[axis]) >= length and not any(edge[:axis] + edge[axis + 1 :]) for edge in edges)
+
+
+# Stochastic thermostat.
+
+
+@dataclass(frozen=True)
+class Thermostat:
+    """Random kicks of all particles at regular times.
+
+    A dissipative gas can reach a steady state with them [1]_.
+
+    Parameters
+    ----------
+    power : float, [energy/time]
+        Mean energy per time that a particle is given.
+    interval : float, [time]
+        Time between kicks: short compared with the time between contacts.
+
+    Raises
+    ------
+    SceneError
+        If a value is not positive.
+
+    Notes
+    -----
+    At each multiple of `interval` every velocity component of a particle of mass m is changed by a normal
+    random number of variance 2 power interval/(d m), and then all velocities by the same, so that the total
+    momentum is conserved. For short intervals this is white noise of strength xi_0^2 = 2 power/(d m).
+
+    References
+    ----------
+    .. [1] D. R. M. Williams and F. C. MacKintosh, Phys. Rev. E 54, R9 (1996).
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> gas = gp.Species(count=100, radius=0.5, temperature=1.0)
+    >>> heated = gp.Scene(
+    ...     gp.Container((30.0, 30.0), boundary="periodic"),
+    ...     species=[gas],
+    ...     restitution=gp.Restitution(normal=0.9),
+    ...     thermostat=gp.Thermostat(power=0.1, interval=0.01),
+    ... )
+    >>> heated.thermostat.power
+    0.1
+    """
+
+    power: float = field(metadata=declare(positive("mean energy per time that a particle is given")))
+    interval: float = field(
+        metadata=declare(positive("time between kicks: short compared with that between contacts"))
+    )
+
+    def __post_init__(self) -> None:
+        validate(self)

@@ -25,6 +25,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, TypeVar
 
 from gaspart.scene.container import Container
+from gaspart.scene.driving import Thermostat
+from gaspart.scene.face_checks import capacity
 from gaspart.scene.faces import (
     FACES,
     GRADIENT,
@@ -38,13 +40,10 @@ from gaspart.scene.faces import (
 )
 from gaspart.scene.features import FEATURES
 from gaspart.scene.gas import Gas, Mixture, mixture_of
-from gaspart.scene.geometry import ball_volume
-from gaspart.scene.moving_walls import MovingWall, moving_wall_among
-from gaspart.scene.open_faces import capacity
+from gaspart.scene.limits import ball_volume
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.species import Particle, Species
-from gaspart.scene.thermostat import Thermostat
-from gaspart.scene.walls import Plate, Wall
+from gaspart.scene.walls import MovingWall, Plate, Wall, moving_wall_among
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene

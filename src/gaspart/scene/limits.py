@@ -1,23 +1,40 @@
 """Limits of sizes and positions: particles that fit into a container and next to each other.
 
-The module has the size limits, the tolerance of given positions, the closest packing, and the search of
-particles near a position.
+The module has the size limits, the tolerance of given positions, the volume of a particle, the closest
+packing, and the search of particles near a position.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from itertools import product
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
 from gaspart.keys.values import finite_vector
-from gaspart.scene.geometry import CLOSE_PACKING
 
 if TYPE_CHECKING:
     from gaspart.scene.container import Container
     from gaspart.scene.scene import Scene
     from gaspart.scene.species import Particle, Species
+
+
+# Volume of a particle and closest packing: one definition for discs and spheres.
+
+
+CLOSE_PACKING = {2: math.pi / math.sqrt(12.0), 3: math.pi / math.sqrt(18.0)}
+"""Packing fraction of the densest arrangement: triangular lattice (2D), face-centred cubic (3D); exact."""
+_UNIT_BALL = {2: math.pi, 3: 4.0 / 3.0 * math.pi}
+
+
+def ball_volume(dimension: int, radius: float = 1.0) -> float:
+    """Return the area of a disc or the volume of a sphere.
+
+    These are pi r^2 and 4 pi r^3 / 3.
+    """
+    return _UNIT_BALL[dimension] * radius**dimension
+
 
 _RESOLVED = 1e12  # diameters in the longest side, at most: contacts are then accurate to a thousandth
 _ROOM = 1e-6  # minimum gap of a particle between two walls, in radii

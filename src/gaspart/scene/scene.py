@@ -31,17 +31,15 @@ from gaspart.keys import (
 )
 from gaspart.keys.values import MOST_PARTICLES, finite_vector
 from gaspart.scene.container import Container
-from gaspart.scene.driving import check_driven
-from gaspart.scene.face_checks import check_faces
+from gaspart.scene.driving import Thermostat, check_driven
+from gaspart.scene.face_checks import check_faces, check_open_faces
 from gaspart.scene.faces import SCHEMA as FACES_SCHEMA
 from gaspart.scene.faces import Surface, key_of, surface_from_dict, surface_to_dict
 from gaspart.scene.facts import Facts
 from gaspart.scene.features import FEATURES, check_features
 from gaspart.scene.limits import Nearby, check_packing, check_region, check_room, rounding
-from gaspart.scene.open_faces import check_open_faces
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.species import SHARED, Particle, Species
-from gaspart.scene.thermostat import Thermostat
 from gaspart.scene.walls import WALL_RULE, Plate, Wall, check_walls, wall_kind
 from gaspart.yaml_text import read_yaml, write_yaml
 

@@ -9,10 +9,10 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.scene.faces import FACES, Well
-from gaspart.scene.moving_walls import MOVING_WALL
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import flow
 from gaspart.scene.species import LATTICES
+from gaspart.scene.walls import MOVING_WALL
 from gaspart.state.compression import compress_positions
 from gaspart.state.insertion import per_particle, random_insertion
 from gaspart.state.random import directions, natural_log, normals, stream

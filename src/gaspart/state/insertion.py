@@ -147,6 +147,7 @@ def random_insertion(
         walls, _ = wall_rows(scene)
     placed, grid, block = empty_arrays(scene, boxes, radii)
     placed.failures[:explicit] = 0
+    larger = np.flatnonzero(radii > largest)
 
     for n, particle in enumerate(scene.particles):  # their places are given, and the scene has checked them
         position = np.clip(
@@ -164,7 +165,7 @@ def random_insertion(
         while done < stop:
             draws = rng.random(out=numbers[: max(256, min(1_000_000, 2 * (stop - done)))])
             alone = radii[done] > largest  # the boxes: it is tested against all that are placed already
-            oversized = np.arange(done) if alone else np.flatnonzero(radii[:done] > largest)
+            oversized = np.arange(done) if alone else larger[: np.searchsorted(larger, done)]
             task = Task(done, done + 1 if alone else stop, failures, patience, lower, upper)
             done, failures, _ = place(draws, placed, grid, block, task, oversized, walls)
             if failures >= patience:

@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
 
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
-from gaspart.scene.impulses import require_impulses, require_pair_impulses, row_count
-from gaspart.scene.stress import require_tallied
+from gaspart.scene.features import require_impulses, require_pair_impulses, require_tallied, row_count
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene

@@ -1,4 +1,4 @@
-from gaspart.scene.geometry import CLOSE_PACKING as CLOSE_PACKING
+from gaspart.scene.limits import CLOSE_PACKING as CLOSE_PACKING
 from gaspart.theory.brownian import displaced_area as displaced_area
 from gaspart.theory.brownian import friction_rate as friction_rate
 from gaspart.theory.brownian import insertion_work as insertion_work

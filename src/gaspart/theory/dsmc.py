@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from gaspart.scene.geometry import ball_volume
+from gaspart.scene.limits import ball_volume
 from gaspart.theory.geometry import Numbers, Values, check_ranges, checked_dimension
 from gaspart.theory.modes import wave_vectors
 

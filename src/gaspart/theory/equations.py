@@ -6,7 +6,7 @@ raises SceneError, a ValueError, outside the stated range. `state` defines the r
 
 import numpy as np
 
-from gaspart.scene.geometry import CLOSE_PACKING
+from gaspart.scene.limits import CLOSE_PACKING
 from gaspart.theory.geometry import Numbers, Values, checked_dimension, checked_packing_fraction
 
 STABLE_DISCS = 0.70

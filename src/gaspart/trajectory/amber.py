@@ -320,15 +320,16 @@ def _frame_checksum(frame: bytes | memoryview, number: int, header_checksum: int
     return struct.pack(">I", zlib.crc32(frame[:-WORD], start))
 
 
-def damaged_frame(file: int, header: bytes, numbers: range) -> int | None:
+def damaged_frame(file: int, header: bytes, numbers: range, checksum: int | None = None) -> int | None:
     """Return the first frame that is damaged or cut short; None if all are correct.
 
     The frames are read: a CRC-32 takes about as long as copying them from memory.
 
     file : descriptor
     numbers : frames to test
+    checksum : of the header, where it is at hand: the header has three numbers of each particle
     """
-    size, header_checksum = frame_bytes(header), zlib.crc32(header)
+    size, header_checksum = frame_bytes(header), zlib.crc32(header) if checksum is None else checksum
     at_once = max(1, _CHUNK // size)
     for first in range(numbers.start, numbers.stop, at_once):
         count = min(at_once, numbers.stop - first)
@@ -351,20 +352,20 @@ class CheckedFrames:
     """Record of the undamaged frames of an open trajectory: each is checked once, before use."""
 
     def __init__(self, file: BinaryIO, header: bytes, frames: int) -> None:
-        self._header, self._checked = header, np.zeros(frames, dtype=bool)
+        self._header, self._checksum = header, zlib.crc32(header)
+        self._checked = np.zeros(frames, dtype=bool)
         self._file = os.dup(file.fileno())
         self.close = weakref.finalize(self, os.close, self._file)
 
     def find_damage(self, numbers: np.ndarray) -> int | None:
         """Return the first of these frames that is damaged, or None. May raise OSError."""
-        new = np.zeros_like(self._checked)
-        new[numbers] = True
-        edges = np.flatnonzero(np.diff((new & ~self._checked).astype(np.int8), prepend=0, append=0))
-        for first, last in edges.reshape(-1, 2).tolist():
-            frame = damaged_frame(self._file, self._header, range(first, last))
+        new = np.unique(numbers[~self._checked[numbers]])
+        for part in np.split(new, np.flatnonzero(np.diff(new) > 1) + 1) if new.size else []:
+            stretch = range(int(part[0]), int(part[-1]) + 1)
+            frame = damaged_frame(self._file, self._header, stretch, self._checksum)
             if frame is not None:
                 return frame
-            self._checked[first:last] = True
+            self._checked[part] = True
         return None
 
 

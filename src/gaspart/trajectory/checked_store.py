@@ -56,12 +56,13 @@ class _CheckedArray(BackendArray):
     def __init__(self, variable: netCDF4.Variable, store: CheckedStore) -> None:
         self._variable, self._store = variable, store
         self.shape, self.dtype = variable.shape, variable.dtype
+        self._numbers = np.arange(self.shape[0])
 
     def __getitem__(self, key: indexing.ExplicitIndexer) -> Any:
         support = indexing.IndexingSupport.OUTER
         return indexing.explicit_indexing_adapter(key, self.shape, support, self._part)
 
     def _part(self, key: tuple) -> np.ndarray:
-        self._store.require(np.atleast_1d(np.arange(self.shape[0])[key[0]]))
+        self._store.require(np.atleast_1d(self._numbers[key[0]]))
         with self._store.lock:
             return self._variable[key]

@@ -14,8 +14,7 @@ from gaspart.engines import Engine, engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
 from gaspart.keys.values import number
-from gaspart.scene.face_checks import check_piston_end
-from gaspart.scene.open_faces import refuse_open
+from gaspart.scene.face_checks import check_piston_end, refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.state.given import state_at_time_zero, state_from_arrays

@@ -12,7 +12,7 @@ from referee import WHOLE_TALLY, check_restored
 from scenes import gas
 
 import gaspart as gp
-from gaspart.engines.dsmc import dense
+from gaspart.engines.dsmc import arrays
 
 PARTS = ("state.unwrapped", "state.velocities", "state.spins", *WHOLE_TALLY)
 
@@ -119,7 +119,7 @@ def test_threads_share_the_slabs_of_a_dense_gas(boundary):
         assert np.array_equal(positions, ends[0][0]) and np.array_equal(velocities, ends[0][1])
         assert tally == ends[0][2]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(dense, "_FEWEST_CELLS", 10**9)
+        patch.setattr(arrays, "_FEWEST_CELLS", 10**9)
         other = advanced(gas(3, 3000, 0.1, boundary), 40, **DENSE)
     assert len(other._dynamics._resolution.dense.slabs) == 2
     met, expected = sim.tally.collisions, other.tally.collisions
@@ -129,12 +129,12 @@ def test_threads_share_the_slabs_of_a_dense_gas(boundary):
 def test_slabs_are_two_reaches_wide_and_even_in_number():
     for cells in ((64, 1, 1), (9, 30, 7), (13, 13), (1000, 3)):
         for reach in (1, 2, 3):
-            axis, edges = dense.slabs_of(np.array(cells), np.full(len(cells), reach))
+            axis, edges = arrays.slabs_of(np.array(cells), np.full(len(cells), reach))
             assert edges[0] == 0 and edges[-1] == cells[axis]
             number = len(edges) - 1
             assert number == 1 or (number % 2 == 0 and np.diff(edges).min() >= 2 * reach)
-    assert len(dense.slabs_of(np.array([16, 1, 1]), np.ones(3, np.int64))[1]) == 2  # too few cells
-    assert len(dense.slabs_of(np.array([25, 25, 25]), np.ones(3, np.int64))[1]) == 13
+    assert len(arrays.slabs_of(np.array([16, 1, 1]), np.ones(3, np.int64))[1]) == 2  # too few cells
+    assert len(arrays.slabs_of(np.array([25, 25, 25]), np.ones(3, np.int64))[1]) == 13
 
 
 def test_a_checkpoint_of_one_thread_goes_on_by_two():

@@ -9,7 +9,7 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart.engines.dsmc.defaults import contact_values
-from gaspart.scene.geometry import ball_volume
+from gaspart.scene.limits import ball_volume
 
 
 @pytest.mark.parametrize("packing_fraction", [0.1, 0.4])

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from gaspart.reproduction.families.tradeoff.choices import ENGINES, PARTS
-from gaspart.reproduction.families.tradeoff.panels import NAMES
+from gaspart.reproduction.families.tradeoff.figure import NAMES
 from gaspart.reproduction.report.explore import engines, series
 from gaspart.theory.state import compressibility_factor
 

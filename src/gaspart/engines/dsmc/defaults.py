@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from gaspart.errors import SceneError, SimulationError
-from gaspart.scene.geometry import ball_volume
+from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Particle, Species
 from gaspart.state.boxes import cube_side

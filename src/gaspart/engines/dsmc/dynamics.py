@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gaspart.engines.checkpoint_identity import check_parts
 from gaspart.engines.dsmc.arrays import TALLY, empty_particles, faces_for, kinds_of, law_for, workspace_for
 from gaspart.engines.dsmc.defaults import FINEST
 from gaspart.engines.dsmc.resolution import EPOCH, HIGHEST, Resolution
+from gaspart.engines.dynamics import check_parts
 from gaspart.engines.features.law import LawPart, contact_law
 from gaspart.engines.features.part import Part, TallyPart, step_kicks
-from gaspart.engines.features.per_area import ThreadedPerAreaPart
+from gaspart.engines.features.tallies import ThreadedPerAreaPart
 from gaspart.engines.step.limits import oversized_particles
 from gaspart.engines.stepped import SteppedDynamics
 from gaspart.errors import SceneError, SimulationError

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.engines.dsmc.arrays import grid_for
+from gaspart.engines.dsmc.arrays import dense_for, grid_for, moved_fields, spreads
 from gaspart.engines.dsmc.defaults import (
     FINEST,
     Rates,
@@ -25,7 +25,6 @@ from gaspart.engines.dsmc.defaults import (
     step_for,
     too_fast,
 )
-from gaspart.engines.dsmc.dense import dense_for, moved_fields, spreads
 from gaspart.kernels.dsmc.enskog import Dense
 from gaspart.kernels.dsmc.model import Grid, Pace, Particles, fitting_level
 from gaspart.scene.scene import Scene

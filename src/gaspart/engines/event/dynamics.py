@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from gaspart.engines.dynamics import Dynamics
+from gaspart.engines.dynamics import Dynamics, EventLog
 from gaspart.engines.event.search import chosen_search, make_lists, neighbour_lists
 from gaspart.engines.event.tally import (
     MANY,
@@ -22,7 +22,6 @@ from gaspart.engines.event.tally import (
     check_progress,
     tally_parts,
 )
-from gaspart.engines.event_log import EventLog
 from gaspart.engines.features.faces import (
     FacesPart,
     OpenPart,
@@ -51,7 +50,7 @@ from gaspart.engines.features.part import (
     shear_of,
     write_parts,
 )
-from gaspart.engines.features.per_area import EventPerAreaPart
+from gaspart.engines.features.tallies import EventPerAreaPart
 from gaspart.engines.features.walls import (
     MovingWallPart,
     WarmWallsPart,

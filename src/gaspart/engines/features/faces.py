@@ -16,8 +16,8 @@ from gaspart.kernels.model import NONE, STICKY, Faces, Model, Motion, Ramp, Slid
 from gaspart.kernels.obstacles.face import NUMBERS, RULES
 from gaspart.kernels.obstacles.moving import advance_piston
 from gaspart.kernels.physics.running_sum import values
+from gaspart.scene.face_checks import attempt_rate
 from gaspart.scene.faces import FACES, Open, Vibrating
-from gaspart.scene.open_faces import attempt_rate
 from gaspart.scene.scene import Scene
 from gaspart.state.initial import places_in_wells, well_energies, wells_of
 from gaspart.state.random import key_of

@@ -14,9 +14,9 @@ import numpy as np
 
 from gaspart.kernels.model import Gravity, Model, Shear, no_support
 from gaspart.kernels.physics import running_sum
+from gaspart.scene.driving import Thermostat
 from gaspart.scene.faces import FLOW, GRADIENT
 from gaspart.scene.scene import Scene
-from gaspart.scene.thermostat import Thermostat
 from gaspart.state.random import key_of
 from gaspart.state.state import State
 

@@ -10,8 +10,8 @@ from gaspart.errors import SceneError
 from gaspart.kernels import model as kernels
 from gaspart.kernels.model import InteriorWalls, MovingWall, WarmWalls
 from gaspart.kernels.obstacles.moving import advance_wall
-from gaspart.scene.moving_walls import MOVING_WALL
 from gaspart.scene.scene import Scene
+from gaspart.scene.walls import MOVING_WALL
 from gaspart.state.boxes import Boxes
 from gaspart.state.interior_walls import wall_rows, walls_near
 from gaspart.state.random import key_of

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gaspart.engines.features.law import largest_terms
-from gaspart.engines.features.per_area import ThreadedPerAreaPart, inverse_areas
+from gaspart.engines.features.tallies import ThreadedPerAreaPart, inverse_areas
 from gaspart.engines.step.arrays import (
     empty_particles,
     masses_of,

@@ -11,7 +11,7 @@ import numpy as np
 
 from gaspart.engines.engine import AccuracyRequest, Candidate
 from gaspart.errors import SceneError, SimulationError
-from gaspart.scene.geometry import ball_volume
+from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 

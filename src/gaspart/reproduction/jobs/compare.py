@@ -161,7 +161,7 @@ def _missed_contacts(scene: Scene, engine: TimeStepped, state: State, steps: int
     """
     import numpy as np
 
-    from gaspart.engines.event_log import EventLog
+    from gaspart.engines.dynamics import EventLog
 
     steps = max(1, min(steps, round(steps * _LISTED / max(2.0 * collisions, _LISTED))))
     if steps > _LISTED_STEPS:

@@ -243,7 +243,7 @@ def _start(scene: Scene, engine: Engine, seed: tuple[int, ...], equilibration: f
 
 def _time(run: _Run, interval: float) -> tuple[tuple[float, float], dict]:
     """Measure CPU time and wall-clock time of one interval, in s, and its counts."""
-    from gaspart.engines.event_log import EventLog
+    from gaspart.engines.dynamics import EventLog
     from gaspart.state.optional_tallies import StressTally
 
     scene, engine = run.scene, run.engine

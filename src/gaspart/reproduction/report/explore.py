@@ -86,7 +86,7 @@ def engines(dataset: xr.Dataset) -> dict[str, Any]:
     """
     from matplotlib.colors import to_hex
 
-    from gaspart.reproduction.families.tradeoff import panels
+    from gaspart.reproduction.families.tradeoff import figure as panels
 
     observables = []
     for quantity in dataset["quantity"].values:

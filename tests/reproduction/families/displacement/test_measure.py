@@ -11,14 +11,14 @@ from gaspart.analysis.correlations import Curves, correlate
 from gaspart.analysis.motion import line, mask_between
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.displacement import measure as displacement
-from gaspart.reproduction.families.shared import curves
+from gaspart.reproduction.families.shared import runs
 
 
 @pytest.fixture
 def stored(monkeypatch):
     """Stands in for the files: `stored[path] = dataset`."""
     files = {}
-    monkeypatch.setattr(curves, "open_trajectory", files.__getitem__)
+    monkeypatch.setattr(runs, "open_trajectory", files.__getitem__)
     return files
 
 

@@ -7,7 +7,7 @@ import gaspart as gp
 from gaspart import theory
 from gaspart.analysis.run import Run
 from gaspart.reproduction.families.granular import measure as granular
-from gaspart.reproduction.families.granular.runs import read
+from gaspart.reproduction.families.granular.measure import read
 from gaspart.reproduction.points.point import Point
 
 

@@ -7,7 +7,7 @@ from reproduction.families.gravity.data import ideal_column, point
 from reproduction.families.gravity.test_measure import SETTINGS, run
 
 import gaspart as gp
-from gaspart.reproduction.families.gravity import measure, source
+from gaspart.reproduction.families.gravity import measure
 
 
 @pytest.fixture
@@ -27,11 +27,11 @@ def test_the_oscillation_that_is_left_where_the_sample_begins(column, monkeypatc
     noise = np.random.default_rng(1).normal(0.0, 0.002, time.size)
     kinetic = 50.0 * (1.0 + 0.2 * np.exp(-time / 5.0) * np.cos(4.0 * time + 1.0) + noise)
     monkeypatch.setattr(
-        source,
+        measure,
         "open_trajectory",
         lambda path: xr.Dataset({"time": ("frame", time), "kinetic_energy": ("frame", kinetic)}),
     )
-    found = source.ringing(column)["ringing"]
+    found = measure.ringing(column)["ringing"]
     assert abs(found.value - 0.2 * np.exp(-2.0)) < 4.0 * found.error
     assert 0.0001 < found.error < 0.002
     assert found.freedom == np.sum(time > 3.0) - 5
@@ -41,13 +41,13 @@ def test_shares_of_the_light_discs_in_layers_of_the_container(column, monkeypatc
     place, sample = ideal_column(np.random.default_rng(2), 1, [1.0, 1.0, 1.0, 3.0])
     place = replace(place, diameter=0.2, height=3.8)  # the container is 4 high
     sample.positions[0, :, 1] = [0.1, 0.2, 3.0, 0.3]
-    monkeypatch.setattr(source, "field", lambda point: place)
-    monkeypatch.setattr(source, "stretches", lambda point, number: [sample])
-    share, error = source.shares(column, 2)["share"]
+    monkeypatch.setattr(measure, "field", lambda point: place)
+    monkeypatch.setattr(measure, "stretches", lambda point, number: [sample])
+    share, error = measure.shares(column, 2)["share"]
     assert share == pytest.approx([2.0 / 3.0, 1.0])
     assert error == pytest.approx([np.sqrt(2.0 / 27.0), 0.0])
     sample.positions[0, 3, 1] = 1.95  # just above the middle of the container
-    assert source.shares(column, 2)["share"][0] == pytest.approx([1.0, 0.5])
+    assert measure.shares(column, 2)["share"][0] == pytest.approx([1.0, 0.5])
 
 
 def test_only_the_source_s_own_run_is_compared_with_its_numbers(column, tmp_path):

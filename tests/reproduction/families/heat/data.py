@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 import gaspart as gp
-from gaspart.reproduction.families.heat.approach import FRAMES
+from gaspart.reproduction.families.heat.gap import FRAMES
 from gaspart.reproduction.families.heat.measure import INNER
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import from_rows

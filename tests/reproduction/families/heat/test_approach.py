@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from reproduction.families.heat.data import gas, run
 
-from gaspart.reproduction.families.heat.approach import FRAMES, approach
+from gaspart.reproduction.families.heat.gap import FRAMES, approach
 from gaspart.theory.heat import conducting_slab
 
 

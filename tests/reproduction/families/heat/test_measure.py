@@ -6,8 +6,7 @@ from reproduction.families.heat.data import gas, run
 
 import gaspart as gp
 from gaspart.reproduction.families.heat import measure as heat
-from gaspart.reproduction.families.heat.approach import FRAMES
-from gaspart.reproduction.families.heat.gap import Gap
+from gaspart.reproduction.families.heat.gap import FRAMES, Gap
 from gaspart.reproduction.points.point import Point
 from gaspart.theory.heat import free_molecular_flux
 

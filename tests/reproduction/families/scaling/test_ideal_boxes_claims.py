@@ -2,7 +2,7 @@
 
 from reproduction.claims.data import judged
 
-from gaspart.reproduction.families.scaling.ideal_boxes_claims import ideal_boxes
+from gaspart.reproduction.families.scaling.claims import ideal_boxes
 
 
 def test_plateaus_are_decided(dataset):

@@ -3,7 +3,7 @@
 import pytest
 from reproduction.claims.data import judged
 
-from gaspart.reproduction.families.scaling.remarks_claims import remarks
+from gaspart.reproduction.families.scaling.claims import remarks
 
 
 @pytest.mark.parametrize(

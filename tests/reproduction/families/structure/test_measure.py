@@ -7,7 +7,7 @@ from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import fit_polynomial
 from gaspart.reproduction.families.structure import measure, potential
-from gaspart.reproduction.families.structure.state import POWERS, MeasuredState
+from gaspart.reproduction.families.structure.potential import POWERS, MeasuredState
 from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.point import Point
 

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.reproduction.families.tradeoff import flows, relaxation
+from gaspart.reproduction.families.tradeoff import choices, maps
 from gaspart.reproduction.families.tradeoff import measure as tradeoff
 from gaspart.reproduction.families.tradeoff.choices import ENGINES, PARTS
 from gaspart.reproduction.families.tradeoff.maps import QUANTITIES
@@ -140,8 +140,8 @@ def map_measurement(accuracy):
     every = np.ones((5, 1, 1, 1))
     bound = np.full((2, 5, 4), np.nan)
     bound[:, :, 1:] = np.array([0.03, 0.04, 0.05])
-    slow = [relaxation.relaxation_time(float(theory.contact_value(eta, 3))) for eta in FRACTIONS]
-    relaxing = np.full((5, 4), relaxation.relaxation_time(1.0))
+    slow = [choices.relaxation_time(float(theory.contact_value(eta, 3))) for eta in FRACTIONS]
+    relaxing = np.full((5, 4), choices.relaxation_time(1.0))
     relaxing[:, 2] = slow
     bound[1, :, 2] = 0.5
     flow = np.stack([np.full((5, 4), 2.0) * np.array([1.0, 0.99, 1.02, 1.03]), relaxing])
@@ -168,6 +168,6 @@ def map_measurement(accuracy):
             "fraction": list(FRACTIONS),
             "solver": list(ENGINES),
             "part": list(PARTS),
-            "flow_quantity": list(flows.FLOWS),
+            "flow_quantity": list(maps.FLOWS),
         },
     )

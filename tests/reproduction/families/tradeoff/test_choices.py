@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from gaspart import theory
-from gaspart.accuracy import models
+from gaspart.accuracy import tabulated
 from gaspart.analysis.estimate import Estimate
 from gaspart.engines.dsmc.defaults import contact_values
-from gaspart.reproduction.families.tradeoff import flows, relaxation, uniform
+from gaspart.reproduction.families.tradeoff import choices, maps, uniform
 from gaspart.reproduction.families.tradeoff.choices import PARTS, Choice, cheapest
 from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.point import Point
@@ -54,7 +54,7 @@ def test_the_cheapest_choice_is_the_least_biased_one_where_none_reaches():
 def test_the_boltzmann_equation_lacks_contact_value_and_virial(dimension, order):
     """order: of the contact value, 1 + order x packing fraction."""
     z, contact = (float(f(0.1, dimension)) for f in (theory.compressibility_factor, theory.contact_value))
-    error = partial(models.model_error, dimension=dimension, equation="boltzmann")
+    error = partial(tabulated.model_error, dimension=dimension, equation="boltzmann")
     assert error(0.1, observable="Z") == pytest.approx(1.0 - 1.0 / z)
     assert error(0.1, observable="collision_rate") == pytest.approx(1.0 - 1.0 / contact)
     assert error(1e-3, observable="collision_rate") == pytest.approx(1e-3 * order, rel=0.005)
@@ -67,17 +67,17 @@ def test_the_enskog_model_errs_by_the_contact_value_that_its_engine_has(dimensio
     radius, density = np.array([0.5]), np.array([0.3 / theory.particle_volume(dimension)])
     given = contact_values(density, radius, dimension).item()
     error = abs(given / float(theory.contact_value(0.3, dimension)) - 1.0)
-    found = models.model_error(0.3, dimension, "enskog", "collision_rate")
+    found = tabulated.model_error(0.3, dimension, "enskog", "collision_rate")
     assert 0.0 < found < 0.004 and found == pytest.approx(error, rel=1e-9)
-    assert 0.0 < models.model_error(0.3, dimension, "enskog", "Z") < found
+    assert 0.0 < tabulated.model_error(0.3, dimension, "enskog", "Z") < found
 
 
 def test_both_models_lack_the_memory_of_collisions_in_d():
     ratio = float(theory.erpenbeck_wood_ratio(0.3))
     exact = 1.0 - 1.0 / ratio + theory.ERPENBECK_WOOD_UNCERTAINTY
-    assert models.model_error(0.3, 3, "enskog", "D") == pytest.approx(exact, rel=0.02)
-    assert models.model_error(1e-6, 3, "boltzmann", "D") < 1e-5
-    assert models.model_error(0.01, 2, "boltzmann", "D") == math.inf  # discs have no D
+    assert tabulated.model_error(0.3, 3, "enskog", "D") == pytest.approx(exact, rel=0.02)
+    assert tabulated.model_error(1e-6, 3, "boltzmann", "D") < 1e-5
+    assert tabulated.model_error(0.01, 2, "boltzmann", "D") == math.inf  # discs have no D
 
 
 def test_what_the_size_leaves_falls_with_it():
@@ -93,7 +93,7 @@ def test_steps_of_a_fifth_of_a_free_time():
     step = 0.2 / float(theory.collision_rate(0.001, 3))
     moved = 0.2 * math.sqrt(math.pi) / 2.0
     expected = 4.0 / (27.0 * math.pi) * moved**2
-    assert models.step_error(0.001, step) == pytest.approx(expected, rel=0.01)
+    assert tabulated.step_error(0.001, step) == pytest.approx(expected, rel=0.01)
 
 
 def flow(engine, value, error=0.001, bounds=(0.0, 0.0), **changes):
@@ -101,35 +101,35 @@ def flow(engine, value, error=0.001, bounds=(0.0, 0.0), **changes):
         "observable": "heat_flux", "packing_fraction": 0.1, "time_step": 0.1, "count": 500, "variance": 2.0,
         "contacts": 1000.0, "decay": 3.0, "shortest": 3.0,
     }  # fmt: skip
-    return flows.Flow(engine=engine, value=Estimate(value, error, 20.0), bounds=bounds, **numbers | changes)
+    return maps.Flow(engine=engine, value=Estimate(value, error, 20.0), bounds=bounds, **numbers | changes)
 
 
 def test_an_error_is_bounded_by_theory_or_by_what_is_seen():
     event = flow("event", 1.0)
     seen = 0.02 + 2.0 * math.hypot(0.001 / 1.02, 0.001) * 1.02
-    assert flows.errors_of(flow("boltzmann", 1.02, bounds=(0.3, 0.005)), event) == pytest.approx(
+    assert maps.errors_of(flow("boltzmann", 1.02, bounds=(0.3, 0.005)), event) == pytest.approx(
         (seen - 0.005, 0.005), rel=1e-3
     )
-    assert flows.errors_of(flow("boltzmann", 1.02, bounds=(0.004, 0.001)), event) == (0.004, 0.001)
-    assert flows.errors_of(flow("step", 1.02, bounds=(0.0, math.inf)), event)[1] == pytest.approx(
+    assert maps.errors_of(flow("boltzmann", 1.02, bounds=(0.004, 0.001)), event) == (0.004, 0.001)
+    assert maps.errors_of(flow("step", 1.02, bounds=(0.0, math.inf)), event)[1] == pytest.approx(
         seen, rel=1e-3
     )
-    assert flows.errors_of(event, event) == (0.0, 0.0)
+    assert maps.errors_of(event, event) == (0.0, 0.0)
 
 
 def test_a_flow_costs_its_variance_and_settles_first():
     speeds = {"event": Estimate(1e-3, 1e-5), "enskog": Estimate(2e-3, 1e-5)}
-    made = list(flows.choices([flow("event", 1.0), flow("enskog", 1.0), flow("step", 1.0)], 1000, speeds))
+    made = list(maps.choices([flow("event", 1.0), flow("enskog", 1.0), flow("step", 1.0)], 1000, speeds))
     assert [one.engine for one in made] == ["event", "enskog"]
     assert made[0].unit == pytest.approx(2.0 * 1e-3) and made[1].unit == pytest.approx(4.0e-3)
     assert made[0].least == pytest.approx(3.0 * 1e-3 * 2.0)  # of twice as many particles
-    assert made[0].equilibration == pytest.approx(flows.SETTLED * made[0].decay)
+    assert made[0].equilibration == pytest.approx(maps.SETTLED * made[0].decay)
     assert made[0].uncertainty == pytest.approx(0.01)
 
 
 def test_rarer_collisions_make_speeds_relax_later():
-    assert relaxation.relaxation_time(1.0) == pytest.approx(1.618, abs=0.002)
-    assert relaxation.relaxation_time(2.0) > 1.2 * relaxation.relaxation_time(1.0)
+    assert choices.relaxation_time(1.0) == pytest.approx(1.618, abs=0.002)
+    assert choices.relaxation_time(2.0) > 1.2 * choices.relaxation_time(1.0)
 
 
 def point(folder, **settings):
@@ -143,8 +143,8 @@ def point(folder, **settings):
 def test_relaxation_of_a_small_gas(tmp_path):
     run = {"count": 400, "speed": math.sqrt(3.0), "collisions_per_particle": 3, "samples": 12, "replicas": 4}
     made = point(tmp_path, engine="event", **run)
-    found = flows.relaxation_of(made)
-    assert abs((found.value - relaxation.relaxation_time(1.0)).deviation) < 4.0
+    found = maps.relaxation_of(made)
+    assert abs((found.value - choices.relaxation_time(1.0)).deviation) < 4.0
     rate = float(theory.collision_rate(0.1, 3))
     assert found.contacts == pytest.approx(0.5 * 400 * rate, rel=0.1)
     assert found.bounds == (0.0, 0.0) and found.decay == 0.0

@@ -4,7 +4,7 @@ from reproduction.families.tradeoff.data import speed_accuracy_measurement, time
 
 from gaspart.reproduction.claims import judge
 from gaspart.reproduction.families.tradeoff import claims as tradeoff
-from gaspart.reproduction.families.tradeoff import map_claims
+from gaspart.reproduction.families.tradeoff import claims as tradeoff_claims
 
 
 def verdicts(dataset):
@@ -58,7 +58,7 @@ def test_a_model_that_predicts_the_costs_agrees_and_one_that_does_not_is_noticed
 
 
 def of_map(dataset):
-    return judged(map_claims.of_map(dataset))
+    return judged(tradeoff_claims.of_map(dataset))
 
 
 def test_a_map_as_theory_has_it_agrees():

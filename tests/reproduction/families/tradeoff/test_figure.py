@@ -3,8 +3,8 @@ import pytest
 from reproduction.families.drawn import Points, draw, shows, varied
 from reproduction.families.tradeoff.data import speed_accuracy_measurement, time_to_accuracy_measurement
 
+from gaspart.reproduction.families.tradeoff import figure
 from gaspart.reproduction.families.tradeoff import figure as tradeoff
-from gaspart.reproduction.families.tradeoff import panels
 
 
 def errors(row, observable):
@@ -40,7 +40,7 @@ def test_errors_are_drawn_against_the_step_and_costs_against_errors(tmp_path):
 def test_the_map_has_the_cheapest_engine_of_each_field():
     ds = time_to_accuracy_measurement().sortby("accuracy", ascending=False)
     *fields, _ = draw(tradeoff.time_to_accuracy, ds).axes
-    for axis, quantity in zip(fields, panels.TITLES, strict=True):
+    for axis, quantity in zip(fields, figure.TITLES, strict=True):
         at = ds.sel(quantity=quantity)
         colours = axis.collections[0].get_array()
         texts = iter(axis.texts)
@@ -48,8 +48,8 @@ def test_the_map_has_the_cheapest_engine_of_each_field():
             for a, _ in enumerate(ds.accuracy):
                 costs = at.cost.isel(fraction=f, accuracy=a)
                 best = costs.solver.values[int(np.argmin(costs.values))]
-                assert tuple(colours[a, f]) == pytest.approx(panels.tint(best))
-                assert next(texts).get_text() == panels.duration(float(costs.min()))
+                assert tuple(colours[a, f]) == pytest.approx(figure.tint(best))
+                assert next(texts).get_text() == figure.duration(float(costs.min()))
 
 
 def test_bars_are_the_parts_of_the_error():
@@ -63,7 +63,7 @@ def test_bars_are_the_parts_of_the_error():
 def test_of_a_small_run_the_nearest_places_are_shown():
     ds = time_to_accuracy_measurement().isel(fraction=[1, 4])
     ds["cost"] = ds.cost.where((ds.fraction != 0.3) | (ds.quantity != "D"))
-    (at,) = panels.places(ds)
+    (at,) = figure.places(ds)
     assert (at.quantity, at.fraction, at.accuracy) == ("D", 0.001, 0.01)
     assert len(draw(tradeoff.time_to_accuracy, ds).axes[-1].patches) > 0
 
@@ -71,7 +71,7 @@ def test_of_a_small_run_the_nearest_places_are_shown():
 def test_a_gas_in_which_no_engine_is_accurate_enough_is_left_white():
     ds = time_to_accuracy_measurement()
     ds["cost"] = ds.cost.where(ds.fraction != 0.1, np.inf)
-    assert {engine for f, _, engine, _ in panels.cheapest_engine(ds.sel(quantity="Z")) if f == 3} == {""}
+    assert {engine for f, _, engine, _ in figure.cheapest_engine(ds.sel(quantity="Z")) if f == 3} == {""}
     assert "–" in [text.get_text() for text in draw(tradeoff.time_to_accuracy, ds).axes[1].texts]
 
 
@@ -81,4 +81,4 @@ def test_a_gas_in_which_no_engine_is_accurate_enough_is_left_white():
      (4000.0, "1 h"), (2e5, "2 d"), (4e8, "13 y")],
 )  # fmt: skip
 def test_durations(seconds, text):
-    assert panels.duration(seconds) == text
+    assert figure.duration(seconds) == text

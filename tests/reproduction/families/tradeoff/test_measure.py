@@ -14,8 +14,7 @@ from reproduction.families.tradeoff.data import (
 )
 
 from gaspart import theory
-from gaspart.reproduction.families.tradeoff.frontier import frontier
-from gaspart.reproduction.families.tradeoff.measure import _orders, speed_accuracy, time_to_accuracy
+from gaspart.reproduction.families.tradeoff.measure import _orders, frontier, speed_accuracy, time_to_accuracy
 from gaspart.reproduction.families.tradeoff.uniform import OBSERVABLES
 
 

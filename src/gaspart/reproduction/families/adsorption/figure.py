@@ -28,7 +28,7 @@ def adsorption(dataset: xr.Dataset) -> Figure:
     _isotherm(axes[3], layer)
     _sticky_coverage(axes[4], sticky)
     _leaving(axes[5], ideal, sticky)
-    titles = "(a) wells", "(b) wells", "(c) a hard layer", "(d) sticky wall", "(e) well, sticky wall"
+    titles = "(a) wells", "(b) wells", "(c) thin well", "(d) sticky wall", "(e) well and sticky wall"
     for axis, title in zip((axes[0], *axes[2:]), titles, strict=True):
         style.letter(axis, title)
     return figure
@@ -56,8 +56,8 @@ def _ratios(top: Axes, bottom: Axes, wells: Table) -> None:
 def _lengths(axis: Axes, wells: Table) -> None:
     """Draw the length in Langmuir's formula, in widths of the well, against temperature."""
     temperatures = np.geomspace(0.8 * wells.temperature.min(), 1.25 * wells.temperature.max(), 50)
-    axis.plot(temperatures, temperatures**-0.5, color=style.DATA, ls=":", label="a thermal wavelength")
-    axis.axhline(1.0, color=style.REFERENCE, label="the width of the well")
+    axis.plot(temperatures, temperatures**-0.5, color=style.DATA, ls=":", label="thermal wavelength")
+    axis.axhline(1.0, color=style.REFERENCE, label="width of the well")
     for kind, (_, width, well) in enumerate(wells.by("depth", "width")):
         style.points(axis, well.temperature, well.length / width, kind=kind, hollow=True)
     axis.set_xscale("log")
@@ -71,8 +71,8 @@ def _isotherm(axis: Axes, layers: Table) -> None:
     eta = np.linspace(1e-3, 0.52, 300)
     axis.plot(scaled_particle_activity(eta), eta, color=style.REFERENCE, label="hard discs (SPT)")
     activity = np.geomspace(0.01, 100.0, 200)
-    axis.plot(activity, activity, color=style.GREY, ls=":", label="ideal: Henry")
-    axis.plot(activity, langmuir_coverage(activity), color=style.GREY, ls="--", label="sites: Langmuir")
+    axis.plot(activity, activity, color=style.GREY, ls=":", label="Henry (ideal gas)")
+    axis.plot(activity, langmuir_coverage(activity), color=style.GREY, ls="--", label="Langmuir (sites)")
     spheres = layers.activity, layers.coverage
     style.points(axis, *spheres, color=style.DATA, hollow=True, zorder=4, label="spheres")
     axis.set_xscale("log")
@@ -86,7 +86,7 @@ def _sticky_coverage(axis: Axes, walls: Table) -> None:
     style.points(axis, density, walls.coverage, kind=1, label="sticky wall")
     line = np.geomspace(0.8 * density.min(), 1.25 * density.max(), 50)
     henry = walls.coverage.value[middle] * line / density[middle]
-    axis.plot(line, henry, color=style.GREY, ls="--", label="in equilibrium: Henry")
+    axis.plot(line, henry, color=style.GREY, ls="--", label="Henry (equilibrium)")
     axis.set(xscale="log", yscale="log")
     axis.set_xticks([0.01, 0.02, 0.05], ["0.01", "0.02", "0.05"])
     axis.minorticks_off()
@@ -102,5 +102,5 @@ def _leaving(axis: Axes, wells: Table, walls: Table) -> None:
     for row, kind, label in ((wells[0], 0, "well"), (dense, 1, "sticky wall")):
         style.points(axis, walls.speed, row.flux, kind=kind, hollow=not kind, label=label)
     axis.axvline(dense.slow_speed, color=style.GREY, ls=":")
-    labels = r"normal speed $v\sqrt{m/kT}$", "share leaving"
+    labels = r"normal speed $v\sqrt{m/kT}$", "probability density"
     style.label_axes(axis, *labels, legend="upper right", ylim=(0.0, None))

@@ -41,19 +41,19 @@ def _draw_displacement(top: Axes, middle: Axes, discs: Table, ratio: float) -> N
         top.plot(eta, area * eta, ls=dashes, color=colour, label=label, zorder=2)
         middle.plot(eta, np.sqrt(area) - ratio, ls=dashes, color=colour, zorder=2)
     style.points(top, packing, discs.force, label="from the force")
-    style.points(top, packing, discs.missing, kind=1, hollow=True, label="small discs missing")
+    style.points(top, packing, discs.missing, kind=1, hollow=True, label="missing small discs")
     style.points(middle, packing, discs.force_radius)
     style.points(middle, packing, discs.count_radius, kind=1, hollow=True)
-    style.label_axes(top, y=r"mass displaced $F/mg$", legend="upper left")
+    style.label_axes(top, y=r"displaced mass $F/mg$", legend="upper left")
     labels = r"packing fraction $\eta$ of the fluid at that height", r"$(R_\mathrm{eff} - R)/r$"
     style.label_axes(middle, *labels, ylim=(-0.15, 1.35))
 
 
 def _heights(axis: Axes, discs: Table, fluid: Table) -> None:
     """Draw free discs: mean heights and their fluctuations, with theory."""
-    axis.plot(fluid.displaced, fluid.height, color=style.DATA, label=r"displaces $M$", zorder=2)
+    axis.plot(fluid.displaced, fluid.height, color=style.DATA, label=r"displaced mass $M$", zorder=2)
     for disc in discs:
-        label = "fluctuates" if disc.mass == discs.mass[0] else None
+        label = "standard deviation" if disc.mass == discs.mass[0] else None
         ends = [disc.height.value - disc.spread.value, disc.height.value + disc.spread.value]
         axis.plot([disc.mass] * 2, ends, color=style.COLOURS[0], lw=5, alpha=0.25, label=label, zorder=1)
     style.points(axis, discs.mass, discs.height, label="mean height")
@@ -74,5 +74,5 @@ def _source(axis: Axes, discs: Table) -> None:
     axis.plot(density, discs.expected, color=style.DATA, label="theory", zorder=2)
     style.points(axis, density, discs.height, label="source's discs")
     axis.axvline(1.0, color=style.GREY, ls="--", lw=0.8, zorder=1)
-    labels = "density of the disc over the fluid's mean", "height $z$ (length)"
+    labels = "density of the disc / mean of the fluid", "height $z$ (length)"
     style.label_axes(axis, *labels, legend="upper right")

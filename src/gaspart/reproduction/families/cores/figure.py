@@ -11,9 +11,9 @@ from gaspart.rendering import style
 from gaspart.reproduction.families.cores.model import SLABS, speed_up
 from gaspart.reproduction.table import Row, Table
 
-_PANELS = {"DSMC": "DSMC", "time-stepped": "steps", "event-driven": "events"}
+_PANELS = {"DSMC": "DSMC", "time-stepped": "time-stepped", "event-driven": "event-driven"}
 _MOST = 8  # cores up to which the model is drawn
-_LABEL = "speed over one core"
+_LABEL = "speed-up"
 
 
 def cores(dataset: xr.Dataset) -> Figure:

@@ -52,7 +52,7 @@ def _velocity(axis: Axes, slow: Table) -> None:
             if name == "dilute":
                 slope = 1.0 / (1.0 + 2.0 * VELOCITY_SLIP * last.knudsen)
                 axis.plot(line, slope * line, color=style.COLOURS[kind], lw=0.8)
-    style.label_axes(axis, "place in the gap $x/L$", "velocity of the gas $u/U$", "upper left")
+    style.label_axes(axis, "position in the gap $x/L$", "velocity of the gas $u/U$", "upper left")
 
 
 def _temperature(axis: Axes, wide: Table) -> None:
@@ -66,7 +66,7 @@ def _temperature(axis: Axes, wide: Table) -> None:
             slope, reach = float(theory.viscous_heating(0.0, 3)), np.array([0.0, square.max()])
             top = first.temperature.value[square.argmin()]
             axis.plot(reach, top - slope * reach, color=style.COLOURS[kind], lw=0.8)
-    labels = r"squared velocity of the gas $u^2$", "temperature over the walls'"
+    labels = r"squared velocity of the gas $u^2$", "temperature / wall temperature"
     style.label_axes(axis, *labels, legend="upper right")
 
 
@@ -81,7 +81,7 @@ def _stress(axis: Axes, dilute: Table) -> None:
     axis.plot(knudsen, slip, color=style.GREY, lw=0.8, label="viscous, with slip")
     axis.axhline(1.0, color=style.GREY, lw=0.8, ls=":", label="free flight")
     axis.set(xscale="log", yscale="log")
-    style.label_axes(axis, r"Knudsen number $\lambda/L$", "stress over free flight's", "lower right")
+    style.label_axes(axis, r"Knudsen number $\lambda/L$", "stress / free-flight stress", "lower right")
 
 
 def _viscosity(axis: Axes, slow: Table, gases: Table) -> None:
@@ -106,7 +106,7 @@ def _slip(axis: Axes, slow: Table) -> None:
         style.points(axis, own.packing_fraction, own.slip, kind=kind, label=engine)
     axis.axhline(VELOCITY_SLIP, color=style.GREY, lw=0.8, label="Boltzmann equation")
     axis.axhline(ELEMENTARY_SLIP, color=style.GREY, lw=0.8, ls=":", label="Maxwell's estimate")
-    labels = r"packing fraction $\phi$", r"slip over $\lambda\,\mathrm{d}u/\mathrm{d}x$"
+    labels = r"packing fraction $\phi$", r"slip / $(\lambda\,\mathrm{d}u/\mathrm{d}x)$"
     style.label_axes(axis, *labels, legend="upper left")
 
 
@@ -124,4 +124,4 @@ def _normal(axis: Axes, dilute: Table) -> None:
         axis.plot(fine, slope * fine, color=style.COLOURS[kind], lw=0.8)
     axis.set(xlim=(0.0, fine[-1]), ylim=[1.6 * fine[-1] * slope for slope in (-1.2, 2.0)])
     axis.locator_params(axis="x", nbins=5)
-    style.label_axes(axis, "squared stress over pressure $a^2$", "normal stress / mean $-$ 1", "upper left")
+    style.label_axes(axis, "(stress / pressure)$^2$, $a^2$", "normal stress / mean $-$ 1", "upper left")

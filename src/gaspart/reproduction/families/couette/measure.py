@@ -18,7 +18,6 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.run import Run
 from gaspart.analysis.series import Blocks, face_pressures
 from gaspart.analysis.statistics import fit_linear, jackknife
-from gaspart.reproduction.families.couette.uniform import uniform
 from gaspart.reproduction.families.heat.gap import Gap
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.families.transport.measure import coefficient
@@ -27,6 +26,52 @@ from gaspart.reproduction.table import table
 from gaspart.scene.faces import thermal_face
 from gaspart.scene.scene import Scene
 from gaspart.theory.dsmc import cell_factor, step_factor
+
+# A gas in uniform shear, without walls (`scene.faces.LeesEdwards`).
+#
+# The flow is along the first axis, its gradient along the second; particles have the mass 1. The gas heats.
+
+
+_AXES = {"y": 0, "x": 1, "z": 2}  # of the container, by name as of walls across x: x is that of the gradient
+
+
+def uniform(point: Point, blocks: int) -> dict[str, Any]:
+    """Measure the numbers of a sheared gas, as in a flow between walls.
+
+    viscosity : response divided by Enskog's viscosity at the temperature of the time. reduced_rate : stress
+        over pressure. normal_x, _y, _z : pressure along gradient, flow and vorticity over their mean, minus
+        1.
+
+    Errors are by leaving out each block of time, of which each run has `blocks`.
+    """
+    scene = point.scene
+    series = [
+        np.concatenate(parts) for parts in zip(*(_blocks(run, blocks) for run in runs(point)), strict=True)
+    ]
+    estimates = Estimate(*jackknife(_numbers, *series), len(series[0]) - 1)
+    names = ("viscosity", "reduced_rate", *(f"normal_{name}" for name in _AXES))
+    return {"packing_fraction": scene.packing_fraction, **dict(zip(names, estimates, strict=True))}
+
+
+def _blocks(run: Run, blocks: int) -> tuple[np.ndarray, np.ndarray]:
+    """Compute the pressure tensor in blocks of a run, and the stress by Enskog.
+
+    The shapes are (K, d, d) and (K,).
+    """
+    parts, scene = Blocks(run, blocks), run.scene
+    pressures = parts.growth("stress_sum") / scene.container.volume
+    root = np.sqrt(run.temperatures)
+    unit = float(theory.enskog_viscosity(scene.packing_fraction, 3, 2.0 * scene.smallest_radius))
+    assert scene.shear_rate is not None
+    return pressures, scene.shear_rate * parts.means(unit * 0.5 * (root[1:] + root[:-1]))
+
+
+def _numbers(pressures: np.ndarray, expected: float) -> np.ndarray:
+    """Compute the numbers of `uniform`, from averages over stretches."""
+    along = np.diag(pressures)
+    mean, stress = along.mean(), -pressures[1, 0]
+    return np.array([stress / expected, stress / mean, *(along[list(_AXES.values())] / mean - 1.0)])
+
 
 NUMBERS = ("viscosity", "slip", "heating", "normal_x", "normal_y", "normal_z", "pressure", "reduced_rate")
 """Names of the numbers of a flow; see `couette`."""
@@ -159,7 +204,7 @@ class Averages:
         return self.stress - design[:, 1:] @ fit_linear(design, self.stress).values[1:]
 
 
-def _blocks(point: Point, gap: Gap, blocks: int, bins: int) -> Averages:
+def _gap_blocks(point: Point, gap: Gap, blocks: int, bins: int) -> Averages:
     """Return averages over the measured part of all replicas, each cut into `blocks`."""
     replicas = [_blocks_of(run, gap, blocks, bins) for run in runs(point)]
     return Averages(
@@ -193,11 +238,11 @@ def _flow(point: Point, settings: dict) -> dict[str, Any]:
     """Return the numbers of one flow."""
     setting = FlowBetweenPlates.of(point, settings)
     gap, speed = setting.gap, setting.speed
-    blocks = _blocks(point, gap, settings["blocks"], settings["bins"])
+    blocks = _gap_blocks(point, gap, settings["blocks"], settings["bins"])
     profiles = blocks.density, blocks.flow, blocks.squares
 
     def numbers(*means: Any) -> np.ndarray:
-        return _numbers(setting, *means)
+        return _gap_numbers(setting, *means)
 
     estimates = Estimate(
         *jackknife(numbers, blocks.steady, blocks.pressure, *profiles), len(blocks.stress) - 1
@@ -228,7 +273,9 @@ def _profile(
     return velocity, energies.mean(axis=1), energies
 
 
-def _numbers(setting: FlowBetweenPlates, stress: float, pressure: float, *averages: np.ndarray) -> np.ndarray:
+def _gap_numbers(
+    setting: FlowBetweenPlates, stress: float, pressure: float, *averages: np.ndarray
+) -> np.ndarray:
     """Compute the stress and `NUMBERS`, from averages over a run.
 
     Across the gap T + b u^2 is constant (`theory.viscous_heating`), and the viscosity grows like the root of

@@ -8,7 +8,7 @@ import xarray as xr
 from gaspart import theory
 from gaspart.analysis.statistics import combine_estimates
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import ENSKOG_LIMIT, MODE_COUPLING
+from gaspart.reproduction.families.shared import ENSKOG_LIMIT, MODE_COUPLING
 from gaspart.reproduction.table import Table, each
 
 DILUTE_BAND = 0.007

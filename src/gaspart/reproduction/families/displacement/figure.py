@@ -141,7 +141,7 @@ def _density(axis: Axes, largest: Table) -> None:
     axis.fill_between(curve, ratio * (1 - band), ratio * (1 + band), color=style.REFERENCE, alpha=0.2, lw=0)
     axis.plot(curve, ratio, color=style.REFERENCE, label=rf"Erpenbeck & Wood, $\pm{100.0 * band:g}\,\%$")
     axis.axhline(1.0, color=style.DATA, lw=0.8, label="Enskog")
-    style.points(axis, eta, largest.diffusion / enskog, kind=1, hollow=True, label="as measured")
+    style.points(axis, eta, largest.diffusion / enskog, kind=1, hollow=True, label="finite container")
     style.points(axis, eta, infinite(largest) / enskog, color=style.DATA, label="infinite container")
     axis.set(xlim=(0.0, curve[-1]), ylim=(0.93, 1.72))
     style.label_axes(axis, r"packing fraction $\eta$", r"$D/D_\mathrm{Enskog}$", "upper right")
@@ -188,7 +188,7 @@ def _slopes(axis: Axes, long: Table) -> None:
     curve = np.linspace(0.5 * eta.min(), 1.1 * eta.max(), 100)
     axis.plot(curve, theory.logarithmic_slope(curve), color=style.REFERENCE, label="infinite system")
     predicted = long[np.isfinite(long.slope_expected)]
-    look: dict[str, Any] = {"color": style.REFERENCE, "label": "this container", "zorder": 4}
+    look: dict[str, Any] = {"color": style.REFERENCE, "label": "modes of the container", "zorder": 4}
     axis.plot(predicted.packing_fraction, predicted.slope_expected, "x", **look)
     style.points(axis, eta, long.logarithmic_slope, color=style.DATA, label="measured")
     axis.set_ylim(0.0)

@@ -22,7 +22,7 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.motion import line, mask_between
 from gaspart.analysis.statistics import fit_polynomial, means_of
 from gaspart.errors import SceneError
-from gaspart.reproduction.families.shared.curves import reduced_curves
+from gaspart.reproduction.families.shared.runs import reduced_curves
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, entries, table
 from gaspart.scene.gas import plain_gas

@@ -6,7 +6,7 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.families.shared import PARTICLES
 from gaspart.reproduction.table import Row, Table
 
 BALANCE = (

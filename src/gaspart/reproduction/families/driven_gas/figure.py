@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.rendering import style
-from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.families.shared import PARTICLES
 from gaspart.reproduction.table import Table
 
 
@@ -27,7 +27,7 @@ def driven_gas(ds: xr.Dataset) -> Figure:
         for of, line in ((theory.driven_cumulant, "-"), (theory.fourth_cumulant, ":")):
             own = theory.finite_size_cumulant(of(curve, dimension), gases.count[0], dimension)
             lower.plot(curve, own, color=style.COLOURS[kind], linestyle=line, zorder=1)
-    style.label_axes(upper, r"restitution $\epsilon$", r"$T$ / energy balance")
+    style.label_axes(upper, r"restitution $\epsilon$", r"$T$ / $T$ of energy balance")
     style.label_axes(lower, r"restitution $\epsilon$", r"fourth cumulant $a_2$", "upper right")
     style.letters(upper, lower)
     return figure

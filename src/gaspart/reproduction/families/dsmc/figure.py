@@ -53,7 +53,7 @@ def _coarse(axis: Axes, gases: Table, along: str, other: str) -> None:
         style.points(axis, own.width, 1.0 + own.transfer, hollow=True, label="1 + transfer")
     predicted = "predicted, first order" if along == "width" else "predicted"
     axis.plot([], [], color=style.GREY, lw=0.8, label=predicted)
-    style.label_axes(axis, y="over the exact value", legend="upper left", xlim=(0.0, None))
+    style.label_axes(axis, y="ratio to the exact value", legend="upper left", xlim=(0.0, None))
 
 
 def _plates(axis: Axes, gases: Table) -> None:
@@ -64,7 +64,7 @@ def _plates(axis: Axes, gases: Table) -> None:
     axis.axhline(1.0, color=style.GREY, lw=0.8, label="free flight")
     axis.set(xscale="log", yscale="log")
     style.label_axes(
-        axis, r"Knudsen number $\lambda/L$", "heat flux over free flight's", legend="lower right"
+        axis, r"Knudsen number $\lambda/L$", "heat flux / free-flight flux", legend="lower right"
     )
 
 
@@ -73,12 +73,14 @@ def _dense(axis: Axes, model: Table, spheres: Table) -> None:
     eta = model.packing_fraction
     style.points(axis, eta - 0.004, model.excess, kind=0, label="$Z-1$, DSMC")
     style.points(axis, eta, model.rate, kind=1, label="collision rate, DSMC")
-    style.points(axis, eta + 0.004, model.diffusion, kind=2, label="diffusion, DSMC")
-    label = "diffusion, event-driven"
+    style.points(axis, eta + 0.004, model.diffusion, kind=2, label="self-diffusion, DSMC")
+    label = "self-diffusion, event-driven"
     style.points(axis, spheres.packing_fraction, spheres.diffusion, kind=2, hollow=True, label=label)
     curve = np.linspace(0.0, 0.42, 100)
     ratio = theory.erpenbeck_wood_ratio(curve)
     axis.plot(curve, ratio, color=style.GREY, lw=0.8, label="Erpenbeck & Wood")
     axis.axhline(1.0, color=style.GREY, lw=0.8, ls=":")
     room = (0.95, 1.7)  # for the legend
-    style.label_axes(axis, r"packing fraction $\eta$", "over Enskog's", legend="upper left", ylim=room)
+    style.label_axes(
+        axis, r"packing fraction $\eta$", "ratio to Enskog's theory", legend="upper left", ylim=room
+    )

@@ -2,16 +2,209 @@
 
 from __future__ import annotations
 
+import math
+import os
+import time
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import partial
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
-from gaspart.reproduction.families.extremes.guard import run_guarded
+from gaspart.engines import Engine, EventDriven, TimeStepped
+from gaspart.errors import SceneError, SimulationError
 from gaspart.reproduction.families.extremes.rows import ROWS, Row
-from gaspart.reproduction.families.extremes.trial import TRIAL_ENGINES, Outcome, attempt
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import table
+from gaspart.simulation import ENERGY_DRIFT, Simulation
+from gaspart.state.state import State
+
+# Trial of a scene of the table in one engine: drifts, missed contacts, and the verdict.
+
+
+TRIAL_ENGINES: dict[str, Callable[[Row], Engine]] = {
+    "event": lambda row: EventDriven(),
+    "event, all pairs": lambda row: EventDriven("pairs"),
+    "step": lambda row: TimeStepped(row.time_step),
+    "step, float32": lambda row: TimeStepped(row.time_step, precision="float32"),
+}
+PASSES, REFUSED, FAILS = "passes", "refused", "fails"
+OVERLAP = {"event": 1e-9, "step": 0.01}
+"""Largest permitted overlap, in contact distances, by the engine's name."""
+MISCOUNTED = 0.03
+"""The permitted relative error of a gas's number of contacts with time steps, in addition to statistical
+error."""
+MOST_EVENTS, MOST_TESTS = 10_000_000, 50_000_000
+"""Contacts after which an event-driven run ends; with the search of all pairs, pair tests."""
+CHECKS = 8
+"""Number of times that a run is checked for overlaps."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Outcome of one scene in one engine.
+
+    verdict : the verdict.
+    message : message of the refusal or failure.
+    energy, momentum : relative drifts (momentum nan where walls absorb some).
+    overlap : the deepest observed one, in contact distances.
+    contacts, missed : contacts of particles and walls, and the number of missed ones (negative: spurious).
+    seconds : time.
+    bits : digest of the last state.
+    """
+
+    verdict: str
+    message: str = ""
+    energy: float = math.nan
+    momentum: float = math.nan
+    overlap: float = math.nan
+    contacts: int = -1
+    missed: int = 0
+    seconds: float = math.nan
+    bits: bytes = b""
+
+
+def attempt(row: Row, engine: str, referee: Outcome | None = None) -> Outcome:
+    """Run a row in one of `TRIAL_ENGINES`.
+
+    `referee` gives the number of contacts where none is exact.
+    """
+    start = time.perf_counter()
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # of steps with errors of per cents
+            outcome = _run(row, engine, referee)
+    except (SceneError, SimulationError) as refusal:
+        outcome = {"verdict": REFUSED, "message": str(refusal)}
+    return Outcome(**outcome, seconds=time.perf_counter() - start)
+
+
+def _run(row: Row, engine: str, referee: Outcome | None) -> dict:
+    simulation = Simulation(row.scene(), TRIAL_ENGINES[engine](row), seed=1)
+    overlap = 0.0
+    for check in range(1, CHECKS + 1):
+        if not _advance(simulation, row.duration * check / CHECKS):
+            return {
+                "verdict": FAILS,
+                "message": "not at its end after the largest permitted number of contacts",
+            }
+        overlap = max(overlap, deepest_overlap(simulation.state, simulation.scene.container.periodic))
+        simulation.check_invariants()
+    tally, state = simulation.tally, simulation.state
+    contacts = int(tally.collisions + tally.wall_hits.sum())
+    before = simulation.initial_state
+    numbers = {
+        "energy": energy_drift(before, state, tally.dissipated_energy),
+        "momentum": momentum_drift(before, state) if simulation.scene.is_periodic else math.nan,
+        "overlap": overlap,
+        "contacts": contacts,
+        "bits": state.positions.tobytes() + state.velocities.tobytes(),
+    }
+    expected = row.contacts
+    if expected is None and referee is not None and referee.verdict == PASSES:
+        expected = referee.contacts
+    numbers["missed"] = 0 if expected is None else expected - contacts
+    if engine == "event" and row.contacts is None and referee is not None and referee.bits:
+        numbers["missed"] = numbers["missed"] or int(numbers["bits"] != referee.bits)
+    return {"verdict": PASSES, **numbers} | _faults(row, simulation.engine, numbers, expected)
+
+
+def _advance(simulation: Simulation, until: float) -> bool:
+    """Advance to a time; whether it was reached within the permitted contacts."""
+    if not isinstance(simulation.engine, EventDriven):
+        simulation.advance(until=until)
+        return True
+    all_pairs = simulation.engine.search == "pairs"
+    most = MOST_TESTS // max(1, simulation.scene.count) ** 2 if all_pairs else MOST_EVENTS
+    simulation.advance(until=until, max_events=most)
+    return simulation.time >= until * (1.0 - 1e-12)
+
+
+def _faults(row: Row, engine: Engine, numbers: dict, expected: int | None) -> dict:
+    """Return the verdict, if any of the numbers shows that the run is incorrect."""
+    drift = ENERGY_DRIFT[engine.precision]
+    allowed = 0.0
+    if row.chaotic and engine.name == "step" and expected:
+        allowed = 4.0 * math.sqrt(expected) + MISCOUNTED * expected
+    for quantity, measured, most in (
+        ("energy", numbers["energy"], drift),
+        ("momentum", numbers["momentum"], drift),
+        ("overlap", numbers["overlap"], OVERLAP[engine.name]),
+        ("missed", abs(numbers["missed"]), allowed),
+    ):
+        if measured > most or (quantity != "momentum" and math.isnan(measured)):
+            return {"verdict": FAILS, "message": f"{quantity} = {measured:g}: more than {most:g}"}
+    return {}
+
+
+def energy_drift(before: State, after: State, dissipated: float) -> float:
+    """Compute the drift of the energy relative to the kinetic energy.
+
+    The energy that a fall through the container brings is added to the latter.
+    """
+    scale = max(before.kinetic_energy, after.kinetic_energy)
+    if after.gravity is not None:
+        scale += float(after.masses.sum() * (abs(after.gravity) @ after.lengths))
+    return abs(after.energy + dissipated - before.energy) / (scale or 1.0)
+
+
+def momentum_drift(before: State, after: State) -> float:
+    """Compute the drift of the momentum relative to the sum of the sizes of all momenta."""
+    scale = float((before.masses * before.speeds).sum())
+    return float(np.abs(after.momentum - before.momentum).max()) / (scale or 1.0)
+
+
+def deepest_overlap(state: State, periodic: tuple[bool, ...]) -> float:
+    """Compute the deepest overlap of any pair, in contact distances, from a look at all pairs."""
+    deepest = 0.0
+    for n in range(state.count - 1):
+        apart = state.positions[n + 1 :] - state.positions[n]
+        apart -= np.where(periodic, state.lengths * np.rint(apart / state.lengths), 0.0)
+        sigma = state.radii[n + 1 :] + state.radii[n]
+        deepest = max(deepest, float((1.0 - np.sqrt((apart**2).sum(axis=1)) / sigma).max()))
+    return deepest
+
+
+# Work that may hang: done in a separate process, which is killed when it does.
+
+
+def run_guarded(work: Callable, items: Sequence, limit: float) -> list:
+    """Return `work(item)` for each item, in order, or None.
+
+    An item that takes more than `limit` seconds, or ends its process, has the result None. Compiled code
+    cannot be interrupted, so it is run in a child process, which can be killed. Raises SceneError where the
+    system cannot fork processes, such as Windows.
+    """
+    if not hasattr(os, "fork"):
+        raise SceneError("system", os.name, "this figure needs one that forks processes: Linux or macOS")
+    results: list = []
+    context = get_context("fork")
+    while len(results) < len(items):
+        receiver, sender = context.Pipe(duplex=False)
+        child = context.Process(target=_work, args=(sender, work, items[len(results) :]))
+        child.start()
+        sender.close()
+        try:
+            while len(results) < len(items) and receiver.poll(limit):
+                results.append(receiver.recv())
+        except EOFError:  # the child has ended
+            pass
+        if len(results) < len(items):
+            results.append(None)
+        child.kill()
+        child.join()
+    return results
+
+
+def _work(sender: Connection, work: Callable, items: Sequence) -> None:
+    for item in items:
+        sender.send(work(item))
+
 
 LIMIT = 300.0
 """Seconds after which a row counts as one that hangs."""
@@ -29,7 +222,7 @@ def stability_extremes(points: list[Point], settings: dict) -> xr.Dataset:
     """Run all rows of the table, or the rows of the setting `groups`, without points.
 
     Returns over row and engine: verdict ("passes", "refused", "fails", "hangs"), message, of the refusal or
-    failure; energy, momentum, overlap, contacts, missed (see `extremes.trial.Outcome`), seconds; refusal, 1
+    failure; energy, momentum, overlap, contacts, missed (see `Outcome`), seconds; refusal, 1
     if a refusal is the expected result. Over row: group; expected, the contacts that there must be by an
     exact answer, -1 where all pairs are the referee.
     """

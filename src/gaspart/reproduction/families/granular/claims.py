@@ -9,7 +9,7 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import PARTICLES, SOURCE_C
+from gaspart.reproduction.families.shared import PARTICLES, SOURCE_C
 from gaspart.reproduction.table import Row, Table, each
 from gaspart.theory.granular import ROUGH_START_UNCERTAINTY
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from gaspart import theory
 from gaspart.rendering import style
 from gaspart.reproduction.families.granular.claims import DIFFERENCE, elastic_variance
-from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.families.shared import PARTICLES
 from gaspart.reproduction.table import Table
 
 
@@ -50,7 +50,7 @@ def _differences(axis: Axes, gases: Table) -> None:
         expected = np.exp(-3.0 * q / (1.0 + q) ** 2 * s)
         excess = gas.translation.value - gas.rotation.value - expected
         style.points(axis, s, 100.0 * excess, 100.0 * DIFFERENCE * gas.rotation.error, kind=kind)
-    style.label_axes(axis, "collisions per particle $s$", "minus theory (%)")
+    style.label_axes(axis, "collisions per particle $s$", "difference (%)")
 
 
 def _ratios(axis: Axes, cooling: Table, equilibrium: Table) -> None:
@@ -155,7 +155,7 @@ def _leaving(axis: Axes, gases: Table) -> None:
         style.points(axis, lost[::4], variance[::4], kind=kind, label=label)
     axis.axvline(10.0, color=style.GREY, linestyle=":", linewidth=0.8, zorder=1)
     axis.set(yscale="log", ylim=(0.6, 300.0), xlim=(0.0, None))
-    style.label_axes(axis, r"$(1-\epsilon^2)\, s$", "over the homogeneous gas", legend="upper left")
+    style.label_axes(axis, r"$(1-\epsilon^2)\, s$", "ratio to homogeneous gas", legend="upper left")
 
 
 def _picture(axis: Axes, particles: Table) -> None:

@@ -7,6 +7,7 @@ of the run.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -18,11 +19,63 @@ from gaspart.analysis.flow import Grid
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import average, bootstrap, correlated_mean, fit_polynomial, mean_of, means_of
 from gaspart.errors import SceneError
-from gaspart.reproduction.families.granular.runs import inertia, law, read
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import table
+from gaspart.scene.restitution import Restitution
 from gaspart.trajectory.reading import open_trajectory
+
+# Runs of rough and inelastic gases: temperatures against collisions.
+
+
+@dataclass(frozen=True)
+class Temperatures:
+    """Temperatures in T frames of a run: time, collisions per particle, T_tr, T_rot (T,); first T_tr."""
+
+    time: np.ndarray
+    collisions: np.ndarray
+    translation: np.ndarray
+    rotation: np.ndarray
+    start: float
+
+
+def temperatures(run: Run, first: int) -> Temperatures:
+    """Return the temperatures in all frames of a run of like particles from number `first` on."""
+    count, dimension, mass = run.count, run.dimension, run.scene.species[0].mass
+    translation, rotation = run.temperatures, np.zeros(len(run.time))
+    if run.scene.rough:  # of smooth particles the file may lack all but one
+        total = mass * (run.velocities**2).sum(axis=(1, 2))
+        rotation = (2.0 * run.data["kinetic_energy"].values - total) / ({2: 1, 3: 3}[dimension] * count)
+    return Temperatures(
+        time=run.time[first:],
+        collisions=2.0 * run.data["collisions"].values[first:] / count,
+        translation=translation[first:] / translation[0],
+        rotation=rotation[first:] / translation[0],
+        start=float(translation[0]),
+    )
+
+
+def read(point: Point) -> list[Temperatures]:
+    """Return the temperatures in all replicas of a point, without their equilibration."""
+    first = point.schedule.equilibration_frames
+    return [temperatures(run, first) for run in runs(point, first=0)]
+
+
+def law(point: Point) -> Restitution:
+    """Return the law of the contacts of a point's scene."""
+    return point.scene.restitution or Restitution()
+
+
+def inertia(point: Point) -> float:
+    """Return q = I / (m R^2) of a point's only species.
+
+    The default is that for a uniform disc or sphere.
+    """
+    kind = point.scene.species[0]
+    if kind.moment_of_inertia is None:
+        return {2: 0.5, 3: 0.4}[point.scene.dimension]
+    return kind.moment_of_inertia / (kind.mass * kind.radius**2)
+
 
 RELAXED = 3.0
 """Collisions per particle after which an inelastic gas has relaxed from Maxwell's distribution to its own."""

@@ -117,11 +117,11 @@ def _shares(axis: Axes, row: Row) -> None:
     reported = np.array(row.source_shares)
     edges = np.linspace(0.0, row.top, len(reported) + 1)
     axis.stairs(reported, edges, baseline=None, color=style.GREY, label="source's run")
-    style.points(axis, 0.5 * (edges[1:] + edges[:-1]), row.share, kind=1, label="the same, here")
+    style.points(axis, 0.5 * (edges[1:] + edges[:-1]), row.share, kind=1, label="our run")
     light, heavy = row.hydrostatic
-    axis.plot(row.height, light / (light + heavy), color=style.REFERENCE, label="equilibrium at its $T$")
+    axis.plot(row.height, light / (light + heavy), color=style.REFERENCE, label="equilibrium at the same $T$")
     label = "height $z$ (length) in the source's mixture"
-    style.label_axes(axis, label, "share of light discs", "upper left", ylim=(0.0, 1.0))
+    style.label_axes(axis, label, "fraction of light discs", "upper left", ylim=(0.0, 1.0))
 
 
 def _select_columns(ds: xr.Dataset, *names: str) -> list[Row]:

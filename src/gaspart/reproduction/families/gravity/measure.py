@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from scipy.optimize import curve_fit
 
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.flow import Grid
 from gaspart.analysis.statistics import jackknife
-from gaspart.reproduction.families.gravity import source
 from gaspart.reproduction.families.shared.columns import (
     Field,
     field,
@@ -37,6 +37,64 @@ from gaspart.theory.gravity import (
 )
 from gaspart.theory.state import compressibility_factor
 from gaspart.theory.tables import excess_chemical_potential
+from gaspart.trajectory.reading import open_trajectory
+
+# Results of source C's own runs under gravity, next to the numbers in its notebooks.
+#
+# The sample of such a point begins where the collisions of the source end.
+
+
+_FALL = 0.3
+"""Part of the time before the sample in which the oscillation is large, and not yet harmonic."""
+
+
+def collisions(point: Point) -> float:
+    """Compute collisions and hits of walls before the sample, which the source counts alike."""
+    with open_trajectory(point.replica_path(0)) as trajectory:
+        frame = trajectory.isel(frame=point.schedule.equilibration_frames)
+        return float(frame["collisions"] + frame["wall_hits"].sum())
+
+
+def ringing(point: Point) -> dict[str, Estimate]:
+    """Fit the amplitude of the oscillation of the kinetic energy at the start of the sample.
+
+    It is relative to the mean.
+
+    The fit is mean + e^{-t / decay} (a cos w t + b sin w t) to all frames after the fall, with t from the
+    start of the sample. The error is from the scatter of the frames.
+    """
+    begin = point.schedule.equilibration
+    with open_trajectory(point.replica_path(0)) as trajectory:
+        time, kinetic = trajectory["time"].values, trajectory["kinetic_energy"].values
+    late = time > _FALL * begin
+    time, kinetic = time[late] - begin, kinetic[late] / kinetic[late].mean()
+
+    def model(t: np.ndarray, mean: float, a: float, b: float, w: float, decay: float) -> np.ndarray:
+        return mean + np.exp(-t / decay) * (a * np.cos(w * t) + b * np.sin(w * t))
+
+    frequencies = np.linspace(2.0, 30.0, 600) * np.pi / np.ptp(time)
+    power = np.abs(np.exp(1j * np.outer(frequencies, time)) @ (kinetic - 1.0))
+    start = (1.0, 0.01, 0.01, frequencies[power.argmax()], 0.5 * begin)
+    (_, a, b, _, _), covariance = curve_fit(model, time, kinetic, start, sigma=None, absolute_sigma=False)
+    amplitude = float(np.hypot(a, b))
+    direction = np.array([a, b]) / amplitude
+    error = np.sqrt(direction @ covariance[1:3, 1:3] @ direction)
+    return {"ringing": Estimate(amplitude, error, len(time) - len(start))}
+
+
+def shares(point: Point, layers: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Compute the fraction of the first species in equal layers of the container, (layers,).
+
+    Its error is the binomial one of a single frame: the frames of one sample are close to each other, and so
+    are their compositions of a layer. The source has one frame.
+    """
+    column, [sample] = field(point), stretches(point, 1)
+    grid = Grid.line(-0.5 * column.diameter, column.height + 0.5 * column.diameter, layers)
+    cells = grid.cells(sample.heights[..., None])
+    first, second = (grid.sums(cells[:, column.species == kind]) / len(cells) for kind in (0, 1))
+    share = first / (first + second)
+    return {"share": (share, np.sqrt(share * (1.0 - share) / (first + second)))}
+
 
 _BY_BIN = ("temperature_ratio", "packing_fraction", "compressibility", "pressure_ratio")
 _BY_BIN += ("height", "used", "log_ratio", "log_ratio_expected")
@@ -57,7 +115,7 @@ def barometric(points: list[Point], settings: dict) -> xr.Dataset:
     See `profiles`. The settings also have `source_collisions` and `source_temperature`, of the source's
     sample.
     """
-    dataset = profiles(points, settings, source.ringing)
+    dataset = profiles(points, settings, ringing)
     return dataset.assign_attrs(
         source_collisions=settings["source_collisions"], source_temperature=settings["source_temperature"]
     )
@@ -70,7 +128,7 @@ def separation(points: list[Point], settings: dict) -> xr.Dataset:
     in it, of the light discs in equal layers of the container.
     """
     shares = settings["source_shares"]
-    dataset = profiles(points, settings, lambda point: source.shares(point, len(shares)))
+    dataset = profiles(points, settings, lambda point: shares(point, len(shares)))
     return dataset.assign_attrs(source_collisions=settings["source_collisions"], source_shares=shares)
 
 
@@ -92,7 +150,7 @@ def profiles(points: list[Point], settings: dict, of_source: Callable[[Point], d
 
     def column(point: Point) -> dict[str, Any]:
         name = names.get(point.experiment, "")
-        own = {"collisions": source.collisions(point), **of_source(point)} if name == "source" else {}
+        own = {"collisions": collisions(point), **of_source(point)} if name == "source" else {}
         return {"column": name, **_column(point, settings), **own}
 
     low, high = np.array(settings["ranges"], dtype=float).T

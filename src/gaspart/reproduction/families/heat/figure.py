@@ -89,7 +89,7 @@ def _shares(axis: Axes, gases: Table) -> None:
     axis.set(xscale="log", xlim=(0.02, 40.0))
     axis.set_xticks([0.1, 1.0, end], ["0.1", "1", r"$\infty$"])
     axis.set_yticks([0.0, 0.5, 2.0 / 3.0, 1.0], ["0", "1/2", "2/3", "1"])
-    style.label_axes(axis, r"Knudsen number $l/L$", "flux / that of free flight", ylim=(0.0, 1.6))
+    style.label_axes(axis, r"Knudsen number $l/L$", "flux / free-flight flux", ylim=(0.0, 1.6))
     axis.legend(loc="upper right", ncol=2, columnspacing=0.8)
 
 

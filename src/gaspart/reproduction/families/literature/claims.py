@@ -5,7 +5,7 @@ from __future__ import annotations
 import xarray as xr
 
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.families.shared import PARTICLES
 from gaspart.reproduction.table import Table, each
 
 EQUILIBRIUM = ("Z", "Z_crystal", "pressure")

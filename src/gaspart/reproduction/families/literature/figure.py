@@ -16,7 +16,7 @@ LABELS = {
     "pressure": "$P$, 870 discs",
     "diffusion": "$D$ of spheres",
     "viscosity": "viscosity of spheres",
-    "conductivity": "conductivity of spheres",
+    "conductivity": "heat conductivity of spheres",
 }
 
 
@@ -50,4 +50,4 @@ def _ratios(axis: Axes, values: Table) -> None:
             alpha=0.35,
         )
         style.points(axis, eta, 100.0 * (part.ours / theirs - 1.0), kind=kind, label=label)
-    style.label_axes(axis, r"packing fraction $\eta$", "ours over others' $-1$  (%)", legend="best")
+    style.label_axes(axis, r"packing fraction $\eta$", "ours / published $-1$  (%)", legend="best")

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.families.shared import PARTICLES
 from gaspart.reproduction.table import Row, Table, each
 
 REQUIRED = 1e-3

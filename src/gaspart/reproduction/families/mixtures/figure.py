@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from gaspart import theory
 from gaspart.rendering import style
 from gaspart.reproduction.families.mixtures.claims import deviations
-from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.families.shared import PARTICLES
 from gaspart.reproduction.table import Table
 from gaspart.scene.sizes import relative_radii
 
@@ -94,14 +94,14 @@ def _by_density(axis: Axes, two: Table) -> None:
     chosen = two[np.isclose(two.size_ratio, 0.5) & np.isclose(two.small_fraction, 0.5)]
     for kind, dimension in enumerate((3, 2)):
         gases = chosen[chosen.dimension == dimension].sorted_by("packing_fraction")
-        label = f"{PARTICLES[dimension]}, over {_SHORT[dimension]}"
+        label = f"{PARTICLES[dimension]} / {_SHORT[dimension]}"
         _points(axis, gases.packing_fraction, gases, dimension, kind, label)
         if dimension == 3:
             eta = np.linspace(0.01, 0.46, 60)
             _theories(axis, eta, [(fraction, (1.0, 0.5), (0.5, 0.5)) for fraction in eta], kind)
     axis.axhline(0.0, color=style.GREY, lw=0.8)
     x = r"packing fraction $\eta$, size ratio 0.5"
-    style.label_axes(axis, x, "$Z$ over theory $-1$ (%)", legend="best", xlim=(0.0, None))
+    style.label_axes(axis, x, r"$Z/Z_\mathrm{theory}-1$ (%)", legend="best", xlim=(0.0, None))
 
 
 def _by_polydispersity(axis: Axes, many: Table) -> None:
@@ -110,7 +110,7 @@ def _by_polydispersity(axis: Axes, many: Table) -> None:
         gases = many[many.dimension == dimension]
         if not gases:
             continue
-        label = f"{PARTICLES[dimension]}, over {_SHORT[dimension]}"
+        label = f"{PARTICLES[dimension]} / {_SHORT[dimension]}"
         _points(axis, gases.polydispersity, gases, dimension, kind, label)
         if dimension == 3:
             spread, eta = np.linspace(0.0, 0.32, 33), gases.packing_fraction[0]
@@ -119,7 +119,7 @@ def _by_polydispersity(axis: Axes, many: Table) -> None:
             ]
             _theories(axis, spread, spheres, kind)
     axis.axhline(0.0, color=style.GREY, lw=0.8)
-    style.label_axes(axis, "polydispersity of the radii", "$Z$ over theory $-1$ (%)", legend="best")
+    style.label_axes(axis, "polydispersity of the radii", r"$Z/Z_\mathrm{theory}-1$ (%)", legend="best")
 
 
 def _pairs(axis: Axes, two: Table, name: str, predicted: Callable[..., np.ndarray]) -> None:

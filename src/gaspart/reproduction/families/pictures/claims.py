@@ -9,7 +9,7 @@ import xarray as xr
 from gaspart import theory
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.table import Table
-from gaspart.scene.geometry import ball_volume
+from gaspart.scene.limits import ball_volume
 
 
 def gas_render(dataset: xr.Dataset) -> list[Claim]:

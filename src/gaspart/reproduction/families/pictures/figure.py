@@ -32,7 +32,7 @@ def gas_render(dataset: xr.Dataset) -> Figure:
     bar = figure.colorbar(
         scale, ax=axis, orientation="horizontal", fraction=0.05, pad=0.02, aspect=40, extend="max"
     )
-    bar.set_label("speed (initial speed)")
+    bar.set_label("speed / initial speed")
     return figure
 
 

@@ -8,7 +8,7 @@ import xarray as xr
 from gaspart import theory
 from gaspart.analysis.statistics import mean_of
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.families.shared import PARTICLES
 from gaspart.reproduction.table import Row, Table
 
 ENSEMBLE = "the ensemble of constant pressure and enthalpy ([Andersen 1980])"

@@ -12,7 +12,7 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import mean_of, means_of
 from gaspart.rendering import style
 from gaspart.reproduction.families.piston.claims import isothermal_variance
-from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.families.shared import PARTICLES
 from gaspart.reproduction.table import Row, Table
 
 _DOUBLED = 2.0

@@ -37,7 +37,7 @@ def price_of_features(ds: xr.Dataset) -> Figure:
         axis.tick_params(axis="y", which="both", length=0)
         axis.legend(loc="upper right", ncols=2 if axis is counts else 1)
     most = (timed.ratio.value + timed.ratio.error).max()
-    labels = "time per event over that without the feature", "counted work per event"
+    labels = "time per event / without the feature", "counted work per event"
     style.label_axes(times, labels[0], xlim=(0.0, max(1.6, 1.1 * most)))
     style.label_axes(counts, labels[1], xscale="log")
     style.letters(times, counts)

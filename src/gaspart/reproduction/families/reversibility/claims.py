@@ -7,7 +7,7 @@ import math
 import xarray as xr
 
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.families.shared import PARTICLES
 from gaspart.reproduction.table import Row, Table
 
 ROUNDINGS = math.log(0.1 * 2.0**53)

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gaspart.rendering import style
-from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.families.shared import PARTICLES
 from gaspart.reproduction.table import Table
 
 LINES_OF_ENGINES = {
@@ -51,7 +51,7 @@ def _growth(axis: Axes, exact: Table) -> None:
         kind, eta, name = dimension - 2, runs.packing_fraction, PARTICLES[dimension]
         style.points(axis, eta, runs.growth, kind=kind, label=f"{name}, echo")
         style.points(axis, 1.12 * eta, runs.divergence, kind=kind, hollow=True, label=f"{name}, two runs")
-        label = "tangent space" if kind else None
+        label = "Lyapunov exponent" if kind else None
         exponent = runs.exponent
         axis.errorbar(eta, exponent.value, exponent.error, color=style.GREY, zorder=1, label=label)
     style.label_axes(axis, ETA, "growth per collision", xscale="log", yscale="log")

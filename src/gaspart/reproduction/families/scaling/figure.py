@@ -32,7 +32,7 @@ def naive_scaling(ds: xr.Dataset) -> Figure:
     style.level(bottom, test * _NS)
     style.points(bottom, count, each, color=style.DATA)
     high = 1.6 * each.value.max()
-    style.label_axes(bottom, "number of particles $N$", "per test (ns)", ylim=(0.0, high))
+    style.label_axes(bottom, "number of particles $N$", "time per test (ns)", ylim=(0.0, high))
     style.letters(top, bottom)
     return figure
 
@@ -68,7 +68,7 @@ def _scan_time(axis: Axes, scan: Table, near: Table) -> None:
     if np.isfinite(interval[1]):
         axis.axvspan(*interval, color=style.GREY, alpha=0.25, lw=0)
     source = scan.source_boxes_per_particle * particles
-    axis.axvline(source, color=_SOURCE, linestyle="--", ymax=0.45, label="F & M")
+    axis.axvline(source, color=_SOURCE, linestyle="--", ymax=0.45, label="number of F & M")
     axis.set(xscale="log", yscale="log")
     style.label_axes(axis, y="time per particle and step (ns)", legend="upper right")
 
@@ -91,7 +91,7 @@ def _scan_work(axis: Axes, scan: Table, near: Table) -> None:
     colour = style.COLOURS[1]
     handles += axis.plot(boxes, scan.in_reach, color=colour, linestyle="--", label="boxes within reach")
     handles += axis.plot(boxes, scan.touched, color=colour, linestyle=":", label="boxes touched (F & M)")
-    axis.set(yscale="log", ylabel="per particle and step", ylim=(0.01, 1e8))
+    axis.set(yscale="log", ylabel="number per particle and step", ylim=(0.01, 1e8))
     axis.legend(handles=handles, loc="upper right")
 
 
@@ -115,7 +115,7 @@ def _sectors(axis: Axes, scan: Table) -> None:
     style.points(axis, sectors, scan.sector_crossings, kind=2, linestyle="-", label="crossings")
     look: dict[str, Any] = {"color": style.DATA, "marker": "X", "linestyle": "-", "label": "time (µs)"}
     style.points(axis, sectors, scan.sector_seconds * _US, **look)
-    axis.set(xscale="log", yscale="log", xlabel="number of sectors", ylabel="event-driven, per event")
+    axis.set(xscale="log", yscale="log", xlabel="number of sectors", ylabel="per event (event-driven)")
     axis.set_ylim(top=6e5)
     axis.legend(loc="upper right", ncols=2, columnspacing=0.8)
 
@@ -142,7 +142,7 @@ def ideal_boxes(ds: xr.Dataset) -> Figure:
         style.points(bottom, gas.boxes_per_particle, time, kind=kind, linestyle="-", label=label)
     bottom.axvspan(7.0, 10.0, **source)
     bottom.set(xscale="log", ylim=(0.9, 4.5))
-    style.label_axes(bottom, "boxes per particle", "time over the least", "upper center")
+    style.label_axes(bottom, "boxes per particle", "time / least time", "upper center")
     style.letters(top, bottom)
     return figure
 
@@ -196,7 +196,7 @@ def linear_scaling(ds: xr.Dataset) -> Figure:
     number = "number of particles $N$"
     style.label_axes(top, number, "time per step (s)", "upper left")
     middle.set(xscale="log", yscale="log", ylabel="time per particle (ns)", ylim=(1.0, None))
-    bottom.set(yscale="log", ylabel="per particle", xlabel=number, ylim=(0.02, 100.0))
+    bottom.set(yscale="log", ylabel="number per particle", xlabel=number, ylim=(0.02, 100.0))
     bottom.text(0.02, 0.85, "boxes searched", transform=bottom.transAxes)
     bottom.text(0.02, 0.06, "pair tests (hollow)", transform=bottom.transAxes)
     style.letters(top, middle, bottom)

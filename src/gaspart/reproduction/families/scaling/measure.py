@@ -4,6 +4,8 @@ Every point is a `measure_cost` job: one gas, timed with one or several partitio
 numbers, and the origin of their errors, are defined in `families.shared.timings`.
 """
 
+from __future__ import annotations
+
 import math
 from typing import Any
 
@@ -12,22 +14,186 @@ import xarray as xr
 
 from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
-from gaspart.reproduction.families.scaling.ideal_boxes import ideal_boxes as ideal_boxes
-from gaspart.reproduction.families.scaling.remarks import huge_sphere, near_boxes
+from gaspart.analysis.statistics import means_of
 from gaspart.reproduction.families.shared.timings import (
     extrapolate,
     ideal,
     list_costs,
+    log_ratios,
     one_box,
     penalty,
     per_event,
     per_particle,
+    ratio_of_jobs,
     trend,
     weights,
 )
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, entries, table
 from gaspart.theory import dsmc as theory
+from gaspart.theory.dsmc import boxes_in_reach, share_of_contacts_in_a_box
+
+# Source A's remarks on the cost of a step, tested by alternate timings.
+#
+# Jobs time a gas with and without something.
+
+
+def near_boxes(runs: list[xr.Dataset]) -> xr.Dataset:
+    """Compare the search of boxes within reach of a contact with that over all neighbours.
+
+    `runs` are jobs of one gas, each with the same partitions. Over ``near`` (the partitions):
+    ``near_boxes_per_side``; with only the boxes within reach the ``near_seconds`` per particle and step, with
+    the error from the scatter of the jobs, and ``near_box_visits``; ``near_expected_visits``, the visits in a
+    uniform gas far from walls. Scalars: ``near_least``, the least time of all partitions over the least with
+    all neighbouring boxes, with error and ``_freedom``; ``near_missed``, the largest difference of the
+    contacts found; ``own_first``, the share of searches that could end in the own box if that is searched
+    first and the boxes are the widest: there must be a contact (counted) and its partner in the box
+    (`share_of_contacts_in_a_box`); with error.
+    """
+    first, partitions = runs[0], runs[0].sizes["partition"] // 2
+    width = first.side / first.boxes_per_side.values[:partitions]
+    costs = [per_particle(run) for run in runs]
+    timed = np.array([cost.seconds.values for cost in costs])
+    seconds, error = means_of(timed[:, :partitions])
+    least = ratio_of_jobs(np.log(timed[:, :partitions].min(axis=1) / timed[:, partitions:].min(axis=1)))
+    visits = np.mean([cost.box_visits.values[:partitions] for cost in costs], axis=0)
+    reached = boxes_in_reach(width, 2.0 * first.radius, first.dimension)
+    contacts = np.array([run.collisions.values for run in runs])
+    colliding = [2.0 * run.collisions.values[0] / (run.attrs["count"] * run.steps.values[0]) for run in runs]
+    within = share_of_contacts_in_a_box(width.max(), 2.0 * first.radius, first.dimension)
+    return xr.Dataset(
+        {
+            "near_boxes_per_side": ("near", first.boxes_per_side.values[:partitions]),
+            "near_seconds": ("near", seconds, {"units": "s"}),
+            "near_seconds_error": ("near", error, {"units": "s"}),
+            "near_box_visits": ("near", visits),
+            "near_expected_visits": ("near", 0.5 + 0.5 * reached),
+            "near_missed": int(np.ptp(contacts, axis=1).max()),
+            **entries({"near_least": least, "own_first": means_of(np.array(colliding) * within)}),
+        }
+    )
+
+
+def huge_sphere(runs: list[xr.Dataset]) -> dict[str, Any]:
+    """Compute the cost of a sphere that is too large for the boxes.
+
+    It follows from jobs without and with the sphere.
+
+    ``huge_ratio`` is the time of a step with it over the time without, with error and ``_freedom`` from the
+    scatter of the jobs; ``huge_tests`` is the number of further pairs tested per particle and step, with
+    error.
+    """
+    ratio = ratio_of_jobs([-log_ratios(run, run.steps.values)[0] for run in runs])
+    tests = [np.diff(run.pair_tests.values / run.steps.values)[0] / run.attrs["count"] for run in runs]
+    return entries({"huge_ratio": ratio, "huge_tests": means_of(tests)})
+
+
+# Ideal number of boxes of many gases, compared with the numbers that source A found.
+
+
+def ideal_boxes(points: list[Point], settings: dict) -> xr.Dataset:
+    """Return the ideal number of boxes of many gases.
+
+    settings: ``rule``, source A's boxes per particle; ``source_numbers``, those that it found for the largest
+    gas of its figures 5, 6 and 7 (each with ``count``, ``radius``, ``boxes_per_particle``);
+    ``source_plateaus``, the ranges of N in which it found one number of boxes (``radius``, ``counts``,
+    ``boxes_per_side``).
+
+    Over (``gas``, ``partition``): costs as in `per_particle`, NaN beyond a gas's own partitions. Over
+    ``gas``: ``count``, ``radius``, ``most`` (boxes per particle of a diameter's width, the limit), the
+    results of `ideal`, and ``penalty``, the time at the rule's number over the least, with error. Over
+    ``source``: ``source_number``, and what was found there: ``source_ideal`` with interval,
+    ``source_penalty`` at that number, with error. Over ``plateau``: see `_plateau`. Over ``series`` (gases of
+    one ``series_radius``): ``exponent`` of the ideal number of boxes in N, where it was found between the
+    partitions timed, with error from the scatter.
+    """
+    runs = sorted(
+        (xr.load_dataset(point.path) for point in points), key=lambda run: (-run.radius, run.attrs["count"])
+    )
+    costs = [per_particle(run) for run in runs]
+    gases = table("gas", list(zip(runs, costs, strict=True)), _gas, settings["rule"])
+    rows = Table(gases, "gas")
+    radii = sorted(set(rows.radius.tolist()), reverse=True)
+    numbered = [cost.assign_coords(partition=np.arange(cost.sizes["partition"])) for cost in costs]
+    return xr.merge(
+        [
+            xr.concat(numbered, "gas", join="outer", compat="equals"),
+            gases,
+            table("source", settings["source_numbers"], _source, costs, rows),
+            table("plateau", settings["source_plateaus"], _plateau, runs, costs),
+            table("series", radii, _series, rows),
+        ],
+        join="outer",
+        compat="no_conflicts",
+    ).assign(rule=settings["rule"])
+
+
+def _series(radius: float, gases: Table) -> dict[str, Any]:
+    """Fit the exponent of the ideal number of boxes of the gases of one radius.
+
+    Only gases with a minimum count.
+    """
+    own = gases[gases.radius == radius]
+    boxes = np.where(own.ideal_interior == 1, own.ideal * own.count, np.nan)
+    return {"series_radius": radius, "exponent": trend(own.count, boxes)}
+
+
+def _gas(timed: tuple[xr.Dataset, xr.Dataset], rule: float) -> dict[str, Any]:
+    """Measure the ideal number of boxes of one gas, and the cost of the rule's.
+
+    They serve `ideal_boxes`.
+    """
+    run, costs = timed
+    return {
+        **ideal(costs, run.dimension),
+        "count": run.attrs["count"],
+        "radius": run.radius,
+        "most": int(run.side / (2.0 * run.radius)) ** run.dimension / run.attrs["count"],
+        "penalty": penalty(costs, rule),
+    }
+
+
+def _source(entry: dict, costs: list[xr.Dataset], gases: Table) -> dict[str, Any]:
+    """Return the results for the gas of one of source A's numbers, for `ideal_boxes`."""
+    same = (gases.count == entry["count"]) & (gases.radius == entry["radius"])
+    at = int(np.flatnonzero(same)[0])
+    gas = gases[at]
+    return {
+        "source_ideal": gas.ideal,
+        "source_ideal_low": gas.ideal_low,
+        "source_ideal_high": gas.ideal_high,
+        "source_interior": gas.ideal_interior,
+        "source_gas": at,
+        "source_number": entry["boxes_per_particle"],
+        "source_count": entry["count"],
+        "source_radius": entry["radius"],
+        "source_penalty": penalty(costs[at], entry["boxes_per_particle"]),
+    }
+
+
+def _plateau(entry: dict, runs: list[xr.Dataset], costs: list[xr.Dataset]) -> dict[str, Any]:
+    """Return the cost of one of source A's constant numbers of boxes, for `ideal_boxes`.
+
+    It has ``plateau_radius``, ``plateau_low`` and ``_high`` N, ``plateau_boxes``; of the gases between these
+    the worst, its ``plateau_count``, and ``plateau_penalty``, the time with this number of boxes over the
+    least, with error.
+    """
+    low, high = entry["counts"]
+    boxes = entry["boxes_per_side"] ** 3
+    within = [
+        (*penalty(cost, boxes / run.attrs["count"]), run.attrs["count"])
+        for run, cost in zip(runs, costs, strict=True)
+        if run.radius == entry["radius"] and low <= run.attrs["count"] <= high
+    ]
+    ratio, error, count = max(within)
+    return {
+        "plateau_radius": entry["radius"],
+        "plateau_low": low,
+        "plateau_high": high,
+        "plateau_boxes": boxes,
+        "plateau_count": count,
+        "plateau_penalty": (ratio, error),
+    }
 
 
 def naive_scaling(points: list[Point], settings: dict) -> xr.Dataset:

@@ -31,7 +31,7 @@ def claims_scatter(ds: xr.Dataset) -> Figure:
 def _distribution(axis: Axes, alone: np.ndarray, mean: Estimate) -> None:
     """Draw the density of the deviations without an allowance, and the standard Gaussian."""
     z = np.linspace(-FURTHEST, FURTHEST, 400)
-    axis.plot(z, stats.norm.pdf(z), color=style.REFERENCE, label="Gaussian")
+    axis.plot(z, stats.norm.pdf(z), color=style.REFERENCE, label="standard Gaussian")
     if alone.size:
         inside = np.clip(alone, -FURTHEST, FURTHEST)
         rms = np.sqrt(np.mean(alone**2))
@@ -43,7 +43,9 @@ def _distribution(axis: Axes, alone: np.ndarray, mean: Estimate) -> None:
             alpha=0.5,
             label=f"{alone.size}, rms {rms:.2f},\nmean {mean}",
         )
-    style.label_axes(axis, "deviation / standard deviations", "density", "upper right", ylim=(0.0, 0.6))
+    style.label_axes(
+        axis, "deviation / standard deviations", "probability density", "upper right", ylim=(0.0, 0.6)
+    )
 
 
 def _figures(axis: Axes, claims: Table, figures: Table) -> None:

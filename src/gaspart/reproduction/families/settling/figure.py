@@ -11,7 +11,7 @@ from gaspart.rendering import style
 from gaspart.reproduction.table import Table
 from gaspart.theory.granular import DISCHARGE_EXPONENT
 
-TIME = r"$t\,\sqrt{g/d}$"
+TIME = r"time $t\,\sqrt{g/d}$"
 
 
 def settling(dataset: xr.Dataset) -> Figure:
@@ -38,7 +38,7 @@ def _piles(energies: Axes, contacts: Axes, piles: Table) -> None:
         contacts.plot(pile.time, pile.contacts, color=colour)
     energies.set_yscale("log")
     limits = 0.0, np.nanmax(piles.time)
-    style.label_axes(energies, TIME, "kinetic energy of a disc", "upper right", xlim=limits)
+    style.label_axes(energies, TIME, "kinetic energy per disc ($mgd$)", "upper right", xlim=limits)
     style.label_axes(contacts, TIME, "contacts per disc", xlim=limits, ylim=(0.0, 2.4))
 
 

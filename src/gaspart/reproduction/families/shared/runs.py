@@ -1,11 +1,18 @@
-"""The measured part of the replicas of a point."""
+"""The measured part of the replicas of a point, and their time correlations."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
+import numpy as np
+
+from gaspart.analysis.correlations import Curves
+from gaspart.analysis.motion import average_correlations
 from gaspart.analysis.run import Run
+from gaspart.errors import SceneError
 from gaspart.reproduction.points.point import Point
+from gaspart.scene.gas import plain_gas
 from gaspart.trajectory.reading import open_trajectory
 
 
@@ -25,3 +32,30 @@ def runs(point: Point, first: int | None = None) -> Iterator[Run]:
             if trajectory.sizes["frame"] != before + schedule.samples + 1:
                 raise ValueError(f"{path}: {trajectory.sizes['frame']} frames are not those of {point.path}")
             yield Run(scene, trajectory["time"].values[kept], trajectory.isel(frame=kept), centred)
+
+
+# The time correlations that a point's runs have accumulated, in reduced units.
+
+
+def reduced_curves(point: Point, path: str, longest: float) -> Curves:
+    """Return the curves of one replica, to the lag `longest` or to its last one.
+
+    `longest` is in reduced time.
+
+    The particles' diameter, mass and temperature are 1: the temperature 2 E' / (d (N - 1)) is the replica's
+    own, E' the energy about the centre of mass. One species. Raises SceneError for a point without `lags`.
+    """
+    if "lags" not in point.settings:
+        raise SceneError(f"experiments.{point.experiment}.lags", None, "is required")
+    gas = plain_gas(point.scene)
+    with open_trajectory(path) as trajectory:
+        curves = average_correlations(trajectory)
+    thermal_speed = math.sqrt(curves.correlation[0] * gas.count / (gas.count - 1))
+    interval = curves.time[1] * thermal_speed / gas.diameter
+    lags = min(len(curves.time), math.ceil(longest / interval) + 1)
+    return Curves(
+        interval * np.arange(lags),
+        curves.msd[:lags] / gas.diameter**2,
+        curves.correlation[:lags] / thermal_speed**2,
+        curves.running[:lags] / (gas.diameter * thermal_speed),
+    )

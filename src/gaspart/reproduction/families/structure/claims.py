@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared.claims import PARTICLES, SOURCE_C
+from gaspart.reproduction.families.shared import PARTICLES, SOURCE_C
 from gaspart.reproduction.table import Row, Table
 
 AGREE = 0.005

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.rendering import style
-from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.families.shared import PARTICLES
 from gaspart.reproduction.table import Row, Table
 
 SHIFT = 0.006
@@ -37,8 +37,8 @@ def structure(ds: xr.Dataset) -> Figure:
     density = r"packing fraction $\eta$"
     style.label_axes(g, r"distance $r/\sigma$", "$g(r)$", "best", xlim=(0.9, None))
     style.label_axes(s, r"wave number $k\sigma$", "$S(k)$", "best", xlim=(0.0, None))
-    style.label_axes(zero, density, r"$S(0)$ over $kT\,\mathrm{d}\rho/\mathrm{d}P$", "best", xlim=(0.0, None))
-    style.label_axes(contact, density, r"$g(\sigma)$ over that from $Z$", "best", xlim=(0.0, None))
+    style.label_axes(zero, density, r"$S(0)$ / ($kT\,\mathrm{d}\rho/\mathrm{d}P$)", "best", xlim=(0.0, None))
+    style.label_axes(contact, density, r"$g(\sigma)$ / $g(\sigma)$ from $Z$", "best", xlim=(0.0, None))
     style.letters(*axes)
     return figure
 
@@ -96,7 +96,7 @@ def chemical_potential(ds: xr.Dataset) -> Figure:
     style.label_axes(upper, y=r"$\mu_\mathrm{excess}/kT$", legend="best")
     style.label_axes(ratio, density, "insertion / integral", xlim=(0.0, None), ylim=(0.97, 1.03))
     chance.set(yscale="log", xlim=(0.0, None), ylim=(1e-16, 3.0))  # with room for the legend
-    style.label_axes(chance, density, "chance of an insertion", "lower left")
+    style.label_axes(chance, density, "probability of insertion", "lower left")
     style.label_axes(partition, density, r"$-\ln Q/N$", "best", xlim=(0.0, None))
     style.letters(*axes)
     return figure

@@ -26,8 +26,11 @@ from gaspart.analysis.statistics import fit_polynomial, jackknife, means_of
 from gaspart.analysis.structure_factors import factors, in_shells, shells_of, wave_vectors
 from gaspart.reproduction.families.shared.pressure import series_of
 from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.families.structure.potential import chemical_potential
-from gaspart.reproduction.families.structure.state import MeasuredState, measured_states
+from gaspart.reproduction.families.structure.potential import (
+    MeasuredState,
+    chemical_potential,
+    measured_states,
+)
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import table
 from gaspart.scene.gas import Gas, plain_gas

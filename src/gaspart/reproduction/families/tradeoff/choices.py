@@ -6,6 +6,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
+from gaspart import theory
+
 QUANTILE = 1.96
 """Half of a 95 % interval, in standard errors: figures compare engines at an accuracy of 95 % of all runs."""
 ENGINES = ("event", "step", "boltzmann", "enskog")
@@ -90,3 +94,22 @@ def required_length(variance: float, accuracy: float, bias: float, least: float 
 def cheapest(choices: Sequence[Choice], accuracy: float) -> Choice:
     """Return the choice that costs least, or the least biased one where none reaches the accuracy."""
     return min(choices, key=lambda choice: (choice.cost(accuracy), choice.bias))
+
+
+# The time in which speeds that are equal at first become Maxwell's, by theory.
+
+
+FREE_TIMES = 2.5
+"""Mean free times over which the relaxation of speeds is integrated."""
+
+
+def relaxation_time(slower: float) -> float:
+    """Compute the relaxation time of a gas with collisions rarer by a factor.
+
+    Its speeds follow the homogeneous Boltzmann equation.
+    """
+    times = np.linspace(0.0, FREE_TIMES / slower, 251)
+    curve = theory.relaxation(3)
+    end = theory.kurtosis(3)
+    remainder = (end - curve.kurtosis(curve.collisions(times))) / (end - 1.0)
+    return float(np.trapezoid(remainder, times) * slower)

@@ -2,14 +2,163 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 
 from gaspart.rendering import style
-from gaspart.reproduction.families.tradeoff import panels
+from gaspart.reproduction.families.tradeoff.choices import ENGINES
 from gaspart.reproduction.table import Row, Table
+
+# Panels of the map of the cheapest engine, and of errors at two points.
+#
+# There is a panel for each observable.
+
+
+TITLES = {
+    "collision_rate": "collision rate",
+    "Z": "compressibility factor $Z$",
+    "D": "diffusion coefficient $D$",
+    "heat_flux": "heat flux between plates",
+    "relaxation": "relaxation of speeds",
+}
+NAMES = dict(zip(ENGINES, ("event-driven", "time-stepped", "DSMC, Boltzmann", "DSMC, Enskog"), strict=True))
+TINTS = {"event": (0, 0.65), "step": (1, 0.5), "boltzmann": (2, 0.6), "enskog": (2, 0.25)}
+"""Colour of each engine, and the part of white in it: figures are read on it."""
+PART_NAMES = ("model", "step, cells", "noise", "equilibration", "finite size")
+PLACES = (("D", 0.01, 0.01), ("D", 0.3, 0.01))
+"""Observable, packing fraction and accuracy of the errors that are shown; where they were not measured the
+nearest ones that were."""
+HIGHEST = 1.6
+"""Largest drawn error, relative to the accuracy."""
+_SMALL = 5.6
+
+
+def tint(engine: str) -> tuple[float, float, float]:
+    """Return the colour of an engine."""
+    kind, white = TINTS[engine]
+    red, green, blue = (white + (1.0 - white) * part for part in to_rgb(style.COLOURS[kind]))
+    return red, green, blue
+
+
+def keys() -> list[Patch]:
+    """Return the entries of a legend of the colours."""
+    return [Patch(facecolor=tint(engine), label=name) for engine, name in NAMES.items()]
+
+
+def duration(seconds: float) -> str:
+    """Format a time with one or two digits, in a unit that makes its number short."""
+    steps = (("ms", 1.0), ("s", 1e3), ("min", 6e4), ("h", 3.6e6), ("d", 8.64e7), ("y", 3.156e10))
+    milliseconds = 1e3 * seconds
+    unit, size = max(
+        (step for step in steps if step[1] <= max(milliseconds, 1.0) * 1.0001), key=lambda step: step[1]
+    )
+    value = milliseconds / size
+    return f"{float(f'{value:.{1 if value < 9.5 else 2}g}'):g} {unit}"
+
+
+def cheapest_engine(ds: xr.Dataset) -> Iterator[tuple[int, int, str, float]]:
+    """Yield (fraction, accuracy, engine, cost) of one quantity where any engine was measured.
+
+    The first two are positions; the engine is "" and the cost infinite where no engine reaches the accuracy.
+    """
+    cost = Row(ds).cost.value  # fraction, accuracy, solver
+    for f, a in np.ndindex(*cost.shape[:2]):
+        if not np.isnan(cost[f, a]).all():
+            best = int(np.nanargmin(cost[f, a]))
+            least = float(cost[f, a, best])
+            yield f, a, ENGINES[best] if np.isfinite(least) else "", least
+
+
+def map_of(axis: Axes, ds: xr.Dataset) -> None:
+    """Draw one quantity: a field for each density and accuracy, with its cost.
+
+    The colour is that for the cheapest engine.
+    """
+    gas, fields = Row(ds), list(cheapest_engine(ds))
+    columns = sorted({f for f, *_ in fields})
+    colours = np.ones((len(gas.accuracy), max(1, len(columns)), 3))
+    for f, a, engine, seconds in fields:
+        x, y = columns.index(f), a
+        colours[y, x] = tint(engine) if engine else (1.0, 1.0, 1.0)
+        text = duration(seconds) if engine else "–"
+        axis.text(x + 0.5, y + 0.5, text, ha="center", va="center", fontsize=_SMALL)
+    axis.pcolormesh(
+        *map(np.arange, np.add(colours.shape[1::-1], 1)), colours, edgecolor="white", linewidth=0.5
+    )
+    axis.set_xticks(np.arange(len(columns)) + 0.5, [_fraction(gas.fraction[f]) for f in columns])
+    percent = [f"{100.0 * value:g}" for value in gas.accuracy]
+    axis.set_yticks(np.arange(len(percent)) + 0.5, percent)
+    axis.tick_params(length=0)
+    style.label_axes(axis, r"packing fraction $\eta$", "accuracy (%)")
+
+
+def _fraction(value: float) -> str:
+    """Return a packing fraction, a small one as a power of ten."""
+    return rf"$10^{{{round(math.log10(value))}}}$" if value < 0.005 else f"{value:g}"
+
+
+def places(ds: xr.Dataset) -> list[Row]:
+    """Return the `PLACES`, or the measured ones nearest to them, each once."""
+    rows: dict[tuple[str, float, float], Row] = {}
+    for quantity, fraction, accuracy in PLACES:
+        of = ds.sel(quantity=quantity)
+        of = of.isel(fraction=np.isfinite(of.cost).any(("accuracy", "solver")).values)
+        if of.sizes["fraction"]:
+            of = of.isel(fraction=_nearest(of.fraction, fraction))
+            at = Row(of.isel(accuracy=_nearest(of.accuracy, accuracy)))
+            rows.setdefault((quantity, float(at.fraction), float(at.accuracy)), at)
+    return list(rows.values())
+
+
+def _nearest(values: xr.DataArray, target: float) -> int:
+    """Return the position of the value whose ratio to the wanted one is nearest to 1."""
+    return int(np.argmin(np.abs(np.log(values.values / target))))
+
+
+def draw_breakdown(axis: Axes, ds: xr.Dataset) -> None:
+    """Draw errors over the required accuracy of every engine at the `PLACES`, by what makes them."""
+    rows: list[tuple[float, str]] = []
+    for p, at in enumerate(places(ds)):
+        top = -(len(ENGINES) + 1.5) * p
+        title = rf"${at.quantity}$ to {100 * at.accuracy:g} % at $\eta={at.fraction:g}$"
+        axis.text(0.03, top, title, va="center")
+        for e, (engine, parts) in enumerate(zip(at.solver, at.error, strict=True)):
+            y = top - 1.0 - e
+            rows.append((y, NAMES[engine]))
+            _stack(axis, y, list(parts / at.accuracy))
+    line = axis.axvline(1.0, color="black", linewidth=0.8, label="required")
+    patches = [Patch(facecolor=style.COLOURS[kind], label=name) for kind, name in enumerate(PART_NAMES)]
+    axis.legend(handles=[*patches, line], loc="center right", fontsize=7)
+    axis.set_yticks(*zip(*rows, strict=True) if rows else ([], []))
+    axis.set_ylim(rows[-1][0] - 0.7 if rows else -1.0, 0.7)
+    axis.set_xticks([0.0, 0.5, 1.0, 1.5])
+    axis.set_xlim(0.0, 2.4 * HIGHEST)  # with room for the legend
+    axis.tick_params(axis="y", length=0)
+    axis.set_xlabel("error / required accuracy")
+
+
+def _stack(axis: Axes, y: float, parts: list[float]) -> None:
+    """Draw one bar of parts, cut off at `HIGHEST`.
+
+    If it is cut off, its length is written.
+    """
+    low = 0.0
+    for kind, part in enumerate(parts):
+        if math.isfinite(part) and low < HIGHEST:
+            end = min(low + part, HIGHEST)
+            axis.barh(y, end - low, left=low, color=style.COLOURS[kind], height=0.8)
+            low = end
+    total = float(np.nansum(parts))
+    if total > HIGHEST:
+        axis.text(HIGHEST + 0.04, y, f"{float(f'{total:.2g}'):g}", ha="left", va="center", fontsize=6.5)
+
 
 SHOWN = {"4 passes": "-", "1 pass, no rewinding": "--"}
 """Line of each setting that is drawn: the default one, and the source's. The claims have the others."""
@@ -44,12 +193,12 @@ def speed_accuracy(ds: xr.Dataset) -> Figure:
         axes[0].plot([], [], color=style.GREY, ls=line, label=name)
     axes[0].plot(
         [], [], marker="o", ls="none", markerfacecolor="white", markeredgecolor=style.GREY,
-        label="no error seen: bound",
+        label="no error resolved: bound",
     )  # fmt: skip
     axes[3].plot([], [], color=style.GREY, ls=":", label="event-driven, no error")
     axes[3].plot([], [], color=style.GREY, marker="o", lw=0.5, label="time-stepped")
     for model, marker in MARKERS.items():
-        axes[3].plot([], [], color=style.GREY, marker=marker, ls="none", label=panels.NAMES[model])
+        axes[3].plot([], [], color=style.GREY, marker=marker, ls="none", label=NAMES[model])
     axes[0].legend(loc="lower right")
     axes[1].legend(loc="lower right")
     axes[3].legend(loc="upper right")
@@ -103,14 +252,14 @@ def time_to_accuracy(ds: xr.Dataset) -> Figure:
 
     The cost is against density and accuracy, for each observable.
     """
-    figure, axes = style.new(*((2.0,),) * len(panels.TITLES), (2.4,))
-    for axis, letter, (quantity, title) in zip(axes, "abcde", panels.TITLES.items(), strict=False):
-        panels.map_of(axis, ds.sel(quantity=quantity))
+    figure, axes = style.new(*((2.0,),) * len(TITLES), (2.4,))
+    for axis, letter, (quantity, title) in zip(axes, "abcde", TITLES.items(), strict=False):
+        map_of(axis, ds.sel(quantity=quantity))
         style.letter(axis, f"({letter}) {title}")
-    panels.draw_breakdown(axes[-1], ds)
-    style.letter(axes[-1], "(f) what makes the error")
+    draw_breakdown(axes[-1], ds)
+    style.letter(axes[-1], "(f) parts of the error")
     figure.legend(
-        handles=panels.keys(), loc="outside upper center", ncols=4 if style.width() > style.COLUMN else 2,
+        handles=keys(), loc="outside upper center", ncols=4 if style.width() > style.COLUMN else 2,
         title=f"cheapest engine; time of a run of {ds['count'].values[0]} spheres",
     )  # fmt: skip
     return figure

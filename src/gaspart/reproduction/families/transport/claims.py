@@ -6,7 +6,7 @@ import xarray as xr
 
 from gaspart.analysis.statistics import combine_estimates
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import ENSKOG_LIMIT, PARTICLES
+from gaspart.reproduction.families.shared import ENSKOG_LIMIT, PARTICLES
 from gaspart.reproduction.table import Row, Table
 
 DILUTE_BAND = 0.01

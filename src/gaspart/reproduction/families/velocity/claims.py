@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared.claims import MODE_COUPLING, PARTICLES
+from gaspart.reproduction.families.shared import MODE_COUPLING, PARTICLES
 from gaspart.reproduction.table import Row, Table
 
 

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.rendering import style
-from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.families.shared import PARTICLES
 from gaspart.reproduction.table import Row, Table
 
 S = r"collisions per particle $s=\nu t$"
@@ -95,7 +95,7 @@ def _ratios(axis: Axes, gases: Table) -> None:
         axis.axvspan(*window, color=style.GREY, alpha=0.18, lw=0)
     axis.set(xscale="log", xlim=(5.0, 65.0), ylim=(0.4, 1.8))
     _integer_ticks(axis)
-    style.label_axes(axis, S, "$C-1/N$ over modes")
+    style.label_axes(axis, S, "$(C-1/N)$ / modes")
 
 
 def _integer_ticks(axis: Axes) -> None:

@@ -24,7 +24,7 @@ from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.motion import mask_between
 from gaspart.analysis.statistics import fit_linear, fit_polynomial, mean_of, means_of
-from gaspart.reproduction.families.shared.curves import reduced_curves
+from gaspart.reproduction.families.shared.runs import reduced_curves
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import table
 

@@ -38,7 +38,7 @@ def vibrated_bed(dataset: xr.Dataset) -> Figure:
         style.points(lower, bed.place, bed.density, kind=kind, label=label)
     upper.set_xlim(0.0, 1.08 * small_parameter(table).max())
     small = r"$(1-\epsilon^2)(\sqrt{\pi}\,(N-1)d/2W+1/\sqrt{2\pi})$"
-    style.label_axes(upper, small, r"$T$ / energy balance", "best")
+    style.label_axes(upper, small, r"$T$ / $T$ of energy balance", "best")
     lower.set_yscale("log")
     style.label_axes(lower, r"height $gz/T$", r"density / $(Ng/WT)$", "best")
     style.letters(upper, lower)

@@ -136,5 +136,7 @@ def _coefficients(axis: Axes, fits: Table) -> None:
     names = [f"$B_2$–$B_{fit.free}$\n$\\leq${fit.up_to:g}\n{'held' if fit.held else 'zero'}" for fit in fits]
     axis.set_xticks(positions, names)
     axis.tick_params(axis="x", length=0)
-    style.label_axes(axis, "free coefficients, largest $\\eta$, higher coefficients", "deviation / required")
+    style.label_axes(
+        axis, "free coefficients, largest $\\eta$, higher coefficients", "deviation / required accuracy"
+    )
     axis.legend(ncols=3, loc="upper center", columnspacing=1.0, handletextpad=0.1)

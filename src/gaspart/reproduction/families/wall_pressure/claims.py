@@ -9,7 +9,7 @@ import xarray as xr
 
 from gaspart.analysis.statistics import combine_estimates, fit_power_law
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.families.shared import PARTICLES
 from gaspart.reproduction.table import Table, each
 
 RELATIVE_ERROR = 1e-3

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.rendering import style
-from gaspart.reproduction.families.shared.claims import PARTICLES
+from gaspart.reproduction.families.shared import PARTICLES
 from gaspart.reproduction.table import Table
 
 Z = r"$P/(n k_\mathrm{B}T)$"
@@ -55,7 +55,7 @@ def _densities(axis: Axes, table: Table) -> None:
         z = theory.compressibility_factor(curve, dimension)
         axis.plot(curve, z, color=style.COLOURS[kind], zorder=1, label=f"{name}, bulk")
         raw = part.whole_pressure / part.density
-        style.points(axis, eta, raw, kind=kind, hollow=True, label=f"{name}, $F/$wall")
+        style.points(axis, eta, raw, kind=kind, hollow=True, label=f"{name}, uncorrected")
         corrected = part.pressure / part.expected.value * part.bulk_pressure / part.density
         style.points(axis, eta, corrected, kind=kind, label=f"{name}, corrected")
     style.level(axis, 1.0)

@@ -1,4 +1,4 @@
-"""Gas in equilibrium under gravity, by theory: hydrostatics at the temperature of its energy.
+"""Column of a gas in equilibrium under gravity: hydrostatics at the temperature of its energy.
 
 Heights are those that centres reach above the lowest one. Hard spheres and discs follow the reference
 equation of state; with `ideal` the gas follows the Boltzmann model, which has no virial.
@@ -12,12 +12,10 @@ from functools import cached_property
 
 import numpy as np
 
-from gaspart import theory
-from gaspart.analysis.observables import OBSERVABLES
-from gaspart.engines.dsmc.defaults import accessible
-from gaspart.scene.faces import Thermal
-from gaspart.scene.scene import Scene
 from gaspart.state.state import State
+from gaspart.theory.geometry import particle_volume
+from gaspart.theory.gravity import hydrostatic_profiles
+from gaspart.theory.state import compressibility_factor, contact_value
 
 _POINTS = 1200
 _SCALES = 25.0
@@ -52,7 +50,7 @@ class Column:
     @cached_property
     def filled(self) -> np.ndarray:
         """(Z,) packing fraction."""
-        return self.numbers.sum(axis=0) / self.area * theory.particle_volume(self.dimension, self.diameter)
+        return self.numbers.sum(axis=0) / self.area * particle_volume(self.dimension, self.diameter)
 
     @property
     def energy(self) -> float:
@@ -68,7 +66,7 @@ class Column:
 
         They serve to compare two columns of one scene.
         """
-        contact = 1.0 if self.ideal else theory.contact_value(self.filled, self.dimension)
+        contact = 1.0 if self.ideal else contact_value(self.filled, self.dimension)
         speed = np.sqrt(1.0 / self.masses[:, None] + 1.0 / self.masses)
         pairs = np.einsum("iz,jz,ij->z", self.numbers, self.numbers, speed) * contact
         return math.sqrt(self.temperature) * float(np.trapezoid(pairs, self.heights))
@@ -76,7 +74,7 @@ class Column:
     def pressure(self, top: bool) -> float:
         """Compute the pressure on the floor, or at the top."""
         at = -1 if top else 0
-        ratio = 1.0 if self.ideal else theory.compressibility_factor(self.filled[at], self.dimension)
+        ratio = 1.0 if self.ideal else compressibility_factor(self.filled[at], self.dimension)
         return float(self.numbers[:, at].sum() / self.area * self.temperature * ratio)
 
 
@@ -116,7 +114,7 @@ class GravityColumn:
             densities = np.exp(-weights[:, None] * z)
             densities *= (per_area / np.trapezoid(densities, z, axis=1))[:, None]
         else:
-            densities = theory.hydrostatic_profiles(z, per_area, weights, d, self.diameter)
+            densities = hydrostatic_profiles(z, per_area, weights, d, self.diameter)
         shape = self.masses, temperature, self.pull, self.area, self.diameter, d, ideal
         return Column(z, densities * self.area, *shape)
 
@@ -125,7 +123,7 @@ class GravityColumn:
 
         The atmosphere consists of the lightest particles.
         """
-        volume = self.counts.sum() * theory.particle_volume(self.dimension, self.diameter) / self.area
+        volume = self.counts.sum() * particle_volume(self.dimension, self.diameter) / self.area
         return 2.0 * float(volume) + _SCALES * temperature / float(self.masses.min() * self.pull)
 
     def of_energy(self, energy: float, ideal: bool) -> Column:
@@ -157,52 +155,3 @@ class GravityColumn:
         The temperature of the faces is `heat`, if there is one. Raises ValueError as `of_energy`.
         """
         return self.column(heat, ideal) if heat else self.of_energy(energy, ideal)
-
-
-def gravity_column(scene: Scene) -> GravityColumn | None:
-    """Return the column of a scene under gravity, or None if theory does not know it.
-
-    Theory knows particles of one size that lose no energy, between hard walls, or walls at one temperature.
-    """
-    pull = [(k, g) for k, g in enumerate(scene.gravity or ()) if g]
-    kinds = [kind for kind in scene.kinds if kind.count]
-    law, thermal = scene.restitution, scene.face_temperatures
-    if len(pull) != 1 or scene.thermostat is not None or scene.walls or not kinds:
-        return None
-    if law is not None and (law.dissipative or law.rough):
-        return None
-    if len({kind.radius for kind in kinds}) > 1 or not all(kind.alike and not kind.fixed for kind in kinds):
-        return None
-    if len(thermal) > 1 or any(not isinstance(face, Thermal) or face.slides for face in scene.faces.values()):
-        return None
-    (k, g), (lower, upper) = pull[0], accessible(scene)
-    sides = upper - lower
-    masses = sorted({kind.mass for kind in kinds})
-    counts = [sum(kind.count for kind in kinds if kind.mass == mass) for mass in masses]
-    return GravityColumn(
-        scene.dimension, k, g < 0.0, abs(g), float(sides[k]), float(np.delete(sides, k).prod()),
-        np.array(masses), np.array(counts, dtype=float), 2.0 * kinds[0].radius,
-    )  # fmt: skip
-
-
-def compare_columns(real: Column, ideal: Column, observable: str, top: bool | None) -> float:
-    """Compute the relative difference of an observable between columns of points and of particles.
-
-    For a pressure, `top` is True at the top, None for any wall.
-    """
-    differences = {
-        "collision_rate": abs(ideal.collisions / real.collisions - 1.0),
-        "temperature": abs(ideal.temperature / real.temperature - 1.0),
-        "density": _of_profiles(real, ideal),
-    }
-    if OBSERVABLES[observable].of_impulses and top is not None:
-        exact = real.pressure(top)
-        return abs(ideal.pressure(top) / exact - 1.0) if exact > 0.0 else math.inf
-    return differences.get(observable, max(differences.values()))
-
-
-def _of_profiles(real: Column, ideal: Column) -> float:
-    """Compute the root mean square of the difference of two densities, relative to the first."""
-    exact = real.numbers.sum(axis=0)
-    other = np.interp(real.heights, ideal.heights, ideal.numbers.sum(axis=0), right=0.0)
-    return float(np.sqrt(((other - exact) ** 2).sum() / (exact**2).sum()))
