@@ -37,6 +37,11 @@ WORDS = {
     "species m": (lambda: gp.Species(20, 0.5, m=1.0), "here it is mass"),
     "species misspelt": (lambda: gp.Species(20, 0.5, temprature=1.0), "did you mean temperature?"),
     "species without radius": (lambda: gp.Species(20), "radius = None: is required by Species"),
+    "species n": (lambda: gp.Species(n=10, radius=0.5), "unknown argument of Species; here it is count"),
+    "species mass by position": (
+        lambda: gp.Species(10, 0.5, 1.0),
+        "Species takes count, radius by position, and by name mass",
+    ),
     "species alone": (lambda: gp.Species(), "count = None: is required by Species"),
     "species twice": (lambda: gp.Species(20, 0.5, radius=0.5), "radius = 0.5: is given twice to Species"),
     "species of text": (lambda: gp.Species("20", 0.5), "count = '20': must be a whole number"),
@@ -85,6 +90,20 @@ WORDS = {
     "sweep no folder": (lambda: gp.sweep(SCENE, {}, ["Z"]), "folder = None: is required by sweep"),
     "accuracy tolerance": (lambda: gp.Accuracy("Z", tolerance=0.1), "here it is accuracy"),
     "film fps": (lambda: gp.film("a.nc", "a.gif", fps=10), "here it is frames_per_second"),
+    "film of a simulation": (
+        lambda: gp.film(SIM, "a.gif"),
+        "a film needs frames; gaspart.run(scene, path=...)",
+    ),
+    "measure before the start": (
+        lambda: gp.analysis.pressure(gp.Simulation(SCENE)),
+        "simulation = 'at time 0': has not advanced; call advance(duration=...) first",
+    ),
+    "walls of an engine without": (
+        lambda: gp.Simulation(
+            gp.Scene(gp.Container((9.0, 9.0)), GAS, walls=[gp.Wall((5, 5), (5, 9))]), gp.DSMC()
+        ),
+        'needs the "event" engine; this one has none',
+    ),
     "film by place": (lambda: gp.film("a.nc", "a.gif", (9, 9)), "takes trajectory, path by position"),
     "render color": (lambda: gp.render(SCENE, color="speed"), "here it is colour"),
     "advance t": (lambda: SIM.advance(t=1.0), "of Simulation.advance; here it is duration"),
@@ -199,6 +218,51 @@ def test_a_call_that_does_not_fit_names_what_would(mistake, remedy):
 def test_a_missing_name_suggests_another(name):
     owner, remedy = NAMES[name]
     assert remedy in line(lambda: getattr(owner, name.rpartition(".")[2]), MissingName)
+
+
+@pytest.fixture(scope="module")
+def trajectory(tmp_path_factory):
+    path = tmp_path_factory.mktemp("names") / "gas.nc"
+    gas = gp.Species(20, 0.2, temperature=1.0)
+    gp.run(gp.Scene(BOX, [gas]), seed=1, duration=2.0, sample_interval=0.5, path=path)
+    with gp.open_trajectory(path) as data:
+        yield data
+
+
+@pytest.mark.parametrize(
+    ("name", "remedy"),
+    [
+        ("positions", "it is coordinates"),
+        ("positionss", "it is coordinates"),
+        ("velocity", "did you mean velocities?"),
+        ("kinetic_enrgy", "did you mean kinetic_energy?"),
+        ("Z", 'gaspart.measure(trajectory, "Z") measures it'),
+        ("isell", "did you mean isel?"),
+    ],
+)
+def test_a_missing_variable_of_a_trajectory_suggests_another(trajectory, name, remedy):
+    for data in (trajectory, trajectory.isel(frame=0), trajectory.copy(deep=True)):
+        text = line(lambda data=data: getattr(data, name), MissingName)
+        assert text.endswith(f"has no attribute {name!r}; {remedy}")
+    assert not hasattr(trajectory, "_ipython_display_") and trajectory.coordinates.sizes["atom"] == 20
+
+
+def test_a_run_in_the_file_of_another_states_the_difference(tmp_path):
+    given = {"duration": 1.0, "sample_interval": 0.5, "path": tmp_path / "gas.nc"}
+    path = gp.run(SCENE, seed=1, **given)
+    before = path.read_bytes()
+    remedy = "which differs in seed 1, not 2; move it away, or overwrite it (overwrite=True)"
+    assert remedy in line(lambda: gp.run(SCENE, seed=2, **given), gp.SceneError)
+    assert path.read_bytes() == before
+
+
+def test_speeds_of_an_open_gas_are_not_defined():
+    faces = {"x_low": gp.Open(), "x_high": gp.Open(activity=0.1, temperature=1.0)}
+    scene = gp.Scene(gp.Container((9.0, 9.0)), GAS, faces=faces, centres_to_walls=True)
+    simulation = gp.Simulation(scene, seed=1)
+    simulation.advance(duration=1.0)
+    remedy = "defined here are flux, pressure, density and temperature"
+    assert remedy in line(lambda: gp.analysis.speed_distribution(simulation), gp.SceneError)
 
 
 def test_there_are_ninety():

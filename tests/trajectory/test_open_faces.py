@@ -177,7 +177,7 @@ def test_the_last_state_is_that_of_a_checkpoint(trajectory, tmp_path):
         ({"follow": 3}, "excludes follow"),
         ({"pairs": True}, "excludes pairs"),
         ({"correlations": gp.Correlations(0.5, 4)}, "excludes correlations"),
-        ({"impulses": "x:8"}, "not with open faces"),
+        ({"impulses": "x:8"}, "excludes impulses"),
         ({"pair_impulses": "2:8"}, "needs a periodic container"),
     ],
 )

@@ -26,9 +26,9 @@ _guided: set[type] = set()
 class MissingName(OneLine, AttributeError):
     """A name that a package or an object does not have, with what was probably meant."""
 
-    def __init__(self, owner: ModuleType | type, name: str) -> None:
+    def __init__(self, owner: ModuleType | type, name: str, names: Iterable[str] = ()) -> None:
         super().__init__(name)
-        self._owner, self._name = owner, name
+        self._owner, self._name, self._names = owner, name, tuple(names)
 
     def __reduce__(self) -> tuple:
         return (AttributeError, (str(self),))
@@ -37,7 +37,8 @@ class MissingName(OneLine, AttributeError):
         name = repr(self._owner.__name__)
         kind = f"module {name}" if isinstance(self._owner, ModuleType) else f"{name} object"
         message = f"{kind} has no attribute {self._name!r}"
-        return f"{message}; {remedy}" if (remedy := _remedy(self._owner, self._name)) else message
+        remedy = _remedy(self._owner, self._name, self._names)
+        return f"{message}; {remedy}" if remedy else message
 
 
 class FixedValue(OneLine, FrozenInstanceError):
@@ -51,8 +52,11 @@ class FixedValue(OneLine, FrozenInstanceError):
         return (FrozenInstanceError, self.args)
 
 
-def _remedy(owner: ModuleType | type, name: str) -> str:
-    """Return the name that was probably meant; "" if no known name is like it."""
+def _remedy(owner: ModuleType | type, name: str, names: tuple[str, ...]) -> str:
+    """Return the name that was probably meant; "" if no known name is like it.
+
+    names : variables of the owner; the nearest of these is preferred to an attribute
+    """
     remedies = ELSEWHERE.get(owner.__name__.rpartition(".")[2], {})
     if name in remedies:
         return remedies[name]
@@ -64,7 +68,10 @@ def _remedy(owner: ModuleType | type, name: str) -> str:
         for candidate in {*dir(owner), *getattr(owner, "__annotations__", ())}
         if not candidate.startswith("_")
     ]
-    near = get_close_matches(name, sorted(candidates), n=1)
+    near = get_close_matches(name, [*names, *remedies], n=1) if names else []
+    if near and near[0] in remedies:
+        return remedies[near[0]]
+    near = near or get_close_matches(name, sorted(candidates), n=1)
     return f"did you mean {near[0]}?" if near else ""
 
 

@@ -76,7 +76,7 @@ def picture(
 
 
 def _with_surfaces(image: np.ndarray, particles: DrawnParticles, camera: Camera) -> np.ndarray:
-    """Return a picture of spheres with the outlines of the surfaces over it, and arrows of their motion."""
+    """Draw the outlines of surfaces, and arrows of their motion, over a picture of spheres."""
     if not particles.surfaces:
         return image
     from PIL import Image, ImageDraw
@@ -97,8 +97,8 @@ def _with_surfaces(image: np.ndarray, particles: DrawnParticles, camera: Camera)
                 draw.line([tuple(marks[n]), tuple(marks[n + 1])], fill, thick)
         if surface.motion is not None:
             half = 0.12 * min(particles.lengths) * surface.motion
-            ends = camera.pixels(np.array([middle - half, middle + half]), (width, height))
-            lines = arrow_lines(*ends, surface.to_and_fro)
+            tail, head = camera.pixels(np.array([middle - half, middle + half]), (width, height))
+            lines = arrow_lines(tail, head, surface.to_and_fro)
             for ink, wide in (((255, 255, 255), thick + 2), (fill, thick)):  # visible on any colour
                 for line in lines:
                     draw.line([tuple(line[0]), tuple(line[1])], ink, wide)

@@ -229,7 +229,7 @@ def _outline(lengths: np.ndarray, axis: int, position: float) -> np.ndarray:
 
 
 def arrow_lines(tail: np.ndarray, head: np.ndarray, two_heads: bool) -> list[np.ndarray]:
-    """Return the lines of an arrow in the plane, each of the shape (2, 2): its shaft and its barbs."""
+    """Return the shaft and the barbs of an arrow, each a line (2, 2)."""
     lines = [np.array([tail, head])]
     for tip, back in ((head, 0.25 * (tail - head)), (tail, 0.25 * (head - tail)))[: 1 + two_heads]:
         barbs = [tip + back + sign * 0.6 * np.array([-back[1], back[0]]) for sign in (-1.0, 1.0)]

@@ -170,8 +170,8 @@ def flux_relaxation(quantity: str) -> tuple[np.ndarray, np.ndarray]:
 # with one speed, by which the tables `data/relaxation_2d.csv` and `_3d.csv` are checked; the fourth
 # cumulant of a gas that cools; `data/rough_cooling.csv` and `data/rough_start.csv`, the temperatures of
 # rough discs that cool, and from a start without spins. There are no positions: partners are drawn at
-# random, which is molecular chaos (Nanbu 1980, Babovsky 1986). `tagged` has a particle of another size and
-# mass in such a gas.
+# random, which is molecular chaos (Nanbu 1980, Babovsky 1986). `tagged_paths` has a particle of another size
+# and mass in such a gas.
 
 
 _SHARE = 0.01

@@ -491,7 +491,7 @@ def rough_cooling() -> np.ndarray:
     -----
     `rough_ratio` gives this ratio to 5 % only. Velocities and spins are not Maxwellian there, and not
     independent. Computed by direct simulation of the homogeneous Boltzmann equation
-    (`homogeneous.rough_discs`).
+    (`boltzmann.rough_discs`).
 
     Examples
     --------
@@ -531,7 +531,7 @@ def rough_start_excess(inertia: float, collisions: Numbers) -> Values:
     Notes
     -----
     The exponential is the result of Maxwellian velocities [1]_. Computed by direct simulation of the
-    homogeneous Boltzmann equation (`homogeneous.rough_start`). The standard uncertainty is
+    homogeneous Boltzmann equation (`boltzmann.rough_start`). The standard uncertainty is
     `ROUGH_START_UNCERTAINTY`.
 
     References

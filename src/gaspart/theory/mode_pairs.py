@@ -22,8 +22,9 @@ psi(1) + psi(2) and phi(1) + phi(2), from which follows, for the part i of a flu
 
 so that each of the two vertices is <j|psi phi> times F(p) = sum a_i r_i / (r_i + p), the Laplace transform of
 a delay of mean sum a_i / r_i: 2.06 collisions of a particle for the heat flux, 1.02 for the stress. (c) The
-modes belong to a gas whose fluxes relax (`relaxing_modes`). What remains are waves as short as the mean free
-path, Burnett's terms, and corrections of Enskog's coefficients. Everything is in diameters, masses and k_B T.
+modes belong to a gas whose fluxes relax (`modes.Relaxation`). What remains are waves as short as the mean
+free path, Burnett's terms, and corrections of Enskog's coefficients. Everything is in diameters, masses and
+k_B T.
 """
 
 from __future__ import annotations

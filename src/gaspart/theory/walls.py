@@ -49,7 +49,7 @@ _SHAPES: dict[int, tuple[tuple[float, ...], ...]] = {
     ),
 }
 """Polynomials in eta: gamma, tau and kappa times (1 - eta)^d divided by their second order. From the cluster
-integrals of three to five centres (`clusters.cluster_integrals`, 6 to 12 million samples of each, with the
+integrals of three to five centres (`film.cluster_integrals`, 6 to 12 million samples of each, with the
 integral of the bulk, which is known, as a control variate) and the virial coefficients; good to one or two of
 the last digit, the last of each row to 0.1, 0.6 and 4 in 3D."""
 _OPPOSITE = np.array(

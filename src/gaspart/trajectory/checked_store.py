@@ -12,11 +12,26 @@ from xarray.backends import BackendArray, NetCDF4DataStore
 from xarray.core import indexing
 
 from gaspart.errors import SceneError
+from gaspart.errors.guidance import MissingName
 from gaspart.trajectory.amber import CheckedFrames
 from gaspart.trajectory.opening import damage
 
 _EVEN = 1e-9
 """Relative deviation of a frame's time from a multiple of the interval, beyond which the frame is checked."""
+
+
+class Trajectory(xr.Dataset):
+    """Open trajectory, a Dataset that answers a missing name with the probable one."""
+
+    __slots__ = ()
+
+    def __getattr__(self, name: str) -> Any:
+        try:
+            return super().__getattr__(name)
+        except AttributeError:
+            if name.startswith("_"):  # also of an instance that is not complete yet
+                raise
+            raise MissingName(type(self), name, map(str, self.variables)) from None
 
 
 class CheckedStore(NetCDF4DataStore):

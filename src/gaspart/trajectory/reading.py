@@ -90,7 +90,7 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     """
     import xarray as xr
 
-    from gaspart.trajectory.checked_store import CheckedStore
+    from gaspart.trajectory.checked_store import CheckedStore, Trajectory
 
     path = run_path(path)
     file, checked = open_checked(path)
@@ -124,7 +124,8 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
         unit = variable.attrs.get("units", "1")
         if variable.dtype.kind in "fi":  # values other than lengths, times and energies are counts or ratios
             variable.attrs["units"] = _UNITS.get(name, _REDUCED.get(unit, unit))
-    data.attrs = {key: value for key, value in attributes.items() if key not in amber.BOOKKEEPING}
+    kept = {key: value for key, value in attributes.items() if key not in amber.BOOKKEEPING}
+    data = Trajectory(data.data_vars, data.coords, kept)
 
     def close() -> None:
         opened.close()
