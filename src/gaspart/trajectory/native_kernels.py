@@ -3,7 +3,7 @@
 The kernels of a wheel run on every processor of the level x86-64-v3. On a processor with AVX-512 kernels
 compiled there are faster, to the same bits. A run that took so long that another one of its kind would gain
 more than the compilation costs compiles them after its end. They are stored in the kernel cache, where
-kernels of this user come before those of the package, so that the next process uses them.
+kernels of this user come before kernels of the package, so that the next process uses them.
 """
 
 from __future__ import annotations
