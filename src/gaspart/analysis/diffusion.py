@@ -144,14 +144,14 @@ def _all_lags(run: Run, stride: int, parts: int) -> tuple[int, ...]:
 
 
 def _extend_lags(lags: tuple[int, ...], frames: int) -> tuple[int, ...]:
-    """Return lags with further ones, each twice the one before, up to half of a number of frames."""
+    """Extend lags by doubled ones, up to half of a number of frames."""
     while 4 * lags[-1] <= frames:
         lags = (*lags, 2 * lags[-1])
     return lags
 
 
 def _with_lags(result: Observable, ends: np.ndarray, rate: float) -> Observable:
-    """Add the ends of the lags of its slope to a result, as an attribute and as a note."""
+    """Add the ends of the lags of a slope to its result."""
     collisions = " to ".join(f"{rate * end:.3g}" for end in ends)
     result.attrs["lags"] = ends
     result.attrs["note"] = (
@@ -389,9 +389,9 @@ def _rises(path: np.ndarray, lags: tuple[int, ...]) -> Iterator[np.ndarray]:
 
 
 def _settled_rise(rises: list[np.ndarray]) -> tuple[int, float]:
-    """Find the rise that no longer changes; return its number and the size of the tail that it lacks.
+    """Find the rise that no longer changes.
 
-    The limits are those of `settled_slope`. Raises SceneError if the last rises change by more than a slow
+    Returned are its number and the size of the tail that it lacks. The limits are as in `settled_slope`. Raises SceneError if the last rises change by more than a slow
     tail explains.
     """
     for k in range(1, len(rises)):

@@ -33,7 +33,7 @@ _STORED = "native"  # folder of the cache with an empty file for each set of ker
 
 
 def pays(seconds: float, features: dict[str, bool]) -> bool:
-    """Return True if a run of this length gains more by native kernels than their compilation costs.
+    """Return True if native kernels save a run of this length more time than their compilation.
 
     features : features of the processor by their LLVM names.
     """
@@ -41,7 +41,9 @@ def pays(seconds: float, features: dict[str, bool]) -> bool:
 
 
 def replace_shipped_kernels(seconds: float) -> bool:
-    """Compile the kernels of this process for this processor, if that pays after a run of this length.
+    """Compile the kernels of this process for this processor, if that pays.
+
+    seconds : CPU time of the run, which stands for the next run of its kind.
 
     Returns True if native kernels were stored. Nothing is compiled without kernels of a package, where
     numba's own settings name the processor, and while another process compiles the same kernels.
@@ -76,7 +78,7 @@ def _features() -> dict[str, bool]:
 
 
 def loaded_kernels() -> list[Kernel]:
-    """Return the kernels that this process has read from files, of the cache or of the package."""
+    """Return the kernels that this process has read from files."""
     kernels = {
         (function.__module__, function.__name__, types)
         for function in _dispatchers()
@@ -98,7 +100,7 @@ def _dispatchers() -> list[Any]:
 
 
 def _stamp(kernels: list[Kernel]) -> Path | None:
-    """Return the path of the file that states that native kernels are stored; None without a cache."""
+    """Return the path of the mark of stored native kernels, or None without a cache."""
     folders = (function.stats.cache_path for function in _dispatchers())
     folder = next(filter(None, folders), None)
     if folder is None or not kernels:
