@@ -391,8 +391,8 @@ def _rises(path: np.ndarray, lags: tuple[int, ...]) -> Iterator[np.ndarray]:
 def _settled_rise(rises: list[np.ndarray]) -> tuple[int, float]:
     """Find the rise that no longer changes.
 
-    Returned are its number and the size of the tail that it lacks. The limits are as in `settled_slope`. Raises SceneError if the last rises change by more than a slow
-    tail explains.
+    Returned are its number and the size of the tail that it lacks. The limits are as in `settled_slope`.
+    Raises SceneError if the last rises change by more than a slow tail explains.
     """
     for k in range(1, len(rises)):
         changes = rises[k] - rises[k - 1][: len(rises[k])]

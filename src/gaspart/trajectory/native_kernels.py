@@ -3,7 +3,7 @@
 The kernels of a wheel run on every processor of the level x86-64-v3. On a processor with AVX-512 kernels
 compiled there are faster, to the same bits. A run that took so long that another one of its kind would gain
 more than the compilation costs compiles them after its end. They are stored in the kernel cache, where
-kernels of this user come before kernels of the package, so that the next process uses them.
+kernels of this user come before the package's own, so that the next process uses them.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ Kernel = tuple[str, str, tuple]
 """Module and name of a kernel, and the types of its arguments."""
 
 GAIN = 1.2
-"""Speed of the event-driven engine with native kernels, divided by its speed with shipped kernels.
+"""Speed of the event-driven engine with native kernels, divided by its speed with a wheel's kernels.
 
 Measured on a processor with AVX-512, 1000 spheres at a packing fraction of 0.2.
 """
@@ -33,7 +33,7 @@ _STORED = "native"  # folder of the cache with an empty file for each set of ker
 
 
 def pays(seconds: float, features: dict[str, bool]) -> bool:
-    """Return True if native kernels save a run of this length more time than their compilation.
+    """Return True if a run of this length gains more by native kernels than they cost.
 
     features : features of the processor by their LLVM names.
     """
@@ -43,7 +43,7 @@ def pays(seconds: float, features: dict[str, bool]) -> bool:
 def replace_shipped_kernels(seconds: float) -> bool:
     """Compile the kernels of this process for this processor, if that pays.
 
-    seconds : CPU time of the run, which stands for the next run of its kind.
+    seconds : CPU time of the run that has ended.
 
     Returns True if native kernels were stored. Nothing is compiled without kernels of a package, where
     numba's own settings name the processor, and while another process compiles the same kernels.
@@ -78,7 +78,7 @@ def _features() -> dict[str, bool]:
 
 
 def loaded_kernels() -> list[Kernel]:
-    """Return the kernels that this process has read from files."""
+    """Return the kernels that this process has read from the cache or the package."""
     kernels = {
         (function.__module__, function.__name__, types)
         for function in _dispatchers()
@@ -100,7 +100,7 @@ def _dispatchers() -> list[Any]:
 
 
 def _stamp(kernels: list[Kernel]) -> Path | None:
-    """Return the path of the mark of stored native kernels, or None without a cache."""
+    """Return the path of the mark of stored native kernels; None without a cache."""
     folders = (function.stats.cache_path for function in _dispatchers())
     folder = next(filter(None, folders), None)
     if folder is None or not kernels:
