@@ -9,7 +9,7 @@ import pytest
 
 import gaspart as gp
 from gaspart.cli import main
-from gaspart.cli.conventions import conventions
+from gaspart.cli.export import conventions
 
 BALL = gp.Species(count=20, radius=0.4, temperature=1.0)
 AT_WALLS = gp.Container(lengths=(8.0, 6.0, 6.0), boundary=("wall", "periodic", "periodic"))

@@ -28,7 +28,7 @@ def add_info(parser: Parser) -> None:
 
 def _info(options: argparse.Namespace) -> None:
     from gaspart.accuracy.scales import scales
-    from gaspart.cli.conventions import conventions
+    from gaspart.cli.export import conventions
     from gaspart.cli.stated_run import run_options
     from gaspart.inspection.energy import certificate
     from gaspart.trajectory.opening import PARTIAL, check_frames, open_netcdf_file, partial_path

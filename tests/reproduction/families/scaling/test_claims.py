@@ -7,6 +7,7 @@ from reproduction.families.scaling.data import SCALING
 from gaspart.reproduction import claims as core
 from gaspart.reproduction.claims import judge
 from gaspart.reproduction.families.scaling import claims as scaling
+from gaspart.reproduction.families.scaling.claims import ideal_boxes, remarks
 
 
 @pytest.mark.parametrize("figure", SCALING)
@@ -56,3 +57,40 @@ def test_quick_round_widths_are_noticed(dataset):
     ds["advantage"] = ds.advantage + 0.1
     found = [verdict for claim, verdict in judged(scaling.box_count(ds)).items() if "power of two" in claim]
     assert found == ["disagrees", "disagrees"]
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "text"),
+    [
+        ("near_box_visits", 14.0, "searched within reach"),
+        ("near_missed", 1.0, "difference of the contacts"),
+        ("own_first", 0.1, "end in the own box"),
+        ("huge_tests", 0.0, "pairs tested more"),
+    ],
+)
+def test_false_remarks_are_noticed(name, value, text, dataset):
+    ds = dataset("box_count")
+    ds[name] = ds[name] * 0.0 + value
+    found = [verdict for claim, verdict in judged(remarks(ds)).items() if text in claim]
+    assert found == ["disagrees"]
+
+
+def test_remarks_about_time_are_decided(dataset):
+    """Leaving out boxes costs more than it saves on the known machine, and a further test little."""
+    found = judged(remarks(dataset("box_count")))
+    decided = {
+        claim: verdict for claim, verdict in found.items() if "within reach over" in claim or "huge" in claim
+    }
+    assert list(decided.values()) == ["agrees", "source in error", "agrees", "source in error"]
+
+
+def test_plateaus_are_decided(dataset):
+    ds = dataset("ideal_boxes")
+    ds["plateau_penalty"] = ds["plateau_penalty"] * 0.0 + 1.5
+    found = [verdict for claim, verdict in judged(ideal_boxes(ds)).items() if "worst N" in claim]
+    assert found == 4 * ["source in error"]
+
+
+def test_no_minimum_is_no_pass(dataset):
+    found = judged(ideal_boxes(dataset("ideal_boxes")))
+    assert found["ideal number of boxes per particle, N = 1200000, r = 0.1"] == "inconclusive"
