@@ -191,6 +191,29 @@ def partitioned(draw, most=10):
     return gp.Scene(gp.Container(lengths, boundary), species, gravity=gravity, walls=walls)
 
 
+@st.composite
+def opened(draw):
+    """Discs between open faces: dense, dilute or empty, one or more reservoirs or a vacuum."""
+    activities = st.one_of(st.none(), st.floats(-8.0, 4.0).map(lambda power: 10.0**power))
+    kinds = {}
+    for name in draw(st.sets(st.sampled_from(["x_low", "x_high", "y_low", "y_high"]), min_size=1)):
+        activity = draw(activities)
+        kinds[name] = gp.Open() if activity is None else gp.Open(activity, draw(st.sampled_from([0.5, 2.0])))
+    if "y_low" not in kinds and draw(st.booleans()):
+        kinds["y_low"] = gp.Thermal(1.0, accommodation=draw(st.sampled_from([None, 0.5])))
+    lengths = draw(st.tuples(*[st.floats(3.0, 9.0)] * 2))
+    species = [gp.Species(draw(st.integers(1, 4)), 0.5, temperature=1.0)]
+    return gp.Scene(gp.Container(lengths), species, faces=kinds, centres_to_walls=True)
+
+
+@st.composite
+def dense(draw):
+    """Two to twelve particles in a periodic container at the densities of a fluid."""
+    dimension = draw(st.sampled_from([2, 3]))
+    fraction = draw(st.floats(0.3, {2: 0.65, 3: 0.48}[dimension]))
+    return gas(dimension, draw(st.integers(2, 12)), fraction, arrangement="compressed")
+
+
 def check_inside(scene, state, tolerance):
     """All particles are as far inside the container as the scene states."""
     for position, radius in zip(state.positions, state.radii, strict=True):

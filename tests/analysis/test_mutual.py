@@ -1,12 +1,15 @@
 """Mutual diffusion of two species."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 import gaspart as gp
 from gaspart import theory
+from gaspart.analysis import diffusion
 from gaspart.errors import SceneError
 
 
@@ -54,6 +57,28 @@ def test_dilute_gas_of_unequal_masses(tmp_path):
     scatter = np.mean([float(one.error / one.theory) ** 2 for one in found]) ** 0.5
     assert scatter < 0.12
     assert np.mean(ratios) == pytest.approx(1.015, abs=3.0 * scatter / 2.0 + 0.015)
+
+
+def _last(path, run):
+    return path[-len(run.time) :]
+
+
+def test_lags_are_those_from_which_on_the_coefficient_no_longer_changes(tmp_path, monkeypatch):
+    """Separations whose velocity is correlated over 10 frames, a collision each: at 12 to 24, .825 of D."""
+    path = _run(_scene(0.05, _kind(4), _kind(4)), tmp_path / "a.nc", 1, 6000.0)
+    decay, values, lags = math.exp(-0.1), [], []
+    for seed in range(6):
+        kicks = np.random.default_rng(seed).normal(size=(9000, 3))
+        separations = np.cumsum(lfilter([1.0], [1.0, -decay], kicks, axis=0), axis=0)
+        monkeypatch.setattr(diffusion, "_separation", partial(_last, separations))
+        result = gp.analysis.mutual_diffusion(path)
+        values.append(float(result.estimate))
+        lags.append(float(result.attrs["lags"][1]))
+        with gp.open_trajectory(path) as run:
+            interval = float(run["time"][1])
+    exact = 0.25 * 8.0 / 2.0 / (1.0 - decay) ** 2 / interval  # N x_1 x_2 times half of the slope per axis
+    assert np.mean(values) / exact == pytest.approx(0.97, abs=0.1)
+    assert np.mean(values) / exact > 0.89 and np.mean(lags) / interval > 35.0
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from referee import WHOLE_TALLY, check_boxes, check_same, check_searches, events_of, restored
-from scenes import check_inside, gas, measured_compressibility, mixtures
+from scenes import check_inside, dense, gas, measured_compressibility, mixtures
 
 import gaspart as gp
 from gaspart import theory
@@ -16,6 +16,12 @@ from gaspart import theory
 
 @given(mixtures(), st.integers(0, 2**32))
 def test_all_searches_give_the_same_events_bit_for_bit(scene, seed):
+    check_searches(scene, 150, seed)
+
+
+@given(dense(), st.integers(0, 2**32))
+@settings(max_examples=10)
+def test_all_searches_give_the_same_events_in_small_dense_fluids(scene, seed):
     check_searches(scene, 150, seed)
 
 

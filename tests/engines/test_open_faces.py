@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scenes import opened
 
 import gaspart as gp
 from gaspart import theory
@@ -262,22 +263,7 @@ def test_bits_depend_neither_on_the_search_nor_on_where_a_run_is_split(search):
         assert same(whole, one)
 
 
-@st.composite
-def scenes(draw):
-    """Random discs between open faces: dense, dilute or empty, one or more reservoirs or a vacuum."""
-    activities = st.one_of(st.none(), st.floats(-8.0, 4.0).map(lambda power: 10.0**power))
-    kinds = {}
-    for name in draw(st.sets(st.sampled_from(["x_low", "x_high", "y_low", "y_high"]), min_size=1)):
-        activity = draw(activities)
-        kinds[name] = gp.Open() if activity is None else gp.Open(activity, draw(st.sampled_from([0.5, 2.0])))
-    if "y_low" not in kinds and draw(st.booleans()):
-        kinds["y_low"] = gp.Thermal(1.0, accommodation=draw(st.sampled_from([None, 0.5])))
-    lengths = draw(st.tuples(*[st.floats(3.0, 9.0)] * 2))
-    species = [gp.Species(draw(st.integers(1, 4)), 0.5, temperature=1.0)]
-    return gp.Scene(gp.Container(lengths), species, faces=kinds, centres_to_walls=True)
-
-
-@given(scenes(), st.integers(0, 1000))
+@given(opened(), st.integers(0, 1000))
 @settings(max_examples=15)
 def test_random_open_scenes_keep_their_books_and_bits(scene, seed):
     whole, parts = gp.Simulation(scene, seed=seed), gp.Simulation(scene, gp.EventDriven("pairs"), seed=seed)

@@ -1,14 +1,22 @@
 """Trajectories of containers with open faces: the same bytes however they were made, and what is refused."""
 
 import math
+import shlex
 from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import gsd.hoomd
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scenes import opened
 
 import gaspart as gp
 from gaspart import analysis
+from gaspart.accuracy.plan import plan
+from gaspart.analysis.conditions import VARYING
 from gaspart.analysis.observables import OBSERVABLES
 from gaspart.cli import main
 from gaspart.inspection.checks import judge_open
@@ -209,12 +217,36 @@ def test_what_is_not_steady_or_vanishes_ends_no_run(tmp_path):
             gp.run(scene, until=gp.Accuracy(name, 0.1), path=tmp_path / "run.nc")
 
 
+@given(opened(), st.integers(0, 1000))
+@settings(max_examples=8)
+def test_random_open_runs_are_read_checked_and_exported(scene, seed):
+    """Also those without any particle in some or all frames."""
+    with TemporaryDirectory() as folder:
+        path = gp.run(scene, seed=seed, duration=8.0, sample_interval=0.4, path=Path(folder, "run.nc"))
+        with gp.open_trajectory(path) as data:
+            counts = np.isfinite(data["coordinates"].values[..., 0]).sum(axis=1)
+        assert not any(check.passed is False for check in judge_open(path)[1])
+        for name in ("run.gsd", "run.xyz"):
+            export(path, Path(folder, name), frame="all")
+        with gsd.hoomd.open(Path(folder, "run.gsd")) as frames:
+            assert [frame.particles.N for frame in frames] == counts.tolist()
+        number = gp.measure(path, "number", start=0.0)
+        assert float(number.estimate) == pytest.approx(counts.mean(), rel=0.2, abs=0.5)
+
+
+@pytest.mark.parametrize("name", ["number", "density", "temperature", "pressure", "pressure:y low"])
+def test_advice_on_an_open_scene_names_the_run_that_ends_by_itself(name):
+    with pytest.raises(gp.SceneError, match="x_low: lets.*no cost is predicted") as error:
+        plan(DISCS, name, 0.1)
+    assert f"--until {shlex.quote(f'{name}=0.01')}` ends" in str(error.value)
+
+
 def test_what_needs_particles_that_stay_is_refused(trajectory):
     """By one line that names the face: all observables but those that declare that they do not."""
     path, data = trajectory
     served = {"number", "density", "velocity", "temperature", "pressure", "force", "flux"}
     for name, one in analysis.observables.OBSERVABLES.items():
-        assert one.varying == (name in served)
+        assert one.varying == (name in served) == (name in VARYING.replace(",", "").split())
         if name not in served:
             with pytest.raises(gp.SceneError, match="faces.x_low.*open.*particles that stay"):
                 getattr(analysis, one.function)(path)

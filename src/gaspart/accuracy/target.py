@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -240,7 +241,9 @@ def _require_defined(scene: Scene, observable: str, name: str) -> None:
     try:
         require_defined(observable, scene)
         require_steady_value(observable, scene)
-        refuse_open(scene, "changes the particles: no cost is predicted; a run --until ends by itself")
+        until = shlex.quote(f"{name}=0.01")
+        remedy = f"`gaspart run SCENE -o run.nc --until {until}` ends when the error is that small"
+        refuse_open(scene, f"lets particles enter and leave, and no cost is predicted; {remedy}")
     except SceneError as error:
         raise SceneError("observable", name, f"{error.key}: {error.rule}") from None
 

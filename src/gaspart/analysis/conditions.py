@@ -24,7 +24,7 @@ GROUPS = 16
 SLIDING = "this observable is not defined where images of the particles slide"
 VARYING = (
     "lets particles enter and leave, and this observable follows particles that stay; defined here are "
-    "flux, pressure, density and temperature"
+    "number, flux, density, velocity, temperature, pressure and force"
 )
 DISCS = "discs have no diffusion coefficient: their squared displacement grows like t ln t"
 _NEIGHBOURHOOD = {2: 7, 3: 13}  # a particle and those around it in a crystal

@@ -6,8 +6,9 @@ than groups, the scatter of as many blocks of the run.
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -16,11 +17,11 @@ from gaspart.analysis.conditions import DISCS, GROUPS
 from gaspart.analysis.expected.equilibrium import describe
 from gaspart.analysis.flow import FLOW
 from gaspart.analysis.motion import axes_of
-from gaspart.analysis.observable import Observable, observable, scalar, with_freedom
+from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable, scalar, with_freedom
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.paths import Groups, groups_of, stride_of, unwrap_positions
 from gaspart.analysis.run import Run, Source, open_run, select_particles
-from gaspart.analysis.statistics import means_of
+from gaspart.analysis.statistics import correlated_mean, means_of
 from gaspart.errors import SceneError
 from gaspart.keys.values import number
 
@@ -130,13 +131,7 @@ def diffusion_coefficient(
         attributes = describe("D", run, None, rate * ends)
         errors = np.hypot(errors, tail)
         result = observable("diffusion_coefficient", along, values, errors, **attributes)
-        result = with_freedom(result, len(slopes) - 1.0)
-        collisions = " to ".join(f"{rate * end:.3g}" for end in ends)
-        result.attrs["lags"] = ends
-        result.attrs["note"] = (
-            f"by the slope between the lags {ends[0]:.4g} and {ends[1]:.4g}, {collisions} collisions"
-        )
-        return result
+        return _with_lags(with_freedom(result, len(slopes) - 1.0), ends, rate)
 
 
 def _all_lags(run: Run, stride: int, parts: int) -> tuple[int, ...]:
@@ -145,10 +140,24 @@ def _all_lags(run: Run, stride: int, parts: int) -> tuple[int, ...]:
     The longest lag is at most half of the frames of each of the parts of a run. Raises SceneError as
     `lags_of_slopes`.
     """
-    lags = lags_of_slopes(run, stride, parts)
-    while 4 * lags[-1] * stride * parts <= len(run.time):
+    return _extend_lags(lags_of_slopes(run, stride, parts), len(run.time) // (stride * parts))
+
+
+def _extend_lags(lags: tuple[int, ...], frames: int) -> tuple[int, ...]:
+    """Extend lags by doubled ones, up to half of a number of frames."""
+    while 4 * lags[-1] <= frames:
         lags = (*lags, 2 * lags[-1])
     return lags
+
+
+def _with_lags(result: Observable, ends: np.ndarray, rate: float) -> Observable:
+    """Add the ends of the lags of a slope to its result."""
+    collisions = " to ".join(f"{rate * end:.3g}" for end in ends)
+    result.attrs["lags"] = ends
+    result.attrs["note"] = (
+        f"by the slope between the lags {ends[0]:.4g} and {ends[1]:.4g}, {collisions} collisions"
+    )
+    return result
 
 
 def _rate(run: Run) -> float:
@@ -323,7 +332,8 @@ def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
     ------
     SceneError
         For other numbers of species, fixed particles, walls, contacts that lose energy, discs, which have no
-        such coefficient, frames too far apart, and runs that are too short.
+        such coefficient, frames too far apart, runs that are too short, and if the rise still changes at the
+        longest lags.
 
     Notes
     -----
@@ -331,7 +341,10 @@ def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
 
         D_12 = x_1 x_2 N / (2 d) d/dt <|X_1(t) - X_2(t)|^2>,
 
-    by the rise from 12 to 24 collisions of a particle [1]_ [2]_. Fick's coefficient is D_12 times the
+    by the first rise between 6, 12, 24, 48 ... collisions of a particle that equals the one before within two
+    standard errors [1]_ [2]_; the attribute `lags` has its ends. The longest lag is a 32nd of the run, but 24
+    collisions at least. If the last rise has changed by less than 6 %, a slow tail is missing, whose size is
+    added to the error. Fick's coefficient is D_12 times the
     thermodynamic factor, which is 1 for species of one size. Of species that differ in nothing but their
     numbers D_12 is the D of a single particle, exactly. X_1 - X_2 is one vector, however many particles there
     are: only longer runs are more accurate.
@@ -354,14 +367,45 @@ def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
     """
     with open_run(source, start) as run:
         require_defined("mutual_diffusion", run.scene)
-        _, early, late = lags_of_slopes(run)
-        apart = _separation(run)
-        rise = _squares(apart, late) - _squares(apart, early)[: len(apart) - late]
-        lag = run.interval * (late - early)
+        lags = _extend_lags(lags_of_slopes(run), len(run.time) // GROUPS)
         first, second = (kind.count / run.count for kind in run.scene.species)
-        series = first * second * run.count / (2.0 * run.dimension * lag) * rise
-        edges = run.time[: len(series) + 1]
-        return scalar("mutual_diffusion", series, edges, **describe("mutual_diffusion", run))
+        factor = first * second * run.count / (2.0 * run.dimension * run.interval)
+        rises = [factor * rise for rise in _rises(_separation(run), lags)]
+        last, tail = _settled_rise(rises)
+        edges = run.time[: len(rises[last]) + 1]
+        result = scalar("mutual_diffusion", rises[last], edges, **describe("mutual_diffusion", run))
+        result["mutual_diffusion_error"][...] = np.hypot(result.error, tail)
+        return _with_lags(result, run.interval * np.array(lags[last : last + 2]), _rate(run))
+
+
+def _rises(path: np.ndarray, lags: tuple[int, ...]) -> Iterator[np.ndarray]:
+    """Generate the rises of the squared change of a path per frame, between consecutive lags.
+
+    Each has its value from each time on, as far as the longer of the two lags allows.
+    """
+    for early, late in itertools.pairwise(lags):
+        number = len(path) - late
+        yield (_squares(path, late) - _squares(path, early)[:number]) / (late - early)
+
+
+def _settled_rise(rises: list[np.ndarray]) -> tuple[int, float]:
+    """Find the rise that no longer changes.
+
+    Returned are its number and the size of the tail that it lacks. The limits are as in `settled_slope`.
+    Raises SceneError if the last rises change by more than a slow tail explains.
+    """
+    for k in range(1, len(rises)):
+        changes = rises[k] - rises[k - 1][: len(rises[k])]
+        if len(changes) < LEAST_INTERVALS:  # `scalar` rejects the run
+            return k, 0.0
+        change = correlated_mean(changes, LEAST_INTERVALS).estimate
+        if abs(change.deviation) <= _WITHIN:
+            return k, 0.0
+    early, late = (float(rise.mean()) for rise in rises[-2:])
+    if abs(change.value) > _WITHIN * change.error + _SLOW * abs(early):
+        rule = f"changes from {early:.3g} to {late:.3g} at the longest lags of this run: make a longer one"
+        raise SceneError("mutual_diffusion", "not constant", rule)
+    return k, _TAIL * abs(change.value)
 
 
 def _separation(run: Run) -> np.ndarray:

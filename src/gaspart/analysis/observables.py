@@ -445,7 +445,7 @@ OBSERVABLES: dict[str, Named] = {
 """Observables by name, as on the command line, in a sweep and in a config."""
 
 
-TOO_SHORT = ("frames", "duration", "collisions", "wall_hits", "start", "D")
+TOO_SHORT = ("frames", "duration", "collisions", "wall_hits", "start", "D", "mutual_diffusion")
 """Keys of the errors of an analysis that a longer run may not have."""
 
 
