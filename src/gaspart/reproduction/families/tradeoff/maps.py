@@ -173,7 +173,7 @@ def _bounds(point: Point, coefficient: str) -> tuple[float, float]:
     return model, float(grown) - 1.0
 
 
-def choices(flows: Sequence[Flow], count: int, speeds: Mapping[str, Estimate]) -> Iterator[Choice]:
+def flow_choices(flows: Sequence[Flow], count: int, speeds: Mapping[str, Estimate]) -> Iterator[Choice]:
     """Yield the choices for the engines that have measured one observable of one gas.
 
     count : number of particles that costs are for.
@@ -255,7 +255,7 @@ def maps(points: Sequence[Point], settings: dict, timed: list[dict], compared: l
                 flow for flow in measured if (flow.observable, flow.packing_fraction) == (QUANTITIES[q], eta)
             ]
             speeds = between.get(eta, {}) if QUANTITIES[q] == "heat_flux" else _speeds_of(timed, of)
-            choices = list(choices(of, count, speeds)) if of else []
+            choices = list(flow_choices(of, count, speeds)) if of else []
         _enter(results[0][q, f], results[1][q, f], choices, accuracies)
     axes = ("quantity", "fraction", "accuracy", "solver")
     dataset = xr.Dataset(
