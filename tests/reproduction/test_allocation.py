@@ -1,12 +1,14 @@
 """The least time with which all claims stay decided."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from reproduction.claims.data import claim
 
 from gaspart.reproduction import allocation
 from gaspart.reproduction import cost as budget
-from gaspart.reproduction.allocation import IN_HAND, LONGEST, SHORTEST, Demand, allocate
+from gaspart.reproduction.allocation import IN_HAND, LONGEST, SHORTEST, Demand, allocate, shortest_multiples
 from gaspart.reproduction.points.points import scale_length
 from gaspart.reproduction.table import Table, table
 
@@ -55,6 +57,16 @@ def test_points_that_no_row_states_have_the_length_of_their_neediest_claim():
     assert lengths == pytest.approx({"gas/a": 0.2, "gas/b": 0.2, "gas/c": 1.0}, rel=1e-3)
     unknown = Demand("z", "in part", {"gas/a": 0.5}, 0.5, 2.0)
     assert allocate([unknown], COST, {"z": ["gas/a"]})[0]["gas/a"] == pytest.approx(0.5, rel=1e-3)
+
+
+def test_no_run_is_shorter_than_the_blocks_and_lags_that_its_figures_need():
+    points = {"samples": 100}, {"samples": 250, "lags": 60}, {"samples": 10, "lags": 60}, {}
+    planned = {"gas": {str(n): SimpleNamespace(settings=settings) for n, settings in enumerate(points)}}
+    config = {"figures": {"heat": {"experiments": ["gas"], "blocks": 40}, "film": {"experiments": ["gas"]}}}
+    least = shortest_multiples(config, planned)
+    assert least == {"gas/0": 0.4, "gas/1": 0.24, "gas/2": 0.0, "gas/3": 0.0}
+    known = Demand("z", "known", {"gas/0": 1.0}, 0.0, 5.0)
+    assert allocate([known], {"gas/0": 1.0}, {"z": ["gas/0"]}, least)[0] == pytest.approx({"gas/0": 0.4})
 
 
 class Named:

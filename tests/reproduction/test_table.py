@@ -132,6 +132,12 @@ def test_a_row_without_an_array_has_nan_in_its_place():
     np.testing.assert_array_equal(ds["b"].values, [[[1.0, 1.0]], [[np.nan, np.nan]]])
 
 
+def test_a_row_has_no_replicas_that_only_other_rows_have():
+    rows = [{"z": np.array([1.0, 2.0])}, {"z": np.array([3.0])}, {"z": np.nan}]
+    few, fewer, none = Table(from_rows("gas", rows, ("gas_replica",)), "gas")
+    assert few.z.tolist() == [1.0, 2.0] and fewer.z.tolist() == [3.0] and np.isnan(none.z).all()
+
+
 def test_degrees_of_freedom_may_be_one_number_for_an_array():
     row = {"a": np.ones(2), "a_error": np.ones(2), "a_freedom": 3}
     ds = from_rows("gas", [row], {"a": ("bin",)})

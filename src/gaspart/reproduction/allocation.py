@@ -20,6 +20,7 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -27,6 +28,7 @@ import xarray as xr
 from gaspart.reproduction import cost as budget
 from gaspart.reproduction.claims.judging import judge, sufficient
 from gaspart.reproduction.config import open_config
+from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import MADE_OF
 
 IN_HAND = 1.3
@@ -106,19 +108,23 @@ def _enlarge_errors(dataset: xr.Dataset, position: Mapping[str, int]) -> xr.Data
 
 
 def allocate(
-    demanded: Sequence[Demand], cost: Mapping[str, float], figures: Mapping[str, Sequence[str]]
+    demanded: Sequence[Demand],
+    cost: Mapping[str, float],
+    figures: Mapping[str, Sequence[str]],
+    shortest: Mapping[str, float] | None = None,
 ) -> tuple[dict[str, float], list[float]]:
     """Return the multiple of the length of each point, and the price of each demand.
 
     cost : time of each point, in s.
     figures : points of each figure.
+    shortest : least multiple of points that need more than `SHORTEST`.
 
     The price is the time in s that e times (2.72) the variance would save. Points of a figure that no row
     states, and the points of a claim with a rest, have the multiple that would suffice if all points had it.
     """
     names = sorted(cost)
     index = {name: n for n, name in enumerate(names)}
-    least = np.full(len(names), SHORTEST)
+    least = np.array([max(SHORTEST, (shortest or {}).get(name, 0.0)) for name in names])
     shares = np.zeros((len(demanded), len(names)))
     for k, demand in enumerate(demanded):
         for point, part in demand.parts.items():
@@ -135,6 +141,23 @@ def allocate(
     times = np.array([max(cost[name], 1e-3) for name in names])
     lengths, prices = _least_cost(shares / most[:, None], times, least)
     return dict(zip(names, lengths.tolist(), strict=True)), prices.tolist()
+
+
+def shortest_multiples(
+    config: Mapping[str, Any], planned: Mapping[str, Mapping[str, Point]]
+) -> dict[str, float]:
+    """Return the multiple of each point below which its figure has fewer samples than blocks or lags."""
+    multiples: dict[str, float] = {}
+    for figure, points in budget.shown_points(config, planned).items():
+        for experiment, name in points:
+            settings, key = planned[experiment][name].settings, f"{experiment}/{name}"
+            needed = max(config["figures"][figure].get("blocks", 0), settings.get("lags", 0))
+            samples = settings.get("samples", math.inf)
+            multiple = (
+                needed / samples if needed <= samples else 0.0
+            )  # else blocks are parts of frames or replicas
+            multiples[key] = max(multiples.get(key, 0.0), multiple)
+    return multiples
 
 
 def _least_cost(shares: np.ndarray, times: np.ndarray, least: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -165,7 +188,7 @@ def main(path: str, page: str) -> None:
         names = {figure: ["/".join(point) for point in points] for figure, points in figures.items()}
         points = {point for points in figures.values() for point in points}
         cost = {"/".join(point): budget.point_seconds(results, point) for point in points}
-        multiples, prices = allocate(demanded, cost, names)
+        multiples, prices = allocate(demanded, cost, names, shortest_multiples(config, planned))
         had = config.get("lengths") or {}
     for name in multiples:
         experiment, _, point = name.partition("/")

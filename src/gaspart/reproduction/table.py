@@ -48,11 +48,15 @@ class _Columns:
 class Row(_Columns):
     """Row of a table.
 
-    Its columns are single numbers or words, single estimates, or arrays over the inner dimensions;
-    `"{count:.0f} discs".format_map(row)` is a text about it.
+    Its columns are single numbers or words, single estimates, or arrays over the inner dimensions, without
+    the replicas that only other rows have; `"{count:.0f} discs".format_map(row)` is a text about it.
     """
 
     def __init__(self, dataset: xr.Dataset) -> None:
+        for over in [name for name in dataset.dims if str(name).endswith("replica")]:
+            names = [name for name, column in dataset.data_vars.items() if over in column.dims]
+            own = dataset.dropna(over, how="all", subset=names) if names else dataset
+            dataset = own if own.sizes[over] else dataset
         self.dataset = dataset
 
     def __getitem__(self, name: str) -> Any:

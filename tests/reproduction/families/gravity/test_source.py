@@ -43,11 +43,11 @@ def test_shares_of_the_light_discs_in_layers_of_the_container(column, monkeypatc
     sample.positions[0, :, 1] = [0.1, 0.2, 3.0, 0.3]
     monkeypatch.setattr(measure, "field", lambda point: place)
     monkeypatch.setattr(measure, "stretches", lambda point, number: [sample])
-    share, error = measure.shares(column, 2)["share"]
+    share, error = measure.layer_fractions(column, 2)["share"]
     assert share == pytest.approx([2.0 / 3.0, 1.0])
     assert error == pytest.approx([np.sqrt(2.0 / 27.0), 0.0])
     sample.positions[0, 3, 1] = 1.95  # just above the middle of the container
-    assert measure.shares(column, 2)["share"][0] == pytest.approx([1.0, 0.5])
+    assert measure.layer_fractions(column, 2)["share"][0] == pytest.approx([1.0, 0.5])
 
 
 def test_only_the_source_s_own_run_is_compared_with_its_numbers(column, tmp_path):

@@ -119,7 +119,7 @@ def test_an_error_is_bounded_by_theory_or_by_what_is_seen():
 
 def test_a_flow_costs_its_variance_and_settles_first():
     speeds = {"event": Estimate(1e-3, 1e-5), "enskog": Estimate(2e-3, 1e-5)}
-    made = list(maps.choices([flow("event", 1.0), flow("enskog", 1.0), flow("step", 1.0)], 1000, speeds))
+    made = list(maps.flow_choices([flow("event", 1.0), flow("enskog", 1.0), flow("step", 1.0)], 1000, speeds))
     assert [one.engine for one in made] == ["event", "enskog"]
     assert made[0].unit == pytest.approx(2.0 * 1e-3) and made[1].unit == pytest.approx(4.0e-3)
     assert made[0].least == pytest.approx(3.0 * 1e-3 * 2.0)  # of twice as many particles

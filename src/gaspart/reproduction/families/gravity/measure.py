@@ -82,7 +82,7 @@ def ringing(point: Point) -> dict[str, Estimate]:
     return {"ringing": Estimate(amplitude, error, len(time) - len(start))}
 
 
-def shares(point: Point, layers: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+def layer_fractions(point: Point, layers: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Compute the fraction of the first species in equal layers of the container, (layers,).
 
     Its error is the binomial one of a single frame: the frames of one sample are close to each other, and so
@@ -128,7 +128,7 @@ def separation(points: list[Point], settings: dict) -> xr.Dataset:
     in it, of the light discs in equal layers of the container.
     """
     shares = settings["source_shares"]
-    dataset = profiles(points, settings, lambda point: shares(point, len(shares)))
+    dataset = profiles(points, settings, lambda point: layer_fractions(point, len(shares)))
     return dataset.assign_attrs(source_collisions=settings["source_collisions"], source_shares=shares)
 
 
