@@ -51,11 +51,14 @@ def _draw_path(axis: Axes, path: Row) -> None:
 
 
 def _draw_states(middle: Axes, lower: Axes, states: Table, dimension: int) -> None:
-    eta, name = states.density.mean(axis=1), PARTICLES[dimension]
-    factor = states.factor / theory.compressibility_factor(states.density, dimension)
-    variance = states.fluctuation * theory.speed_of_sound(eta, dimension)[:, None] ** 2
-    for axis, ratio in ((middle, factor), (lower, variance)):
-        style.points(axis, eta, Estimate(*means_of(ratio.T)), kind=dimension - 2, label=name)
+    eta, name = np.array([state.density.mean() for state in states]), PARTICLES[dimension]
+    factor = [
+        mean_of(state.factor / theory.compressibility_factor(state.density, dimension)) for state in states
+    ]
+    variance = Estimate.stack([mean_of(state.fluctuation) for state in states])
+    variance = variance * theory.speed_of_sound(eta, dimension) ** 2
+    for axis, ratio in ((middle, Estimate.stack(factor)), (lower, variance)):
+        style.points(axis, eta, ratio, kind=dimension - 2, label=name)
     fine, colour = np.linspace(0.0, eta.max(), 60), style.COLOURS[dimension - 2]
     finite = theory.constant_enthalpy_factor(fine, dimension, states.count[0])
     middle.plot(fine, finite, color=colour, zorder=1, label=f"{name}, finite $N$")
