@@ -73,10 +73,10 @@ class Layers:
     def contact_of_few(self) -> np.ndarray:
         """Contact value for the scene's number of particles, inf without space for a pair; shape (S,).
 
-        A pair at contact need not avoid itself: 1 / (1 - v / V), v the volume from which one of the pair
-        excludes the centre of the other, which is exact for two particles, is multiplied by the contact value
-        of the rest. To first order in the packing fraction of spheres it is 1 + (5/2 + 3/N) eta: 4 eta for
-        two, 5/2 eta for many.
+        A pair at contact need not avoid itself. Let v be the volume that one of the pair excludes to the
+        centre of the other: 1 / (1 - v / V), exact for two particles, is multiplied by the contact value of
+        the other particles. To first order in the packing fraction of spheres it is 1 + (5/2 + 3/N) eta:
+        4 eta for two, 5/2 eta for many.
         """
         radii, _, numbers = self._kinds
         d, count = self.scene.dimension, self.scene.count
@@ -119,8 +119,8 @@ class Layers:
     def surfaces(self) -> float:
         """Fraction of all contacts that lack a neighbour beyond a wall, to first order.
 
-        It is the sum over axes with walls of the largest diameter divided by the length in which the
-        particles are.
+        The largest diameter, divided by the length that particles can reach, is summed over the axes with
+        walls.
         """
         sides = np.where(self.scene.container.periodic, math.inf, self.free)
         if self.axis is not None and math.isfinite(sides[self.axis]):

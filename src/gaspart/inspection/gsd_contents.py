@@ -68,7 +68,7 @@ def read_gsd(path: Path, overrides: Overrides) -> Contents:
 
 
 def _require_same_count(counts: list[int], path: Path) -> None:
-    """Refuse a number of particles that changes."""
+    """Raise an error if the number of particles differs between frames."""
     for n, count in enumerate(counts):
         if count != counts[0]:
             rule = f"has {count} particles in frame {n} and {counts[0]} in frame 0"

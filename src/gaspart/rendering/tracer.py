@@ -39,7 +39,7 @@ def trace(
     """Trace a picture (H, W, 3), from 0 to 1, and the objects in its pixels.
 
     positions, radii, colours : (N, 3), (N,), (N, 3).
-    lengths : (3,), sides of the container, whose lower face is the floor.
+    lengths : (3,), sides of the container, whose face at z = 0 is drawn as the floor.
     size : (W, H) in pixels.
     lines : (M, 2, 3), drawn like the edges of the container.
 

@@ -146,12 +146,12 @@ def allocate(
 def shortest_multiples(
     config: Mapping[str, Any], planned: Mapping[str, Mapping[str, Point]]
 ) -> dict[str, float]:
-    """Return the multiple of each point below which its figure has fewer samples than blocks or lags."""
+    """Return the multiple of each point that leaves its figure enough samples for blocks and lags."""
     multiples: dict[str, float] = {}
     for figure, points in budget.shown_points(config, planned).items():
         for experiment, name in points:
             settings, key = planned[experiment][name].settings, f"{experiment}/{name}"
-            needed = max(config["figures"][figure].get("blocks", 0), settings.get("lags", 0))
+            intervals = max(config["figures"][figure].get("blocks", 0), settings.get("lags", 0))
             samples = settings.get("samples", math.inf)
             multiple = (
                 needed / samples if needed <= samples else 0.0

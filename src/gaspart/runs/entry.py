@@ -77,7 +77,7 @@ def run(
     seed : int or tuple of int, default 0
         Seed of the initial state and of all random numbers of the run.
     duration : float, [time], optional
-        Length of the run, an integer multiple of `sample_interval`. Excludes `until`.
+        Length of the run, an integer multiple of `sample_interval`. Cannot be combined with `until`.
     sample_interval : float, [time], optional
         Time between frames; the first frame is at time 0. Default with `until`: the mean time between
         collisions of a particle.
@@ -87,17 +87,19 @@ def run(
         Requested relative standard errors, standard error / |value|. They are tested at 64, 96, 128 ...
         frames (see `reached_accuracy`).
     at_most : float, [time], optional
-        Maximum length of a run with `until`. By default such a run ends after 16384 frames without a contact.
+        Maximum length of a run with `until`. By default such a run ends if its first 16384 frames have no
+        contact.
     displacements : bool, default False
         Also store the unwrapped displacement of each particle since time 0, in float64.
     follow : int, optional
-        Store only the first `follow` particles. Counters still refer to all particles.
+        Store only the first `follow` particles. Numbers of collisions and other totals still include all
+        particles.
     keep : {"positions", "velocities"}, optional
         Store only this property of the particles.
     correlations : Correlations, optional
-        Time correlations to accumulate: each frame has the sums so far, over all pairs of samples. The sums
-        are of the velocities and, with `displacements`, of the mean-squared displacement; with
-        ``Correlations(stress=True)``, of the stress tensor and the heat flux.
+        Time correlations to accumulate: each frame stores the sums since the start, over all pairs of
+        samples. The sums are of the velocities and, with `displacements`, of the mean-squared displacement;
+        with ``Correlations(stress=True)``, of the stress tensor and the heat flux.
     pairs : bool, default False
         Count the collisions of each pair of species in each frame.
     impulses : str, optional
@@ -121,9 +123,9 @@ def run(
     keep_checkpoint : bool, default False
         Keep the final state in ``<path>.checkpoint.npz``.
     replicas : int, default 1
-        Number of independent runs at the same time, one process each, of the seed followed by 1, 2 ..., with
-        the files ``run-1.nc``, ``run-2.nc`` ... of ``run.nc`` (`replica_paths`). With `until` they end when
-        their mean is accurate.
+        Number of independent runs at the same time, one process each. Run k has the seed ``(seed, k)`` and,
+        of ``run.nc``, the file ``run-k.nc`` (`replica_paths`). With `until` they end when their mean is
+        accurate.
 
     Returns
     -------
@@ -301,8 +303,8 @@ def resume(
 ) -> Path:
     """Finish an interrupted run, or extend a complete one, from its files only.
 
-    Without a `duration` the run that left ``<path>.partial`` is finished. With a `duration` the complete run
-    at `path` is continued to that time.
+    Without a `duration` the interrupted run whose file is ``<path>.partial`` is continued to its end. With a
+    `duration` the complete run at `path` is continued to that time.
 
     Parameters
     ----------

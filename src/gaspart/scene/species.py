@@ -58,7 +58,7 @@ def _check_matter(particle: Species | Particle) -> None:
 
 @dataclass(frozen=True)
 class Species:
-    """Identical particles, which the program places.
+    """Particles of one kind, which the program places; identical without a `polydispersity`.
 
     Velocities have random directions. Their magnitudes are all equal to `speed`, or Maxwellian at
     `temperature`; without either the particles start at rest.
@@ -72,12 +72,12 @@ class Species:
     mass : float, default 1.0, [mass]
         Mass of each particle, also if the radii differ.
     speed : float, [length/time], optional
-        Initial speed of every particle. Excludes `temperature`.
+        Initial speed of every particle. Cannot be combined with `temperature`.
     temperature : float, [energy], optional
         Temperature k_B T of the initial velocities; for `fixed` particles, of their vibrations.
     exact_temperature : bool, default False
         Rescale the initial velocities to exactly `temperature`, after the mean velocity is subtracted along
-        axes on which momentum is conserved. All species with an exact temperature are rescaled together.
+        axes on which momentum is conserved. All species with an exact temperature are rescaled by one factor.
     arrangement : {"random", "lattice", "slab", "compressed"}, default "random"
         Initial positions. "random": sequential insertion. "slab": a lattice whose vacancies all lie in one
         half, so that this half melts. "compressed": growth to a density that insertion cannot reach (see
@@ -90,7 +90,7 @@ class Species:
     fixed : bool, default False
         The particles never move: their mass is infinite.
     vibration : float, [energy], optional
-        Initial vibrational energy of fixed particles. Excludes `temperature`.
+        Initial vibrational energy of fixed particles. Cannot be combined with `temperature`.
     polydispersity : float, [1], optional
         Standard deviation of the radii divided by their mean. Default: all radii are equal.
     radius_distribution : {"lognormal", "uniform"}, optional
@@ -113,8 +113,8 @@ class Species:
     A fixed particle with a `vibration` or a `temperature` has one mode of vibration. A contact exchanges its
     energy with the normal energy of the other particle.
 
-    Radii of a polydisperse species are the equally probable quantiles of the distribution, in descending
-    order. They depend on these parameters alone and not on the seed, so that every run has the same packing
+    The N radii of a polydisperse species are the quantiles of the distribution at N equally spaced
+    probabilities, in descending order. They do not depend on the seed: every run has the same packing
     fraction.
 
     Examples

@@ -32,9 +32,9 @@ def wells_of(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     Returns
     -------
     depths : ndarray, shape (2d,), [energy]
-        Depths, 0 where there is no well.
+        Depth of the well at each face, 0 without a well.
     widths : ndarray, shape (2d,), [length]
-        Widths, 0 where there is no well.
+        Width of the well at each face, 0 without a well.
     """
     faces = (scene.faces.get(name) for name in FACES[: 2 * scene.dimension])
     wells = [(face.depth, face.width) if isinstance(face, Well) else (0.0, 0.0) for face in faces]

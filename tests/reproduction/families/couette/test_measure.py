@@ -66,7 +66,7 @@ def test_numbers_of_an_exact_flow():
     squares = np.stack([np.ones(40), 1.0 + velocity**2, np.ones(40)], axis=1)
     eta = float(couette.theory.enskog_viscosity(0.0, 3))
     averages = np.full(40, density), density * velocity, density * squares
-    values = couette._numbers(setting, eta * gradient, density, *averages)
+    values = couette._gap_numbers(setting, eta * gradient, density, *averages)
     found = dict(zip(("stress", *couette.NUMBERS), values, strict=True))
     assert abs(found["viscosity"] - 1.0) < 1e-12
     assert abs(found["slip"] - 1.25) < 0.05
