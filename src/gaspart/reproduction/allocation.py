@@ -153,9 +153,8 @@ def shortest_multiples(
             settings, key = planned[experiment][name].settings, f"{experiment}/{name}"
             intervals = max(config["figures"][figure].get("blocks", 0), settings.get("lags", 0))
             samples = settings.get("samples", math.inf)
-            multiple = (
-                needed / samples if needed <= samples else 0.0
-            )  # else blocks are parts of frames or replicas
+            # Where samples are fewer than blocks, these are parts of frames or replicas.
+            multiple = intervals / samples if intervals <= samples else 0.0
             multiples[key] = max(multiples.get(key, 0.0), multiple)
     return multiples
 
