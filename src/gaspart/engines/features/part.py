@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gaspart.kernels.model import Gravity, Model, Shear, no_support
-from gaspart.kernels.physics import running_sum
 from gaspart.scene.driving import Thermostat
 from gaspart.scene.faces import FLOW, GRADIENT
 from gaspart.scene.scene import Scene
@@ -280,6 +279,8 @@ class Kicks(Part):
     @property
     def given(self) -> float:
         """Energy given by kicks since the tally began."""
+        from gaspart.kernels.physics import running_sum  # numba takes 0.4 s
+
         return running_sum.net(self._given) * self._unit_mass
 
     def end_epoch(self, length: float, start: float) -> None:
