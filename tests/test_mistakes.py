@@ -261,7 +261,7 @@ def test_speeds_of_an_open_gas_are_not_defined():
     scene = gp.Scene(gp.Container((9.0, 9.0)), GAS, faces=faces, centres_to_walls=True)
     simulation = gp.Simulation(scene, seed=1)
     simulation.advance(duration=1.0)
-    remedy = "defined here are flux, pressure, density and temperature"
+    remedy = "defined here are number, flux, density, velocity, temperature, pressure and force"
     assert remedy in line(lambda: gp.analysis.speed_distribution(simulation), gp.SceneError)
 
 

@@ -14,13 +14,13 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 from gaspart.engines import Engine, register
-from gaspart.keys import declared, positive
+from gaspart.keys import declare, positive
 
 
 @register
 @dataclass(frozen=True)
 class Skeleton(Engine):
-    stride: float = field(metadata=declared(positive("how far the skeleton walks")))
+    stride: float = field(metadata=declare(positive("how far the skeleton walks")))
 
     name: ClassVar[str] = "skeleton"
     title: ClassVar[str] = "skeleton"

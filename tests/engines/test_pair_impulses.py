@@ -85,7 +85,7 @@ REFUSED = {
     "loses energy": replace(CUBE, restitution=gp.Restitution(0.9)),
     "periodic": replace(CUBE, container=gp.Container((7.0, 6.0, 5.0))),
     "half of the shortest side": replace(CUBE, container=gp.Container((20.0, 7.0, 3.0), "periodic")),
-    "two particles": replace(CUBE, species=[gp.Species(1, 0.5, temperature=1.0)]),
+    "at least 2": replace(CUBE, species=[gp.Species(1, 0.5, temperature=1.0)]),
 }
 
 

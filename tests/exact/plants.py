@@ -188,8 +188,8 @@ PLANTS = [
     Plant(
         "mutual diffusion over d",
         "analysis.diffusion",
-        "(2.0 * run.dimension * lag)",
-        "(run.dimension * lag)",
+        "(2.0 * run.dimension * run.interval)",
+        "(run.dimension * run.interval)",
         ("halves", "mutual_diffusion"),
     ),
     Plant(

@@ -100,7 +100,7 @@ def add_new(parser: Parser) -> None:
 def _new(options: argparse.Namespace) -> None:
     if options.list:
         for template in templates().values():
-            print_line(f"{template.name:12}{template.title}")
+            print_line(f"{template.name:15}{template.title}")
         return
     if options.scene is None:
         raise SceneError("scene", None, "give the name of the file, or --list")

@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 from typing import Self
 
-from gaspart.accuracy.conditions import require_steady
 from gaspart.analysis.observables import (
     OBSERVABLES,
     observable_name,
@@ -179,6 +178,8 @@ def require_end(requirement: Requirement, scene: Scene, at_most: float | None, f
         raise SceneError("until", requirement.name, "never becomes known: a single particle meets no other")
     if at_most is None:
         try:
+            from gaspart.accuracy.conditions import require_steady  # xarray takes 0.4 s
+
             require_steady(scene)
         except SceneError as error:
             rule = f"{error.key}: {error.rule}, or a longest one (at_most)"

@@ -31,7 +31,7 @@ def claims_scatter(ds: xr.Dataset) -> Figure:
 def _distribution(axis: Axes, alone: np.ndarray, mean: Estimate) -> None:
     """Draw the density of the deviations without an allowance, and the standard Gaussian."""
     z = np.linspace(-FURTHEST, FURTHEST, 400)
-    axis.plot(z, stats.norm.pdf(z), color=style.REFERENCE, label="standard Gaussian")
+    axis.plot(z, stats.norm.pdf(z), color=style.REFERENCE, label="Gaussian")
     if alone.size:
         inside = np.clip(alone, -FURTHEST, FURTHEST)
         rms = np.sqrt(np.mean(alone**2))
