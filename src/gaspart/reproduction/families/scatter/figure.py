@@ -43,9 +43,7 @@ def _distribution(axis: Axes, alone: np.ndarray, mean: Estimate) -> None:
             alpha=0.5,
             label=f"{alone.size}, rms {rms:.2f},\nmean {mean}",
         )
-    style.label_axes(
-        axis, "deviation / standard deviations", "probability density", "upper right", ylim=(0.0, 0.6)
-    )
+    style.label_axes(axis, "deviation / standard deviations", "density", "upper right", ylim=(0.0, 0.6))
 
 
 def _figures(axis: Axes, claims: Table, figures: Table) -> None:
