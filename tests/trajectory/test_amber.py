@@ -8,7 +8,7 @@ import pytest
 from scenes import gas
 
 import gaspart as gp
-from gaspart.trajectory import amber
+from gaspart.trajectory import amber, checked_store
 from gaspart.trajectory.recipe import Recipe, read_recipe
 
 ENGINE = gp.EventDriven()
@@ -118,6 +118,29 @@ def test_open_trajectory_gives_every_number_its_name(written):
         assert all("units" in data[name].attrs for name in data.data_vars)
         hit = data["wall_hits"].isel(frame=-1).sel(face=["y low", "y high"])
         assert (hit > 0).all() and float(data["wall_hits"].isel(frame=-1).sum()) == float(hit.sum())
+
+
+@pytest.mark.parametrize("step", [2, 3, -2])
+def test_frames_with_a_step_are_read_one_by_one(written, monkeypatch, step):
+    path = written[0]
+    with gp.open_trajectory(path) as data:
+        right = data["coordinates"].values[::step, 1:]
+    monkeypatch.setattr(checked_store, "_LARGE", 0)
+    frames, read = [], netCDF4.Variable.__getitem__
+
+    class Variable:
+        def __init__(self, variable):
+            self.shape, self.dtype, self._variable = variable.shape, variable.dtype, variable
+
+        def __getitem__(self, key):
+            frames.append(key[0])
+            return read(self._variable, key)
+
+    kind, make = checked_store._CheckedArray, checked_store._CheckedArray.__init__
+    monkeypatch.setattr(kind, "__init__", lambda self, item, store: make(self, Variable(item), store))
+    with gp.open_trajectory(path) as data:
+        np.testing.assert_array_equal(data["coordinates"][::step, 1:].values, right)
+    assert sorted(frames) == sorted(range(9)[::step])
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,10 @@ from gaspart.trajectory.opening import damage
 
 _EVEN = 1e-9
 """Relative deviation of a frame's time from a multiple of the interval, beyond which the frame is checked."""
+
+
+_LARGE = 1000
+"""Numbers in a frame, above which frames with a step are read one by one: netCDF takes many times as long."""
 
 
 class Trajectory(xr.Dataset):
@@ -78,6 +83,10 @@ class _CheckedArray(BackendArray):
         return indexing.explicit_indexing_adapter(key, self.shape, support, self._part)
 
     def _part(self, key: tuple) -> np.ndarray:
-        self._store.require(np.atleast_1d(self._numbers[key[0]]))
+        numbers = np.atleast_1d(self._numbers[key[0]])
+        self._store.require(numbers)
+        stepped = isinstance(key[0], slice) and key[0].step not in (None, 1)
         with self._store.lock:
+            if stepped and len(numbers) and math.prod(self.shape[1:]) > _LARGE:
+                return np.stack([self._variable[(n, *key[1:])] for n in numbers])
             return self._variable[key]

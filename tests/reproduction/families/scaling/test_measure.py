@@ -71,7 +71,7 @@ def test_ideal_boxes(dataset):
 
 
 def test_plateaus(dataset):
-    """Where the ideal number follows N, the gas farthest from it pays most."""
+    """The gas farthest from the ideal number pays most, where that number follows N."""
     ds = dataset("ideal_boxes")
     plateau = ds.isel(plateau=0)
     assert plateau.plateau_boxes == 25**3 and plateau.plateau_count == 2000
