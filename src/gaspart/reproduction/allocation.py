@@ -107,7 +107,7 @@ def _needs(figure: str, block: Mapping, run: Run) -> Iterator[tuple[str, bool, d
     """Find the claims that have an uncertainty: text, True if decided, length needed by each point.
 
     The length needed is the multiple of the whole length with which the claim were just decided if its number
-    had the scatter of this point alone; that of "" is the one needed by all points.
+    had the scatter of this point alone; the key "" has the part of all points together.
     """
     dataset = run.measurement(figure)
     before = budget.claims_of(figure, block, dataset)
