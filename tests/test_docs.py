@@ -22,7 +22,9 @@ FAMILY = {SOURCE / name for name in ("measure.py", "claims.py", "figure.py")}  #
 def test_a_page_runs_from_top_to_bottom(name, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     names, printed = {}, ""
-    blocks = re.findall(r"^```(yaml|sh|python|text)\n(.*?)^```", (DOCS / f"{name}.md").read_text(), re.M | re.S)
+    blocks = re.findall(
+        r"^```(yaml|sh|python|text)\n(.*?)^```", (DOCS / f"{name}.md").read_text(), re.M | re.S
+    )
     assert len(blocks) > 3
     for kind, text in blocks:
         if kind == "text":
