@@ -107,7 +107,7 @@ def _needs(figure: str, block: Mapping, run: Run) -> Iterator[tuple[str, bool, d
     """Find the claims that have an uncertainty: text, True if decided, length needed by each point.
 
     The length needed is the multiple of the whole length with which the claim were just decided if its number
-    had the scatter of this point alone; that of "" is the one needed by all points.
+    had the scatter of this point alone; the key "" has the part of all points together.
     """
     dataset = run.measurement(figure)
     before = budget.claims_of(figure, block, dataset)
@@ -126,13 +126,13 @@ def _needs(figure: str, block: Mapping, run: Run) -> Iterator[tuple[str, bool, d
                 part = max(grown, 0.0) / (_ENLARGED - 1.0) / len(points)
                 parts[point] = parts.get(point, 0.0) + part
         total = sum(parts.values())
-        needed = {
+        requirements = {
             point: multiple * run.lengths.get(point, 1.0) * part / max(total, 1.0)
             for point, part in parts.items()
             if part > 0.0
         }
-        needed[""] = 0.0 if total > _EXPLAINED else multiple * (1.0 - total)
-        yield claim.claim, multiple <= 1.0 and verdict != "inconclusive", needed
+        requirements[""] = 0.0 if total > _EXPLAINED else multiple * (1.0 - total)
+        yield claim.claim, multiple <= 1.0 and verdict != "inconclusive", requirements
 
 
 def _mean_demand(figure: str, claim: str, needs: Sequence[Mapping[str, float]]) -> Demand:
@@ -275,12 +275,12 @@ def _mean_seconds(runs: Sequence[Run], point: str) -> float:
 
 def _write_lengths(path: Path, multiples: Mapping[str, float]) -> None:
     """Replace the block at the end of a config by the multiples that differ from 1."""
-    shown = {name: float(f"{multiple:.2g}") for name, multiple in multiples.items()}
+    rounded = {name: float(f"{multiple:.2g}") for name, multiple in multiples.items()}
     lines = [_HEAD.strip()]
-    different = (name for name in shown if shown[name] != 1.0)
+    different = (name for name in rounded if rounded[name] != 1.0)
     for experiment, points in itertools.groupby(different, key=lambda name: name.partition("/")[0]):
         lines.append(f"  {experiment}:")
-        lines += [f'    "{name.partition("/")[2]}": {shown[name]:g}' for name in points]
+        lines += [f'    "{name.partition("/")[2]}": {rounded[name]:g}' for name in points]
     before = path.read_text(encoding="utf-8").partition(_HEAD)[0]
     path.write_text(before.rstrip() + "\n\n" + "\n".join(lines) + "\n", encoding="utf-8")
 
