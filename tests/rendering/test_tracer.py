@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from numpy.lib.stride_tricks import sliding_window_view
 
-from gaspart.kernels.drawing.ray_tracing import sky
-from gaspart.rendering.camera import camera_for
+from gaspart.kernels.drawing.ray_tracing import render_once, sky
+from gaspart.rendering.camera import camera_for, edges_of
 from gaspart.rendering.tracer import EDGE, FLOOR, NOTHING, SPHERE, cells, trace
 
 LENGTHS = np.array([10.0, 8.0, 6.0])
@@ -123,3 +124,35 @@ def test_the_container_fills_the_picture():
             widest = max(across.max(), along.max())
             assert 0.9 < widest < 1.0
             assert camera.near == pytest.approx(depth.min(), rel=0.05)
+
+
+def test_divided_pixels_have_the_mean_of_sixteen_rays():
+    """Against a picture of four times the size, edges of the container apart."""
+    rng = np.random.default_rng(3)
+    positions, radii = rng.uniform(0.5, LENGTHS - 0.5, (80, 3)), rng.uniform(0.2, 0.8, 80)
+    colours, camera = rng.uniform(0.1, 1.0, (80, 3)), camera_for(LENGTHS, *SIZE)
+    image, codes = trace(positions, radii, colours, LENGTHS, camera, SIZE)
+
+    def trace_once(times):
+        """The mean colours of the pixels with times x times rays through each."""
+        width, height = SIZE
+        fine = np.empty((times * height, times * width, 3))
+        view = np.array([camera.eye, camera.forward, camera.right, camera.up, camera.light])
+        scales = (camera.half_width, camera.half_height, camera.near, camera.far)
+        spheres = np.column_stack([positions, radii])
+        scene, grid = (spheres, colours**2.2, edges_of(LENGTHS), LENGTHS), cells(spheres, LENGTHS)
+        shape = fine.shape[:2]
+        render_once(fine, np.empty(shape, dtype=np.int64), np.empty(shape), view, scales, scene, grid)
+        means = np.minimum(fine, 1.0).reshape(height, times, width, times, 3).mean(axis=(1, 3))
+        return means ** (1.0 / 2.2)
+
+    means = trace_once(4)
+
+    around = sliding_window_view(np.pad(codes, 2, mode="edge"), (5, 5))
+    inside = ~(around == EDGE).any(axis=(2, 3))
+    divided = inside & (around[..., 1:4, 1:4] != codes[..., None, None]).any(axis=(2, 3))
+    apart = np.abs(image - means).max(axis=2)
+    assert inside.mean() > 0.5 and divided.sum() > 1000
+    assert np.median(apart[divided]) < 2e-3 and np.quantile(apart[divided], 0.99) < 0.05
+    undivided = np.abs(trace_once(1) - means).max(axis=2)
+    assert (undivided[divided] ** 2).mean() > 30.0 * (apart[divided] ** 2).mean()

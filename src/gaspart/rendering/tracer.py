@@ -55,10 +55,11 @@ def trace(
     if lines is not None and len(lines):
         edges = np.vstack([edges, segments(lines)])
     scene = (spheres, np.asarray(colours, dtype=float) ** _GAMMA, edges, np.array(lengths, float))
-    render_once(image, objects, view, scales, scene, grid)
+    skies = np.empty((height, width))
+    render_once(image, objects, skies, view, scales, scene, grid)
     around = sliding_window_view(np.pad(objects, 1, mode="edge"), (3, 3))
     mixed = (around != objects[..., None, None]).any(axis=(2, 3))
-    refine(image, np.argwhere(mixed), view, scales, scene, grid)
+    refine(image, objects, skies, np.argwhere(mixed), view, scales, scene, grid)
     return np.clip(image, 0.0, 1.0) ** (1.0 / _GAMMA), objects
 
 

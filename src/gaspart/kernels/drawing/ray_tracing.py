@@ -12,6 +12,8 @@ from gaspart.kernels.compile.policy import (
 )
 
 SUBRAYS = 4
+_ORDER = (0, 3, 12, 15, 1, 2, 4, 5, 6, 7, 8, 9, 10, 11, 13, 14)
+"""Order of the rays through a pixel, by rows: its corners first."""
 NOTHING, FLOOR, EDGE, SPHERE = 0, 2, 4, 6
 """Codes of the visible object of a pixel; sphere i is SPHERE + 2 i; 1 is added in the shadow."""
 
@@ -170,9 +172,9 @@ def _edge(o, d, edges, thickness):
 
 
 @inner_kernel
-def _look(o, d, forward, light, scales, scene, grid, thickness):
-    """Return red, green and blue along a ray, and the code of the visible object."""
-    spheres, colours, edges, lengths = scene
+def _visible(o, d, scene, grid, thickness):
+    """Return the distance of the visible object on a ray, its code without shadow, and the sphere's index."""
+    spheres, _, edges, lengths = scene
     t, i = _nearest(o, d, spheres, grid, False)
     code = SPHERE + 2 * i if i >= 0 else NOTHING
     down = -o[2] / d[2] if d[2] < 0.0 else math.inf
@@ -180,82 +182,139 @@ def _look(o, d, forward, light, scales, scene, grid, thickness):
         p = _along(o, d, down)
         if 0.0 <= p[0] <= lengths[0] and 0.0 <= p[1] <= lengths[1]:
             t, code = down, FLOOR
-    edge = _edge(o, d, edges, thickness)
-    if edge < t * (1.0 + 1e-9):
-        t, code = edge, EDGE
+    if thickness > 0.0:
+        edge = _edge(o, d, edges, thickness)
+        if edge < t * (1.0 + 1e-9):
+            t, code = edge, EDGE
+    return t, code
+
+
+@inner_kernel
+def _shade(o, d, t, code, view, scales, scene, grid, lit, free):
+    """Return red, green and blue of an object on a ray, 1 if it is in the shadow, and its free sky.
+
+    lit : 1 if the lamp reaches the point, 0 if not, -1 to find out.
+    free : fraction of the sky that is free above the point; -1 to find out.
+    """
     if code == NOTHING:
-        return 1.0, 1.0, 1.0, NOTHING
-    haze = _HAZE * min(max((t * _dot(d, forward) - scales[2]) / (scales[3] - scales[2]), 0.0), 1.0)
+        return 1.0, 1.0, 1.0, 0, 1.0
+    depth = t * (d[0] * view[1, 0] + d[1] * view[1, 1] + d[2] * view[1, 2])
+    haze = _HAZE * min(max((depth - scales[2]) / (scales[3] - scales[2]), 0.0), 1.0)
     if code == EDGE:
         grey = _EDGE_LIGHT + haze * (1.0 - _EDGE_LIGHT)
-        return grey, grey, grey, EDGE
+        return grey, grey, grey, 0, 1.0
+    spheres, colours, _, _ = scene
+    light = (view[4, 0], view[4, 1], view[4, 2])
     p = _along(o, d, t)
     n, colour = (0.0, 0.0, 1.0), (_FLOOR_LIGHT, _FLOOR_LIGHT, _FLOOR_LIGHT)
     if code != FLOOR:
+        i = (code - SPHERE) // 2
         r = spheres[i, 3]
         n = (p[0] - spheres[i, 0]) / r, (p[1] - spheres[i, 1]) / r, (p[2] - spheres[i, 2]) / r
         colour = colours[i, 0], colours[i, 1], colours[i, 2]
-    lamp, gloss = max(_dot(n, light), 0.0), 0.0
+    lamp, gloss, shadow = max(_dot(n, light), 0.0), 0.0, 0
     if lamp > 0.0:
-        if _nearest(p, light, spheres, grid, True)[1] >= 0:
-            lamp = 0.0
-            code += 1
+        if lit == 0 or (lit < 0 and _nearest(p, light, spheres, grid, True)[1] >= 0):
+            lamp, shadow = 0.0, 1
         elif code != FLOOR:
             half = (light[0] - d[0], light[1] - d[1], light[2] - d[2])
             gloss = _GLOSS * (_dot(n, half) / math.sqrt(_dot(half, half))) ** 40
-    bright = _AMBIENT * (0.75 + 0.25 * n[2]) * sky(p, n, spheres, grid) + _LAMP * lamp
+    if free < 0.0:
+        free = sky(p, n, spheres, grid)
+    bright = _AMBIENT * (0.75 + 0.25 * n[2]) * free + _LAMP * lamp
     return (
         (bright * colour[0] + gloss) * (1.0 - haze) + haze,
         (bright * colour[1] + gloss) * (1.0 - haze) + haze,
         (bright * colour[2] + gloss) * (1.0 - haze) + haze,
-        code,
+        shadow,
+        free,
     )
 
 
-@inner_kernel
-def _pixel(column, row, image, view, scales, scene, grid):
-    """Return the colour and the visible object at a point of the picture.
+@inner_helper
+def _direction(column, row, image, view, scales):
+    """Return the direction of the ray through a point of the picture.
 
     column, row : coordinates in pixels from the upper left corner
     """
-    height, width = image.shape[0], image.shape[1]
-    across = (2.0 * column / width - 1.0) * scales[0]
-    along = (1.0 - 2.0 * row / height) * scales[1]
+    across = (2.0 * column / image.shape[1] - 1.0) * scales[0]
+    along = (1.0 - 2.0 * row / image.shape[0]) * scales[1]
     d = (
         view[1, 0] + across * view[2, 0] + along * view[3, 0],
         view[1, 1] + across * view[2, 1] + along * view[3, 1],
         view[1, 2] + across * view[2, 2] + along * view[3, 2],
     )
     norm = math.sqrt(_dot(d, d))
-    o, forward = (view[0, 0], view[0, 1], view[0, 2]), (view[1, 0], view[1, 1], view[1, 2])
-    light = (view[4, 0], view[4, 1], view[4, 2])
-    d = (d[0] / norm, d[1] / norm, d[2] / norm)
-    return _look(o, d, forward, light, scales, scene, grid, 2.0 * _EDGE_PIXELS * scales[0] / width)
+    return d[0] / norm, d[1] / norm, d[2] / norm
 
 
 @kernel
-def render_once(image, codes, view, scales, scene, grid):
-    """Trace one ray through the middle of every pixel."""
+def render_once(image, codes, skies, view, scales, scene, grid):
+    """Trace one ray through the middle of every pixel; `skies` (H, W) is the free sky of what it hits."""
+    o, thickness = (view[0, 0], view[0, 1], view[0, 2]), 2.0 * _EDGE_PIXELS * scales[0] / image.shape[1]
     for row in range(codes.shape[0]):
         for column in range(codes.shape[1]):
-            seen = _pixel(column + 0.5, row + 0.5, image, view, scales, scene, grid)
-            image[row, column, 0], image[row, column, 1], image[row, column, 2] = seen[0], seen[1], seen[2]
-            codes[row, column] = seen[3]
+            d = _direction(column + 0.5, row + 0.5, image, view, scales)
+            t, code = _visible(o, d, scene, grid, thickness)
+            red, green, blue, shadow, free = _shade(o, d, t, code, view, scales, scene, grid, -1, -1.0)
+            image[row, column, 0], image[row, column, 1], image[row, column, 2] = red, green, blue
+            codes[row, column], skies[row, column] = code + shadow, free
+
+
+@inner_helper
+def _known(code, row, column, codes, skies):
+    """Return the light and the sky of an object in the pixels around: 1, 0 or -1 (unknown), sky or -1."""
+    lit, free = -2, -1.0
+    for y in range(max(row - 1, 0), min(row + 2, codes.shape[0])):
+        for x in range(max(column - 1, 0), min(column + 2, codes.shape[1])):
+            if codes[y, x] - codes[y, x] % 2 == code:
+                here = 1 - codes[y, x] % 2
+                lit = here if lit in (-2, here) else -1
+                if free < 0.0 or (x == column and y == row):
+                    free = skies[y, x]
+    return max(lit, -1), free
+
+
+@inner_helper
+def _shows(code, row, column, codes):
+    """Return True if one of the pixels around shows an object."""
+    for y in range(max(row - 1, 0), min(row + 2, codes.shape[0])):
+        for x in range(max(column - 1, 0), min(column + 2, codes.shape[1])):
+            if codes[y, x] == code:
+                return True
+    return False
 
 
 @kernel
-def refine(image, pixels, view, scales, scene, grid):
-    """Trace many rays through the `pixels` (M, 2), given by row and column."""
+def refine(image, codes, skies, pixels, view, scales, scene, grid):
+    """Trace SUBRAYS x SUBRAYS rays through the `pixels` (M, 2), given by row and column.
+
+    The light of an object and its free sky are those of the pixels around where these agree. Where the first
+    four rays, near the corners, see what the middle of the pixel shows, there are no more.
+    """
+    o, thickness = (view[0, 0], view[0, 1], view[0, 2]), 2.0 * _EDGE_PIXELS * scales[0] / image.shape[1]
     for n in range(len(pixels)):
         row, column = pixels[n, 0], pixels[n, 1]
-        red, green, blue = 0.0, 0.0, 0.0
-        for m in range(SUBRAYS * SUBRAYS):
+        thick = thickness if _shows(EDGE, row, column, codes) else 0.0
+        red, green, blue, traced = 0.0, 0.0, 0.0, 0
+        last, lit, free, alike = -1, -1, -1.0, True
+        for k in range(SUBRAYS * SUBRAYS):
+            m = _ORDER[k]
             x, y = column + (m % SUBRAYS + 0.5) / SUBRAYS, row + (m // SUBRAYS + 0.5) / SUBRAYS
-            seen = _pixel(x, y, image, view, scales, scene, grid)
-            red += min(seen[0], 1.0) / SUBRAYS**2
-            green += min(seen[1], 1.0) / SUBRAYS**2
-            blue += min(seen[2], 1.0) / SUBRAYS**2
-        image[row, column, 0], image[row, column, 1], image[row, column, 2] = red, green, blue
+            d = _direction(x, y, image, view, scales)
+            t, code = _visible(o, d, scene, grid, thick)
+            if code != last:
+                last = code
+                lit, free = _known(code, row, column, codes, skies)
+            seen = _shade(o, d, t, code, view, scales, scene, grid, lit, free)
+            red, green, blue = red + min(seen[0], 1.0), green + min(seen[1], 1.0), blue + min(seen[2], 1.0)
+            traced += 1
+            alike = alike and code + seen[3] == codes[row, column]
+            if k == 3 and alike:
+                break
+        image[row, column, 0] = red / traced
+        image[row, column, 1] = green / traced
+        image[row, column, 2] = blue / traced
 
 
 # Discs and lines drawn into an image by the fraction of each pixel that they cover.
