@@ -47,14 +47,16 @@ def test_coefficients_are_those_of_the_other_half():
 def thin(tmp_path_factory):
     """A thin gas between two walls, with its impulses."""
     path = tmp_path_factory.mktemp("thin") / "run.nc"
-    return gp.run(SCENE, gp.EventDriven(), 1, 800.0, 0.5, path, impulses="z:8")
+    return gp.run(SCENE, gp.EventDriven(), 1, 800.0, 0.5, path, tallies=[gp.ImpulseTally("z", 8)])
 
 
 def test_the_balance_of_the_virial_holds_without_contacts(tmp_path):
     """Of points, to rounding: the impulses of both walls are twice the kinetic energy along their normal,
     over the way that centres have, less what is stored."""
     points = gp.Scene(SLIT, [gp.Species(7, 1e-6, temperature=1.0)])
-    path = gp.run(points, gp.EventDriven(), 3, 40.0, 1.0, tmp_path / "run.nc", impulses="z:5")
+    path = gp.run(
+        points, gp.EventDriven(), 3, 40.0, 1.0, tmp_path / "run.nc", tallies=[gp.ImpulseTally("z", 5)]
+    )
     with open_trajectory(path) as data, open_run(data, 0.0) as run:
         assert not run.increments("collisions").any() and not group_count(run)
         low, high = 25.0 * face_pressures(run)[:, 4:].T
@@ -91,7 +93,9 @@ UNEVEN = {
 
 @pytest.mark.parametrize("name", UNEVEN)
 def test_where_the_energy_is_not_constant_there_are_no_controls(name, tmp_path):
-    path = gp.run(UNEVEN[name], gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "run.nc", impulses="z:8")
+    path = gp.run(
+        UNEVEN[name], gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "run.nc", tallies=[gp.ImpulseTally("z", 8)]
+    )
     with open_trajectory(path) as data, open_run(data, 0.0) as run:
         assert wall_controls(run, 2) is None and group_count(run)
     found = A.wall_pressure(path)
@@ -101,7 +105,7 @@ def test_where_the_energy_is_not_constant_there_are_no_controls(name, tmp_path):
 
 def test_steps_keep_no_impulses_for_a_pressure_as_they_share_energy_unevenly(tmp_path):
     steps = gp.TimeStepped(0.02)
-    run = gp.run(SCENE, steps, 1, 100.0, 0.5, tmp_path / "run.nc", impulses="z:8")
+    run = gp.run(SCENE, steps, 1, 100.0, 0.5, tmp_path / "run.nc", tallies=[gp.ImpulseTally("z", 8)])
     with open_trajectory(run) as data, open_run(data, 0.0) as opened:
         assert wall_controls(opened, 2) is None and group_count(opened)
         found, bare = A.wall_pressure(data), A.wall_pressure(data.assign_attrs(tallies="[]"))
@@ -114,9 +118,22 @@ def test_steps_keep_no_impulses_for_a_pressure_as_they_share_energy_unevenly(tmp
 
 def test_a_file_without_all_states_and_another_axis_have_none(tmp_path):
     box = gp.Scene(gp.Container((5.0, 5.0, 8.0)), [GAS])
-    path = gp.run(box, gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "few.nc", impulses="x:8", follow=3)
-    whole = gp.run(box, gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "all.nc", impulses="x:8")
-    half = gp.run(box, gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "half.nc", impulses="x:8", keep="positions")
+    path = gp.run(
+        box, gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "few.nc", tallies=[gp.ImpulseTally("x", 8)], follow=3
+    )
+    whole = gp.run(
+        box, gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "all.nc", tallies=[gp.ImpulseTally("x", 8)]
+    )
+    half = gp.run(
+        box,
+        gp.EventDriven(),
+        1,
+        60.0,
+        0.5,
+        tmp_path / "half.nc",
+        tallies=[gp.ImpulseTally("x", 8)],
+        keep="positions",
+    )
     for lacking in (path, half):
         with open_run(lacking, 0.0) as run:
             assert wall_controls(run, 0) is None
@@ -149,7 +166,13 @@ def test_the_pressure_of_two_discs_has_no_controls_and_an_honest_error(tmp_path)
     values, errors = [], []
     for seed in range(30):
         path = gp.run(
-            scene, gp.EventDriven("direct"), seed, 60.0, 0.25, tmp_path / f"{seed}.nc", impulses="y:40"
+            scene,
+            gp.EventDriven("direct"),
+            seed,
+            60.0,
+            0.25,
+            tmp_path / f"{seed}.nc",
+            tallies=[gp.ImpulseTally("y", 40)],
         )
         found = gp.measure(path, "pressure").sel(face="y low")
         assert "known mean" not in str(found.attrs["estimator"])

@@ -10,7 +10,7 @@ import gaspart as gp
 from gaspart.analysis.impulses import MomentumFlux, mixture, numbers_by_impulses
 from gaspart.analysis.run import open_run
 from gaspart.cli.stated_run import run_options
-from gaspart.state.optional_tallies import ImpulseTally
+from gaspart.state.tally import ImpulseTally
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import read_recipe
 
@@ -63,7 +63,7 @@ ENGINES = {"event": gp.EventDriven(), "step": gp.TimeStepped(2.0**-6)}
 def column(request, tmp_path_factory):
     """A thin column of spheres that fall, with its impulses."""
     path = tmp_path_factory.mktemp("column") / f"{request.param}.nc"
-    return gp.run(COLUMN, ENGINES[request.param], 5, 600.0, 0.5, path, impulses="z:80")
+    return gp.run(COLUMN, ENGINES[request.param], 5, 600.0, 0.5, path, tallies=[gp.ImpulseTally("z", 80)])
 
 
 def counted(run):
@@ -136,19 +136,31 @@ def test_along_a_periodic_axis_a_gas_is_uniform_in_a_moving_frame_too():
 @pytest.mark.parametrize("name", ENGINES)
 def test_a_run_that_is_extended_keeps_its_impulses(name, tmp_path):
     engine = ENGINES[name]
-    whole = gp.run(COLUMN, engine, 1, 20.0, 1.0, tmp_path / "whole.nc", impulses="z:10")
-    short = gp.run(COLUMN, engine, 1, 10.0, 1.0, tmp_path / "short.nc", impulses="z:10", keep_checkpoint=True)
+    whole = gp.run(COLUMN, engine, 1, 20.0, 1.0, tmp_path / "whole.nc", tallies=[gp.ImpulseTally("z", 10)])
+    short = gp.run(
+        COLUMN,
+        engine,
+        1,
+        10.0,
+        1.0,
+        tmp_path / "short.nc",
+        tallies=[gp.ImpulseTally("z", 10)],
+        keep_checkpoint=True,
+    )
     assert gp.resume(short, duration=20.0).read_bytes() == whole.read_bytes()
     assert "--impulses z:10" in " ".join(run_options(whole, read_recipe(whole)))
 
 
 def test_runs_with_different_impulses_are_neither_one_run_nor_replicas(tmp_path):
-    path = gp.run(COLUMN, gp.EventDriven(), 1, 20.0, 0.5, tmp_path / "one.nc", impulses="z:10")
+    path = gp.run(
+        COLUMN, gp.EventDriven(), 1, 20.0, 0.5, tmp_path / "one.nc", tallies=[gp.ImpulseTally("z", 10)]
+    )
     bits = path.read_bytes()
-    for n, other in enumerate(("z:20", "x:10", None)):
+    for n, other in enumerate(([gp.ImpulseTally("z", 20)], [gp.ImpulseTally("x", 10)], [])):
+        text = other[0].to_text() if other else "none"
         with pytest.raises(gp.SceneError, match="of another run"):
-            gp.run(COLUMN, gp.EventDriven(), 1, 20.0, 0.5, path, impulses=other)
-        apart = gp.run(COLUMN, gp.EventDriven(), 2, 20.0, 0.5, tmp_path / f"{n}.nc", impulses=other)
-        with pytest.raises(gp.SceneError, match=f"impulses = '{other or 'none'}': are z:10 in .*one.nc"):
+            gp.run(COLUMN, gp.EventDriven(), 1, 20.0, 0.5, path, tallies=other)
+        apart = gp.run(COLUMN, gp.EventDriven(), 2, 20.0, 0.5, tmp_path / f"{n}.nc", tallies=other)
+        with pytest.raises(gp.SceneError, match=f"impulses = '{text}': are z:10 in .*one.nc"):
             A.replicas("density", [path, apart])
     assert path.read_bytes() == bits

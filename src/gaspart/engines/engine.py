@@ -96,7 +96,7 @@ class Engine:
     excludes : pairs of features that it does not model together
     neutral_settings : settings that change no bit of its results
     forbids_overlap : whether particles never overlap
-    tallies : names of the `state.optional_tallies` that it can make
+    tallies : names of the optional tallies (`state.tally`) that it can make
     first_segment : work, in events or steps, with which a run begins between two looks at the clock
     reference : whether it has no systematic error, so that others are compared with it
     timed_at : packing fraction and time step, as in the table of costs, by which its times are transferred to

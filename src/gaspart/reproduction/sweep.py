@@ -29,6 +29,7 @@ from gaspart.runs.ending import Accuracy
 from gaspart.scene.scene import Scene, require_scene
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.recipe import multiple
+from gaspart.trajectory.run_options import required_contents
 from gaspart.trajectory.until import Until
 
 if TYPE_CHECKING:
@@ -242,12 +243,11 @@ def _contents_settings(
     names: list[str], correlations: Correlations | None, length: dict[str, Any]
 ) -> dict[str, Any]:
     """Return the keys of the contents of a point's files, or raise SceneError."""
-    needs = {OBSERVABLES[name].needs for name in names}
+    kept: dict[str, Any] = required_contents({OBSERVABLES[name].needs for name in names})
     if "until" in length:
         if correlations is not None:
             raise SceneError("correlations", correlations, "need a duration, not until")
-        return {"displacements": "paths" in needs}
-    kept: dict[str, Any] = {"pairs": "pairs" in needs, "displacements": "paths" in needs}
+        return {"displacements": kept["displacements"]}
     if correlations is None:
         return kept
     if not isinstance(correlations, Correlations):

@@ -122,7 +122,7 @@ class Part:
 
 
 class TallyPart(Part):
-    """Optional tally in a run (`state.optional_tallies`).
+    """Optional tally in a run (`state.tally`).
 
     name : name of the tally
     kernel : data to which the kernels add, in the entry of their own tally that has this name
