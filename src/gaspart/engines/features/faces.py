@@ -255,7 +255,7 @@ def kinds_and_levels(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 def sliding_velocities(scene: Scene) -> np.ndarray | None:
     """Return the velocities (2d, d) of the container's faces, or None.
 
-    Without dragged faces the result is None.
+    Scenes that drag no faces give None.
     """
     if not scene.drags_faces:
         return None
