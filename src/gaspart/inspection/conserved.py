@@ -1,4 +1,4 @@
-"""Checks that need no statistics: conserved energy and momentum, and flights as far as velocities say."""
+"""Checks without statistics: conserved energy and momentum, and flights at constant velocity."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def _steady(name: str, changes: np.ndarray, allowed: float, isolated: bool) -> C
     """Check that a quantity stays constant from frame to frame.
 
     The `changes` (T - 1,) are relative to the quantity of all particles together. If it changes most of the
-    time, it is conserved only if the file says that nothing acts on the particles.
+    time, it is conserved only if the file excludes forces on the particles.
     """
     worst = int(np.argmax(changes))
     text = f"changes by {changes[worst]:.2g} of it at most, before frame {worst + 1} (up to {allowed:.1g})"

@@ -68,9 +68,9 @@ def _reordered_frame(frames: Frames) -> int | None:
 def _same_velocities_elsewhere(frames: Frames, n: int) -> bool:
     """Return True if frame n + 1 has velocities of frame n in other rows.
 
-    They must occur more often in other rows than in their own. Velocities that several particles have do not
-    count. Two equal particles may exchange their velocities in a head-on collision: where times are known,
-    positions decide.
+    The velocities must occur more often in other rows than in their own row. Velocities that several
+    particles have do not count. Two equal particles may exchange their velocities in a head-on collision. If
+    times are known, positions show which of the two happened.
     """
     assert frames.velocities is not None, "see `continuous`"
     keys = [(velocity * _KEY[: frames.dimension]).sum(axis=1) for velocity in frames.velocities[n : n + 2]]

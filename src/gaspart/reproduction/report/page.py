@@ -189,6 +189,8 @@ CHAPTERS = (
 """In the order of the page."""
 _THUMBNAIL, _SHARPNESS = 360, 1.6
 """Width of a thumbnail, and pixels of a picture for each of the page, in a page that holds its pictures."""
+
+
 @dataclass(frozen=True)
 class Section:
     """Figure on the page.
