@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
-from reproduction.families.virial.data import equation_of_state
+from reproduction.families.test_virial import equation_of_state
 
 from gaspart import theory
 from gaspart.reproduction.measured import COLUMNS, reference_values

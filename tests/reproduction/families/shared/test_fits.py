@@ -3,11 +3,11 @@ as those of a standard Gaussian number."""
 
 import numpy as np
 import pytest
-from reproduction.families.adsorption.data import walls
-from reproduction.families.buoyancy.data import measurement, with_source
-from reproduction.families.displacement.data import spheres
-from reproduction.families.vibrated.data import beds
-from reproduction.families.virial.data import ETA
+from reproduction.families.test_adsorption import walls
+from reproduction.families.test_buoyancy import measurement, with_source
+from reproduction.families.test_displacement import spheres
+from reproduction.families.test_vibrated import beds
+from reproduction.families.test_virial import ETA
 
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import combine_estimates
