@@ -12,11 +12,11 @@ from reproduction.claims.data import judged
 from reproduction.families.drawn import Points, draw, follows, lines, shows
 
 from gaspart.analysis.estimate import Estimate
-from gaspart.reproduction.families.cores.claims import cores as claims_of_cores
-from gaspart.reproduction.families.cores.figure import cores as draw_cores
-from gaspart.reproduction.families.cores.measure import _model
-from gaspart.reproduction.families.cores.measure import cores as measure_cores
-from gaspart.reproduction.families.cores.model import SLABS, speed_up
+from gaspart.reproduction.families.cost.claims import cores as claims_of_cores
+from gaspart.reproduction.families.cost.figure import cores as draw_cores
+from gaspart.reproduction.families.cost.measure import _model
+from gaspart.reproduction.families.cost.measure import cores as measure_cores
+from gaspart.reproduction.families.cost.model import SLABS, speed_up
 from gaspart.reproduction.families.shared.timings import SYSTEMATIC
 from gaspart.reproduction.jobs.measure_cost import measure_cost
 from gaspart.reproduction.points.point import Point

@@ -18,7 +18,7 @@ from gaspart import theory
 from gaspart.analysis.correlations import Curves, correlate
 from gaspart.analysis.motion import line, mask_between
 from gaspart.errors import SceneError
-from gaspart.reproduction.families.displacement import claims, figure, measure
+from gaspart.reproduction.families.motion import claims, figure, measure
 from gaspart.reproduction.families.shared import runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, from_rows

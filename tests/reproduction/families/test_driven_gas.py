@@ -14,8 +14,8 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.reproduction.families.driven_gas import figure, measure
-from gaspart.reproduction.families.driven_gas.claims import driven_gas
+from gaspart.reproduction.families.granular import figure, measure
+from gaspart.reproduction.families.granular.claims import driven_gas
 from gaspart.reproduction.families.shared.runs import runs
 
 

@@ -12,9 +12,9 @@ from reproduction.families.drawn import column, draw, shows
 
 import gaspart as gp
 from gaspart.analysis.run import open_run
-from gaspart.reproduction.families.estimators.claims import estimators as claims_of_estimators
-from gaspart.reproduction.families.estimators.figure import estimators as draw_estimators
-from gaspart.reproduction.families.estimators.measure import blocks_of, pressures_of
+from gaspart.reproduction.families.pressure.claims import estimators as claims_of_estimators
+from gaspart.reproduction.families.pressure.figure import estimators as draw_estimators
+from gaspart.reproduction.families.pressure.measure import blocks_of, pressures_of
 from gaspart.trajectory.reading import open_trajectory
 
 

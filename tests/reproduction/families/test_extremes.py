@@ -15,12 +15,12 @@ from reproduction.families.drawn import draw
 
 import gaspart as gp
 from gaspart.reproduction.claims import judge
-from gaspart.reproduction.families.extremes import rows
-from gaspart.reproduction.families.extremes.claims import stability_extremes as claims_of_stability_extremes
-from gaspart.reproduction.families.extremes.figure import BLOCKS, GAP, MAP, REASONS
-from gaspart.reproduction.families.extremes.figure import _reason as reason_of
-from gaspart.reproduction.families.extremes.figure import stability_extremes as draw_stability_extremes
-from gaspart.reproduction.families.extremes.measure import (
+from gaspart.reproduction.families.stability import rows
+from gaspart.reproduction.families.stability.claims import stability_extremes as claims_of_stability_extremes
+from gaspart.reproduction.families.stability.figure import BLOCKS, GAP, MAP, REASONS
+from gaspart.reproduction.families.stability.figure import _reason as reason_of
+from gaspart.reproduction.families.stability.figure import stability_extremes as draw_stability_extremes
+from gaspart.reproduction.families.stability.measure import (
     FAILS,
     PASSES,
     REFUSED,
@@ -29,7 +29,7 @@ from gaspart.reproduction.families.extremes.measure import (
     run_guarded,
     run_row,
 )
-from gaspart.reproduction.families.extremes.rows import ROWS, Row
+from gaspart.reproduction.families.stability.rows import ROWS, Row
 
 
 def extremes_data(verdict="passes", missed=0, message=""):

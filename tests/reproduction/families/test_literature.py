@@ -9,10 +9,10 @@ from reproduction.claims.data import judged
 from reproduction.families.drawn import Points, draw, shows, varied
 
 from gaspart import theory
-from gaspart.reproduction.families.literature.claims import literature as claims_of_literature
-from gaspart.reproduction.families.literature.figure import LABELS
-from gaspart.reproduction.families.literature.figure import literature as draw_literature
-from gaspart.reproduction.families.literature.measure import literature as measure_literature
+from gaspart.reproduction.families.equation_of_state.claims import literature as claims_of_literature
+from gaspart.reproduction.families.equation_of_state.figure import LABELS
+from gaspart.reproduction.families.equation_of_state.figure import literature as draw_literature
+from gaspart.reproduction.families.equation_of_state.measure import literature as measure_literature
 from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.point import Point
 

@@ -11,9 +11,9 @@ from reproduction.families.drawn import draw, varied
 from scenes import gas
 
 from gaspart.reproduction.claims import judge
-from gaspart.reproduction.families.packing import figure
-from gaspart.reproduction.families.packing.claims import densest_fill
-from gaspart.reproduction.families.packing.measure import contacts
+from gaspart.reproduction.families.insertion import figure
+from gaspart.reproduction.families.insertion.claims import densest_fill
+from gaspart.reproduction.families.insertion.measure import contacts
 from gaspart.reproduction.jobs.pack import pack
 
 

@@ -11,8 +11,8 @@ from reproduction.families.test_granular import made
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.reproduction.families.piston import figure, measure
-from gaspart.reproduction.families.piston.claims import isothermal_variance, piston
+from gaspart.reproduction.families.pressure import figure, measure
+from gaspart.reproduction.families.pressure.claims import isothermal_variance, piston
 from gaspart.theory import enskog_longitudinal_viscosity, mean_speed
 
 REPLICAS = np.linspace(-1.0, 1.0, 6)

@@ -14,10 +14,10 @@ from reproduction.families.drawn import Points, draw, shows, varied
 
 from gaspart.errors import SceneError
 from gaspart.reproduction.claims import judge
-from gaspart.reproduction.families.price.claims import price_of_features as claims
-from gaspart.reproduction.families.price.figure import price_of_features as draw_price_of_features
-from gaspart.reproduction.families.price.measure import _row
-from gaspart.reproduction.families.price.measure import price_of_features as measure_price_of_features
+from gaspart.reproduction.families.cost.claims import price_of_features as claims
+from gaspart.reproduction.families.cost.figure import price_of_features as draw_price_of_features
+from gaspart.reproduction.families.cost.measure import _row
+from gaspart.reproduction.families.cost.measure import price_of_features as measure_price_of_features
 from gaspart.reproduction.jobs.count_instructions import FEATURES, count_instructions, strip_features
 from gaspart.reproduction.jobs.measure_cost import measure_cost
 from gaspart.reproduction.points import jobs

@@ -11,10 +11,13 @@ from reproduction.families.drawn import Points, column, draw, shows, varied
 
 from gaspart import run, theory
 from gaspart.reproduction.claims import judge
-from gaspart.reproduction.families.radius.claims import radius_grid as claims
-from gaspart.reproduction.families.radius.figure import radius_grid as draw_radius_grid
-from gaspart.reproduction.families.radius.measure import crossings_per_collision, expected_pair_tests
-from gaspart.reproduction.families.radius.measure import radius_grid as measure_radius_grid
+from gaspart.reproduction.families.equation_of_state.claims import radius_grid as claims
+from gaspart.reproduction.families.equation_of_state.figure import radius_grid as draw_radius_grid
+from gaspart.reproduction.families.equation_of_state.measure import (
+    crossings_per_collision,
+    expected_pair_tests,
+)
+from gaspart.reproduction.families.equation_of_state.measure import radius_grid as measure_radius_grid
 from gaspart.reproduction.points.point import Point
 
 

@@ -10,9 +10,9 @@ import xarray as xr
 from reproduction.claims.data import judged
 from reproduction.families.drawn import Points, column, draw, follows, lines, shows, varied
 
-from gaspart.reproduction.families.reversibility import claims, measure
-from gaspart.reproduction.families.reversibility.claims import ROUNDINGS
-from gaspart.reproduction.families.reversibility.figure import reversibility as draw_reversibility
+from gaspart.reproduction.families.stability import claims, measure
+from gaspart.reproduction.families.stability.claims import ROUNDINGS
+from gaspart.reproduction.families.stability.figure import reversibility as draw_reversibility
 from gaspart.reproduction.points.point import Point
 
 SIDE = 8.7

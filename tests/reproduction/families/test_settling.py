@@ -13,9 +13,9 @@ from reproduction.families.test_granular import made
 
 import gaspart as gp
 from gaspart.analysis.estimate import Estimate
-from gaspart.reproduction.families.settling import figure, measure
-from gaspart.reproduction.families.settling.claims import settling
-from gaspart.reproduction.families.settling.measure import _fit
+from gaspart.reproduction.families.beds import figure, measure
+from gaspart.reproduction.families.beds.claims import settling
+from gaspart.reproduction.families.beds.measure import _fit
 
 WIDTH = np.array([4.0, 6.0, 9.0, 14.0])
 

@@ -10,11 +10,11 @@ import gaspart as gp
 from gaspart import theory
 from gaspart.analysis.correlations import autocorrelation
 from gaspart.reproduction.claims import judge
-from gaspart.reproduction.families.velocity import measure
-from gaspart.reproduction.families.velocity.claims import (
+from gaspart.reproduction.families.motion import measure
+from gaspart.reproduction.families.motion.claims import (
     velocity_autocorrelation as claims_of_velocity_autocorrelation,
 )
-from gaspart.reproduction.families.velocity.figure import (
+from gaspart.reproduction.families.motion.figure import (
     velocity_autocorrelation as draw_velocity_autocorrelation,
 )
 from gaspart.reproduction.points.point import Point

@@ -13,9 +13,9 @@ from reproduction.families.test_granular import made
 
 import gaspart as gp
 from gaspart import theory
+from gaspart.reproduction.families.beds import figure, measure
+from gaspart.reproduction.families.beds.claims import expected_temperature, small_parameter, vibrated_bed
 from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.families.vibrated import figure, measure
-from gaspart.reproduction.families.vibrated.claims import expected_temperature, small_parameter, vibrated_bed
 from gaspart.reproduction.table import Table
 
 

@@ -10,9 +10,9 @@ from reproduction.families.drawn import Points, draw, shows, varied
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
-from gaspart.reproduction.families.virial import figure
-from gaspart.reproduction.families.virial.claims import virial_discs, virial_spheres
-from gaspart.reproduction.families.virial.measure import fit_coefficients, fit_table
+from gaspart.reproduction.families.equation_of_state import figure
+from gaspart.reproduction.families.equation_of_state.claims import virial_discs, virial_spheres
+from gaspart.reproduction.families.equation_of_state.measure import fit_coefficients, fit_table
 
 FITS = [
     {"free": 4, "up_to": 0.35, "held": True},

@@ -12,9 +12,9 @@ import gaspart as gp
 from gaspart import theory
 from gaspart.analysis.run import Run
 from gaspart.errors import SceneError
-from gaspart.reproduction.families.wall_pressure import measure
-from gaspart.reproduction.families.wall_pressure.claims import wall_pressure as claims_of_wall_pressure
-from gaspart.reproduction.families.wall_pressure.figure import wall_pressure as draw_wall_pressure
+from gaspart.reproduction.families.pressure import measure
+from gaspart.reproduction.families.pressure.claims import wall_pressure as claims_of_wall_pressure
+from gaspart.reproduction.families.pressure.figure import wall_pressure as draw_wall_pressure
 from gaspart.reproduction.points.point import Point
 
 CONTAINERS = [  # dimension, walled axes, length, other lengths, count, temperature
