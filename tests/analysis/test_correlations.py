@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gaspart.analysis.correlations import autocorrelation, correlate, squared_displacement
+from gaspart.analysis.motion import autocorrelation, correlate, squared_displacement
 
 SHAPES = [(2, 1, 2), (3, 5, 3), (30, 7, 2), (257, 100, 3)]
 """Frames, particles and dimensions, of which the last ones fill more than a block."""

@@ -15,8 +15,7 @@ from scenes import centred
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.analysis.correlations import Curves, correlate
-from gaspart.analysis.motion import line, mask_between
+from gaspart.analysis.motion import Curves, correlate, line, mask_between
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.motion import claims, figure, measure
 from gaspart.reproduction.families.shared import runs

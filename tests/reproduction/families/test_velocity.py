@@ -8,7 +8,7 @@ from reproduction.families.drawn import Points, column, draw, shows, varied
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.analysis.correlations import autocorrelation
+from gaspart.analysis.motion import autocorrelation
 from gaspart.reproduction.claims import judge
 from gaspart.reproduction.families.motion import measure
 from gaspart.reproduction.families.motion.claims import (

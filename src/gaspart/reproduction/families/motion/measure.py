@@ -32,10 +32,9 @@ import xarray as xr
 from scipy.integrate import cumulative_simpson
 
 from gaspart import theory
-from gaspart.analysis.correlations import Curves
 from gaspart.analysis.diffusion import LINEAR_FROM
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.motion import line, mask_between
+from gaspart.analysis.motion import Curves, line, mask_between
 from gaspart.analysis.statistics import fit_linear, fit_polynomial, mean_of, means_of
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.shared.runs import reduced_curves
