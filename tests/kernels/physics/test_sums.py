@@ -1,4 +1,6 @@
-"""The tally's sums do not lose digits as they grow, and do not depend on where a run is split."""
+"""Exact sums: of any size and order, and without an end."""
+
+from __future__ import annotations
 
 import math
 from fractions import Fraction
@@ -12,11 +14,68 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart.kernels.compile.policy import kernel
+from gaspart.kernels.physics.exact_sum import DIGITS, WIDTH, add_exact, exact_parts, sum_over_threads
 from gaspart.kernels.physics.running_sum import add, add_whole, net, values, whole_parts
+
+NUMBERS = st.floats(allow_nan=False, allow_infinity=False, width=64)
 
 
 @kernel
-def add_all(sums, terms):
+def add_all(total, terms):
+    for x in terms:
+        add_exact(total, x)
+
+
+def summed(*lists):
+    """The sums (threads, WIDTH) of lists of numbers, one by each thread."""
+    total = np.zeros((len(lists), WIDTH), np.int64)
+    for row, terms in zip(total, lists, strict=True):
+        add_all(row, np.array(terms, dtype=float))
+    return total
+
+
+@given(st.lists(NUMBERS, max_size=40), st.lists(NUMBERS, max_size=40))
+def test_a_sum_is_exact_whatever_the_sizes_of_its_terms(one, other):
+    exact = sum(map(Fraction, one + other), Fraction(0))
+    if abs(exact) < Fraction(2) ** 1000:
+        value, rest = exact_parts(summed(one, other))
+        assert value == float(exact)
+        assert abs(exact - Fraction(value) - Fraction(rest)) <= abs(exact) * Fraction(2) ** -64
+
+
+def test_order_and_threads_do_not_matter():
+    rng = np.random.default_rng(3)
+    terms = rng.standard_normal(1000) * 10.0 ** rng.integers(-300, 300, 1000)
+    found = sum_over_threads(summed(terms))
+    for parts in ((terms[::-1],), (terms[:300], terms[300:]), (terms[700:], [], terms[:700])):
+        assert np.array_equal(sum_over_threads(summed(*parts)), found)
+
+
+def test_what_is_left_of_large_terms_is_kept():
+    value, _ = exact_parts(summed([1e300, 1e-300, -1e300]))
+    assert value == 1e-300
+    assert exact_parts(summed([1e16, 1.0, -1e16, 0.0, -0.0])).tolist() == [1.0, 0.0]
+
+
+@pytest.mark.parametrize("x", [1.0, -math.pi, 2.0**-1074, 1e-40, 1e200])
+def test_nothing_overflows(x):
+    """Sums of the most terms that are added without a carry, and one more."""
+    total = summed([x])
+    total *= 2**29 - 1
+    total[0, DIGITS] = 2**29 - 1  # as many terms
+    add_all(total[0], np.array([x]))  # makes the carries
+    assert total[0, DIGITS] == 0 and (total[0, : DIGITS - 1] < 2**32).all()
+    for _ in range(10):
+        total *= 2
+        sum_over_threads(total[None])
+    assert exact_parts(total)[0] == x * 2.0**39
+
+
+# The tally's sums do not lose digits as they grow, and do not depend on where a run is split.
+
+
+@kernel
+def add_all_to_tally(sums, terms):
     for x in terms:
         add(sums, 1, x)
 
@@ -36,21 +95,21 @@ def add_many(sums, start, factor, number):
         add(sums, 0, x)
 
 
-def summed(terms):
+def summed_by_tally(terms):
     sums = np.zeros((2, 2))
-    add_all(sums, np.asarray(terms, dtype=float))
+    add_all_to_tally(sums, np.asarray(terms, dtype=float))
     return sums
 
 
 @given(st.lists(st.floats(-1e30, 1e30, allow_subnormal=False), max_size=60))
 def test_the_sum_is_the_exact_one_to_its_last_place(terms):
     exact = float(sum(map(Fraction, terms)))
-    assert net(summed(terms)[1]) == pytest.approx(exact, rel=2e-16, abs=1e-30 * sum(map(abs, terms)))
+    assert net(summed_by_tally(terms)[1]) == pytest.approx(exact, rel=2e-16, abs=1e-30 * sum(map(abs, terms)))
 
 
 def test_what_a_plain_sum_loses_is_kept():
     terms = np.full(1_000_000, 0.1)
-    sums = summed(terms)
+    sums = summed_by_tally(terms)
     assert sums[1, 0] != pytest.approx(1e5, rel=1e-12)  # the plain sum, which the first part still is
     assert values(sums)[1] == float(1_000_000 * Fraction(0.1))
     assert (sums[0] == 0.0).all()
@@ -59,8 +118,8 @@ def test_what_a_plain_sum_loses_is_kept():
 def test_large_sums_that_cancel_leave_the_small_one():
     rng = np.random.default_rng(1)
     there, back = rng.random((2, 100_000)) * 1e6
-    into = summed(np.concatenate([there, [0.3]]))
-    out = summed(-np.concatenate([there[::-1], back, -back]))
+    into = summed_by_tally(np.concatenate([there, [0.3]]))
+    out = summed_by_tally(-np.concatenate([there[::-1], back, -back]))
     assert net(into[1], out[1]) == pytest.approx(0.3, abs=1e-15)
 
 
