@@ -251,8 +251,7 @@ def boxes_per_particle(scene: Scene) -> float:
     Notes
     -----
     Eight particles are tested at once. So in a dilute gas of discs, which cross many boxes between contacts,
-    wide boxes are best; measured with 10^4 particles at packing fractions of 0.01 to 0.4
-    (docs/performance.md).
+    wide boxes are best; measured with 10^4 particles at packing fractions of 0.01 to 0.4.
     """
     dilute, by_density, limit = _BOXES[scene.dimension]
     best = min(dilute + by_density * scene.packing_fraction, limit)

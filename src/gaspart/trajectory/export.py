@@ -196,7 +196,8 @@ def _read(path: Path, numbers: range) -> Iterator[Snapshot]:
 def _write_gsd(path: Path, snapshots: Iterator[Snapshot]) -> None:
     """Write frames of HOOMD's schema.
 
-    `log/time` has the time, and the step is the number of the frame.
+    `log/time` has the time, `log/cell_origin` the lower corner of the box in the scene's coordinates (a
+    piston moves it), and the step is the number of the frame.
     """
     hoomd = optional("gsd.hoomd", "gsd", "GSD files")
     with path.open("rb") as scratch, hoomd.open(descriptor_path(scratch), "w") as file:
@@ -221,7 +222,7 @@ def _gsd_frame(frame: Any, snapshot: Snapshot) -> Any:
     frame.particles.velocity = snapshot.velocities
     frame.particles.diameter = snapshot.diameters
     frame.particles.mass = snapshot.masses
-    frame.log = {"time": np.array([snapshot.time])}
+    frame.log = {"time": np.array([snapshot.time]), "cell_origin": np.array(snapshot.origin, dtype=float)}
     return frame
 
 

@@ -16,7 +16,6 @@ from gaspart.analysis import measuring
 from gaspart.analysis.observable import observable as made
 from gaspart.analysis.observables import OBSERVABLES, observables_with
 from gaspart.errors import SceneError
-from gaspart.reproduction import sweep_table
 from gaspart.reproduction.claims import judge
 from gaspart.reproduction.config import check
 from gaspart.reproduction.families.own import caption, figure, measure
@@ -170,8 +169,7 @@ def test_an_observable_with_names_has_a_series_for_each(simulated, monkeypatch):
     faces = {"face": (np.array(["y high", "y low"]), {})}
     values, errors = np.array([1.0, 2.0]), np.array([0.1, 0.2])
     one = made("pressure", faces, values, errors, units="1", long_name="pressure", theory=(1.5, np.nan))
-    found = sweep_table.Measured({"pressure": [one, one]}, [1.0, 1.0])
-    monkeypatch.setattr(measure, "measure_point", lambda *_, **__: (found, {}))
+    monkeypatch.setattr(measure, "measure_point", lambda *_, **__: ({"pressure": [one, one]}, 1.0, {}))
     dataset = measured(simulated, observable="pressure")
     assert dataset["series"].values.tolist() == ["y high"] * 2 + ["y low"] * 2
     assert dataset["value"].values.tolist() == [1.0, 1.0, 2.0, 2.0]
