@@ -35,7 +35,7 @@ def attach(
 ) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
     """Return `__getattr__`, `__dir__` and `__all__` of a package that has a stub.
 
-    for_users : True if its functions and classes answer mistakes in their use (`gaspart.errors.guidance`)
+    for_users : True if its functions answer mistakes in their calls (`gaspart.errors.guidance`)
     """
     namespace = vars(sys.modules[package])
     homes, aliases = entries(f"{namespace['__file__']}i")
@@ -53,10 +53,10 @@ def attach(
             return import_module(f"{package}.{name}")
         module = import_module(home)
         member = getattr(module, name)
-        if for_users and name not in namespace:
+        if for_users and name not in namespace and not isinstance(member, type) and callable(member):
             from gaspart.errors.guidance import with_call_checks
 
-            member = with_call_checks(member)
+            member = with_call_checks(member, name)
             setattr(module, name, member)  # the same thing under both names, as pickle requires
         return namespace.setdefault(name, member)
 

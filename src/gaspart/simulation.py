@@ -14,6 +14,7 @@ import gaspart
 from gaspart.engines import Engine, resolve_engine
 from gaspart.engines.dynamics import EventLog, check_identity, checkpoint_identity
 from gaspart.errors import SceneError, SimulationError
+from gaspart.errors.guidance import with_guidance
 from gaspart.keys.values import count_of, number
 from gaspart.scene.face_checks import check_piston_end, piston_end, refuse_open
 from gaspart.scene.scene import DRAWN, THUMBNAIL, Scene, require_scene
@@ -47,6 +48,7 @@ PROPERTIES = (
 """Properties of each particle that `Simulation.properties` returns; defined in `State`."""
 
 
+@with_guidance
 class Simulation:
     """A run of a scene by an engine, which is advanced in time.
 

@@ -11,6 +11,7 @@ from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from gaspart.errors import SceneError
+from gaspart.errors.guidance import with_guidance
 from gaspart.keys import (
     choice,
     declare,
@@ -103,6 +104,7 @@ _ENDS = {
 _TEMPERATURE = Kind({"anyOf": [POSITIVE, _ENDS]}, _check_temperature)
 
 
+@with_guidance
 @dataclass(frozen=True)
 class Thermal(Surface):
     """A wall at a temperature, from whose distribution the velocity of a leaving particle is drawn.
@@ -239,6 +241,7 @@ class Thermal(Surface):
         return self.components == "normal"
 
 
+@with_guidance
 @dataclass(frozen=True)
 class Well(Surface):
     """A wall with an attractive square well of energy -`depth` within `width` of the face.
@@ -317,6 +320,7 @@ class Well(Surface):
         return () if self.temperature is None else (self.temperature,)
 
 
+@with_guidance
 @dataclass(frozen=True)
 class Sticky(Surface):
     """A wall to which slow particles stick (Frederickx & Meerts 2010, section 4.5, made definite).
@@ -362,6 +366,7 @@ class Sticky(Surface):
         return "sticky", self.momentum
 
 
+@with_guidance
 @dataclass(frozen=True)
 class Vibrating(Surface):
     """A hard wall with a prescribed motion, independent of hits, which gives or takes energy.
@@ -457,6 +462,7 @@ class Vibrating(Surface):
         return self.amplitude * (1.0 - np.cos(2.0 * math.pi * turns))
 
 
+@with_guidance
 @dataclass(frozen=True)
 class Piston(Surface):
     """A smooth wall that moves by its mass and an external pressure, or at constant speed.
@@ -570,6 +576,7 @@ class Piston(Surface):
         return (-1.0 if number % 2 else 1.0) * (self.speed or 0.0)
 
 
+@with_guidance
 @dataclass(frozen=True)
 class Open(Surface):
     """An opening as wide as the face, through which particles leave, and enter from a reservoir.
@@ -658,6 +665,7 @@ class Open(Surface):
         return () if self.temperature is None else (self.temperature,)
 
 
+@with_guidance
 @dataclass(frozen=True)
 class LeesEdwards(Surface):
     """Periodic faces whose images slide, for shear flow without walls.

@@ -16,6 +16,7 @@ from typing import Any
 
 import gaspart
 from gaspart.errors import SceneError
+from gaspart.errors.guidance import with_guidance
 from gaspart.keys import (
     declare,
     describe,
@@ -50,6 +51,7 @@ DRAWN = 20_000
 _ABSENT = ("fixed", "exact_temperature", "walls", "faces")  # keys that are written to a file only if present
 
 
+@with_guidance
 @dataclass(frozen=True)
 class Scene(Facts):
     """The system to simulate: a container, its particles and everything that acts on them.

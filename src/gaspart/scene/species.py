@@ -7,6 +7,7 @@ from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, ClassVar
 
 from gaspart.errors import SceneError
+from gaspart.errors.guidance import with_guidance
 from gaspart.keys import (
     POSITIVE,
     choice,
@@ -56,6 +57,7 @@ def _check_matter(particle: Species | Particle) -> None:
         raise SceneError("vibration", particle.vibration, "requires fixed: true")
 
 
+@with_guidance
 @dataclass(frozen=True)
 class Species:
     """Particles of one kind, which the program places; identical without a `polydispersity`.
@@ -315,6 +317,7 @@ class Species:
         return self.mass * (self.speed or 0.0) ** 2 / dimension
 
 
+@with_guidance
 @dataclass(frozen=True)
 class Particle:
     """A single particle at a given position.

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from gaspart.errors.guidance import with_guidance
+
 ENERGY, IMPULSE = "mass length^2/time^2", "mass length/time"
 ACTION, HEAT = "mass length^2/time", "mass length^3/time^2"
 SPEED, PRESSED, HEATED = "length/time", "mass length^(2-d)/time", "mass length^(3-d)/time^2"
@@ -34,6 +36,7 @@ def tallied_fluxes(sums: np.ndarray, drift: np.ndarray) -> dict[str, np.ndarray]
     return {**fluxes, "flux_velocity": drift.copy()}
 
 
+@with_guidance
 @dataclass
 class Tally:
     """Counters and sums of a simulation since the last reset.

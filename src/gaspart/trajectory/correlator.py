@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.errors.guidance import with_guidance
 from gaspart.keys.values import count_of, number
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
@@ -44,6 +45,7 @@ CORRELATED = {
 _PREFIX = "correlator "  # prefix of its arrays in a checkpoint
 
 
+@with_guidance
 @dataclass(frozen=True)
 class Correlations:
     """Time correlations that a run accumulates.

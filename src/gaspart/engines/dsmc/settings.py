@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from gaspart.engines.engine import Engine, register
+from gaspart.errors.guidance import with_guidance
 from gaspart.keys import choice, count, declare, per_side, positive
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ MODELS = ("boltzmann", "enskog")
 ADAPTED = ("nothing", "steps", "cells", "both")
 
 
+@with_guidance
 @register
 @dataclass(frozen=True)
 class DSMC(Engine):
