@@ -20,7 +20,7 @@ from gaspart.accuracy.scatter import Scatter, start_scatter
 from gaspart.accuracy.table import EQUILIBRATION as EQUILIBRATED
 from gaspart.accuracy.table import LEAST
 from gaspart.accuracy.target import Target, rounded_to_12_digits
-from gaspart.analysis import finite
+from gaspart.analysis import bulk
 from gaspart.analysis.pairs import MOST_FRAMES
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine
@@ -101,7 +101,7 @@ class Plan:
         For this number the difference is a quarter of the accuracy.
         """
         gas = known.fluid_of(self.target.scene)
-        differing, power = getattr(finite, self.target.declared.bulk)(gas)
+        differing, power = getattr(bulk, f"finite_{self.target.declared.bulk}")(gas)
         return differing, gas.count * (abs(differing) * _BULK / self.accuracy) ** power
 
     @property

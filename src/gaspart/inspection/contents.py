@@ -9,7 +9,7 @@ import numpy as np
 
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
-from gaspart.inspection.continuity import continuous
+from gaspart.inspection.conserved import continuous
 from gaspart.inspection.frames import Frames
 from gaspart.scene.container import Container
 from gaspart.scene.scene import Scene
