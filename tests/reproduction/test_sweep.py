@@ -120,6 +120,8 @@ def test_values_of_a_scene_file_and_of_the_engine_vary(tmp_path):
         ({"over": {"packing_fraction": [2.0]}}, "over.packing_fraction = 2.0: must be less than 1"),
         ({"over": {"packing_fraction": []}}, r"over.packing_fraction = \[\]: must not be empty"),
         ({"over": {"packing_fraction": [0.1, 0.1]}}, "every point of a grid must be different"),
+        ({"over": {"count": [50, 50.0]}}, "over.count = .*: every point of a grid must be different"),
+        ({"over": {"duration": [1.0]}}, "over.duration = .*: is an argument of a sweep"),
         ({"over": {"packing_fraction": [0.1], "species.0.mass": [2.0]}}, "replaces a value of a scene file"),
         ({"observables": ["Q"]}, "observable = 'Q': unknown observable"),
         ({"duration": None}, "duration = None: must be given, or until"),

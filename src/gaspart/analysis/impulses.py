@@ -153,7 +153,7 @@ class MomentumFlux:
 
 
 def useful_impulses(scene: Scene, tallies: Collection[str], axis: int, bins: int) -> tuple[ImpulseTally, ...]:
-    """Return the impulse tally along an axis, if the density of a scene follows from it.
+    """Return the impulse tally along an axis, if it gives the density of a scene.
 
     tallies : names of the tallies that the engine can make
     """

@@ -20,12 +20,14 @@ from gaspart.analysis.observables import (
 )
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
+from gaspart.errors.guidance import with_guidance
 from gaspart.scene.scene import Scene
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.run_options import Contents, required_contents
 from gaspart.trajectory.until import Requirement, Until
 
 
+@with_guidance
 class Accuracy(Requirement):
     """Requested accuracy of an observable: its standard error divided by its absolute value.
 
@@ -172,7 +174,7 @@ def _require_end(requirement: Requirement, scene: Scene, at_most: float | None, 
 def require_reachable(requirement: Requirement, scene: Scene, replicas: int) -> None:
     """Raise SceneError for an accuracy that the mean of replicas never reaches.
 
-    Each replica has its own seed, and the energies of their initial states scatter.
+    Each replica has its own seed, and so a different energy of its initial state.
 
     Parameters
     ----------
@@ -208,8 +210,9 @@ def require_reachable(requirement: Requirement, scene: Scene, replicas: int) -> 
 def default_sample_interval(scene: Scene, engine: Engine, correlations: Correlations | None) -> float:
     """Return the default time between frames, to two digits.
 
-    It is the mean time between two collisions of a particle, or, without collisions, the mean time to cross
-    the container, as a multiple of the engine's steps and of the samples of correlations.
+    The interval is the mean time between two collisions of a particle, or, without collisions, the mean time
+    to cross the container. It is rounded to a multiple of the engine's steps and of the samples of
+    correlations.
 
     Parameters
     ----------

@@ -1,8 +1,9 @@
 """Features of a scene, each with a name.
 
 A scene without features has smooth, elastic particles in a hard or periodic container. `FEATURES` is the
-table of all features, `EXCLUDED` the table of pairs which no scene may have. An engine states the features
-that it models (`Engine.models`): its rejections, and the table in the documentation, follow from it.
+table of all features, `EXCLUDED` the table of pairs which no scene may have. An engine lists the features
+that it models (`Engine.models`). Its rejections, and the table in the documentation, are derived from this
+list.
 """
 
 from __future__ import annotations
@@ -176,7 +177,7 @@ _STEADY = frozenset(("walls", "polydispersity", "centres_to_walls"))
 def shares_energy_evenly(scene: Scene) -> bool:
     """Return True if the kinetic energy of flight is constant, and equal for all directions.
 
-    This holds in equilibrium for smooth, elastic particles without a potential or a source of heat.
+    This is true in equilibrium for smooth, elastic particles without a potential or a source of heat.
     """
     return scene.features <= _STEADY
 

@@ -1,7 +1,7 @@
 """Base class of tallies that not every run has; `state.tally` declares them.
 
-A run requests a tally by an instance of its class, which holds its settings. The command line and configs
-state it as text. An engine that can make it has its name in `Engine.tallies`, and a part
+A run requests a tally by an instance of its class with the settings. The command line and configs have
+these settings as text. An engine that can make it has its name in `Engine.tallies`, and a part
 (`engines.features.part.TallyPart`) that is found by that name.
 """
 
@@ -25,8 +25,8 @@ class OptionalTally:
     name : str
         Name in messages, in files, and as `only` in the metadata of its fields of `Tally`.
     meaning, form : str
-        Meaning of the option of a run that requests it, and the form of its text: the settings, in their
-        order, with colons between; "" without such an option.
+        Description of the option of a run that requests it, and the form of its text: the settings in their
+        order, separated by colons; "" without such an option.
     fact : str
         Property that is true for the scenes whose runs all have the tally; "" if it is requested.
     """
@@ -76,7 +76,7 @@ class OptionalTally:
         return f"--{self.name.replace('_', '-')} {self.to_text()}"
 
     def check(self, scene: Scene) -> None:
-        """Raise SceneError for a scene of which no engine can make the tally.
+        """Raise SceneError if no engine can make the tally for a scene.
 
         Parameters
         ----------

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar
 
 from gaspart.errors import SceneError
+from gaspart.errors.guidance import with_guidance
 from gaspart.keys.values import count_of, number, one_of
 from gaspart.scene.features import FEATURES
 from gaspart.state.optional_tallies import OptionalTally
@@ -24,6 +25,7 @@ SPEED, PRESSED, HEATED = "length/time", "mass length^(2-d)/time", "mass length^(
 """Units of sums, and of the velocity that goes with them; of momentum and heat per area."""
 
 
+@with_guidance
 @dataclass
 class Tally:
     """Counters and sums of a simulation since the last reset.
@@ -37,14 +39,13 @@ class Tally:
     collisions : int
         Collisions of pairs.
     wall_hits : ndarray of int, shape (F,)
-        Particles that hit each face. If faces are open: particles that have left there.
+        Particles that hit each face. With open faces: number of particles that have left through each face.
     wall_impulse : ndarray, shape (F,), [mass length/time]
-        Momentum given to each face. If faces are open: the momentum along the normal that particles which
-        leave and enter carry through.
+        Momentum given to each face. With open faces: the normal momentum of particles that leave and enter.
     wall_energy : ndarray, shape (F,), [energy]
-        Heat given to each face by particles that it re-emitted thermally. It includes the work of the face if
-        there is a `wall_shear`. If faces are open: the energy of particles that have left less the energy of
-        particles that have entered.
+        Heat given to each face by particles that the face re-emitted thermally. If there is a `wall_shear`,
+        the heat includes the work of the face. If faces are open: the energy of particles that have left less
+        the energy of particles that have entered.
     virial_sum : float, [mass length^2/time]
         Sum of abs(dr.dp) over collisions.
     pair_tests : int
@@ -65,7 +66,7 @@ class Tally:
     retained_energy : float, default 0.0, [energy]
         Energy that these contacts would have dissipated.
     thermostat_energy : float, default 0.0, [energy]
-        Energy given by kicks.
+        Energy added by kicks.
     steps : int, default 0
         Steps of the engine, if it has time steps.
     overlaps_left : int, default 0
@@ -78,34 +79,35 @@ class Tally:
     rebuilds : int, default 0
         Rebuilds of the neighbour list of the time-stepped engine.
     wall_shear : ndarray, shape (F, d), optional, [mass length/time]
-        Momentum along each axis given to each thermal face by particles that leave it with all components
-        drawn. None unless a thermal face moves or a force drives the gas along it.
+        Momentum along each axis given to each thermal face by particles whose velocity components are all
+        drawn when they leave. None unless a thermal face moves, or a force drives the gas along a thermal
+        face.
     entries : ndarray of int, shape (F,), optional
         Particles that have entered through each face. None unless faces are open.
     momentum_per_area : ndarray, shape (F, d), optional, [mass length^(2-d)/time]
-        Momentum along each axis given to each face, outwards along its normal, with the momentum of each
-        particle divided by the area of the face that centres of its size can reach (`scene.accessible`), in
-        the container at the start. It is 0 for interior walls and for faces that an engine does not tally.
-        None unless particles of several sizes reach different areas of faces.
+        Momentum along each axis given to each face, positive along the outward normal. The momentum of each
+        particle is divided by the area of the face that centres of its size can reach (`scene.accessible`),
+        in the container at the start. The value is 0 for interior walls and for faces that an engine does not
+        tally. None unless particles of different sizes can reach different areas of faces.
     heat_per_area : ndarray, shape (F,), optional, [mass length^(3-d)/time^2]
         Energy of `wall_energy`, divided in the same way, and with the same zeros. Absent without
         `momentum_per_area`.
     stress_sum : ndarray, shape (d, d), optional, [mass length^2/time]
         Time integral of the stress tensor times the volume: of m v v and, at a collision, of r dp. Here r is
-        the vector from the second particle to the first, and dp the momentum that the first gains. None
-        unless requested.
+        the vector from the second particle to the first, and dp is the momentum that the first particle
+        gains. None unless requested.
     collisional_stress_sum : ndarray, shape (d, d), optional, [mass length^2/time]
         Collisional part of `stress_sum`.
     heat_sum : ndarray, shape (d,), optional, [mass length^3/time^2]
         Time integral of the heat flux times the volume: of E v and r dE [1]_.
     flux_velocity : ndarray, shape (d,), optional, [length/time]
-        Velocity of the centre of mass, about which all velocities of these fluxes are; for a sheared gas
-        about the flow, at time 0.
+        Velocity of the centre of mass; all velocities in the fluxes are relative to it. In a sheared gas they
+        are relative to the flow, and this is the velocity at time 0.
     momentum_flux_sum : ndarray, shape (species, bins), optional, [mass length/time]
-        Momentum of each species, and last of all single particles, along an axis that has flown through
-        planes across the axis with the particles themselves: m v^2 of particles that cross, times the time.
-        It is the mean over the planes of each bin. Under gravity the momentum that gravity has given to the
-        particles below is subtracted (`analysis.impulses`). None unless requested.
+        Momentum of each species (single particles last) along an axis, transported through planes across the
+        axis by the particles themselves: m v^2 of the particles that cross, times the time. Each value is the
+        mean over the planes in a bin. Under gravity, the momentum that gravity has given to the particles
+        below the plane is subtracted (`analysis.impulses`). None unless requested.
     contact_impulse_sum : ndarray, shape (shells,), optional, [mass length^2/time]
         Mean over each shell of k_B T g(r) times the time, from the pairs that collide
         (`analysis.pairs`). None unless requested.
@@ -220,6 +222,7 @@ _WITH_STRESS = frozenset(
 """Features with which velocities still change at contacts only."""
 
 
+@with_guidance
 @dataclass(frozen=True)
 class StressTally(OptionalTally):
     """Tally of the stress tensor and the heat flux, in a periodic container without gravity.
@@ -264,11 +267,12 @@ FURTHEST = 0.499
 """Largest distance of a pair, divided by the shortest side of a periodic container."""
 
 
+@with_guidance
 @dataclass(frozen=True)
 class ImpulseTally(OptionalTally):
-    """Tally of the momentum that particles carry along an axis through planes across the axis.
+    """Tally of the momentum that particles transport along an axis through planes across this axis.
 
-    The density along the axis follows from it (`analysis.impulses`).
+    The density along the axis is computed from this momentum (`analysis.impulses`).
 
     Parameters
     ----------
@@ -315,7 +319,8 @@ class ImpulseTally(OptionalTally):
 def _require_equilibrium(scene: Scene) -> None:
     """Raise SceneError, with the reason, if the impulses in a scene give no density.
 
-    They give none if velocities depend on positions, as they do except in equilibrium at one temperature.
+    Impulses give no density if velocities depend on positions. Velocities are independent of positions only
+    in equilibrium at one temperature.
     """
     if len({particle.mass for particle in scene.particles}) > 1:
         rule = "must have one mass for an impulse tally, which sums over all single particles"
@@ -337,11 +342,12 @@ def _require_equilibrium(scene: Scene) -> None:
         raise SceneError("faces.temperature", temperatures, rule)
 
 
+@with_guidance
 @dataclass(frozen=True)
 class PairImpulseTally(OptionalTally):
     """Tally of the momentum that pairs gain along their separation, in shells of equal thickness.
 
-    The pair distribution g(r) follows from it (`analysis.pairs`).
+    The pair distribution g(r) is computed from this tally (`analysis.pairs`).
 
     Parameters
     ----------
@@ -404,7 +410,7 @@ class PairImpulseTally(OptionalTally):
 
 @dataclass(frozen=True)
 class WallShearTally(OptionalTally):
-    """Momentum given to faces along themselves."""
+    """Tangential momentum given to faces."""
 
     name: ClassVar[str] = "wall_shear"
     fact: ClassVar[str] = "drags_faces"
