@@ -84,7 +84,10 @@ class Run:
         return xr.load_dataset(self.results / "measurements" / f"{figure}.nc")
 
     def seconds(self, point: str) -> float | None:
-        """Return the processor time of a point at the whole length; None if the run has not stored it."""
+        """Return the processor time of a point at the whole length.
+
+        None if the run has not stored it.
+        """
         experiment, _, name = point.partition("/")
         try:
             return budget.point_seconds(self.results, (experiment, name)) / self.lengths.get(point, 1.0)
@@ -93,7 +96,7 @@ class Run:
 
 
 def demands(figure: str, block: Mapping, runs: Sequence[Run]) -> list[Demand]:
-    """Return the demands of the claims of a figure that runs decide and that one of the runs decided."""
+    """Return the demands of the claims of a figure that one of the runs decided."""
     needs: dict[str, list[dict[str, float]]] = {}
     decided = set()
     for run in runs:
