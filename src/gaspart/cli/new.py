@@ -107,10 +107,12 @@ def _new(options: argparse.Namespace) -> None:
     output, template = output_path(options.scene), templates()[options.template]
     if output.suffix not in (".yaml", ".yml") or not options.scene.isprintable():
         raise SceneError("scene", options.scene, "must be a printable name that ends in .yaml")
+    command, lines = named_command(template, output), template.text.splitlines(keepends=True)
+    text = "".join(line for line in lines if not line.startswith("#   figure"))  # a note for this project
     with writing(output, _SCENE, options.force) as scratch:
-        scratch.write_text(_scene_text(template, output), encoding="utf-8")
+        scratch.write_text(text.replace(template.command, command), encoding="utf-8")
     print_line(f"{output}: {template.title}. Run it:")
-    print_line(named_command(template, output))
+    print_line(command)
 
 
 def named_command(template: Template, path: Path) -> str:
@@ -121,9 +123,3 @@ def named_command(template: Template, path: Path) -> str:
     scene, trajectory = shlex.quote(str(path)), shlex.quote(str(path.with_suffix(".nc")))
     command = template.command.replace(f"{template.name}.yaml", scene)
     return command.replace(f"{template.name}.nc", trajectory)
-
-
-def _scene_text(template: Template, path: Path) -> str:
-    """Return the text of the file, without the note on the figure."""
-    kept = [line for line in template.text.splitlines(keepends=True) if not line.startswith("#   figure")]
-    return "".join(kept).replace(template.command, named_command(template, path))

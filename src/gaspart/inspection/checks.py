@@ -63,15 +63,12 @@ def judge(frames: Frames, tolerance: float | None = None) -> list[Check]:
     `tolerance` is the allowed overlap, as a fraction of a diameter.
     """
     checks = [*judge_places(frames, tolerance), *judge_conserved(frames)]
-    if reason := frames.no_identity or _acting(checks):
+    reason, acting = frames.no_identity, [check.name for check in checks if check.acts]
+    if acting and not reason:  # more than elastic contacts: nothing is known of equilibrium
+        reason = f"something acts on the particles (see {' and '.join(acting)})"
+    if reason:
         return [*checks, *(Check(name, None, reason) for name in (*SPEEDS, _PRESSURE, _DIFFUSION))]
     return [*checks, *judge_speeds(frames), _pressure(frames), _diffusion(frames)]
-
-
-def _acting(checks: list[Check]) -> str | None:
-    """Return the reason why nothing is known of equilibrium: a check found more than elastic contacts."""
-    names = [check.name for check in checks if check.acts]
-    return f"something acts on the particles (see {' and '.join(names)})" if names else None
 
 
 def judge_places(frames: Frames, tolerance: float | None = None) -> list[Check]:

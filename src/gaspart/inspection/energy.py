@@ -38,7 +38,9 @@ def energy_line(scene: Scene, data: xr.Dataset) -> str:
     text = f"drift of the energy: {drift:.1e} of it at most"
     if _removed_energy(data).any():
         text += ", less what contacts, faces and kicks have exchanged"
-    return text + (" (positions have single precision)" if _needs_positions(scene, data) else "")
+    if scene.gravity is not None and "displacements" not in data:  # the potential energy is of the positions
+        text += " (positions have single precision)"
+    return text
 
 
 def conserved_energy(scene: Scene, data: xr.Dataset) -> np.ndarray:
@@ -69,11 +71,6 @@ def _removed_energy(data: xr.Dataset) -> np.ndarray:
     """Return the energy (T,) taken by contacts and faces since time 0, less kicks."""
     removed = data["dissipated_energy"].values + data["wall_energy"].values.sum(axis=1)
     return np.asarray(removed - data["thermostat_energy"].values, dtype=float)
-
-
-def _needs_positions(scene: Scene, data: xr.Dataset) -> bool:
-    """Return True if the potential energy follows from positions in single precision."""
-    return scene.gravity is not None and "displacements" not in data
 
 
 def _potential(scene: Scene, data: xr.Dataset) -> np.ndarray:

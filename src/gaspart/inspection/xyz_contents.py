@@ -261,14 +261,9 @@ def _most_digits(tokens: Iterable[str]) -> int:
     most = 0
     for token in tokens:
         if len(token) > most:  # else it cannot have more
-            most = max(most, _significant(token))
+            mantissa = re.split("[eEdD]", token)[0].lstrip("+-").replace(".", "")
+            most = max(most, len(mantissa.lstrip("0")))
     return most
-
-
-def _significant(token: str) -> int:
-    """Count the significant digits of a printed number."""
-    mantissa = re.split("[eEdD]", token)[0].lstrip("+-").replace(".", "")
-    return len(mantissa.lstrip("0"))
 
 
 def _resolution(positions: np.ndarray, digits: int) -> float:
