@@ -31,6 +31,7 @@ from gaspart.inspection.statistics import (
     expected_diffusion,
     first_relaxed_frame,
     groups_of,
+    has_too_few_contacts,
     judge_speeds,
     why_not,
     why_not_speeds,
@@ -179,9 +180,10 @@ def _pressure(frames: Frames) -> Check:
     if frames.counted is not None and frames.time is not None:
         return _by_collisions(frames.counted, float(frames.time[first]))
     chosen = chosen[np.unique(np.linspace(0, len(chosen) - 1, MOST_FRAMES).astype(int))]
-    contact_value = correlated_mean(
-        contact_values(replace(frames, positions=frames.positions[chosen]))
-    ).estimate
+    used = replace(frames, positions=frames.positions[chosen])
+    if has_too_few_contacts(used):
+        return Check(name, None, f"pairs near contact are too few in {len(chosen)} independent samples")
+    contact_value = correlated_mean(contact_values(used)).estimate
     first_order = 2.0 ** (d - 1) * eta
     try:
         side = float(np.min(frames.lengths)) / gas.diameter

@@ -246,12 +246,8 @@ spheres at packing fractions 0.4, 0.45, 0.49, 0.511 and 0.52 -0.4(7), -0.2(5), -
 
 def contact_values(frames: Frames) -> np.ndarray:
     """Compute g(sigma) (T,) of each frame of equal particles in a periodic container, dimensionless."""
-    n, d, sigma = frames.count, frames.dimension, frames.diameter
-    assert sigma is not None, "requires equal particles"
-    edges = 1.0 + WIDTH * np.linspace(0.0, 1.0, _SHELLS + 1)
-    volumes = ball_volume(d) * np.diff(edges**d)
-    coefficients = _at_contact(edges, volumes, d)
-    pairs = n * (n / np.prod(frames.lengths / sigma)) * volumes
+    sigma, (edges, coefficients, _) = frames.diameter, _contact_fit(frames)
+    assert sigma is not None, "see `_contact_fit`"
     inner = round(_SHELLS / WIDTH)  # intervals within a diameter, as wide as the shells
     values = []
     for positions in frames.positions:
@@ -260,8 +256,29 @@ def contact_values(frames: Frames) -> np.ndarray:
         # pairs that rounding has brought below contact belong to the first shell
         if below := counts[:inner].sum():
             shells[0] += below - pair_counts(positions[None], frames.lengths, 1, sigma * (1.0 - 1e-5))[0]
-        values.append(coefficients @ (2.0 * shells / pairs))
+        values.append(coefficients @ shells)
     return np.array(values)
+
+
+def has_too_few_contacts(frames: Frames) -> bool:
+    """Return True if pairs near contact are too few for the scatter of `contact_values` to be an error.
+
+    The number of pairs in a shell has Poisson's distribution about the mean of an ideal gas. If few are
+    expected, their mean over frames is skewed. Without any pair its scatter is 0.
+    """
+    _, coefficients, pairs = _contact_fit(frames)
+    variance, third = (len(frames.positions) * (coefficients**k @ pairs) for k in (2, 3))
+    return bool(abs(third) > _MOST_SKEWED * variance**1.5)
+
+
+def _contact_fit(frames: Frames) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the edges of shells in diameters, coefficients of their counts, and counts of an ideal gas."""
+    n, d, sigma = frames.count, frames.dimension, frames.diameter
+    assert sigma is not None, "requires equal particles"
+    edges = 1.0 + WIDTH * np.linspace(0.0, 1.0, _SHELLS + 1)
+    volumes = ball_volume(d) * np.diff(edges**d)
+    pairs = 0.5 * n * (n / np.prod(frames.lengths / sigma)) * volumes
+    return edges, _at_contact(edges, volumes, d) / pairs, pairs
 
 
 def _at_contact(edges: np.ndarray, volumes: np.ndarray, dimension: int) -> np.ndarray:
