@@ -29,7 +29,6 @@ from gaspart.state.state import by_number
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.yaml_text import parse_yaml
 
-
 _ROUNDING = 1e-12
 """Relative scatter of equal values that are computed in different order."""
 

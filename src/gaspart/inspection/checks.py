@@ -27,6 +27,7 @@ from gaspart.inspection.statistics import (
     contact_values,
     decorrelated_frames,
     density_modulation,
+    describe_motion,
     diffusion,
     expected_diffusion,
     first_relaxed_frame,
@@ -170,7 +171,7 @@ def _pressure(frames: Frames) -> Check:
     way, spacing = frames.path, frames.spacing
     first = first_relaxed_frame(way, spacing)
     if first is None:
-        return Check(name, None, _describe_motion(way, spacing))
+        return Check(name, None, describe_motion(way, spacing))
     chosen = np.array(decorrelated_frames(way, WIDTH * gas.diameter, first))
     if len(chosen) < _LEAST_FRAMES:
         text = f"{len(chosen)} independent samples are too few for an error: it needs {_LEAST_FRAMES}"
@@ -226,14 +227,6 @@ def _no_pressure(frames: Frames) -> str | None:
     return None
 
 
-def _describe_motion(way: np.ndarray, distance: float) -> str:
-    """Return the reason why a run is not relaxed."""
-    there = math.sqrt(float((way[-1] ** 2).sum(axis=1).mean()))
-    return (
-        f"particles must move by {distance:.3g} after the first frame, to relax; they have moved {there:.2g}"
-    )
-
-
 def _diffusion(frames: Frames) -> Check:
     """Check D of spheres, from their mean-squared displacement, against theory."""
     name = _DIFFUSION
@@ -242,7 +235,7 @@ def _diffusion(frames: Frames) -> Check:
     way, spacing = frames.path, frames.spacing
     first = first_relaxed_frame(way, spacing)
     if first is None:
-        return Check(name, None, _describe_motion(way, spacing))
+        return Check(name, None, describe_motion(way, spacing))
     assert frames.velocities is not None and frames.time is not None, "see `why_not`"
     used = replace(
         frames,
