@@ -21,11 +21,16 @@ FAMILY = {SOURCE / name for name in ("measure.py", "claims.py", "figure.py")}  #
 @pytest.mark.parametrize("name", ["quickstart", "accuracy", "tools"])
 def test_a_page_runs_from_top_to_bottom(name, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    names = {}
-    blocks = re.findall(r"^```(yaml|sh|python)\n(.*?)^```", (DOCS / f"{name}.md").read_text(), re.M | re.S)
+    names, printed = {}, ""
+    blocks = re.findall(
+        r"^```(yaml|sh|python|text)\n(.*?)^```", (DOCS / f"{name}.md").read_text(), re.M | re.S
+    )
     assert len(blocks) > 3
     for kind, text in blocks:
-        if kind == "yaml":
+        if kind == "text":
+            printed += capsys.readouterr().out
+            assert not [line for line in text.splitlines() if line not in printed.splitlines()]
+        elif kind == "yaml":
             Path(re.match(r"# (\S+)\n", text)[1]).write_text(text)
         elif kind == "sh":
             for line in text.splitlines():
@@ -34,7 +39,7 @@ def test_a_page_runs_from_top_to_bottom(name, tmp_path, monkeypatch, capsys):
                 assert main(arguments) == 0, (line, capsys.readouterr())
         else:
             exec(compile(text, name, "exec"), names)
-    assert "WRONG" not in capsys.readouterr().out
+    assert "WRONG" not in printed + capsys.readouterr().out
 
 
 def parts(page):

@@ -1,8 +1,8 @@
 """Public names of packages, loaded when first used.
 
-A package states them once, in the stub `__init__.pyi` next to its `__init__.py`, a line for each: `from
-gaspart.scene.scene import Scene as Scene`, or `Z = compressibility_factor` for an alias. Type checkers and
-editors read the stub, and `attach` gives its names to the package.
+A package lists its public names once, in the stub `__init__.pyi` next to its `__init__.py`, one line per
+name: `from gaspart.scene.scene import Scene as Scene`, or `Z = compressibility_factor` for an alias. Type
+checkers and editors read the stub, and `attach` gives its names to the package.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ if TYPE_CHECKING:  # it takes longer to import than the rest of this module
 
 
 def read_stub(path: str) -> dict[str, str]:
-    """Return the module of each name that a stub states, aliases included."""
+    """Return the module of each name in a stub, including aliases."""
     homes, aliases = entries(path)
     return homes | {alias: homes[name] for alias, name in aliases.items()}
 
@@ -35,7 +35,7 @@ def attach(
 ) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
     """Return `__getattr__`, `__dir__` and `__all__` of a package that has a stub.
 
-    for_users : True if its functions and classes answer mistakes in their use (`gaspart.errors.guidance`)
+    for_users : True if its functions answer mistakes in their calls (`gaspart.errors.guidance`)
     """
     namespace = vars(sys.modules[package])
     homes, aliases = entries(f"{namespace['__file__']}i")
@@ -53,10 +53,10 @@ def attach(
             return import_module(f"{package}.{name}")
         module = import_module(home)
         member = getattr(module, name)
-        if for_users and name not in namespace:
+        if for_users and name not in namespace and not isinstance(member, type) and callable(member):
             from gaspart.errors.guidance import with_call_checks
 
-            member = with_call_checks(member)
+            member = with_call_checks(member, name)
             setattr(module, name, member)  # the same thing under both names, as pickle requires
         return namespace.setdefault(name, member)
 

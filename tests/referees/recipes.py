@@ -59,7 +59,7 @@ def compared(folder, program):
     )
 
 
-KEYS = "positions", "velocities", "energy", "lengths", "origin", "time", "pairs"
+KEYS = "positions", "velocities", "energy", "lengths", "time", "pairs"
 
 
 def deviation_of(frame, ours, suffix):
@@ -68,8 +68,7 @@ def deviation_of(frame, ours, suffix):
     inside = np.isfinite(ours["positions"]).all(axis=1)
     if len(positions) != inside.sum():
         return np.inf
-    corner = ours["origin"] if suffix == ".gsd" else 0.0
-    apart = positions - (ours["positions"][inside] - corner)
+    apart = positions - ours["positions"][inside]
     apart -= ours["lengths"] * np.round(apart / ours["lengths"])
     flat = 2 if suffix == ".gsd" and not lengths[2] else 3  # GSD has no height of discs
     deviations = [apart, velocities - ours["velocities"][inside], energy / ours["energy"] - 1.0]

@@ -3,6 +3,7 @@
 import base64
 import json
 import re
+import zlib
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from site_pages import CHROMIUM, found_on
 import gaspart as gp
 from gaspart.analysis import bond_order as order
 from gaspart.cli import main
+from gaspart.rendering.view import _compressed_text
 
 needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
 PIXELS = """
@@ -53,17 +55,34 @@ def content(page):
     return json.loads(re.search(r'<script id="data" type="application/json">(.*?)</script>', page)[1])
 
 
+def unpacked(text, shape, kind, modulus):
+    """Whole numbers, frame by frame, from their compressed changes, as the page reads them."""
+    planes = np.frombuffer(zlib.decompress(base64.b64decode(text)), "u1").reshape(np.dtype(kind).itemsize, -1)
+    codes = np.ascontiguousarray(planes.T).view(kind).reshape(shape).astype(int)
+    changes = np.where(codes % 2, -(codes + 1) // 2, codes // 2)
+    changes[0] = codes[0]
+    return changes.cumsum(axis=0) % modulus
+
+
+@pytest.mark.parametrize("modulus", [256, 65535, 642])
+def test_any_numbers_are_unpacked_from_their_changes(modulus):
+    values = np.random.default_rng(1).integers(0, modulus, (40, 50), endpoint=False)
+    values[1], values[2], values[3] = 0, modulus - 1, modulus // 2
+    kind = "u1" if modulus <= 256 else "<u2"
+    text = _compressed_text(values.astype(kind), modulus)
+    assert np.array_equal(unpacked(text, values.shape, kind, modulus), values)
+
+
 @pytest.mark.parametrize("name", ["discs", "spheres"])
 def test_the_page_has_the_positions_of_every_frame_and_needs_no_other_file(pages, name):
     page = (pages / f"{name}.html").read_text()
     data = content(page)
     with gp.open_trajectory(pages / f"{name}.nc") as run:
-        places = np.frombuffer(base64.b64decode(data["places"]), "<u2").reshape(9, data["count"], 3)
+        places = unpacked(data["places"], (9, data["count"], 3), "<u2", data["steps"] + 1)
         d = run.attrs["dimension"]
         lengths = np.array(data["lengths"])[:d]
-        assert np.allclose(
-            places[..., :d] / 65535.0 * lengths, run["coordinates"], atol=lengths.max() / 65535
-        )
+        seen = places[..., :d] / data["steps"] * lengths
+        assert np.allclose(seen, run["coordinates"], rtol=0.0, atol=0.5 / 64)  # of the smallest radius, 0.5
         assert data["time"] == run["time"].values.tolist()
         assert np.array_equal(np.frombuffer(base64.b64decode(data["species"]), "u1"), run["type"])
     assert not re.search(r"(?:src|href)=|https?://|@import|fetch\(", page)
@@ -106,7 +125,7 @@ def test_the_local_order_of_every_particle_is_in_the_page(lengths, name):
     simulation = gp.Simulation(scene, gp.EventDriven(search="direct"), seed=1)
     simulation.advance(duration=0.5)
     found = content(gp.view(simulation, frames=2, order=True).page)["order"]
-    values = np.frombuffer(base64.b64decode(found["values"]), "u1").reshape(2, 14) / 254.0 * found["highest"]
+    values = unpacked(found["values"], (2, 14), "u1", 256) / 254.0 * found["highest"]
     state = simulation.state
     measure = order.hexatic if len(lengths) == 2 else order.local_steinhardt
     expected = abs(measure(state.positions, state.lengths))

@@ -1,5 +1,6 @@
 """The least time with which all claims stay decided."""
 
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,7 +9,15 @@ from reproduction.claims.data import claim
 
 from gaspart.reproduction import allocation
 from gaspart.reproduction import cost as budget
-from gaspart.reproduction.allocation import IN_HAND, LONGEST, SHORTEST, Demand, allocate, shortest_multiples
+from gaspart.reproduction.allocation import (
+    IN_HAND,
+    LONGEST,
+    SHORTEST,
+    Demand,
+    Run,
+    allocate,
+    shortest_multiples,
+)
 from gaspart.reproduction.points.points import scale_length
 from gaspart.reproduction.table import Table, table
 
@@ -17,14 +26,14 @@ COST = {"gas/a": 1.0, "gas/b": 4.0, "gas/c": 10.0}
 
 def test_two_points_of_one_claim_share_the_time_as_neyman_allocates_it():
     """x ~ sqrt(c / t): with parts 0.2 and 0.8, times 1 and 4, both are the same."""
-    one = Demand("z", "a difference", {"gas/a": 0.2, "gas/b": 0.8}, 0.0, 4.0)
+    one = Demand("z", "a difference", {"gas/a": 0.2, "gas/b": 0.8}, 0.0, 2.0)
     lengths, (price,) = allocate([one], COST, {"z": ["gas/a", "gas/b"]})
-    assert price == pytest.approx(5.0 / 4.0, rel=1e-3)  # the whole time, which is inverse to the variance
-    assert lengths["gas/a"] == pytest.approx(lengths["gas/b"], rel=1e-3) == pytest.approx(0.25, rel=1e-3)
-    other = Demand("z", "a difference", {"gas/a": 0.5, "gas/b": 0.5}, 0.0, 4.0)
+    assert price == pytest.approx(5.0 / 2.0, rel=1e-3)  # the whole time, which is inverse to the variance
+    assert lengths["gas/a"] == pytest.approx(lengths["gas/b"], rel=1e-3) == pytest.approx(0.5, rel=1e-3)
+    other = Demand("z", "a difference", {"gas/a": 0.5, "gas/b": 0.5}, 0.0, 2.0)
     lengths, _ = allocate([other], COST, {"z": ["gas/a", "gas/b"]})
     assert lengths["gas/a"] / lengths["gas/b"] == pytest.approx(2.0, rel=1e-3)
-    assert sum(0.5 / lengths[name] for name in ("gas/a", "gas/b")) == pytest.approx(4.0, rel=1e-3)
+    assert sum(0.5 / lengths[name] for name in ("gas/a", "gas/b")) == pytest.approx(2.0, rel=1e-3)
 
 
 def test_all_claims_are_met_and_no_cheaper_choice_is():
@@ -34,7 +43,7 @@ def test_all_claims_are_met_and_no_cheaper_choice_is():
     demanded = []
     for k in range(20):
         parts = zip(rng.choice(names, 4, replace=False), rng.dirichlet(np.ones(4)), strict=True)
-        demanded.append(Demand("z", str(k), dict(parts), 0.0, rng.uniform(1.0, 6.0)))
+        demanded.append(Demand("z", str(k), dict(parts), 0.0, rng.uniform(1.0, 3.0)))
     lengths, _ = allocate(demanded, cost, {"z": names})
 
     def met(chosen):
@@ -52,9 +61,9 @@ def test_all_claims_are_met_and_no_cheaper_choice_is():
 
 
 def test_points_that_no_row_states_have_the_length_of_their_neediest_claim():
-    known = Demand("z", "known", {"gas/a": 1.0}, 0.0, 5.0)
+    known = Demand("z", "known", {"gas/a": 1.0}, 0.0, 2.5)
     lengths, _ = allocate([known], COST, {"z": ["gas/a", "gas/b"], "film": ["gas/c"]})
-    assert lengths == pytest.approx({"gas/a": 0.2, "gas/b": 0.2, "gas/c": 1.0}, rel=1e-3)
+    assert lengths == pytest.approx({"gas/a": 0.4, "gas/b": 0.4, "gas/c": 1.0}, rel=1e-3)
     unknown = Demand("z", "in part", {"gas/a": 0.5}, 0.5, 2.0)
     assert allocate([unknown], COST, {"z": ["gas/a"]})[0]["gas/a"] == pytest.approx(0.5, rel=1e-3)
 
@@ -67,6 +76,12 @@ def test_no_run_is_shorter_than_the_blocks_and_lags_that_its_figures_need():
     assert least == {"gas/0": 0.4, "gas/1": 0.24, "gas/2": 0.0, "gas/3": 0.0}
     known = Demand("z", "known", {"gas/0": 1.0}, 0.0, 5.0)
     assert allocate([known], {"gas/0": 1.0}, {"z": ["gas/0"]}, least)[0] == pytest.approx({"gas/0": 0.4})
+
+
+def whole(monkeypatch, **measurements):
+    """Return a run without lengths whose measurements are given."""
+    monkeypatch.setattr(Run, "measurement", lambda run, figure: measurements[str(run.results)])
+    return [Run(Path(name), {}) for name in measurements]
 
 
 class Named:
@@ -90,9 +105,36 @@ def test_parts_of_a_variance_are_found_by_the_rows_of_a_table(monkeypatch):
 
     monkeypatch.setattr(budget, "claims_of", stated)
     required = claim(1.0, 0.2).required
-    (found,) = allocation.demands("z", {}, data.assign(z_error=data.z_error * required / 0.4))
-    assert found.parts == pytest.approx({"gas/a": 0.25, "gas/c": 0.375, "gas/d": 0.375})
-    assert found.rest == 0.0 and found.most == pytest.approx(4.0 / IN_HAND)
+    half = data.assign(z_error=data.z_error * required / 0.4)
+    (demand,) = allocation.demands("z", {}, whole(monkeypatch, first=half))
+    assert demand.parts == pytest.approx({"gas/a": 0.25, "gas/c": 0.375, "gas/d": 0.375})
+    assert demand.rest == 0.0 and demand.most == pytest.approx(4.0 / IN_HAND)
+
+    # A second run, with half of the length at point a, has three times the variances: claims need the mean.
+    first, second = whole(monkeypatch, first=half, second=half.assign(z_error=half.z_error * np.sqrt(3.0)))
+    (demand,) = allocation.demands("z", {}, [first, Run(second.results, {"gas/a": 0.5})])
+    needed = {"gas/a": (1.0 + 1.5) / 32.0, "gas/c": 3.0 / 16.0, "gas/d": 3.0 / 16.0}
+    assert demand.most == pytest.approx(1.0 / IN_HAND / sum(needed.values()))
+    assert demand.parts == pytest.approx({name: part / sum(needed.values()) for name, part in needed.items()})
+
+
+@pytest.mark.parametrize(("first", "second", "number"), [(2.0, 3.0, 0), (0.5, 3.0, 1), (0.5, 0.5, 1)])
+def test_a_claim_that_no_run_decided_is_not_demanded(monkeypatch, first, second, number):
+    data = table("point", [Named("a")], lambda point: {"z": (1.0, 0.1)})
+
+    def stated(figure, block, dataset):
+        return [claim(1.0, claim(1.0, 0.2).required * float(dataset.z_error[0]))]
+
+    monkeypatch.setattr(budget, "claims_of", stated)
+    errors = {"first": first, "second": second}
+    runs = whole(
+        monkeypatch, **{name: data.assign(z_error=data.z_error * 0 + e) for name, e in errors.items()}
+    )
+    demands = allocation.demands("z", {}, runs)
+    assert len(demands) == number
+    for demand in demands:
+        needed = IN_HAND * (first**2 + second**2) / 2.0
+        assert demand.most == pytest.approx(1.0 / min(needed, LONGEST))
 
 
 def test_rows_of_replicas_have_parts_too(monkeypatch):
@@ -106,9 +148,9 @@ def test_rows_of_replicas_have_parts_too(monkeypatch):
         return [claim(1.0, 1e-6 * float(np.sqrt(a + b)))]
 
     monkeypatch.setattr(budget, "claims_of", stated)
-    (found,) = allocation.demands("z", {}, data)
+    (demand,) = allocation.demands("z", {}, whole(monkeypatch, first=data))
     a, b = scatter.var(axis=1)
-    assert found.parts == pytest.approx({"gas/a": a / (a + b), "gas/b": b / (a + b)}) and found.rest == 0.0
+    assert demand.parts == pytest.approx({"gas/a": a / (a + b), "gas/b": b / (a + b)}) and demand.rest == 0.0
 
 
 def test_a_multiple_is_one_of_replicas_then_of_the_length_at_the_same_interval():

@@ -160,6 +160,12 @@ def test_all_frames_are_exported_with_their_numbers_and_containers(run, suffix):
                 assert [frame.configuration.step for frame in file] == list(range(len(times)))
                 assert np.concatenate([frame.log["time"] for frame in file]).tolist() == times.tolist()
         return
+    if suffix == ".gsd":
+        import gsd.hoomd
+
+        with gsd.hoomd.open(str(out)) as file:
+            corners = np.array([frame.log["cell_origin"] for frame in file])
+        assert np.array_equal(corners, origin) and (name != "piston x_low" or np.ptp(corners[:, 0]) > 0.1)
     frames = read_frames(out, time_step=0.5 if suffix == ".gsd" else None)
     assert np.array_equal(frames.time, times)
     assert np.array_equal(frames.velocities.astype(np.float32), velocities)

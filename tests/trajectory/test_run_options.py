@@ -12,8 +12,8 @@ from gaspart.errors import SceneError
 from gaspart.reproduction.config import checked_points
 from gaspart.reproduction.jobs.simulate import recipes
 from gaspart.runs import entry
-from gaspart.trajectory.recipe import Recipe, read_recipe
-from gaspart.trajectory.run_options import OPTIONS, recipe_fields, stated_options
+from gaspart.trajectory.recipe import Recipe, read_recipe, stated_options
+from gaspart.trajectory.run_options import OPTIONS, recipe_fields
 from gaspart.yaml_text import dump_yaml
 
 VALUES = {

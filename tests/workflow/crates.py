@@ -45,6 +45,7 @@ OF_SCHEMA = [
     "result",
     "startTime",
     "url",
+    "valueRequired",
     "version",
     "workExample",
 ]

@@ -1,26 +1,26 @@
 """Answers to mistakes in Python, in one line that names the remedy.
 
-Mistakes are calls with wrong arguments, names that do not exist, and changes of constant values.
-`gaspart.public.attach` gives these answers to public functions and classes when they are loaded: none does it
-by itself. Files and command lines have the same answers by `unknown_word`.
+Mistakes are calls with wrong arguments, names that do not exist, and changes of constant values. Public
+classes are declared with the decorator `with_guidance`; public functions are given by `gaspart.public.attach`
+with the call checks. Files and command lines have the same answers by `unknown_word`.
 """
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable
-from dataclasses import FrozenInstanceError
-from difflib import get_close_matches
+from contextlib import suppress
+from dataclasses import FrozenInstanceError, is_dataclass
 from functools import wraps
 from inspect import Parameter, signature
 from types import FunctionType, ModuleType
-from typing import Any
+from typing import Any, TypeVar
 
 from gaspart.errors import OneLine, SceneError, unknown_word
 from gaspart.errors.synonyms import ELSEWHERE
 
 _NAMED = (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)
-_guided: set[type] = set()
+T = TypeVar("T")
 
 
 class MissingName(OneLine, AttributeError):
@@ -57,6 +57,8 @@ def _remedy(owner: ModuleType | type, name: str, names: tuple[str, ...]) -> str:
 
     names : variables of the owner; the nearest of these is preferred to an attribute
     """
+    from difflib import get_close_matches
+
     remedies = ELSEWHERE.get(owner.__name__.rpartition(".")[2], {})
     if name in remedies:
         return remedies[name]
@@ -94,46 +96,35 @@ def _parts(owner: ModuleType | type) -> Iterable[tuple[str, ModuleType | type]]:
     return classes.items()
 
 
-def with_call_checks(member: Any) -> Any:
-    """Return a public function or class that answers mistakes; other objects unchanged."""
-    if isinstance(member, FunctionType):
-        return _answering(member, member.__name__)
-    if isinstance(member, type) and not issubclass(member, BaseException) and member not in _guided:
-        _guided.add(member)
-        _add_call_checks(member)
-    return member
-
-
-def _add_call_checks(cls: Any) -> None:
-    """Make the calls and the missing names of a class answer mistakes."""
+def with_guidance(cls: type[T]) -> type[T]:
+    """Decorate a public class: wrong calls, missing names and fixed values are answered with a remedy."""
+    kind: Any = cls  # whose methods a type checker would not replace
     for name, member in list(vars(cls).items()):
+        title = f"{cls.__name__}.{name}"
         if isinstance(member, FunctionType) and not name.startswith("_"):
-            setattr(cls, name, _answering(member, f"{cls.__name__}.{name}"))
+            setattr(kind, name, with_call_checks(member, title))
         elif isinstance(member, classmethod) and not name.startswith("_"):
-            setattr(cls, name, classmethod(_answering(member.__func__, f"{cls.__name__}.{name}")))
-    if isinstance(cls.__init__, FunctionType):
-        setattr(cls, "__init__", _answering(cls.__init__, cls.__name__))  # noqa: B010  # a method for mypy
+            setattr(kind, name, classmethod(with_call_checks(member.__func__, title)))
+    if isinstance(kind.__init__, FunctionType):
+        kind.__init__ = with_call_checks(kind.__init__, cls.__name__)
     before = getattr(cls, "__getattr__", None)
 
     def missing(instance: Any, name: str) -> Any:
         if before is not None:
-            try:
+            with suppress(AttributeError):
                 return before(instance, name)
-            except AttributeError:
-                pass
         raise MissingName(type(instance), name)
 
-    cls.__getattr__ = missing
-    parameters = getattr(cls, "__dataclass_params__", None)
-    if parameters is not None and parameters.frozen:
+    def refuse_change(instance: Any, name: str, value: Any) -> None:
+        raise FixedValue(type(instance), name)
 
-        def refuse_change(instance: Any, name: str, value: Any) -> None:
-            raise FixedValue(type(instance), name)
+    kind.__getattr__ = missing
+    if is_dataclass(cls) and kind.__dataclass_params__.frozen:
+        kind.__setattr__ = refuse_change
+    return cls
 
-        cls.__setattr__ = refuse_change
 
-
-def _answering(function: Callable, title: str) -> Callable:
+def with_call_checks(function: Callable, title: str) -> Callable:
     """Return a function that raises SceneError instead of TypeError for wrong arguments."""
 
     @wraps(function)

@@ -7,32 +7,43 @@ what is missing.
 
 from __future__ import annotations
 
+import inspect
+import json
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
-from itertools import count
+from contextlib import suppress
+from dataclasses import fields
+from itertools import count, islice
+from math import nan
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
-from gaspart.analysis.observables import OBSERVABLES
+import numpy as np
+import xarray as xr
+
+from gaspart.analysis.observables import OBSERVABLES, observable_name
 from gaspart.engines import Engine, engine_to_dict, resolve_engine
-from gaspart.errors import SceneError, unknown_word
-from gaspart.keys.values import count_of, number
-from gaspart.reproduction.config import check_point, gridded_points
-from gaspart.reproduction.jobs.simulate import recipes
+from gaspart.errors import SceneError, SimulationError, unknown_word
+from gaspart.files import only_process
+from gaspart.kernels.compile.cache import load_numba
+from gaspart.keys.values import count_of, positive_number
+from gaspart.reproduction.config import check_values, gridded_points
+from gaspart.reproduction.families.own.measure import measure_point
+from gaspart.reproduction.jobs.replicas import replica_paths, write_replicas
+from gaspart.reproduction.jobs.simulate import recipes, record
+from gaspart.reproduction.points import jobs
 from gaspart.reproduction.points.measurable import distinct, require_observable
-from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.points.point import Point, compile_kernels, compile_task, variant
 from gaspart.reproduction.points.point_keys import ENGINE_KEYS, EXTENTS, GAS, PREFIX
-from gaspart.reproduction.sweep_points import axes_of, make_all, names_of
-from gaspart.reproduction.sweep_table import Measured, SweepTable, measure_point, table
+from gaspart.reproduction.points.points import MOST_POINTS, POINT
+from gaspart.reproduction.sweep_table import SweepTable, columns, coordinate, table
 from gaspart.runs.ending import Accuracy
 from gaspart.scene.scene import Scene, require_scene
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.recipe import multiple
 from gaspart.trajectory.until import Until
-
-if TYPE_CHECKING:
-    pass
+from gaspart.workers import in_processes, require_processes
+from gaspart.yaml_text import dump_yaml
 
 EXPERIMENT = "points"
 """Folder of the trajectories within the folder of a sweep; with each point's name it makes the seeds."""
@@ -145,53 +156,184 @@ def sweep(
     """
     require_scene(scene)
     engine = resolve_engine(engine)
-    axes = axes_of(over)
-    names = names_of(observables, axes)
-    length = _length(duration, until, at_most, samples, equilibration)
-    point = {**length, **_settings(scene, axes, engine), **_contents_settings(names, correlations, length)}
-    point["replicas"] = count_of("replicas", replicas, least=1)
-    plan = _make_plan(_experiment(point, axes, engine), _root(folder), count_of("seed", seed))
-    _require_measurable(names, plan.able)
-    _make(plan, count_of("workers", workers, least=1), bool(overwrite), progress or _print)
-    rows = [
-        _row(point, names, equilibration is None, plan.failures.get(point.name, "")) for point in plan.points
-    ]
-    return table(rows, names, axes, {"scene": scene, "engine": engine, "seed": seed})
-
-
-@dataclass(frozen=True)
-class _Plan:
-    """Points of a sweep, and reasons why some cannot be run, by names."""
-
-    points: list[Point]
-    failures: dict[str, str]
-
-    @property
-    def able(self) -> list[Point]:
-        """Points that can be run."""
-        return [point for point in self.points if point.name not in self.failures]
-
-
-def _experiment(point: dict[str, Any], axes: Mapping[str, list], engine: Engine) -> dict[str, Any]:
-    """Return the experiment of a config, with the settings that its points share."""
-    grid = {key if key in point_keys(engine) else PREFIX + key: values for key, values in axes.items()}
-    return {"job": "simulate", "point": point, "grid": grid}
-
-
-def _make(plan: _Plan, workers: int, overwrite: bool, progress: Progress) -> None:
-    """Run the points, and add the reasons why some failed to the plan."""
-    done = count(len(plan.failures) + 1)
-    for name, reason in plan.failures.items():
-        _complain(name, reason)
+    axes = _axes(over, engine)
+    names = _names(observables, axes)
+    point = _length(duration, until, at_most, samples, equilibration)
+    point |= {**_settings(scene, axes, engine), **_contents(names, correlations, point)}
+    point["replicas"] = POINT["replicas"].check("replicas", replicas)
+    varied = {key if key in _point_keys(engine) else PREFIX + key: values for key, values in axes.items()}
+    config = {
+        "experiments": {EXPERIMENT: {"job": "simulate", "point": point, "grid": varied}},
+        "points": _root(folder),
+        "seed": count_of("seed", seed),
+    }
+    points, failures = _plan(config)
+    able = [point for point in points if point.name not in failures]
+    _require_measurable(names, able)
+    done = count(1)
 
     def report(point: Point, reason: str) -> None:
         if reason:
-            plan.failures[point.name] = reason
+            failures[point.name] = reason
             _complain(point.name, reason)
-        progress(next(done), len(plan.points), point.name)
+        (progress or _print)(next(done), len(points), point.name)
 
-    _make_folder(plan.points[0].root)
-    make_all(plan.able, workers, overwrite, report)
+    workers = count_of("workers", workers, least=1)
+    for name, reason in failures.items():
+        next(done)
+        _complain(name, reason)
+    _make_folder(config["points"])
+    make_all(able, workers, bool(overwrite), report)
+    rows = [_row(point, names, equilibration is None, failures.get(point.name, "")) for point in points]
+    about = {"scene": dump_yaml(scene.to_dict()), "engine": json.dumps(engine_to_dict(engine)), "seed": seed}
+    return table(rows, names, axes).assign_attrs(about)
+
+
+# The request of a sweep as settings of points: plain values, checked by the keys of a config.
+
+
+def _axes(over: object, engine: Engine) -> dict[str, list]:
+    """Return the values of each key that varies, as Python's own numbers, words and lists.
+
+    A single value counts as a list of one. Raises SceneError.
+    """
+    if not isinstance(over, Mapping):
+        rule = "must be a mapping from each key that varies to its values, such as {'count': [50, 100]}"
+        raise SceneError("over", over, rule)
+    axes = {key: _values(f"over.{key}", values) for key, values in over.items()}
+    check_values({"over": axes})
+    keys, parts = _point_keys(engine), {field.name for field in fields(Scene)}
+    for key, values in axes.items():
+        if key in inspect.signature(sweep).parameters:
+            raise SceneError(f"over.{key}", values, "is an argument of a sweep and the same for all points")
+        if key not in keys and key.partition(".")[0] not in parts:
+            raise SceneError(f"over.{key}", values, unknown_word(key, keys | parts))
+        if key not in keys and None in values:
+            raise SceneError(f"over.{key}", None, "replaces no value of a scene: vary one that it can have")
+        if len({*map(coordinate, values)}) < len(values):  # also 1 and 1.0
+            raise SceneError(f"over.{key}", values, "every point of a grid must be different")
+    return axes
+
+
+def _values(where: str, values: Any) -> list:
+    """Return the values of a key; raise SceneError for too many, or an iterator that fails."""
+    plain = _plain(values)
+    if isinstance(plain, str | bytes | Mapping) or not isinstance(plain, Iterable):
+        return [plain]
+    try:
+        listed = [_plain(value) for value in islice(plain, MOST_POINTS + 1)]
+    except Exception:  # an iterator of the user's own
+        raise SceneError(where, values, "must be a list of values") from None
+    if len(listed) > MOST_POINTS:
+        raise SceneError(where, len(listed), f"a grid may have {MOST_POINTS} points")
+    return listed
+
+
+def _plain(value: Any) -> Any:
+    """Convert numbers and arrays of numpy, and what holds them, to Python's own."""
+    if hasattr(value, "__array__"):
+        value = np.asarray(value).tolist()
+    if isinstance(value, Mapping):
+        return {key: _plain(item) for key, item in value.items()}
+    return [_plain(item) for item in value] if isinstance(value, list | tuple) else value
+
+
+def _names(observables: object, axes: Mapping[str, list]) -> list[str]:
+    """Return the names of the observables, each once; raise SceneError.
+
+    A single name counts as a list of one.
+    """
+    listed = [observables] if isinstance(observables, str) else observables
+    if not isinstance(listed, Iterable) or isinstance(listed, bytes | Mapping):
+        raise SceneError("observables", observables, "must be the names of observables")
+    names = list(dict.fromkeys(map(observable_name, listed)))
+    for name in names:
+        if name in axes:
+            rule = f"is also a key that varies: vary species.0.{name} instead"
+            raise SceneError("observables", name, rule)
+    return names
+
+
+def _length(
+    duration: float | None,
+    until: Accuracy | Sequence[Accuracy] | None,
+    at_most: float | None,
+    samples: int | None,
+    equilibration: float | None,
+) -> dict[str, Any]:
+    """Return the keys of the length of a point, or raise SceneError."""
+    if (duration is None) == (until is None):
+        raise SceneError("duration", duration, "must be given, or until, but not both")
+    if until is None and at_most is not None:
+        raise SceneError("at_most", at_most, "needs until")
+    key, value = ("duration", duration) if until is None else ("at_most", at_most)
+    settings: dict[str, Any] = {"duration": positive_number(key, value)}
+    for key, value in {"samples": samples, "equilibration": equilibration}.items():
+        if value is not None:
+            settings[key] = POINT[key].check(key, value)
+    if until is None:
+        return {"samples": _SAMPLES, **settings}
+    accuracies = tuple(until) if isinstance(until, list | tuple) else (until,)
+    for accuracy in Until(accuracies, settings["duration"]).accuracies:  # raises SceneError for other things
+        if accuracy.start is not None:
+            raise SceneError("until.start", accuracy.start, "is the equilibration of a sweep")
+    return {**settings, "until": {accuracy.name: accuracy.accuracy for accuracy in accuracies}}
+
+
+def _contents(names: list[str], correlations: Correlations | None, length: dict[str, Any]) -> dict[str, Any]:
+    """Return the keys of the contents of a point's files, or raise SceneError."""
+    needs = {OBSERVABLES[name].needs for name in names}
+    stored: dict[str, Any] = {"displacements": "paths" in needs}
+    if "until" not in length:
+        stored["pairs"] = "pairs" in needs
+    if correlations is None:
+        return stored
+    if "until" in length:
+        raise SceneError("correlations", correlations, "need a duration, not until")
+    if not isinstance(correlations, Correlations):
+        raise SceneError("correlations", correlations, "must be a gaspart.Correlations")
+    if correlations.start:
+        raise SceneError("correlations.start", correlations.start, "is the equilibration of a sweep")
+    intervals = multiple("duration", length["duration"], "correlations.interval", correlations.interval)
+    if 2 * correlations.lags > intervals + 1:
+        raise SceneError("correlations.lags", correlations.lags, f"must be at most half of {intervals}")
+    frames = next(n for n in range(min(intervals, length["samples"]), 0, -1) if intervals % n == 0)
+    stored |= {"samples": intervals, "frames": frames, "lags": correlations.lags}
+    return stored | {"stress": correlations.stress}
+
+
+def _point_keys(engine: Engine) -> set[str]:
+    """Return the keys of gas and engine, which a sweep may vary."""
+    return {*EXTENTS, *GAS, *ENGINE_KEYS[engine.name]}
+
+
+def _settings(scene: Scene, axes: Mapping[str, list], engine: Engine) -> dict[str, Any]:
+    """Return the keys of a point's scene and engine that do not vary, or raise SceneError.
+
+    If a key of a gas varies, the scene is stated by such keys: it is one species alone in a container.
+    """
+    settings = {"engine" if key == "name" else key: value for key, value in engine_to_dict(engine).items()}
+    varied = next((key for key in axes if key in EXTENTS or key in GAS), None)
+    if varied is None:
+        settings["scene"] = scene.to_dict()
+        return {key: value for key, value in settings.items() if key not in axes}
+    rule = "varies one species alone in a container; of other scenes vary a value, such as species.0.count"
+    if len(scene.species) != 1:
+        raise SceneError(f"over.{varied}", axes[varied], rule)
+    (species,), lengths = scene.species, list(scene.container.lengths)
+    parts = scene, scene.container, species
+    gas = {key: getattr(part, key) for key in GAS for part in parts if hasattr(part, key)}
+    extents = {"count": species.count, "radius": species.radius, "side": lengths}
+    explicit = {key: value for key, value in (gas | extents).items() if value is not None}
+    if Point(EXPERIMENT, "", "simulate", explicit, "", 0).scene != scene:
+        raise SceneError(f"over.{varied}", axes[varied], rule)
+    order = _KEPT if species.alike else _KEPT_OF_SIZES
+    kept = [key for key in order if key not in axes][: 3 - sum(key in axes for key in EXTENTS)]
+    if "side" not in axes and "side" not in kept and len(set(lengths)) > 1:
+        raise SceneError(f"over.{varied}", axes[varied], "needs a container with equal sides")
+    extents["packing_fraction"] = scene.packing_fraction
+    settings |= gas | {key: extents[key] for key in kept}
+    return {key: value for key, value in settings.items() if key not in axes}
 
 
 def _root(folder: Any) -> str:
@@ -210,190 +352,116 @@ def _make_folder(root: str) -> None:
         raise SceneError("folder", root, f"cannot be made: {reason}") from None
 
 
-def _length(
-    duration: float | None,
-    until: Accuracy | Sequence[Accuracy] | None,
-    at_most: float | None,
-    samples: int | None,
-    equilibration: float | None,
-) -> dict[str, Any]:
-    """Return the keys of the length of a point, or raise SceneError."""
-    if (duration is None) == (until is None):
-        raise SceneError("duration", duration, "must be given, or until, but not both")
-    key, value = ("duration", duration) if until is None else ("at_most", at_most)
-    settings: dict[str, Any] = {"duration": number(key, value, "must be positive", above=0.0)}
-    if equilibration is not None:
-        rule = "must not be negative"
-        settings["equilibration"] = number("equilibration", equilibration, rule, least=0.0)
-    if samples is not None:
-        settings["samples"] = count_of("samples", samples, least=1)
-    if until is None:
-        if at_most is not None:
-            raise SceneError("at_most", at_most, "needs until")
-        return {"samples": _SAMPLES, **settings}
-    accuracies = tuple(until) if isinstance(until, list | tuple) else (until,)
-    for accuracy in Until(accuracies, settings["duration"]).accuracies:  # raises SceneError for other things
-        if accuracy.start is not None:
-            raise SceneError("until.start", accuracy.start, "is the equilibration of a sweep")
-    return {**settings, "until": {accuracy.name: accuracy.accuracy for accuracy in accuracies}}
+# The points: which of them can be run, their trajectories, and their results.
 
 
-def _contents_settings(
-    names: list[str], correlations: Correlations | None, length: dict[str, Any]
-) -> dict[str, Any]:
-    """Return the keys of the contents of a point's files, or raise SceneError."""
-    needs = {OBSERVABLES[name].needs for name in names}
-    if "until" in length:
-        if correlations is not None:
-            raise SceneError("correlations", correlations, "need a duration, not until")
-        return {"displacements": "paths" in needs}
-    kept: dict[str, Any] = {"pairs": "pairs" in needs, "displacements": "paths" in needs}
-    if correlations is None:
-        return kept
-    if not isinstance(correlations, Correlations):
-        raise SceneError("correlations", correlations, "must be a gaspart.Correlations")
-    if correlations.start:
-        raise SceneError("correlations.start", correlations.start, "is the equilibration of a sweep")
-    intervals = multiple("duration", length["duration"], "correlations.interval", correlations.interval)
-    if 2 * correlations.lags > intervals + 1:
-        raise SceneError("correlations.lags", correlations.lags, f"must be at most half of {intervals}")
-    frames = next(n for n in range(min(intervals, length["samples"]), 0, -1) if intervals % n == 0)
-    kept |= {"samples": intervals, "frames": frames, "lags": correlations.lags}
-    return kept | {"stress": correlations.stress}
-
-
-def point_keys(engine: Engine) -> set[str]:
-    """Return the config keys that a sweep may vary: keys of gas and engine.
-
-    Parameters
-    ----------
-    engine : Engine
-        The engine.
-
-    Returns
-    -------
-    set of str
-        The keys.
-    """
-    return {*EXTENTS, *GAS, *ENGINE_KEYS[engine.name]}
-
-
-def _settings(scene: Scene, axes: Mapping[str, list], engine: Engine) -> dict[str, Any]:
-    """Return the keys of a point's scene and engine that do not vary, or raise SceneError."""
-    settings = {key: value for key, value in engine_to_dict(engine).items() if value is not None}
-    settings = {("engine" if key == "name" else key): value for key, value in settings.items()}
-    settings = {key: value for key, value in settings.items() if key not in axes}
-    of_gas = [key for key in axes if key in EXTENTS or key in GAS]
-    if of_gas:
-        return settings | _gas(scene, axes, of_gas[0])
-    parts = [field.name for field in fields(Scene)]
-    for key in axes:
-        if key not in point_keys(engine) and key.partition(".")[0] not in parts:
-            raise SceneError(f"over.{key}", axes[key], unknown_word(key, {*point_keys(engine), *parts}))
-        if key not in point_keys(engine) and None in axes[key]:
-            raise SceneError(f"over.{key}", None, "replaces no value of a scene: vary one that it can have")
-    return settings | {"scene": scene.to_dict()}
-
-
-def _gas(scene: Scene, axes: Mapping[str, list], varied: str) -> dict[str, Any]:
-    """Return the settings of one species alone in a container; raise SceneError for another scene."""
-    rule = "varies one species alone in a container; of other scenes vary a value, such as species.0.count"
-    if len(scene.species) != 1:
-        raise SceneError(f"over.{varied}", axes[varied], rule)
-    (species,), container = scene.species, scene.container
-    settings = {
-        "dimension": scene.dimension,
-        "boundary": list(container.boundary),
-        "centres_to_walls": scene.centres_to_walls,
-        "mass": species.mass,
-        "polydispersity": species.polydispersity,
-        "radius_distribution": species.radius_distribution,
-        "temperature": species.temperature,
-        "exact_temperature": species.exact_temperature,
-        "speed": species.speed,
-        "arrangement": species.arrangement,
-    }
-    extents = {
-        "radius": species.radius,
-        "packing_fraction": scene.packing_fraction,
-        "count": species.count,
-        "side": list(container.lengths),
-    }
-    same = {"count": species.count, "radius": species.radius, "side": list(container.lengths)}
-    explicit = {key: value for key, value in {**settings, **same}.items() if value is not None}
-    if Point(EXPERIMENT, "", "simulate", explicit, "", 0).scene != scene:
-        raise SceneError(f"over.{varied}", axes[varied], rule)
-    order = _KEPT if species.alike else _KEPT_OF_SIZES
-    kept = [key for key in order if key not in axes][: 3 - sum(key in axes for key in EXTENTS)]
-    if "side" not in axes and "side" not in kept and len(set(container.lengths)) > 1:
-        raise SceneError(f"over.{varied}", axes[varied], "needs a container with equal sides")
-    settings |= {key: extents[key] for key in kept}
-    return {key: value for key, value in settings.items() if key not in axes}
-
-
-def _make_plan(experiment: dict, root: str, seed: int) -> _Plan:
-    """Return the points of an experiment, in the order of the product of its values.
+def _plan(config: dict) -> tuple[list[Point], dict[str, str]]:
+    """Return the points in their order, and reasons why some cannot be run, by name.
 
     Raises SceneError for values that no point can use, and if no point can be run.
     """
-    config = {"experiments": {EXPERIMENT: experiment}, "points": root, "seed": seed}
     try:
-        planned = list(gridded_points(config, EXPERIMENT).values())
+        points = list(gridded_points(config, EXPERIMENT).values())
     except SceneError as error:
         raise _of_sweep(error) from None
     errors = {}
-    for point in planned:
+    for point in points:
         try:
-            check_point(point)
+            jobs.validate(point)
             recipes(**point.arguments)
         except SceneError as error:
             errors[point.name] = _of_sweep(error)
-    if len(errors) == len(planned):
-        raise errors[planned[0].name]
-    return _Plan(planned, {name: _without_point(error, name) for name, error in errors.items()})
+    if len(errors) == len(points):
+        raise errors[points[0].name]
+    return points, {name: str(error) for name, error in errors.items()}
 
 
 def _of_sweep(error: SceneError) -> SceneError:
     """Return an error of a config with the key that it has in a sweep."""
-    key = error.key.removeprefix(f"experiments.{EXPERIMENT}")
-    if key.startswith("["):
-        key = f"{EXPERIMENT}{key}"
-    elif key.startswith(".grid"):
-        key = f"over{key.removeprefix('.grid')}"
-    return SceneError(key.lstrip(".") or "over", error.value, error.rule, error.file)
-
-
-def _without_point(error: SceneError, name: str) -> str:
-    """Return the text of an error of a point without the point's name."""
-    key = error.key.removeprefix(f"{EXPERIMENT}[{name}].")
-    return str(SceneError(key, error.value, error.rule, error.file))
+    key = error.key.removeprefix(f"experiments.{EXPERIMENT}").lstrip(".")
+    key = f"over{key.removeprefix('grid')}" if key.startswith("grid") else key
+    return SceneError(key or "over", error.value, error.rule, error.file)
 
 
 def _require_measurable(names: list[str], points: list[Point]) -> None:
     """Raise SceneError for an observable that no run of any of the points can have."""
     kinds = distinct(points)
     for name in names:
-        refused = None
+        refused: list[SceneError] = []
         for point in kinds:
             try:
                 require_observable(name, point)
                 break
             except SceneError as error:
-                refused = refused or error
+                refused.append(error)
         else:
-            if refused:
-                rule = f"cannot be measured: {refused.key}: {refused.rule}"
-                raise SceneError("observables", name, rule)
+            rule = f"cannot be measured: {refused[0].key}: {refused[0].rule}"
+            raise SceneError("observables", name, rule)
 
 
-def _row(point: Point, names: list[str], part: bool, failure: str) -> Measured:
-    """Return the row of a point: its results, or the reason of its failure."""
+def make_all(
+    points: Sequence[Point], workers: int, overwrite: bool, report: Callable[[Point, str], None]
+) -> None:
+    """Make the trajectories of all points, and call report(point, reason) for each.
+
+    The reason states why it could not be made, or is "". Points whose trajectories exist come first: a
+    conflict is then found before anything is run. Raises SceneError for files that cannot be written or are
+    of another sweep.
+    """
+    ordered = sorted(points, key=lambda point: not Path(point.path).exists())
+    if workers == 1:
+        for point in ordered:
+            report(point, _make(point, overwrite))
+        return
+    require_processes("workers", workers)
+    for representative in {variant(point): point for point in ordered}.values():
+        with suppress(SceneError, SimulationError):  # of its own point alone
+            compile_kernels(compile_task(representative))  # or each process would compile them
+    calls = [(point.to_dict(), point.path, overwrite) for point in ordered]
+    in_processes(_make_in_process, calls, workers, lambda n, reason: report(ordered[n], str(reason)))
+
+
+def _make_in_process(tell: Callable[[Any], None], values: dict, path: str, overwrite: bool) -> str:
+    """Make a point, given as a dictionary, in a process of its own; see `_make`."""
+    load_numba(ours=True)
+    return _make(Point.from_dict(values, path), overwrite)
+
+
+def _make(point: Point, overwrite: bool) -> str:
+    """Make the trajectories of a point, or check those in its folder.
+
+    Returns the reason why it could not be done, or "": it costs no other point. Raises SceneError for files.
+    """
+    folder = Path(point.path)
+    try:
+        all_recipes = recipes(**point.arguments)
+        with only_process(folder, wait=True):
+            if not folder.exists():
+                write_replicas(record, all_recipes, folder, None, overwrite)
+                return ""
+            for path, recipe in zip(replica_paths(folder, len(all_recipes)), all_recipes, strict=True):
+                record(recipe, path, overwrite)
+    except OSError as error:
+        rule = f"cannot be written: {error.strerror}"
+        raise SceneError(f"{EXPERIMENT}[{point.name}].path", str(folder), rule) from None
+    except (SceneError, SimulationError) as error:
+        if isinstance(error, SceneError) and error.key == "path":
+            raise error.inside(f"{EXPERIMENT}[{point.name}]") from None
+        return str(error)
+    except MemoryError:
+        return "there is not enough memory"
+    return ""
+
+
+def _row(point: Point, names: list[str], part: bool, failure: str) -> xr.Dataset:
+    """Return the results of a point, or the reason of its failure; see `measure_point`."""
     if failure:
-        return Measured({}, [], failure)
-    result, refused = measure_point(point, names, part)
+        return xr.Dataset({"duration": nan, "failure": failure})
+    results, duration, refused = measure_point(point, names, part)
     for name, error in refused.items():
         _complain(point.name, str(error), name)
-    return replace(result, failure="; ".join(str(error) for error in refused.values()))
+    row = xr.Dataset({"duration": duration, "failure": "; ".join(map(str, refused.values()))})
+    return row.assign({key: value for name in results for key, value in columns(name, results[name])})
 
 
 def _print(done: int, points: int, name: str) -> None:

@@ -19,11 +19,13 @@ from gaspart.analysis.observables import (
 )
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
+from gaspart.errors.guidance import with_guidance
 from gaspart.scene.scene import Scene
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.until import Requirement
 
 
+@with_guidance
 class Accuracy(Requirement):
     """Requested accuracy of an observable: its standard error divided by its absolute value.
 
@@ -156,11 +158,11 @@ def require_end(requirement: Requirement, scene: Scene, at_most: float | None, f
     requirement : Requirement
         The requested accuracy.
     scene : Scene
-        The scene, in which nothing may ever happen, or which may have no steady state.
+        Scene of the run. Some scenes have no steady state, or no events at all.
     at_most : float, [time], optional
-        Maximum length of the run. Without it a steady state is required.
+        Maximum length of the run. Without a maximum, the scene must have a steady state.
     from_state : bool
-        True if the run starts from a given state.
+        True if the run starts from a state given by the caller.
 
     Raises
     ------
@@ -189,7 +191,7 @@ def require_end(requirement: Requirement, scene: Scene, at_most: float | None, f
 def require_reachable(requirement: Requirement, scene: Scene, replicas: int) -> None:
     """Raise SceneError for an accuracy that the mean of replicas never reaches.
 
-    Each replica has its own seed, and the energies of their initial states scatter.
+    Each replica has its own seed, and so a different energy of its initial state.
 
     Parameters
     ----------
@@ -225,8 +227,9 @@ def require_reachable(requirement: Requirement, scene: Scene, replicas: int) -> 
 def default_sample_interval(scene: Scene, engine: Engine, correlations: Correlations | None) -> float:
     """Return the default time between frames, to two digits.
 
-    It is the mean time between two collisions of a particle, or, without collisions, the mean time to cross
-    the container, as a multiple of the engine's steps and of the samples of correlations.
+    The interval is the mean time between two collisions of a particle, or, without collisions, the mean time
+    to cross the container. It is rounded to a multiple of the engine's steps and of the samples of
+    correlations.
 
     Parameters
     ----------

@@ -83,9 +83,8 @@ def run(
         collisions of a particle.
     path : str or Path
         The trajectory file (AMBER netCDF).
-    until : Accuracy or sequence of Accuracy, optional
-        Requested relative standard errors, standard error / |value|. They are tested at 64, 96, 128 ...
-        frames (see `reached_accuracy`).
+    until : Accuracy or sequence of Accuracy, optional Requested relative standard errors, standard error /
+        |value|. The accuracies are tested at 64, 96, 128 ... frames (see `reached_accuracy`).
     at_most : float, [time], optional
         Maximum length of a run with `until`. By default such a run ends if its first 16384 frames have no
         contact.
@@ -108,10 +107,9 @@ def run(
     pair_impulses : str, optional
         Distance, number of shells and fraction of contacts of a g(r) from impulses, such as "3:300:0.5",
         which is more accurate than counts. Event-driven engine only.
-    initial : State, str or Path, optional
-        Initial state: a state, the last state of a trajectory (`last_state`), or a GSD or XYZ file
-        (`read_state`). Its particles and the size of its container must be the same as in `scene`. Defaults
-        of engines still follow from the scene's speeds or temperatures.
+    initial : State, str or Path, optional Initial state: a state, the last state of a trajectory
+        (`last_state`), or a GSD or XYZ file (`read_state`). The particles and the size of the container must
+        be the same as in `scene`. Defaults of engines still follow from the scene's speeds or temperatures.
     checkpoint_seconds : float, default 30.0
         Wall-clock time between checkpoints, in seconds.
     progress : callable, optional
@@ -121,7 +119,7 @@ def run(
     overwrite : bool, default False
         Replace another trajectory at `path`. Files of other kinds are never replaced.
     keep_checkpoint : bool, default False
-        Keep the final state in ``<path>.checkpoint.npz``.
+        Store the final state in ``<path>.checkpoint.npz``.
     replicas : int, default 1
         Number of independent runs at the same time, one process each. Run k has the seed ``(seed, k)`` and,
         of ``run.nc``, the file ``run-k.nc`` (`replica_paths`). With `until` they end when their mean is
@@ -230,8 +228,8 @@ def _needs_paths(
 ) -> bool:
     """Return True if a requested accuracy needs displacements.
 
-    Raises SceneError for an observable that cannot be measured, or never becomes accurate, also of a run from
-    a given state.
+    Raises SceneError if the observable cannot be measured or never becomes accurate, also for a run from a
+    given state.
     """
     if request is None:
         return False
@@ -244,7 +242,7 @@ def _needs_paths(
 def _start(
     initial: State | str | Path | None, scene: Scene, path: str | Path | None, replicas: int
 ) -> State | None:
-    """Return the initial state of a run; of a file, its last state.
+    """Return the initial state of a run. For a file, this is its last state.
 
     Raises SceneError if that file is one of the files at `path`, by any name: it would be lost.
     """
@@ -262,7 +260,7 @@ def _start(
 
 
 def _require_path(path: str | Path | None) -> str | Path:
-    """Return the path of a trajectory, which must be given."""
+    """Return the path of a trajectory; raise an error without one."""
     if path is None:
         raise SceneError("path", None, "must be given: the file of the trajectory")
     return path
@@ -309,7 +307,7 @@ def resume(
     Parameters
     ----------
     path : str or Path
-        The trajectory. If it is one of several replicas, all of them are finished together.
+        The trajectory. If the file is one of several replicas, all replicas are finished together.
     checkpoint_seconds : float, default 30.0
         Wall-clock time between checkpoints, in seconds.
     progress : callable, optional
@@ -319,7 +317,7 @@ def resume(
     duration : float, [time], optional
         New length of a complete run.
     keep_checkpoint : bool, default False
-        Keep the final state in ``<path>.checkpoint.npz``.
+        Store the final state in ``<path>.checkpoint.npz``.
 
     Returns
     -------
@@ -329,10 +327,9 @@ def resume(
     Raises
     ------
     SceneError
-        If there is nothing to resume or to extend, another version of the program began the run, the duration
-        is not longer, or the file at `path` is no complete trajectory of gaspart.
-    SimulationError
-        If an invariant is violated during the run.
+        If there is nothing to resume or to extend, if another version of the program began the run, if the
+        duration is not longer, or if the file at `path` is not a complete trajectory of gaspart.
+        SimulationError If an invariant is violated during the run.
 
     See Also
     --------
@@ -341,9 +338,9 @@ def resume(
     Notes
     -----
     The file of an extended run has the same bytes as the file of a single run of this duration. If the run
-    had `keep_checkpoint`, it continues from the state at its end, and the extended run has a checkpoint too.
-    Otherwise it is run again from its start. The file is replaced when the longer run is complete. An
-    extension that was interrupted is finished with or without `duration`.
+    was made with `keep_checkpoint`, the extension starts from the state at its end, and the extended run has
+    a checkpoint, too. Otherwise the whole run is repeated from its start. The file is replaced when the
+    longer run is complete. An extension that was interrupted is finished with or without `duration`.
 
     Examples
     --------

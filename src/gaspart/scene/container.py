@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any
 
 from gaspart.errors import SceneError
+from gaspart.errors.guidance import with_guidance
 from gaspart.keys import POSITIVE, declare, describe, set_fields, validate
 from gaspart.keys.values import finite_vector, one_of, positive_number
 
@@ -23,6 +24,7 @@ def _lengths(name: str, value: Any) -> tuple[float, ...]:
     return tuple(positive_number(name, length) for length in finite_vector(name, value))
 
 
+@with_guidance
 @dataclass(frozen=True)
 class Container:
     """The simulated volume [0, L] on each axis, in two or three dimensions.
@@ -30,7 +32,7 @@ class Container:
     Parameters
     ----------
     lengths : sequence of float, shape (d,), [length]
-        Side lengths; their number is the dimension, 2 or 3.
+        Side lengths. Their number, 2 or 3, is the dimension.
     boundary : {"wall", "periodic"} or sequence of these, shape (d,), default "wall"
         Boundary condition of all axes, or of each axis.
 

@@ -1,8 +1,9 @@
 """Features of a scene, each with a name.
 
 A scene without features has smooth, elastic particles in a hard or periodic container. `FEATURES` is the
-table of all features, `EXCLUDED` the table of pairs which no scene may have. An engine states the features
-that it models (`Engine.models`): its rejections, and the table in the documentation, follow from it.
+table of all features, `EXCLUDED` the table of pairs which no scene may have. An engine lists the features
+that it models (`Engine.models`). Its rejections, and the table in the documentation, are derived from this
+list.
 """
 
 from __future__ import annotations
@@ -210,7 +211,8 @@ FURTHEST = 0.499
 def require_impulses(scene: Scene) -> None:
     """Raise SceneError, with the reason, if the impulses in a scene give no density.
 
-    They give none if velocities depend on positions, as they do except in equilibrium at one temperature.
+    Impulses give no density if velocities depend on positions. Velocities are independent of positions only
+    in equilibrium at one temperature.
     """
     if len({particle.mass for particle in scene.particles}) > 1:
         rule = "must have one mass for an impulse tally, which sums over all single particles"
@@ -248,7 +250,7 @@ def require_pair_impulses(scene: Scene, furthest: float) -> None:
 def shares_energy_evenly(scene: Scene) -> bool:
     """Return True if the kinetic energy of flight is constant, and equal for all directions.
 
-    This holds in equilibrium for smooth, elastic particles without a potential or a source of heat.
+    This is true in equilibrium for smooth, elastic particles without a potential or a source of heat.
     """
     return scene.features <= _STEADY
 

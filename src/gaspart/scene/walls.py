@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 from gaspart.errors import SceneError
+from gaspart.errors.guidance import with_guidance
 from gaspart.keys import declare, positive, two_vectors, validate, vector
 from gaspart.keys.values import finite_vector, positive_number
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class MovingWall(NamedTuple):
-    """Axis along which a wall moves, its position there at time 0, and its mass."""
+    """Axis of motion of a wall, its coordinate there at time 0, and its mass."""
 
     axis: int
     position: float
@@ -76,6 +77,7 @@ _MASS = positive("mass of a wall across the container that particles move; witho
 WALL_RULE = "a Wall needs a container of two dimensions, a Plate one of three"
 
 
+@with_guidance
 @dataclass(frozen=True)
 class Wall:
     """A straight wall inside a container of two dimensions, which particles hit from both sides.
@@ -160,6 +162,7 @@ class Wall:
         return math.hypot(x - ax - s * (bx - ax), y - ay - s * (by - ay))
 
 
+@with_guidance
 @dataclass(frozen=True)
 class Plate:
     """A flat rectangular wall inside a container of three dimensions, which particles hit from both sides.
@@ -189,10 +192,10 @@ class Plate:
 
     Notes
     -----
-    A plate with a `mass` must reach across the whole container at right angles to an axis. It starts at rest.
-    Only particles move it, along that axis, and it exchanges momentum with each particle without loss [1]_.
-    It conducts no heat except by its own motion. There is no other interior wall then, and both of its sides
-    have particles, smooth and elastic.
+    A plate with a `mass` must reach across the whole container at right angles to an axis. The wall starts at
+    rest. Only particles move it, along that axis, and it exchanges momentum with each particle without loss
+    [1]_. The wall conducts no heat except by its own motion. There is no other interior wall then, and both
+    of its sides have particles, smooth and elastic.
 
     References
     ----------

@@ -1,8 +1,8 @@
 """Partition of space into equal boxes on a grid.
 
-Each axis is divided on its own, down to one box. Box coordinates are kept for three axes whatever the
-dimension; a missing axis has one box and no neighbours. A table for each axis states which boxes are
-neighbours, so that walls, periodic faces and axes of one or two boxes need no code of their own.
+Each axis is divided on its own, down to one box. Box coordinates are stored for three axes in two dimensions,
+too; the missing axis has one box and no neighbours. For each axis a table contains the neighbours of each
+box. So walls, periodic faces and axes of one or two boxes need no special code.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ class Boxes:
         return replace(self, neighbour=neighbour)
 
     def index_of(self, position: np.ndarray) -> int:
-        """Return the linear index of the box that holds a position.
+        """Return the linear index of the box that contains a position.
 
         Parameters
         ----------
@@ -129,7 +129,7 @@ def sides_for(scene: Scene, narrowest: float | None = None, per_particle: float 
     scene : Scene
         Scene of the particles.
     narrowest : float, optional, [length]
-        Smallest side of a box, if larger particles are kept outside the boxes. Default: the largest diameter.
+        Smallest side of a box if larger particles are not put into boxes. Default: the largest diameter.
     per_particle : float, default 1.0
         Number of boxes per particle, which is reached approximately.
 
@@ -145,7 +145,7 @@ def sides_for(scene: Scene, narrowest: float | None = None, per_particle: float 
 
 
 def cube_side(lengths: tuple[float, ...], number: float) -> float:
-    """Return the side of cubes of which about `number` fill a container.
+    """Return the side of cubes, such that about `number` of them fill a container.
 
     Parameters
     ----------
@@ -180,10 +180,11 @@ def make_boxes(
     boxes_per_side : int or tuple of int, shape (d,)
         Boxes per side: one number, or one for each axis.
     images : bool
-        On a periodic axis of fewer than three boxes the same box is a neighbour on both sides. If True, the
-        table has both, each with its own shift; if False, it has each box once.
+        On a periodic axis of fewer than three boxes the same box is a neighbour on both sides. If both
+        neighbours of a box along an axis are the same box, True: the table has this box twice, each time with
+        its own shift; False: once.
     narrowest : float, optional, [length]
-        Smallest side of a box, if some particles are kept outside the boxes. Default: the largest diameter.
+        Smallest side of a box if some particles are not put into boxes. Default: the largest diameter.
 
     Returns
     -------
@@ -255,8 +256,7 @@ def boxes_per_particle(scene: Scene) -> float:
     Notes
     -----
     Eight particles are tested at once. So in a dilute gas of discs, which cross many boxes between contacts,
-    wide boxes are best; measured with 10^4 particles at packing fractions of 0.01 to 0.4
-    (docs/performance.md).
+    wide boxes are best; measured with 10^4 particles at packing fractions of 0.01 to 0.4.
     """
     dilute, by_density, limit = _BOXES[scene.dimension]
     best = min(dilute + by_density * scene.packing_fraction, limit)
@@ -274,8 +274,8 @@ def largest_in_boxes(scene: Scene) -> float:
     Returns
     -------
     float, [length]
-        Of the radii that leave at most `MOST` particles outside the boxes, the radius with the least work of
-        a search. The largest radius of all, unless the other saves a quarter.
+        Among the radii that leave at most `MOST` particles outside the boxes, this radius requires the least
+        work of a search. The largest radius of all, unless the other saves a quarter.
     """
     radii, counts = sizes(scene)
     if len(radii) < 2 or scene.shear_rate is not None:
@@ -287,14 +287,14 @@ def largest_in_boxes(scene: Scene) -> float:
 
 
 def boxes_and_largest(scene: Scene, boxes_per_side: int | tuple[int, ...] | None) -> tuple[Boxes, float]:
-    """Return the partition and the largest radius of the particles in it.
+    """Return the partition into boxes and the largest radius of the particles in boxes.
 
     Parameters
     ----------
     scene : Scene
         Scene of the particles.
     boxes_per_side : int or tuple of int or None
-        Boxes per side. None: as `largest_in_boxes` chooses.
+        Boxes per side. None: the value of `largest_in_boxes`.
 
     Returns
     -------
@@ -327,8 +327,8 @@ def sizes(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     Parameters
     ----------
     scene : Scene
-        Scene of the particles. All particles of a polydisperse species count as its largest, because boxes
-        wide enough for it are faster than a long list.
+        Scene of the particles. All particles of a polydisperse species count as its largest particle. Boxes
+        wide enough for this particle are faster than a long list of oversized particles.
 
     Returns
     -------
@@ -428,7 +428,7 @@ def deepest_overlap(
     Notes
     -----
     Particles are sorted into classes of sizes within a factor of two, with a tree for each class. So a search
-    reaches no farther than its pair of classes may touch.
+    covers only the distance at which particles of its two classes can touch.
     """
     from scipy.spatial import cKDTree  # few runs need it
 

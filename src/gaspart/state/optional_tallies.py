@@ -1,6 +1,6 @@
 """Tallies that not every run has, see `Tally`: requested tallies, and tallies of some scenes.
 
-A run requests a tally by an instance of its class, which holds its settings, or by the text of these. An
+A run requests a tally by an instance of its class with the settings, or by the text of these settings. An
 engine that can make it has its name in `Engine.tallies`, and a part (`engines.features.part.TallyPart`) that
 is found by that name.
 """
@@ -32,8 +32,8 @@ class OptionalTally:
     name : str
         Name in messages, in files, and as `only` in the metadata of its fields of `Tally`.
     meaning, form : str
-        Meaning of the option of a run that requests it, and the form of its text: the settings, in their
-        order, with colons between; "" without such an option.
+        Description of the option of a run that requests it, and the form of its text: the settings in their
+        order, separated by colons; "" without such an option.
     """
 
     name: ClassVar[str]
@@ -71,7 +71,7 @@ class OptionalTally:
         return cls(*settings)
 
     def check(self, scene: Scene) -> None:
-        """Raise SceneError for a scene of which no engine can make the tally.
+        """Raise SceneError if no engine can make the tally for a scene.
 
         Parameters
         ----------
@@ -90,8 +90,8 @@ class OptionalTally:
         Returns
         -------
         dict of str to int
-            Lengths by the name of the axis. A setting states the length of the axis with its name in the
-            singular.
+            Lengths by the name of the axis. A setting with the name in the singular is the length of the
+            axis.
         """
         from gaspart.state.tally import Tally  # loads numpy, which planning does not need
 
@@ -129,9 +129,9 @@ class StressTally(OptionalTally):
 
 @dataclass(frozen=True)
 class ImpulseTally(OptionalTally):
-    """Momentum that particles carry along an axis through planes across the axis.
+    """Momentum that particles transport along an axis through planes across this axis.
 
-    The density along the axis follows from it (`analysis.impulses`).
+    The density along the axis is computed from this momentum (`analysis.impulses`).
 
     Parameters
     ----------
@@ -177,7 +177,7 @@ class ImpulseTally(OptionalTally):
 class PairImpulseTally(OptionalTally):
     """Momentum that pairs of particles gain along their separation, in shells of equal thickness.
 
-    The pair distribution g(r) follows from it (`analysis.pairs`).
+    The pair distribution g(r) is computed from this tally (`analysis.pairs`).
 
     Parameters
     ----------
@@ -222,7 +222,7 @@ class PairImpulseTally(OptionalTally):
 
 
 def useful_impulses(scene: Scene, tallies: Collection[str], axis: int, bins: int) -> tuple[ImpulseTally, ...]:
-    """Return the impulse tally along an axis, if the density of a scene follows from it.
+    """Return the impulse tally along an axis, if it gives the density of a scene.
 
     Parameters
     ----------
@@ -238,7 +238,7 @@ def useful_impulses(scene: Scene, tallies: Collection[str], axis: int, bins: int
     Returns
     -------
     tuple of ImpulseTally
-        One tally, or none.
+        Sequence with one tally or none.
     """
     tally = ImpulseTally("xyz"[axis], bins)
     try:
@@ -253,7 +253,7 @@ def useful_impulses(scene: Scene, tallies: Collection[str], axis: int, bins: int
 
 @dataclass(frozen=True)
 class WallShearTally(OptionalTally):
-    """Momentum given to faces along themselves."""
+    """Tangential momentum given to faces."""
 
     name: ClassVar[str] = "wall_shear"
 
@@ -356,7 +356,7 @@ def tallies_to_json(tallies: Iterable[OptionalTally]) -> str:
 
 
 def tallies_from_json(text: str) -> tuple[OptionalTally, ...]:
-    """Return the tallies that an attribute `tallies` states, the inverse of `tallies_to_json`.
+    """Return the tallies in an attribute `tallies`, the inverse of `tallies_to_json`.
 
     Parameters
     ----------
@@ -385,7 +385,7 @@ def tallies_from_json(text: str) -> tuple[OptionalTally, ...]:
 
 
 def stored_tally(attributes: Mapping[str, Any], kind: type[AnyTally]) -> AnyTally | None:
-    """Return the tally of a kind among the tallies that a trajectory states.
+    """Return the tally of a kind among the tallies of a trajectory.
 
     Parameters
     ----------

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from gaspart.errors.guidance import with_guidance
+
 ENERGY, IMPULSE = "mass length^2/time^2", "mass length/time"
 ACTION, HEAT = "mass length^2/time", "mass length^3/time^2"
 SPEED, PRESSED, HEATED = "length/time", "mass length^(2-d)/time", "mass length^(3-d)/time^2"
@@ -34,6 +36,7 @@ def tallied_fluxes(sums: np.ndarray, drift: np.ndarray) -> dict[str, np.ndarray]
     return {**fluxes, "flux_velocity": drift.copy()}
 
 
+@with_guidance
 @dataclass
 class Tally:
     """Counters and sums of a simulation since the last reset.
@@ -47,14 +50,13 @@ class Tally:
     collisions : int
         Collisions of pairs.
     wall_hits : ndarray of int, shape (F,)
-        Particles that hit each face. If faces are open: particles that have left there.
+        Particles that hit each face. With open faces: number of particles that have left through each face.
     wall_impulse : ndarray, shape (F,), [mass length/time]
-        Momentum given to each face. If faces are open: the momentum along the normal that particles which
-        leave and enter carry through.
+        Momentum given to each face. With open faces: the normal momentum of particles that leave and enter.
     wall_energy : ndarray, shape (F,), [energy]
-        Heat given to each face by particles that it re-emitted thermally. It includes the work of the face if
-        there is a `wall_shear`. If faces are open: the energy of particles that have left less the energy of
-        particles that have entered.
+        Heat given to each face by particles that the face re-emitted thermally. If there is a `wall_shear`,
+        the heat includes the work of the face. If faces are open: the energy of particles that have left less
+        the energy of particles that have entered.
     virial_sum : float, [mass length^2/time]
         Sum of abs(dr.dp) over collisions.
     pair_tests : int
@@ -75,7 +77,7 @@ class Tally:
     retained_energy : float, default 0.0, [energy]
         Energy that these contacts would have dissipated.
     thermostat_energy : float, default 0.0, [energy]
-        Energy given by kicks.
+        Energy added by kicks.
     steps : int, default 0
         Steps of the engine, if it has time steps.
     overlaps_left : int, default 0
@@ -88,34 +90,35 @@ class Tally:
     rebuilds : int, default 0
         Rebuilds of the neighbour list of the time-stepped engine.
     wall_shear : ndarray, shape (F, d), optional, [mass length/time]
-        Momentum along each axis given to each thermal face by particles that leave it with all components
-        drawn. None unless a thermal face moves or a force drives the gas along it.
+        Momentum along each axis given to each thermal face by particles whose velocity components are all
+        drawn when they leave. None unless a thermal face moves, or a force drives the gas along a thermal
+        face.
     entries : ndarray of int, shape (F,), optional
         Particles that have entered through each face. None unless faces are open.
     momentum_per_area : ndarray, shape (F, d), optional, [mass length^(2-d)/time]
-        Momentum along each axis given to each face, outwards along its normal, with the momentum of each
-        particle divided by the area of the face that centres of its size can reach (`scene.accessible`), in
-        the container at the start. It is 0 for interior walls and for faces that an engine does not tally.
-        None unless particles of several sizes reach different areas of faces.
+        Momentum along each axis given to each face, positive along the outward normal. The momentum of each
+        particle is divided by the area of the face that centres of its size can reach (`scene.accessible`),
+        in the container at the start. The value is 0 for interior walls and for faces that an engine does not
+        tally. None unless particles of different sizes can reach different areas of faces.
     heat_per_area : ndarray, shape (F,), optional, [mass length^(3-d)/time^2]
         Energy of `wall_energy`, divided in the same way, and with the same zeros. Absent without
         `momentum_per_area`.
     stress_sum : ndarray, shape (d, d), optional, [mass length^2/time]
         Time integral of the stress tensor times the volume: of m v v and, at a collision, of r dp. Here r is
-        the vector from the second particle to the first, and dp the momentum that the first gains. None
-        unless requested.
+        the vector from the second particle to the first, and dp is the momentum that the first particle
+        gains. None unless requested.
     collisional_stress_sum : ndarray, shape (d, d), optional, [mass length^2/time]
         Collisional part of `stress_sum`.
     heat_sum : ndarray, shape (d,), optional, [mass length^3/time^2]
         Time integral of the heat flux times the volume: of E v and r dE [1]_.
     flux_velocity : ndarray, shape (d,), optional, [length/time]
-        Velocity of the centre of mass, about which all velocities of these fluxes are; for a sheared gas
-        about the flow, at time 0.
+        Velocity of the centre of mass; all velocities in the fluxes are relative to it. In a sheared gas they
+        are relative to the flow, and this is the velocity at time 0.
     momentum_flux_sum : ndarray, shape (species, bins), optional, [mass length/time]
-        Momentum of each species, and last of all single particles, along an axis that has flown through
-        planes across the axis with the particles themselves: m v^2 of particles that cross, times the time.
-        It is the mean over the planes of each bin. Under gravity the momentum that gravity has given to the
-        particles below is subtracted (`analysis.impulses`). None unless requested.
+        Momentum of each species (single particles last) along an axis, transported through planes across the
+        axis by the particles themselves: m v^2 of the particles that cross, times the time. Each value is the
+        mean over the planes in a bin. Under gravity, the momentum that gravity has given to the particles
+        below the plane is subtracted (`analysis.impulses`). None unless requested.
     contact_impulse_sum : ndarray, shape (shells,), optional, [mass length^2/time]
         Mean over each shell of k_B T g(r) times the time, from the pairs that collide
         (`analysis.pairs`). None unless requested.

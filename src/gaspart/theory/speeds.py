@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.errors.guidance import with_guidance
 from gaspart.theory.geometry import Numbers, Values, check_ranges, checked_dimension
 
 _TABLES = Path(__file__).parent / "data"
@@ -345,6 +346,7 @@ def initial_kurtosis_slope(dimension: int) -> float:
     return {2: 64.0 / 225.0, 3: 8.0 / 35.0}[checked_dimension(dimension)]
 
 
+@with_guidance
 @dataclass(frozen=True)
 class Relaxation:
     """Relaxation of a gas in which all speeds are equal at first.

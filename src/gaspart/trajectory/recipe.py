@@ -294,6 +294,23 @@ def _is_numbered(seed: int | tuple[int, ...], replica: int, replicas: int) -> bo
     return numbered and 1 <= replica <= replicas <= MOST_REPLICAS
 
 
+def stated_options(recipe: Recipe) -> dict[str, Any]:
+    """Return the options that determine what the file of a recipe holds, the inverse of `recipe_fields`.
+
+    Parameters
+    ----------
+    recipe : Recipe
+        Recipe.
+
+    Returns
+    -------
+    dict of str to object
+        Values by the name of the option, tallies as texts.
+    """
+    texts = {tally.name: tally.to_text() for tally in recipe.tallies}
+    return {name: texts.get(name, getattr(recipe, name, None)) for name in OPTIONS}
+
+
 def read_recipe(path: str | Path) -> Recipe:
     """Read the recipe of a trajectory, finished or not. Raises SceneError if it has no recipe."""
     path = Path(path)

@@ -8,13 +8,10 @@ The keys of a config, the options of `gaspart run` and of the command that a fil
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from gaspart.keys import TEXT, Kind, choice, count, describe, flag
 from gaspart.state.optional_tallies import REQUESTED
-
-if TYPE_CHECKING:
-    from gaspart.trajectory.recipe import Recipe
 
 KEPT = {"positions": "coordinates", "velocities": "velocities"}
 """Choices of `keep`, and the variable of a frame that each is."""
@@ -68,20 +65,3 @@ def recipe_fields(settings: Mapping[str, Any]) -> dict[str, Any]:
     fields = {name: value for name, value in settings.items() if name not in REQUESTED}
     texts = {name: settings[name] for name in REQUESTED if settings.get(name) is not None}
     return {**fields, "tallies": tuple(REQUESTED[name].from_text(text) for name, text in texts.items())}
-
-
-def stated_options(recipe: Recipe) -> dict[str, Any]:
-    """Return the options that determine what the file of a recipe holds, the inverse of `recipe_fields`.
-
-    Parameters
-    ----------
-    recipe : Recipe
-        Recipe.
-
-    Returns
-    -------
-    dict of str to object
-        Values by the name of the option, tallies as texts.
-    """
-    texts = {tally.name: tally.to_text() for tally in recipe.tallies}
-    return {name: texts.get(name, getattr(recipe, name, None)) for name in OPTIONS}

@@ -3,7 +3,7 @@
 import pytest
 
 from gaspart.errors import SceneError
-from gaspart.reproduction.archive.metadata import Creator, read_citation
+from gaspart.reproduction.archive.metadata import read_citation
 
 TEXT = """
 title: a gas
@@ -20,10 +20,15 @@ def test_persons_and_organisations_are_read(tmp_path):
     (tmp_path / "CITATION.cff").write_text(TEXT)
     found = read_citation(tmp_path / "CITATION.cff")
     assert found.creators == [
-        Creator("Ludwig Boltzmann", True, "https://orcid.org/0000", "Wien"),
-        Creator("the others", False, "https://example.org", ""),
+        {
+            "@id": "https://orcid.org/0000",
+            "@type": "Person",
+            "name": "Ludwig Boltzmann",
+            "affiliation": "Wien",
+        },
+        {"@id": "https://example.org", "@type": "Organization", "name": "the others"},
     ]
-    assert found[0] == "a gas" and found.licence == "BSD-3-Clause" and found.version == "1.2"
+    assert found[0] == "a gas" and found.licence == "BSD-3-Clause"
     assert found.url == "https://example.org/gas" and found.keywords == []
 
 

@@ -77,7 +77,8 @@ class ShearedStressPart(StressPart):
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
         """Set the velocity of the centre of mass relative to the flow.
 
-        Its component across the flow is constant, so its component along the flow decreases steadily.
+        The velocity component across the flow is constant, so the component along the flow decreases
+        steadily.
         """
         assert model.shear is not None  # or there were no such part
         across = self._drift[GRADIENT]
@@ -89,7 +90,7 @@ class ShearedStressPart(StressPart):
         add_sheared_flights(self._flights, length, 1.0, self._model, self.kernel)
 
     def end_epoch(self, length: float, start: float) -> None:
-        """Do nothing: the flights begin anew."""
+        """Do nothing: the motion of the epoch begins again."""
 
     def reset(self, clock: float) -> None:
         """Begin to count from zero."""
@@ -161,7 +162,7 @@ class ImpulsesPart(TallyPart):
         self._add_momenta(clock, 1.0, self.kernel.sums)
 
     def read(self, clock: float) -> np.ndarray:
-        """Return the momentum (species, bins) carried until this time on the epoch's clocks."""
+        """Return the momentum (species, bins) transported until this time on the clocks of the epoch."""
         sums = self.kernel.sums.copy()
         self._add_momenta(clock, -1.0, sums)
         return np.asarray(self._unit_mass * np.cumsum(sums, axis=1)[:, :-1])

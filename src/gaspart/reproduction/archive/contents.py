@@ -18,6 +18,7 @@ from gaspart.reproduction.claims import table
 from gaspart.reproduction.claims.table import fill_caption
 from gaspart.reproduction.config import check, merged_with_default
 from gaspart.reproduction.families.registry import caption
+from gaspart.reproduction.jobs.simulate import recipes
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
 from gaspart.reproduction.points.points import figure_points
 from gaspart.trajectory.recipe import read_recipe
@@ -38,12 +39,9 @@ def scene_files(config: Any) -> list[str]:
         block = blocks.pop()
         if isinstance(block, dict):
             named = block.get("scene")
-            for name in named if isinstance(named, list) else [named]:
-                if isinstance(name, str):
-                    paths[posixpath.normpath(name)] = None
-            blocks += block.values()
-        elif isinstance(block, list):
-            blocks += block
+            names = named if isinstance(named, list) else [named]
+            paths |= {posixpath.normpath(name): None for name in names if isinstance(name, str)}
+        blocks += block.values() if isinstance(block, dict) else block if isinstance(block, list) else []
     return list(paths)
 
 
@@ -52,24 +50,25 @@ def scene_files(config: Any) -> list[str]:
 
 _BASE = Path("config/config.yaml")
 _WORKFLOWS = ("Snakefile", "workflow/Snakefile")
-_RULES = Path("workflow/rules/common.smk")
 _WHOLE = {"experiments", "figures"}
 """Keys of a config that is laid over no other."""
 
 
 @dataclass(frozen=True)
 class Finished:
-    """Finished run; its paths are relative to `root`, the folder of the workflow."""
+    """Finished run; its paths are relative to `root`, the folder of the workflow.
+
+    results : `results`, or `results/<run>`; below the prefix of a module, if it has one.
+    config : the merged config.
+    points : the points of which figures and films are made.
+    configs : the files of the config that are in `root`.
+    """
 
     root: Path
     results: str
-    """`results`, or `results/<run>`; below the prefix of a module, if it has one."""
     config: dict[str, Any]
-    """The merged config."""
     points: list[Point]
-    """The points of which figures and films are made."""
     configs: list[str]
-    """The files of the config that are in `root`."""
 
     @property
     def workflow(self) -> str:
@@ -82,7 +81,7 @@ class Finished:
 
         Otherwise it is a folder with a workflow that uses it as a module.
         """
-        return (self.root / _RULES).is_file()
+        return (self.root / "workflow/rules/common.smk").is_file()
 
     @property
     def figures(self) -> list[str]:
@@ -109,11 +108,11 @@ class Finished:
                 yield from (f"{folder}/animations/{film}.{kind}" for kind in ("mp4", "jpg"))
         yield from (point.path for point in self.points if point.job != TRAJECTORIES)
 
-    def trajectories(self) -> Iterator[tuple[Point, int, str]]:
-        """Point, replica and path of each trajectory."""
+    def trajectories(self) -> Iterator[tuple[Point, str]]:
+        """Point and path of each trajectory."""
         for point in self.points:
             if point.job == TRAJECTORIES:
-                yield from ((point, k, path) for k, path in enumerate(point.replica_paths))
+                yield from ((point, path) for path in point.replica_paths)
 
 
 def find_finished(results: str | Path, config: str | Path | None = None) -> Finished:
@@ -147,22 +146,16 @@ def find_finished(results: str | Path, config: str | Path | None = None) -> Fini
         points = _select_points(merged, check(merged, files))
         points = [replace(point, root=str(prefix / point.root)) for point in points]
         run = Finished(root, str(folder.relative_to(root)), merged, points, inside)
-        _check_places(run, file)
-        _check_complete(run, results)
-        _check_settings(run)
+        _check(run, file, results)
     return run
 
 
 def _project_of(folder: Path) -> Path | None:
     """Return the nearest folder with a workflow, from `folder` upwards, or None."""
-    return next(
-        (
-            candidate
-            for candidate in (folder, *folder.parents)
-            if any((candidate / name).is_file() for name in _WORKFLOWS)
-        ),
-        None,
-    )
+    for candidate in (folder, *folder.parents):
+        if any((candidate / name).is_file() for name in _WORKFLOWS):
+            return candidate
+    return None
 
 
 def _select_points(config: dict, planned: dict[str, dict[str, Point]]) -> list[Point]:
@@ -202,44 +195,23 @@ def _is_config_of(file: Path, name: str | None) -> bool:
     return content.get("run") == name
 
 
-def _check_places(run: Finished, file: Path) -> None:
-    """Refuse points outside the project's folder: they would have no path in an archive.
-
-    Raises SceneError.
-    """
-    path = Path(run.config.get("points", "results/points"))
-    if path.is_absolute() or ".." in path.parts:
-        raise SceneError("points", str(path), "must be in the project's folder for an archive", str(file))
-
-
-def _check_complete(run: Finished, results: str | Path) -> None:
-    """Raise SceneError if a result is missing."""
-    paths = [run.report, *run.outputs(), *(path for _, _, path in run.trajectories())]
+def _check(run: Finished, file: Path, results: str | Path) -> None:
+    """Raise SceneError for points outside the project's folder, missing results, or other settings."""
+    folder = Path(run.config.get("points", "results/points"))
+    if folder.is_absolute() or ".." in folder.parts:
+        raise SceneError("points", str(folder), "must be in the project's folder for an archive", str(file))
+    paths = [run.report, *run.outputs(), *(path for _, path in run.trajectories())]
     missing = [path for path in paths if not (run.root / path).is_file()]
     if missing:
-        rule = f"is not complete: {missing[0]}{_others(len(missing))}; run the workflow to its end"
+        others = f" and {len(missing) - 1} other files are missing" if missing[1:] else " is missing"
+        rule = f"is not complete: {missing[0]}{others}; run the workflow to its end"
         raise SceneError("results", str(results), rule)
-
-
-def _others(count: int) -> str:
-    return " is missing" if count == 1 else f" and {count - 1} other files are missing"
-
-
-def _check_settings(run: Finished) -> None:
-    """Raise SceneError for a trajectory whose scene, engine, seed or times differ from the config."""
-    for point, replica, path in run.trajectories():
-        recipe, arguments = read_recipe(run.root / path), point.arguments
-        finest = recipe.correlations.interval if recipe.correlations else recipe.sample_interval
-        same = (
-            recipe.scene == point.scene
-            and recipe.seed == arguments["seeds"][replica]
-            and recipe.engine == arguments["engine"].for_scene(recipe.scene, finest)
-            and recipe.sample_interval == arguments["sample_interval"]
-            and recipe.duration == arguments["duration"]
-        )
-        if not same:
-            rule = "was made with other settings than those of the config; run the workflow again"
-            raise SceneError("trajectory", path, rule)
+    for point in run.points:
+        if point.job == TRAJECTORIES:
+            for path, recipe in zip(point.replica_paths, recipes(**point.arguments), strict=True):
+                if read_recipe(run.root / path) != recipe:
+                    rule = "was made with other settings than those of the config; run the workflow again"
+                    raise SceneError("trajectory", path, rule)
 
 
 CITATION = "CITATION.cff"
@@ -314,10 +286,9 @@ def captions(run: Finished) -> dict[str, str]:
     """Return {path in the archive: caption} of each figure, with its measured numbers."""
     rows = table.read(run.root / run.results / "tables/claims.csv")
     texts = {figure: _caption(run, figure) for figure in run.figures}
+    claims = {figure: [row for row in rows if row["figure"] == figure] for figure in texts}
     return {
-        f"{run.results}/captions/{figure}.rst": fill_caption(
-            text, [row for row in rows if row["figure"] == figure]
-        )
+        f"{run.results}/captions/{figure}.rst": fill_caption(text, claims[figure])
         for figure, text in texts.items()
         if text is not None
     }

@@ -16,7 +16,7 @@ import struct
 import warnings
 import zipfile
 import zlib
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -54,7 +54,6 @@ DAMAGE = (
 )
 """Errors that reading a damaged file of an archive may raise."""
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
-_STATED = ("title", "results", "gaspart", "revision", "archived")
 _DIGITS = 64
 
 
@@ -70,44 +69,37 @@ class Stored:
         """Return the error about this archive."""
         return SceneError("archive", str(self.path), rule)
 
-    def open(self, name: str) -> IO[bytes]:
-        """Return a file of the archive; raise SceneError for another name, and DAMAGE."""
+    @contextmanager
+    def open(self, name: str) -> Iterator[IO[bytes]]:
+        """Open a file of the archive; raise SceneError for one that is missing or damaged."""
         if name not in self.names:
             raise self.make_error(f"has no file {name}")
-        return self.opener(name)
+        try:
+            with self.opener(name) as file:
+                yield file
+        except SceneError:
+            raise
+        except DAMAGE as error:
+            raise self.make_error(f"has a damaged {name}: {_reason(error)}") from None
 
     def text(self, name: str, most: int = MOST_BYTES) -> str:
-        """Read a file as text.
-
-        Raises SceneError for a file that is missing, damaged, or larger than `most` bytes.
-        """
-        try:
-            with self.open(name) as file:
-                content = file.read(most + 1)
+        """Read a file of at most `most` bytes as text; raise SceneError."""
+        with self.open(name) as file:
+            content = file.read(most + 1)
             if len(content) > most:
                 raise self.make_error(f"has a {name} of more than {most} bytes")
             return content.decode()
-        except SceneError:
-            raise
-        except DAMAGE as error:
-            raise self.make_error(f"has a damaged {name}: {_reason(error)}") from None
 
     def copy(self, name: str, target: Path) -> None:
-        """Write a file to `target`. Raises SceneError for one that is missing or damaged."""
-        try:
-            with self.open(name) as source, target.open("xb") as file:
-                shutil.copyfileobj(source, file)
-        except SceneError:
-            raise
-        except DAMAGE as error:
-            raise self.make_error(f"has a damaged {name}: {_reason(error)}") from None
+        """Write a file to `target`; raise SceneError."""
+        with self.open(name) as source, target.open("xb") as file:
+            shutil.copyfileobj(source, file)
 
     def rows(self, name: str, columns: Sequence[str] = ()) -> list[dict[str, str]]:
         """Return the rows of a table that has at least these columns; raise SceneError."""
+        text = self.text(name)
         try:
-            return rows_of(self.text(name), columns)
-        except SceneError:
-            raise
+            return rows_of(text, columns)
         except ValueError as error:
             raise self.make_error(f"has a table that cannot be read, {name}: {error}") from None
 
@@ -116,7 +108,7 @@ class Stored:
         try:
             with self.open(name) as file:
                 return digest(file)
-        except DAMAGE:
+        except SceneError:
             return ""
 
     def summary(self) -> dict[str, Any]:
@@ -124,15 +116,12 @@ class Stored:
 
         Raises SceneError for another content.
         """
+        text = self.text(RUN, 1 << 20)
         try:
-            content = json.loads(self.text(RUN, 1 << 20))
-        except RecursionError:
-            raise self.make_error(f"has a {RUN} that is nested too deep") from None
-        except ValueError as error:
-            if isinstance(error, SceneError):
-                raise
+            content = json.loads(text)
+        except (ValueError, RecursionError) as error:
             raise self.make_error(f"has a {RUN} that cannot be read: {error}") from None
-        for key in _STATED:
+        for key in ("title", "results", "gaspart", "revision", "archived"):
             if not (isinstance(content, dict) and isinstance(content.get(key), str)):
                 raise self.make_error(f"has a {RUN} that does not state {key}, a text")
         return dict(content)
@@ -226,32 +215,22 @@ def _folder(path: Path) -> Stored:
     if not (path / MANIFEST).is_file():
         raise SceneError("archive", str(path), f"is no archive of gaspart: it has no {MANIFEST}")
     names, stated, there = [], 0, 0
-    for name, status in _below(path, ""):
-        if not stat.S_ISREG(status.st_mode):
-            raise SceneError("archive", str(path), f"has what is no regular file: {name}")
-        names.append(name)
-        stated, there = stated + status.st_size, there + 512 * status.st_blocks
-        if len(names) > MOST_FILES:
-            raise SceneError("archive", str(path), f"has more than {MOST_FILES} files")
+    for parent, folders, files in os.walk(path):
+        for file in (Path(parent, name) for name in folders + files):
+            status, name = file.lstat(), str(file.relative_to(path))
+            if stat.S_ISDIR(status.st_mode):
+                continue
+            if not stat.S_ISREG(status.st_mode):
+                raise SceneError("archive", str(path), f"has what is no regular file: {name}")
+            names.append(name)
+            stated, there = stated + status.st_size, there + 512 * status.st_blocks
+            if len(names) > MOST_FILES:
+                raise SceneError("archive", str(path), f"has more than {MOST_FILES} files")
     check_names(path, names)
     check_size(path, stated, there)
     return _require_manifest(
         Stored(path, frozenset(names), lambda name: open_regular(path / name, follow=False))
     )
-
-
-def _below(folder: Path, beginning: str) -> Iterable[tuple[str, os.stat_result]]:
-    """Yield everything in a folder and below that is no folder, without following links.
-
-    Names begin with `beginning`.
-    """
-    with os.scandir(folder) as entries:
-        for entry in entries:
-            name = beginning + entry.name
-            if entry.is_dir(follow_symlinks=False):
-                yield from _below(folder / entry.name, f"{name}/")
-            else:
-                yield name, entry.stat(follow_symlinks=False)
 
 
 # Points of an archive simulated again: the same bits, or not.
@@ -269,9 +248,7 @@ def chosen(stored: Stored, folder: Path, count: int) -> list[Point]:
             (point.experiment, point.name): point for each in planned.values() for point in each.values()
         }
     rows = stored.rows(tables.POINTS, tables.PointFile._fields)
-    listed = list(
-        dict.fromkeys((row["experiment"], row["point"]) for row in rows if row["job"] == TRAJECTORIES)
-    )
+    listed = [*{(row["experiment"], row["point"]): None for row in rows if row["job"] == TRAJECTORIES}]
     drawn = random.sample(listed, min(count, len(listed)))
     missing = [f"{experiment}/{name}" for experiment, name in drawn if (experiment, name) not in points]
     if missing:
@@ -316,23 +293,14 @@ def rerun(stored: Stored, point: Point, folder: Path) -> Check:
         output.unlink()
     name = f"{point.experiment}/{point.name}"
     if not other:
-        return Check("rerun", True, f"{name}: the same bits in {_count_text(point.replicas)}")
-    return Check("rerun", False, f"{name}: other bits in replica {', '.join(other)}{_differing(stored)}")
-
-
-def _count_text(count: int) -> str:
-    return "1 trajectory" if count == 1 else f"{count} trajectories"
-
-
-def _differing(stored: Stored) -> str:
-    """Describe the differences between this program and the program of the archive."""
-    run = stored.summary()
-    then = {"gaspart": run["gaspart"], "revision": run["revision"]}
+        return Check("rerun", True, f"{name}: the same bits in each of its {point.replicas} trajectories")
+    then = stored.summary()
     now = {"gaspart": provenance.versions()["gaspart_version"], "revision": provenance.git_revision()}
     differing = [
-        f"{key} {then[key] or 'none'}, here {now[key] or 'none'}" for key in then if then[key] != now[key]
+        f"{key} {then[key] or 'none'}, here {now[key] or 'none'}" for key in now if then[key] != now[key]
     ]
-    return f" (archive: {'; '.join(differing)})" if differing else ""
+    difference = f" (archive: {'; '.join(differing)})" if differing else ""
+    return Check("rerun", False, f"{name}: other bits in replica {', '.join(other)}{difference}")
 
 
 # Verification of an archive: digests of its files, data of its claims, and points simulated again.
@@ -386,7 +354,10 @@ def _tables(stored: Stored, stated: Mapping[str, str]) -> Iterator[Check]:
     Raises SceneError for tables that `gaspart archive` cannot have written, though they have their digests.
     """
     try:
-        yield _describe_run(stored)
+        run = stored.summary()
+        revision = f", revision {run['revision']}" if run["revision"] else ""
+        about = f"{run['title']}; gaspart {run['gaspart']}{revision}; {run['archived'][:10]}"
+        yield Check("run", True, about)  # which cannot fail
         yield _claims(stored, stated)
         yield _points(stored)
     except SceneError as error:
@@ -394,13 +365,6 @@ def _tables(stored: Stored, stated: Mapping[str, str]) -> Iterator[Check]:
         raise stored.make_error(rule) from None
     except KeyError as error:
         raise stored.make_error(f"has claims made of a file that it does not list: {error.args[0]}") from None
-
-
-def _describe_run(stored: Stored) -> Check:
-    """Describe the run; this check cannot fail."""
-    run = stored.summary()
-    revision = f", revision {run['revision']}" if run["revision"] else ""
-    return Check("run", True, f"{run['title']}; gaspart {run['gaspart']}{revision}; {run['archived'][:10]}")
 
 
 def _claims(stored: Stored, stated: Mapping[str, str]) -> Check:
@@ -415,14 +379,14 @@ def _claims(stored: Stored, stated: Mapping[str, str]) -> Check:
     if named != [tuple(row[key] for key in _JUDGED) for row in judged]:
         return Check("claims", False, f"{tables.CLAIMS} and the results list different claims")
     digests = dict(stated) | {row["path"]: row["sha256"] for row in points}
-    wrong = []
-    inputs = {data: _inputs(stored, data) for data in dict.fromkeys(row["data"] for row in listed)}
-    joint = {data: joint_digest(paths, digests) for data, paths in inputs.items()}
-    for row in listed:
-        if row["data_sha256"] != stated.get(row["data"]) or row["inputs_sha256"] != joint[row["data"]]:
-            wrong.append(row["figure"])
+    joint = {data: joint_digest(_inputs(stored, data), digests) for data in {row["data"] for row in listed}}
+    wrong = {
+        row["figure"]
+        for row in listed
+        if row["data_sha256"] != stated.get(row["data"]) or row["inputs_sha256"] != joint[row["data"]]
+    }
     if wrong:
-        return Check("claims", False, f"made of other data: those of {_join_names(sorted({*wrong}))}")
+        return Check("claims", False, f"made of other data: those of {_join_names(sorted(wrong))}")
     return Check("claims", True, f"{len(listed)}, made of {len(joint)} measurements with these digests")
 
 

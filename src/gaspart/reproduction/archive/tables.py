@@ -7,6 +7,7 @@ import io
 import os
 import platform
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from datetime import UTC, datetime
 from importlib.metadata import distributions
 from pathlib import Path
@@ -81,16 +82,12 @@ def point_files(run: Finished) -> list[PointFile]:
     """Return the files of all points, with their digests; reads all of them."""
     rows = []
     for point in run.points:
-        named = point.experiment, point.name, point.job
-        paths = point.replica_paths if point.job == TRAJECTORIES else [point.path]
-        for replica, path in enumerate(paths):
+        is_folder = point.job == TRAJECTORIES
+        for replica, path in enumerate(point.replica_paths if is_folder else [point.path]):
             file = run.root / path
-            size, content = str(file.stat().st_size), digest_of_file(file)
-            if point.job == TRAJECTORIES:
-                own = str(replica), path, size, content, digest_of_numbers(file), stored_revision(file)
-            else:
-                own = "", path, size, content, "", ""
-            rows.append(PointFile(*named, *own))
+            numbers = (digest_of_numbers(file), stored_revision(file)) if is_folder else ("", "")
+            named = point.experiment, point.name, point.job, str(replica) if is_folder else ""
+            rows.append(PointFile(*named, path, str(file.stat().st_size), digest_of_file(file), *numbers))
     return rows
 
 
@@ -104,10 +101,9 @@ def inputs_of(measurement: Path) -> list[str]:
 
 def claim_rows(run: Finished, files: Iterable[PointFile]) -> list[ClaimData]:
     """Return all claims with the digests of their data."""
+    judged = [f"{run.results}/claims/{figure}.csv" for figure in run.figures]
     digests = {file.path: file.sha256 for file in files}
-    for figure in run.figures:
-        path = f"{run.results}/claims/{figure}.csv"
-        digests[path] = digest_of_file(run.root / path)
+    digests |= {path: digest_of_file(run.root / path) for path in judged}
     data: dict[str, tuple[str, str, str]] = {}
     for figure in run.figures:
         path = f"{run.results}/measurements/{figure}.nc"
@@ -123,10 +119,8 @@ def job_times(run: Finished) -> list[JobTime]:
     The times are from Snakemake's benchmarks and the jobs' logs, without points that the config no longer
     has.
     """
-    folder, kept = (
-        run.root / run.results / "benchmarks",
-        {(point.experiment, point.name) for point in run.points},
-    )
+    folder = run.root / run.results / "benchmarks"
+    kept = {(point.experiment, point.name) for point in run.points}
     rows = []
     for path in sorted(folder.rglob("*.tsv")):
         rule, *names = path.relative_to(folder).with_suffix("").parts
@@ -173,11 +167,15 @@ def rows_of(text: str, columns: Sequence[str] = ()) -> list[dict[str, str]]:
     return rows
 
 
-def machine() -> dict[str, Any]:
+def _machine() -> dict[str, Any]:
     """Return processor, memory and system of this machine, and the installed packages."""
+    processor = platform.processor()
+    with suppress(OSError, StopIteration):  # the model, as Linux names it
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+        processor = next(line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
     packages = {package.name: package.version for package in distributions() if package.name}
     return {
-        "processor": _processor(),
+        "processor": processor,
         "architecture": platform.machine(),
         "processors": os.cpu_count(),
         "memory_bytes": memory(),
@@ -185,16 +183,6 @@ def machine() -> dict[str, Any]:
         "python": platform.python_version(),
         "packages": dict(sorted(packages.items(), key=lambda item: item[0].lower())),
     }
-
-
-def _processor() -> str:
-    """Return the model of the processor, as Linux names it."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-    except OSError:
-        return platform.processor()
-    models = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
-    return models[0] if models else platform.processor()
 
 
 def summary_of(run: Finished, files: Iterable[PointFile], trajectories: bool) -> Mapping[str, Any]:
@@ -209,5 +197,5 @@ def summary_of(run: Finished, files: Iterable[PointFile], trajectories: bool) ->
         "revision": provenance.git_revision(),
         "revisions_of_trajectories": sorted(revisions),
         "archived": datetime.now(UTC).isoformat(timespec="seconds"),
-        "machine": machine(),
+        "machine": _machine(),
     }

@@ -88,7 +88,7 @@ class _Writer:
         for name, text in captions.items():
             self._add_text(name, text)
         if trajectories:
-            for _, _, name in run.trajectories():
+            for _, name in run.trajectories():
                 self._add_file(name, run.root / name)
         files, jobs = tables.point_files(run), tables.job_times(run)
         claims = tables.claim_rows(run, files)

@@ -13,7 +13,7 @@ from dataclasses import asdict, dataclass
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from gaspart.engines import engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError, SimulationError
@@ -23,8 +23,8 @@ from gaspart.scene.species import LATTICES
 
 if TYPE_CHECKING:
     from gaspart.engines import Engine
+    from gaspart.keys import Kind
     from gaspart.reproduction.points.engine import Schedule
-    from gaspart.reproduction.points.jobs import Job
     from gaspart.reproduction.points.point_scene import Extents
     from gaspart.scene.scene import Scene
 
@@ -33,6 +33,21 @@ TRAJECTORIES = "simulate"
 """The job whose result is a folder of trajectories, one for each replica."""
 _JOBS = "gaspart.reproduction.jobs"
 _LONGEST_NAME = 200  # of the 255 bytes of a file name, with which suffixes and names of logs are made
+
+
+class Job(Protocol):
+    """Declarations of a job for planning, in addition to the function that does its work."""
+
+    RESULT: str
+    """Result of the job, in words."""
+    KEYS: dict[str, Kind]
+    """Keys that have a meaning for the job, in addition to the scene, the engine and the length."""
+
+    def engines(self, point: Point) -> list[Engine]:
+        """Return the engines whose kernels it compiles, if particles are not only placed."""
+
+    def arguments(self, point: Point) -> dict:
+        """Return the arguments of its function; raise SceneError."""
 
 
 @dataclass(frozen=True)

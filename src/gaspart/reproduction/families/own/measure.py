@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.measuring import measure
 from gaspart.analysis.observable import Observable
 from gaspart.analysis.observables import OBSERVABLES
 from gaspart.analysis.statistics import average
+from gaspart.errors import SceneError
 from gaspart.reproduction.points.point import Point
-from gaspart.reproduction.sweep_table import mean_of, measure_point
 from gaspart.reproduction.table import from_rows
+from gaspart.trajectory.reading import open_trajectory
 
 _PARTS = {"value": "", "value_error": "_error", "theory": "_theory", "theory_error": "_theory_error"}
 
@@ -32,10 +35,10 @@ def observable(points: list[Point], settings: dict) -> xr.Dataset:
     name = settings["observable"]
     rows, source = [], ""
     for point in points:
-        result, refused = measure_point(point, [name], part=False)
+        results, _, refused = measure_point(point, [name], part=False)
         if refused:
             raise refused[name]
-        replicas = result.observables[name]
+        replicas = results[name]
         if settings.get("place") is not None:
             (dim,) = replicas[0].estimate.dims
             replicas = [replica.sel({dim: settings["place"]}, method="nearest") for replica in replicas]
@@ -92,3 +95,48 @@ def _numbers(replicas: list[Observable]) -> dict[str, Any]:
         for replica in replicas
     ]
     return {**row, "value_freedom": average(estimates).freedom}
+
+
+def measure_point(
+    point: Point, names: Sequence[str], part: bool
+) -> tuple[dict[str, list[Observable]], float, dict[str, SceneError]]:
+    """Measure observables of all replicas of a point.
+
+    Returns the observables by name, the mean duration of a replica, and errors by name of what cannot be
+    measured. Frames count after the equilibration, or, with `part`, after the first quarter of each run.
+    """
+    start = None if part else point.schedule.equilibration
+    results: dict[str, list[Observable]] = {name: [] for name in names}
+    durations: list[float] = []
+    refused: dict[str, SceneError] = {}
+    for path in point.replica_paths:
+        try:
+            with open_trajectory(path) as trajectory:
+                durations.append(float(trajectory["time"][-1]))
+                for name in names:
+                    try:
+                        results[name].append(measure(trajectory, name, start))
+                    except SceneError as error:
+                        refused.setdefault(name, error.inside(f"{name} of {path}"))
+        except SceneError as error:  # a damaged file
+            refused |= {name: refused.get(name, error) for name in names}
+    duration = float(np.mean(durations)) if durations else np.nan
+    return {name: results[name] for name in names if name not in refused}, duration, refused
+
+
+def mean_of(replicas: list[Observable], part: str) -> np.ndarray | None:
+    """Average independent runs, or compute another part of the mean.
+
+    The part is its standard uncertainty (_error), theory (_theory) or the uncertainty of theory
+    (_theory_error), None without a theory. Runs that end when they are accurate may have curves of different
+    lengths, of which the common part is taken.
+    """
+    quantity = replicas[0].attrs["quantity"]
+    if part.startswith("_theory") and any(replica.theory is None for replica in replicas):
+        return None
+    values = [replica[quantity + part].values for replica in replicas]
+    shape = np.min([value.shape for value in values], axis=0).astype(int)
+    values = [value[tuple(slice(size) for size in shape)] for value in values]
+    if part == "_error":
+        return np.sqrt(np.sum(np.square(values), axis=0)) / len(values)
+    return np.mean(values, axis=0)

@@ -7,8 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from gaspart.analysis.correlations import Curves
-from gaspart.analysis.motion import average_correlations
+from gaspart.analysis.motion import Curves, average_correlations
 from gaspart.analysis.run import Run
 from gaspart.errors import SceneError
 from gaspart.reproduction.points.point import Point
