@@ -29,6 +29,9 @@ from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.run_options import tallies_from_json
 from gaspart.yaml_text import parse_yaml
 
+_ROUNDING = 1e-12
+"""Relative scatter of equal values that are computed in different order."""
+
 
 def replicas(
     name: str,
@@ -272,8 +275,10 @@ def _mean(measurements: list[Observable], recipes: list[_Recipe]) -> Observable:
             raise _other_coordinate(first, measurement, recipes[0].name, recipe.name)
     each = np.array([measurement.estimate.values for measurement in measurements])
     values, errors = means_of(each)
-    unknown = np.isnan([single.error.values for single in measurements]).all(axis=0)
-    errors = np.where(unknown & (errors == 0.0), np.nan, errors)  # as of bins that are empty in all runs
+    single = np.array([measurement.error.values for measurement in measurements])
+    rounding = _ROUNDING * np.abs(values)
+    exact = (single <= rounding).all(axis=0)  # a value that does not scatter within a run either
+    errors = np.where((errors <= rounding) & ~exact, np.nan, errors)  # equal counts by chance
     parts = {"": values, "_error": errors}
     if all(measurement.theory is not None for measurement in measurements):
         for part in ("_theory", "_theory_error"):

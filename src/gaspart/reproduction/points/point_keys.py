@@ -2,7 +2,7 @@
 
 Each has its kind, default and meaning.
 
-The keys of a job are declared in its module in `reproduction.jobs`; `config_keys` has the keys of a whole
+The keys of a job are defined in its module in `reproduction.jobs`; `config_keys` has the keys of a whole
 config.
 """
 
@@ -107,7 +107,7 @@ _BOXES_PER_PARTICLE = positive(
 
 
 def _settings(engine: Any) -> dict[str, Kind]:
-    """Return the keys of an engine, as its fields declare them.
+    """Return the keys of an engine from its fields.
 
     A point with another engine does not require them.
     """
