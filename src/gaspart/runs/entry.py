@@ -159,7 +159,7 @@ def run(
     request = _request(duration, sample_interval, until, at_most)
     contents = Contents(
         displacements=displacements, follow=follow, keep=keep, correlations=correlations, pairs=pairs,
-        tallies=tallies,
+        tallies=tallies,  # type: ignore[arg-type]  # checked there, and made a tuple
     )  # fmt: skip
     if request is not None:
         contents = contents_until(request, scene, engine, contents, from_state=initial is not None)
