@@ -1,8 +1,8 @@
 """YAML, read within limits and written.
 
-What is read is a tree of mappings with text keys, lists, text, numbers, true, false and null, as YAML 1.1
-defines them, and `1e3` is a number. An alias gives a copy; `<<` merges mappings. Tags and dates do not exist:
-a date is text. Duplicate keys are errors.
+The result is a tree of mappings with text keys, lists, text, numbers, true, false and null, as defined by
+YAML 1.1; in addition `1e3` is a number. An alias gives a copy; `<<` merges mappings. Tags are rejected, and
+dates are text. Duplicate keys are errors.
 """
 
 from __future__ import annotations
@@ -94,7 +94,7 @@ def is_exponential(text: str) -> bool:
 def _with_exponents(base: Any) -> Any:
     """Return a loader or dumper that reads 1e3 and 1.5e3 as numbers.
 
-    They are text in YAML 1.1.
+    In YAML 1.1 such numbers are text.
     """
     subclass: Any = type("WithExponents", (base,), {})
     subclass.add_implicit_resolver(_SCALARS[-1], _NUMBERS, list("-+.0123456789"))
@@ -129,12 +129,12 @@ class _Open:
         self.merged: dict[str, Any] = {}
 
     def close(self) -> list | dict:
-        """Return the content; the mapping's own entries replace merged entries."""
+        """Return the content; own entries of a mapping replace merged entries."""
         return {**self.merged, **self.content} if self.merged else self.content  # type: ignore[dict-item]
 
 
 class _Document:
-    """Reads one document event by event: no recursion, whatever the depth of the text."""
+    """Reader of one document, event by event, without recursion for texts of any depth."""
 
     def __init__(self, text: str) -> None:
         import yaml
@@ -225,7 +225,7 @@ class _Document:
 
     @staticmethod
     def _merge(top: _Open, value: Any, mark: yaml.Mark) -> None:
-        """Merge a mapping, or a list of mappings of which the first take precedence."""
+        """Merge a mapping, or a list of mappings in which earlier ones have precedence."""
         parts = value if isinstance(value, list) else [value]
         if top.merged or not all(isinstance(part, dict) for part in parts):
             raise _error(mark, value, "<< must be given once, with a mapping or a list of mappings")
@@ -233,7 +233,7 @@ class _Document:
             top.merged.update(part)
 
     def _copy(self, value: Any, depth: int, mark: yaml.Mark) -> Any:
-        """Return a copy of an alias's value; its values count like written ones."""
+        """Return a copy of the value of an alias; its values count like written values."""
         self._count(depth, mark)
         self._copies += 1
         if self._copies > MOST_COPIES:

@@ -55,8 +55,8 @@ _COLLIDED = 40.0
 class Target:
     """Observable of `gaspart measure` of a scene.
 
-    face : for observables of walls, the wall (`x low`), by default each of them.
-    settled : state in which the scene has become steady, if one is known.
+    face : for observables of walls, the wall (`x low`), by default all walls.
+    settled : state at which the scene has become steady, if it is known.
     """
 
     scene: Scene
@@ -86,9 +86,10 @@ class Target:
 
     @cached_property
     def start(self) -> State | None:
-        """State from which pilots start; None for the usual start.
+        """State from which pilots start; None for the default start.
 
-        It is a settled state, or the state at time 0 of particles that are compressed, which takes long.
+        It is a settled state, or, for particles that are compressed, the state at time 0, because compression
+        takes long.
         """
         if self.settled is not None:
             return self.settled
@@ -97,7 +98,7 @@ class Target:
 
     @cached_property
     def initial(self) -> State:
-        """State at the start of pilots, by default the one at time 0 of their seed."""
+        """State at the start of pilots; by default the state at time 0 of their seed."""
         return self.start or initial_state(self.scene, SEED)
 
     @cached_property
@@ -109,8 +110,8 @@ class Target:
     def frequency(self) -> float:
         """Collisions of a particle per time.
 
-        By theory in a gas as hot as at the start, or in the column that it becomes; or, if its particles
-        start at rest, in the second half of a short run.
+        The frequency is computed by theory in a gas as hot as at the start, or in the column that the gas
+        becomes. If the particles start at rest, it is measured in the second half of a short run.
         """
         at_start = rates(self.scene, dense=True).frequency
         if at_start > 0.0:
@@ -168,8 +169,8 @@ class Target:
     def tallies(self, engine: Engine) -> tuple[ImpulseTally, ...]:
         """Return the optional tallies that make the observable more accurate in a run by an engine.
 
-        They are impulses along the last axis; for pressures, along the only axis across which they are
-        requested.
+        The tallies are impulses along the last axis. For pressures they are along the only axis across which
+        pressures are requested.
         """
         if not self.declared.by_impulses:
             return ()
@@ -224,7 +225,7 @@ class Target:
         return Correlations(sample, lags, stress=self.declared.needs == "fluxes")
 
     def _schedule_correlations(self, engine: Engine, length: float) -> tuple[float, float, Correlations]:
-        """Return the `schedule` with correlations; frames are at least the longest lag apart."""
+        """Return the `schedule` with correlations; the time between frames is at least the longest lag."""
         correlations = self.correlations(engine)
         sample = correlations.interval
         per_frame = max(correlations.lags, round(length / sample / _FRAMES[0]))

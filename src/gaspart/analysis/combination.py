@@ -44,7 +44,7 @@ def replicas(
     name : str
         Name of the observable as in `gaspart measure`.
     sources : sequence of str, Path, Dataset or Simulation
-        At least two runs of different seeds or initial states: trajectories, by their paths or open, or
+        At least two runs of different seeds or initial states: paths of trajectories, open trajectories, or
         simulations.
     start : float, [time], optional
         Frames before this time are discarded, as by the observable's function.
@@ -62,15 +62,16 @@ def replicas(
     Raises
     ------
     SceneError
-        If there are fewer than two runs; if scenes or engines differ (with the first difference); if two runs
-        are the same bit for bit (of one initial state and one seed, or of one initial state in a scene that
-        draws nothing afterwards); if curves are at different positions, as densities in the bins of different
-        impulses that runs have stored; and as the observable's function does.
+        If there are fewer than two runs; if scenes or engines differ (the message names the first
+        difference); if two runs are identical (same initial state and same seed, or same initial state in a
+        scene without random numbers); if curves have different positions, such as densities in different bins
+        of impulses; and for the reasons of the observable's function.
 
     Notes
     -----
-    The uncertainty is the standard error of the mean from the scatter of the runs. It needs no assumption
-    about correlations within a run. It has one degree of freedom less than there are runs (`freedom`).
+    The uncertainty is the standard error of the mean from the scatter of the runs. The error requires no
+    assumption about correlations within a run. The number of degrees of freedom is the number of runs minus
+    one (`freedom`).
 
     Examples
     --------
@@ -125,8 +126,8 @@ class _Recipe:
     settings : scene and engine.
     seed : seed.
     draws : True if the seed matters after the start.
-    times : times of its states, all until the last one if `every`.
-    state : function that returns the bits of the state at a time, as a file has them.
+    times : times of its states, or of all states up to the last time if `every`.
+    state : function that returns the bits of the state at a time, as they are in a file.
     impulses : the impulses that it has stored.
     """
 
@@ -189,7 +190,7 @@ def _bits(*vectors: np.ndarray) -> bytes:
 def _check_replica(recipe: _Recipe, others: list[_Recipe]) -> None:
     """Raise SceneError unless a run is a replica of others.
 
-    Replicas differ in nothing but the seed or the first state.
+    Replicas differ only in the seed or in the first state.
     """
     for other in others:
         if difference := _difference(recipe.settings, other.settings):
@@ -207,7 +208,7 @@ def _check_replica(recipe: _Recipe, others: list[_Recipe]) -> None:
 
 
 def _last_common(recipe: _Recipe, other: _Recipe) -> float | None:
-    """Return the last time at which both have a state; None without a common start."""
+    """Return the last time at which both runs have a state; None without a common start."""
     if recipe.every and other.every:
         return float(min(recipe.times[-1], other.times[-1]))
     if recipe.every or other.every:
@@ -221,7 +222,7 @@ def _last_common(recipe: _Recipe, other: _Recipe) -> float | None:
 def _difference(first: Any, second: Any, key: str = "") -> tuple[str, Any, Any] | None:
     """Find the first difference of two trees: its dotted key and both values.
 
-    None if they are equal.
+    The result is absent if the two are equal.
     """
     if isinstance(first, dict) and isinstance(second, dict):
         pairs = {str(name): (first.get(name), second.get(name)) for name in {**first, **second}}

@@ -352,7 +352,7 @@ class Run:
     def fluid(self) -> Gas | None:
         """Gas of the scene, if it has two particles or more in a periodic container.
 
-        Outside the range of the equation of state of the fluid there is no such gas: None.
+        Outside the range of the equation of state of the fluid, the result is absent. None.
         """
         gas = self.scene.gas
         if gas is None or gas.count < 2 or not self.periodic.all():
@@ -361,7 +361,7 @@ class Run:
 
     @property
     def mixture(self) -> Mixture | None:
-        """Mixture of the scene, in which equal species are one; None under the conditions of `fluid`."""
+        """Mixture of the scene, in which equal species are combined; None under the conditions of `fluid`."""
         mixture = self.scene.mixture
         if mixture is None or not self.periodic.all() or self.count < 2:
             return None

@@ -26,8 +26,9 @@ class Layers:
     Attributes
     ----------
     scene : scene
-    share : array (S,), fraction of all particles in each layer crowding : (S,), density divided by the
-    density of a gas that fills evenly the volume that centres can reach
+    share : array (S,), fraction of all particles in each layer
+    crowding : (S,), density divided by the density of a gas that fills evenly the volume that centres can
+        reach
     temperature : (S,), k_B T
     axis : axis of the layers, None for a homogeneous gas
     scale : shortest length along the axis over which density or temperature change by the factor e

@@ -1,4 +1,4 @@
-"""Checks of a trajectory of hard particles; each gives its result in one line."""
+"""Checks of a trajectory of hard particles. The result of each check is one line."""
 
 from __future__ import annotations
 
@@ -63,15 +63,12 @@ def judge(frames: Frames, tolerance: float | None = None) -> list[Check]:
     `tolerance` is the allowed overlap, as a fraction of a diameter.
     """
     checks = [*judge_places(frames, tolerance), *judge_conserved(frames)]
-    if reason := frames.no_identity or _acting(checks):
+    reason, acting = frames.no_identity, [check.name for check in checks if check.acts]
+    if acting and not reason:  # more than elastic contacts: nothing is known of equilibrium
+        reason = f"something acts on the particles (see {' and '.join(acting)})"
+    if reason:
         return [*checks, *(Check(name, None, reason) for name in (*SPEEDS, _PRESSURE, _DIFFUSION))]
     return [*checks, *judge_speeds(frames), _pressure(frames), _diffusion(frames)]
-
-
-def _acting(checks: list[Check]) -> str | None:
-    """Return the reason why nothing is known of equilibrium: a check found more than elastic contacts."""
-    names = [check.name for check in checks if check.acts]
-    return f"something acts on the particles (see {' and '.join(names)})" if names else None
 
 
 def judge_places(frames: Frames, tolerance: float | None = None) -> list[Check]:
@@ -114,7 +111,7 @@ def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Chec
 def _overlap_bounds(frame: Frames) -> tuple[float, float]:
     """Return bounds on the deepest overlap of equal particles, as a fraction of the contact distance.
 
-    It counts their pairs by distance, in a tenth of the time of `deepest_overlap`. Without a bound, (0, inf).
+    Pairs are counted by distance, in a tenth of the time of `deepest_overlap`. Without a bound, (0, inf).
     """
     if frame.diameter is None or not np.isfinite(frame.positions).all():
         return 0.0, math.inf
@@ -137,7 +134,7 @@ def _overlap_bounds(frame: Frames) -> tuple[float, float]:
 
 
 def _inside(frames: Frames, tolerance: float | None) -> Check:
-    """Check the largest distance of a centre outside the walls; periodic axes have none."""
+    """Check the largest distance of a centre outside the walls; periodic axes have no walls."""
     walls = ~np.array(frames.periodic)
     if not walls.any():
         return Check("container", None, "periodic, so that nothing can leave it")
@@ -153,12 +150,12 @@ def _inside(frames: Frames, tolerance: float | None) -> Check:
 
 
 def _pressure(frames: Frames) -> Check:
-    """Check Z against the equation of state, corrected for the finite number.
+    """Check Z against the equation of state, corrected for the finite number of particles.
 
     Z follows from the collisions of a file that counts them, otherwise from the pair distribution at contact.
-    Frames count from the one on until which particles have moved by the distance of neighbours, so that
-    nothing is left of a lattice (its order decays by exp(-k^2 <r^2> / 2d)); and only frames between which
-    they have moved across the shells that are counted.
+    Two conditions select frames. Particles must have moved by the distance of neighbours since the start, so
+    that no order of a lattice is left (its order decays by exp(-k^2 <r^2> / 2d)). Between two frames,
+    particles must have moved across the shells in which pairs are counted.
     """
     name = _PRESSURE
     if reason := _no_pressure(frames):
@@ -207,7 +204,7 @@ def _by_collisions(path: Path, start: float) -> Check:
 
 
 def _no_pressure(frames: Frames) -> str | None:
-    """Return the reason why the pressure cannot be checked; None if it can."""
+    """Return the reason why the pressure cannot be checked; None if it can be checked."""
     gas = frames.gas
     if not all(frames.periodic) or gas is None:
         return "needs equal particles in a periodic container, moved by elastic contacts alone"
@@ -291,7 +288,7 @@ def judge_open(path: Path, tolerance: float | None = None) -> tuple[str, list[Ch
 
 
 def _frames(scene: Scene, data: xr.Dataset) -> Frames:
-    """Return the frames of a run; absent particles have no position (NaN), and are at rest."""
+    """Return the frames of a run. Absent particles have no position (NaN) and are at rest."""
     lengths = np.array(scene.container.lengths)
     positions, velocities = (data[name].values.astype(float) for name in ("coordinates", "velocities"))
     return Frames(
@@ -307,7 +304,7 @@ def _frames(scene: Scene, data: xr.Dataset) -> Frames:
 
 
 def _particles(data: xr.Dataset, counts: np.ndarray) -> Check:
-    """Compare the particles in each frame with those that have entered and left since the start."""
+    """Compare the particles in each frame with the counted entries and exits."""
     stored = data["coordinates"] if "coordinates" in data else data["velocities"]
     there = np.isfinite(stored.values[..., 0]).sum(axis=1)
     wrong = int(np.abs(there - counts).argmax())
@@ -332,7 +329,7 @@ def _energy(scene: Scene, data: xr.Dataset) -> Check:
 
 
 def judge_scene(path: Path, tolerance: float | None = None) -> list[Check]:
-    """Check a scene, and the placement of its particles; raise SceneError for an invalid scene."""
+    """Check a scene and the placement of its particles; raise SceneError for an invalid scene."""
     scene = Scene.from_file(path)
     facts = f"{scene.count} particles, packing fraction {scene.packing_fraction:.6g}"
     checks = [Check("scene", True, f"{facts}, number density {scene.number_density:.6g}")]

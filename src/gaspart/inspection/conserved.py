@@ -99,7 +99,7 @@ def _steady(name: str, changes: np.ndarray, allowed: float, isolated: bool) -> C
     """Check that a quantity stays constant from frame to frame.
 
     The `changes` (T - 1,) are relative to the quantity of all particles together. If it changes most of the
-    time, it is conserved only if the file says that nothing acts on the particles.
+    time, it is conserved only if the file excludes forces on the particles.
     """
     worst = int(np.argmax(changes))
     text = f"changes by {changes[worst]:.2g} of it at most, before frame {worst + 1} (up to {allowed:.1g})"
@@ -184,9 +184,9 @@ def _reordered_frame(frames: Frames) -> int | None:
 def _same_velocities_elsewhere(frames: Frames, n: int) -> bool:
     """Return True if frame n + 1 has velocities of frame n in other rows.
 
-    They must occur more often in other rows than in their own. Velocities that several particles have do not
-    count. Two equal particles may exchange their velocities in a head-on collision: where times are known,
-    positions decide.
+    The velocities must occur more often in other rows than in their own row. Velocities that several
+    particles have do not count. Two equal particles may exchange their velocities in a head-on collision. If
+    times are known, positions show which of the two happened.
     """
     assert frames.velocities is not None, "see `continuous`"
     keys = [(velocity * _KEY[: frames.dimension]).sum(axis=1) for velocity in frames.velocities[n : n + 2]]

@@ -318,18 +318,20 @@ def _settings(scene: Scene, axes: Mapping[str, list], engine: Engine) -> dict[st
         settings["scene"] = scene.to_dict()
         return {key: value for key, value in settings.items() if key not in axes}
     rule = "varies one species alone in a container; of other scenes vary a value, such as species.0.count"
-    species, lengths = scene.species[0] if scene.species else scene, scene.container.lengths
-    parts = species, scene.container, scene
+    if len(scene.species) != 1:
+        raise SceneError(f"over.{varied}", axes[varied], rule)
+    (species,), lengths = scene.species, list(scene.container.lengths)
+    parts = scene, scene.container, species
     gas = {key: getattr(part, key) for key in GAS for part in parts if hasattr(part, key)}
-    extents = {key: getattr(part, key) for key in ("count", "radius") for part in (species,)}
-    explicit = {key: value for key, value in {**gas, **extents, "side": list(lengths)}.items() if value}
-    if len(scene.species) != 1 or Point(EXPERIMENT, "", "simulate", explicit, "", 0).scene != scene:
+    extents = {"count": species.count, "radius": species.radius, "side": lengths}
+    explicit = {key: value for key, value in (gas | extents).items() if value is not None}
+    if Point(EXPERIMENT, "", "simulate", explicit, "", 0).scene != scene:
         raise SceneError(f"over.{varied}", axes[varied], rule)
     order = _KEPT if species.alike else _KEPT_OF_SIZES
     kept = [key for key in order if key not in axes][: 3 - sum(key in axes for key in EXTENTS)]
     if "side" not in axes and "side" not in kept and len(set(lengths)) > 1:
         raise SceneError(f"over.{varied}", axes[varied], "needs a container with equal sides")
-    extents |= {"packing_fraction": scene.packing_fraction, "side": list(lengths)}
+    extents["packing_fraction"] = scene.packing_fraction
     settings |= gas | {key: extents[key] for key in kept}
     return {key: value for key, value in settings.items() if key not in axes}
 

@@ -60,8 +60,15 @@ def test_findings_state_the_measured_number_of_their_figure():
 def test_the_first_screen_counts_kinds_apart_and_names_what_disagrees():
     rows = [claim("test", "agrees"), claim("test", "disagrees"), claim("family", "disagrees")]
     found = headline(rows)
-    assert found["kinds"] == {"test": {"agrees": 1, "disagrees": 1}}
+    assert found["kinds"] == {"test": {"agrees": 1, "disagrees": 1}, "family": {"disagrees": 1}}
+    assert sum(sum(verdicts.values()) for verdicts in found["kinds"].values()) == len(rows)
     assert found["disagree"] == rows[1:]
+
+
+def test_the_template_identifies_sources_before_it_cites_them():
+    text = (Path(__file__).parents[3] / "workflow/report/report.html.j2").read_text(encoding="utf-8")
+    assert 'selectattr("is_source")' in text
+    assert text.index('id="sources"') < text.index('id="findings"') < text.index("| cite }}")
 
 
 def test_pictures_lie_beside_the_page_or_are_in_it(tmp_path):

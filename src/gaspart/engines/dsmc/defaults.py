@@ -79,8 +79,9 @@ def rates(scene: Scene, dense: bool, instead: Kinds | None = None) -> Rates:
 
     The temperature of the faces is used instead of the particles' if it is higher.
 
-    dense : True for the contact values of a dense gas instead : fewer kinds of particles that represent the
-    kinds of the scene; each pair of these kinds is evaluated
+    dense : True for the contact values of a dense gas
+    instead : fewer kinds of particles that represent the kinds of the scene; each pair of these kinds is
+        evaluated
     """
     d, kinds = scene.dimension, scene.moving_kinds if instead is None else instead
     heat = max(scene.face_temperatures, default=0.0)

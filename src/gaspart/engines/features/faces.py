@@ -212,7 +212,8 @@ def motion_of(scene: Scene) -> Motion | None:
 class VibratingPart(Part):
     """Faces with a prescribed vibration.
 
-    Particles leave such a face with at most twice its speed."""
+    Particles leave such a face with at most twice its speed.
+    """
 
     def __init__(self, scene: Scene, motion: Motion) -> None:
         super().__init__({})

@@ -126,8 +126,8 @@ class Part:
 class TallyPart(Part):
     """Optional tally in a run (`state.optional_tallies`).
 
-    name : name of the tally kernel : data for the kernels, which add to the entry of this name in their own
-    tally
+    name : name of the tally
+    kernel : data for the kernels, which add to the entry of this name in their own tally
     """
 
     def __init__(

@@ -189,8 +189,6 @@ CHAPTERS = (
 """In the order of the page."""
 _THUMBNAIL, _SHARPNESS = 360, 1.6
 """Width of a thumbnail, and pixels of a picture for each of the page, in a page that holds its pictures."""
-HEADLINE = ("test", "identity", "reproduction")
-"""The kinds of claims that are counted on the first screen, apart from one another."""
 
 
 @dataclass(frozen=True)
@@ -255,10 +253,12 @@ def findings(chosen: Iterable[Mapping[str, str]], rows: list[dict[str, Any]]) ->
 
 
 def headline(rows: list[dict[str, Any]]) -> dict[str, Any]:
-    """Return the claims on the first screen: counts by kind and verdict, and disagreements."""
-    numbers = counts(rows)
+    """Return the claims on the first screen: counts by kind and verdict, and disagreements.
+
+    Families are counted too, so that the numbers of all kinds add up to the number of claims.
+    """
     return {
-        "kinds": {kind: numbers[kind] for kind in HEADLINE if kind in numbers},
+        "kinds": counts(rows),
         "disagree": [row for row in rows if row["verdict"] == "disagrees"],
     }
 
