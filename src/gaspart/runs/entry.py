@@ -103,7 +103,7 @@ def run(
         Count the collisions of each pair of species in each frame.
     impulses : str, optional
         Axis and number of bins of a density profile from impulses, such as "z:200", which is more accurate
-        than counts. Event-driven engine only.
+        than counts. Event-driven and time-stepped engine.
     pair_impulses : str, optional
         Distance, number of shells and fraction of contacts of a g(r) from impulses, such as "3:300:0.5",
         which is more accurate than counts. Event-driven engine only.
