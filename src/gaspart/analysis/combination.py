@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import partial
@@ -14,7 +14,6 @@ import numpy as np
 import xarray as xr
 
 from gaspart import analysis
-from gaspart.analysis.impulses import read_impulses
 from gaspart.analysis.measuring import measure, until_time
 from gaspart.analysis.observable import Observable
 from gaspart.analysis.observables import OBSERVABLES
@@ -24,10 +23,14 @@ from gaspart.engines import engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError, short_repr
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
-from gaspart.state.optional_tallies import ImpulseTally
+from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import by_number
 from gaspart.trajectory.reading import open_trajectory
+from gaspart.trajectory.run_options import tallies_from_json
 from gaspart.yaml_text import parse_yaml
+
+_ROUNDING = 1e-12
+"""Relative scatter of equal values that are computed in different order."""
 
 
 def replicas(
@@ -128,7 +131,7 @@ class _Recipe:
     draws : True if the seed matters after the start.
     times : times of its states, or of all states up to the last time if `every`.
     state : function that returns the bits of the state at a time, as they are in a file.
-    impulses : the impulses that it has stored.
+    tallies : texts of the optional tallies that it has stored, by their names.
     """
 
     name: str
@@ -138,7 +141,7 @@ class _Recipe:
     times: np.ndarray
     every: bool
     state: Callable[[float], bytes]
-    impulses: str
+    tallies: dict[str, str]
 
 
 def _recipe(run: Any, name: str) -> _Recipe:
@@ -147,21 +150,20 @@ def _recipe(run: Any, name: str) -> _Recipe:
         settings = {"scene": run.scene.to_dict(), "engine": engine_to_dict(run.engine)}
         times = np.array([0.0, run.time])
         draws, state = run.engine.draws(run.scene), partial(_state_at, run)
-        tally = next((item for item in run.tallies if isinstance(item, ImpulseTally)), None)
-        return _Recipe(name, settings, str(run.seed), draws, times, True, state, _describe_tally(tally))
+        return _Recipe(name, settings, str(run.seed), draws, times, True, state, _texts(run.tallies))
     if not isinstance(run, xr.Dataset) or not {"scene", "engine", "seed"} <= set(run.attrs):
         raise SceneError("sources", type(run).__name__, "must be trajectories, their paths or simulations")
     settings = {"scene": parse_yaml(run.attrs["scene"]), "engine": json.loads(run.attrs["engine"])}
     draws = engine_from_dict(settings["engine"]).draws(Scene.from_dict(settings["scene"]))
     frames = {key: run[key].values for key in ("time", "coordinates", "velocities") if key in run}
     stored = partial(_state_in_frame, frames)
-    seed, impulses = str(run.attrs["seed"]), _describe_tally(read_impulses(run))
-    return _Recipe(name, settings, seed, draws, frames["time"], False, stored, impulses)
+    seed, tallies = str(run.attrs["seed"]), _texts(tallies_from_json(run.attrs.get("tallies", "[]")))
+    return _Recipe(name, settings, seed, draws, frames["time"], False, stored, tallies)
 
 
-def _describe_tally(tally: ImpulseTally | None) -> str:
-    """Return the impulses that a run has stored, in the words of its option."""
-    return "none" if tally is None else tally.to_text()
+def _texts(tallies: Iterable[OptionalTally]) -> dict[str, str]:
+    """Return the texts of tallies in the words of their options, by name."""
+    return {tally.name: tally.to_text() for tally in tallies if tally.form}
 
 
 def _state_in_frame(frames: dict[str, np.ndarray], time: float) -> bytes:
@@ -265,14 +267,18 @@ def _mean(measurements: list[Observable], recipes: list[_Recipe]) -> Observable:
         if not same or any(
             not np.array_equal(measurement[dim], first[dim]) for dim in dims if dim in first.coords
         ):
-            if recipe.impulses != recipes[0].impulses:
-                rule = f"are {recipes[0].impulses} in {recipes[0].name}: {quantity} is in the bins of these"
-                raise SceneError("impulses", recipe.impulses, rule, recipe.name)
+            for key in {**recipes[0].tallies, **recipe.tallies}:
+                usual, own = (each.tallies.get(key, "none") for each in (recipes[0], recipe))
+                if usual != own:
+                    rule = f"are {usual} in {recipes[0].name}: {quantity} is in the bins of these"
+                    raise SceneError(key, own, rule, recipe.name)
             raise _other_coordinate(first, measurement, recipes[0].name, recipe.name)
     each = np.array([measurement.estimate.values for measurement in measurements])
     values, errors = means_of(each)
-    unknown = np.isnan([single.error.values for single in measurements]).all(axis=0)
-    errors = np.where(unknown & (errors == 0.0), np.nan, errors)  # as of bins that are empty in all runs
+    single = np.array([measurement.error.values for measurement in measurements])
+    rounding = _ROUNDING * np.abs(values)
+    exact = (single <= rounding).all(axis=0)  # a value that does not scatter within a run either
+    errors = np.where((errors <= rounding) & ~exact, np.nan, errors)  # equal counts by chance
     parts = {"": values, "_error": errors}
     if all(measurement.theory is not None for measurement in measurements):
         for part in ("_theory", "_theory_error"):

@@ -12,11 +12,11 @@ from typing import Any
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
 from gaspart.scene.faces import FACES, Open
-from gaspart.scene.features import require_tallied
 from gaspart.scene.gas import plain_mixture
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.scene.walls import MOVING_WALL
+from gaspart.state.tally import StressTally
 
 Selection = Mapping[str, Any]
 GROUPS = 16
@@ -292,7 +292,7 @@ def has_axis(scene: Scene, selection: Selection) -> None:
 
 def require_elastic_periodic(scene: Scene, selection: Selection) -> None:
     """Raise SceneError unless the container is periodic and only contacts change velocities."""
-    require_tallied(scene)
+    StressTally().check(scene)
 
 
 def shears(scene: Scene, selection: Selection) -> None:

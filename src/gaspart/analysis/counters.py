@@ -12,12 +12,12 @@ from gaspart.analysis import series
 from gaspart.analysis.expected.equilibrium import describe
 from gaspart.analysis.flow import accessible_lengths, face_areas
 from gaspart.analysis.impulses import (
-    USUAL_BINS,
     engine_class,
     estimator,
     group_count,
     knows_energies,
     subtract_controls,
+    usual_tally,
     wall_controls,
 )
 from gaspart.analysis.observable import Observable, observable, scalar, with_freedom
@@ -25,7 +25,6 @@ from gaspart.analysis.observables import name_of, require_defined
 from gaspart.analysis.run import Run, Source, open_run, require_collisions
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
-from gaspart.state.optional_tallies import ImpulseTally
 from gaspart.trajectory.amber import face_names
 
 _BLOCKS = 16
@@ -193,7 +192,7 @@ def _of_faces(function: str, run: Run, ends: np.ndarray, about: dict[str, Any]) 
     along = {"face": (faces, {"long_name": "face of the container"})}
     result = observable(function, along, values + samples[0], errors, **about)
     serves = knows_energies(engine_class(run), run.scene)
-    tally = ImpulseTally(str(faces[-1])[0], USUAL_BINS) if serves else None
+    tally = usual_tally(str(faces[-1])[0]) if serves else None
     of = "wall impulses", "wall impulses, with the known mean of the energy along an axis"
     result.attrs |= estimator(run, *of, bool(improved), tally)
     return with_freedom(result, freedoms) if improved else result

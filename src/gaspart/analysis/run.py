@@ -26,11 +26,11 @@ from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.simulation import Simulation
 from gaspart.state.insertion import per_particle
-from gaspart.state.optional_tallies import tallies_to_json
 from gaspart.state.state import by_number
 from gaspart.state.tally import Tally
 from gaspart.trajectory.pairs import PairCounter
 from gaspart.trajectory.reading import open_trajectory
+from gaspart.trajectory.run_options import tallies_to_json
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
 Source: TypeAlias = str | Path | xr.Dataset | Simulation
