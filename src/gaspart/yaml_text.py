@@ -131,7 +131,8 @@ class _Document:
 
     def read(self) -> Any:
         """Return the content. Raises SceneError with line and column, or yaml.YAMLError."""
-        yaml, results = self._yaml, []
+        yaml = self._yaml
+        results: list[Any] = []
         while not isinstance(event := self._loader.get_event(), yaml.StreamEndEvent):
             if isinstance(event, yaml.DocumentStartEvent):
                 if results:
