@@ -21,9 +21,9 @@ from gaspart.scene.scene import DRAWN, THUMBNAIL, Scene, require_scene
 from gaspart.scene.walls import Plate, Wall, box_of_walls
 from gaspart.state.given import check_apart, state_at_time_zero
 from gaspart.state.initial import initial_state
-from gaspart.state.optional_tallies import OptionalTally, StressTally
+from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
-from gaspart.state.tally import Tally
+from gaspart.state.tally import StressTally, Tally
 
 if TYPE_CHECKING:
     from gaspart.rendering.view import View
@@ -67,7 +67,7 @@ class Simulation:
         State with the positions, velocities and spins at time 0, instead of the initial state of the
         scene. Its particles and the size of its container must be the same as in the scene.
     tallies : iterable of OptionalTally, optional
-        Tallies that a run counts only on request (`state.optional_tallies`).
+        Tallies that a run counts only on request: `StressTally`, `ImpulseTally`, `PairImpulseTally`.
 
     Raises
     ------

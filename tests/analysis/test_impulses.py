@@ -23,7 +23,7 @@ from gaspart.analysis.run import open_run
 from gaspart.analysis.series import face_pressures
 from gaspart.cli.stated_run import run_options
 from gaspart.runs.ending import Accuracy
-from gaspart.state.optional_tallies import ImpulseTally
+from gaspart.state.tally import ImpulseTally
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import read_recipe
 
@@ -75,7 +75,7 @@ ENGINES = {"event": gp.EventDriven(), "step": gp.TimeStepped(2.0**-6)}
 def column(request, tmp_path_factory):
     """A thin column of spheres that fall, with its impulses."""
     path = tmp_path_factory.mktemp("column") / f"{request.param}.nc"
-    return gp.run(COLUMN, ENGINES[request.param], 5, 600.0, 0.5, path, impulses="z:80")
+    return gp.run(COLUMN, ENGINES[request.param], 5, 600.0, 0.5, path, tallies=[gp.ImpulseTally("z", 80)])
 
 
 def counted(run):
@@ -148,20 +148,32 @@ def test_along_a_periodic_axis_a_gas_is_uniform_in_a_moving_frame_too():
 @pytest.mark.parametrize("name", ENGINES)
 def test_a_run_that_is_extended_keeps_its_impulses(name, tmp_path):
     engine = ENGINES[name]
-    whole = gp.run(COLUMN, engine, 1, 20.0, 1.0, tmp_path / "whole.nc", impulses="z:10")
-    short = gp.run(COLUMN, engine, 1, 10.0, 1.0, tmp_path / "short.nc", impulses="z:10", keep_checkpoint=True)
+    whole = gp.run(COLUMN, engine, 1, 20.0, 1.0, tmp_path / "whole.nc", tallies=[gp.ImpulseTally("z", 10)])
+    short = gp.run(
+        COLUMN,
+        engine,
+        1,
+        10.0,
+        1.0,
+        tmp_path / "short.nc",
+        tallies=[gp.ImpulseTally("z", 10)],
+        keep_checkpoint=True,
+    )
     assert gp.resume(short, duration=20.0).read_bytes() == whole.read_bytes()
     assert "--impulses z:10" in " ".join(run_options(whole, read_recipe(whole)))
 
 
 def test_runs_with_different_impulses_are_neither_one_run_nor_replicas(tmp_path):
-    path = gp.run(COLUMN, gp.EventDriven(), 1, 20.0, 0.5, tmp_path / "one.nc", impulses="z:10")
+    path = gp.run(
+        COLUMN, gp.EventDriven(), 1, 20.0, 0.5, tmp_path / "one.nc", tallies=[gp.ImpulseTally("z", 10)]
+    )
     bits = path.read_bytes()
-    for n, other in enumerate(("z:20", "x:10", None)):
+    for n, other in enumerate(([gp.ImpulseTally("z", 20)], [gp.ImpulseTally("x", 10)], [])):
+        text = other[0].to_text() if other else "none"
         with pytest.raises(gp.SceneError, match="of another run"):
-            gp.run(COLUMN, gp.EventDriven(), 1, 20.0, 0.5, path, impulses=other)
-        apart = gp.run(COLUMN, gp.EventDriven(), 2, 20.0, 0.5, tmp_path / f"{n}.nc", impulses=other)
-        with pytest.raises(gp.SceneError, match=f"impulses = '{other or 'none'}': are z:10 in .*one.nc"):
+            gp.run(COLUMN, gp.EventDriven(), 1, 20.0, 0.5, path, tallies=other)
+        apart = gp.run(COLUMN, gp.EventDriven(), 2, 20.0, 0.5, tmp_path / f"{n}.nc", tallies=other)
+        with pytest.raises(gp.SceneError, match=f"impulses = '{text}': are z:10 in .*one.nc"):
             A.replicas("density", [path, apart])
     assert path.read_bytes() == bits
 
@@ -203,14 +215,16 @@ def test_coefficients_are_those_of_the_other_half():
 def thin(tmp_path_factory):
     """A thin gas between two walls, with its impulses."""
     path = tmp_path_factory.mktemp("thin") / "run.nc"
-    return gp.run(SCENE, gp.EventDriven(), 1, 800.0, 0.5, path, impulses="z:8")
+    return gp.run(SCENE, gp.EventDriven(), 1, 800.0, 0.5, path, tallies=[gp.ImpulseTally("z", 8)])
 
 
 def test_the_balance_of_the_virial_holds_without_contacts(tmp_path):
     """Of points, to rounding: the impulses of both walls are twice the kinetic energy along their normal,
     over the way that centres have, less what is stored."""
     points = gp.Scene(SLIT, [gp.Species(7, 1e-6, temperature=1.0)])
-    path = gp.run(points, gp.EventDriven(), 3, 40.0, 1.0, tmp_path / "run.nc", impulses="z:5")
+    path = gp.run(
+        points, gp.EventDriven(), 3, 40.0, 1.0, tmp_path / "run.nc", tallies=[gp.ImpulseTally("z", 5)]
+    )
     with open_trajectory(path) as data, open_run(data, 0.0) as run:
         assert not run.increments("collisions").any() and not group_count(run)
         low, high = 25.0 * face_pressures(run)[:, 4:].T
@@ -247,7 +261,9 @@ UNEVEN = {
 
 @pytest.mark.parametrize("name", UNEVEN)
 def test_where_the_energy_is_not_constant_there_are_no_controls(name, tmp_path):
-    path = gp.run(UNEVEN[name], gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "run.nc", impulses="z:8")
+    path = gp.run(
+        UNEVEN[name], gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "run.nc", tallies=[gp.ImpulseTally("z", 8)]
+    )
     with open_trajectory(path) as data, open_run(data, 0.0) as run:
         assert wall_controls(run, 2) is None and group_count(run)
     found = A.wall_pressure(path)
@@ -257,7 +273,7 @@ def test_where_the_energy_is_not_constant_there_are_no_controls(name, tmp_path):
 
 def test_steps_keep_no_impulses_for_a_pressure_as_they_share_energy_unevenly(tmp_path):
     steps = gp.TimeStepped(0.02)
-    run = gp.run(SCENE, steps, 1, 100.0, 0.5, tmp_path / "run.nc", impulses="z:8")
+    run = gp.run(SCENE, steps, 1, 100.0, 0.5, tmp_path / "run.nc", tallies=[gp.ImpulseTally("z", 8)])
     with open_trajectory(run) as data, open_run(data, 0.0) as opened:
         assert wall_controls(opened, 2) is None and group_count(opened)
         found, bare = A.wall_pressure(data), A.wall_pressure(data.assign_attrs(tallies="[]"))
@@ -270,9 +286,22 @@ def test_steps_keep_no_impulses_for_a_pressure_as_they_share_energy_unevenly(tmp
 
 def test_a_file_without_all_states_and_another_axis_have_none(tmp_path):
     box = gp.Scene(gp.Container((5.0, 5.0, 8.0)), [GAS])
-    path = gp.run(box, gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "few.nc", impulses="x:8", follow=3)
-    whole = gp.run(box, gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "all.nc", impulses="x:8")
-    half = gp.run(box, gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "half.nc", impulses="x:8", keep="positions")
+    path = gp.run(
+        box, gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "few.nc", tallies=[gp.ImpulseTally("x", 8)], follow=3
+    )
+    whole = gp.run(
+        box, gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "all.nc", tallies=[gp.ImpulseTally("x", 8)]
+    )
+    half = gp.run(
+        box,
+        gp.EventDriven(),
+        1,
+        60.0,
+        0.5,
+        tmp_path / "half.nc",
+        tallies=[gp.ImpulseTally("x", 8)],
+        keep="positions",
+    )
     for lacking in (path, half):
         with open_run(lacking, 0.0) as run:
             assert wall_controls(run, 0) is None
@@ -305,7 +334,13 @@ def test_the_pressure_of_two_discs_has_no_controls_and_an_honest_error(tmp_path)
     values, errors = [], []
     for seed in range(30):
         path = gp.run(
-            scene, gp.EventDriven("direct"), seed, 60.0, 0.25, tmp_path / f"{seed}.nc", impulses="y:40"
+            scene,
+            gp.EventDriven("direct"),
+            seed,
+            60.0,
+            0.25,
+            tmp_path / f"{seed}.nc",
+            tallies=[gp.ImpulseTally("y", 40)],
         )
         found = gp.measure(path, "pressure").sel(face="y low")
         assert "known mean" not in str(found.attrs["estimator"])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -280,3 +281,28 @@ def test_what_has_no_temperature_is_refused():
     assert math.isfinite(initial_state(scene("wall", count=1), 1).kinetic_energy)
     resting = gp.Species(5, 0.5, temperature=0.0, exact_temperature=True)
     assert initial_state(gp.Scene(gp.Container((9.0, 9.0)), [resting]), 1).kinetic_energy == 0.0
+
+
+@pytest.mark.parametrize("periodic", [True, False])
+@pytest.mark.parametrize("width", [0.0, 1e-3])
+def test_a_heap_of_particles_is_no_list_of_all_pairs(width, periodic):
+    """20000 in one place have 2e8 pairs, of 3 GB; those of a file whose positions were never set are such."""
+    rng = np.random.default_rng(5)
+    positions = 5.0 + width * rng.random((20000, 3))
+    tracemalloc.start()
+    deepest = deepest_overlap(positions, np.full(20000, 0.5), np.full(3, 10.0), (periodic,) * 3)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 100e6
+    assert deepest == 1.0 if width == 0.0 else 1.0 - 1e-4 < deepest < 1.0
+
+
+@given(st.integers(0, 10**6), st.floats(1e-6, 0.3))
+def test_the_deepest_overlap_in_a_heap_is_that_of_all_pairs(seed, width):
+    rng = np.random.default_rng(seed)
+    positions = 2.0 + width * rng.random((150, 3))
+    radii = rng.uniform(0.3, 0.9, 150)
+    apart = np.sqrt(((positions[:, None] - positions) ** 2).sum(axis=2))
+    depth = 1.0 - apart / (radii[:, None] + radii)
+    np.fill_diagonal(depth, 0.0)
+    assert deepest_overlap(positions, radii, np.full(3, 4.0), (False,) * 3) == pytest.approx(depth.max())

@@ -29,11 +29,11 @@ from gaspart.kernels.compile.cache import cache_directory
 from gaspart.kernels.compile.policy import source_digest
 from gaspart.simulation import Simulation
 from gaspart.state.given import state_at_time_zero
-from gaspart.state.optional_tallies import tallies_to_json
 from gaspart.trajectory.last_state import last_state
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.run import WriteOptions, extend, record
+from gaspart.trajectory.run_options import tallies_to_json
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -153,9 +153,8 @@ def _make(
     """
     duration, interval, correlations = scheduled
     recipe = Recipe(
-        target.scene, engine, SEED, duration, interval,
-        displacements=displacements, correlations=correlations,
-        pairs=target.declared.needs == "pairs", initial=target.start, tallies=target.tallies(engine),
+        target.scene, engine, SEED, duration, interval, initial=target.start, correlations=correlations,
+        **{**target.contents(engine), "displacements": displacements},
     )  # fmt: skip
     return record(recipe, path, WriteOptions(overwrite=True, keep_checkpoint=True))
 

@@ -162,9 +162,8 @@ class Plan:
         intervals = max(1, math.ceil(duration / interval - 1e-6))
         fixed = None if until else rounded_to_12_digits(intervals * interval)
         return Recipe(
-            scene, engine, 1, fixed, interval,
-            displacements=target.needs_paths, correlations=correlations, until=until,
-            pairs=target.declared.needs == "pairs", tallies=target.tallies(engine),
+            scene, engine, 1, fixed, interval, until=until, correlations=correlations,
+            **target.contents(engine),
         )  # fmt: skip
 
     def _until(self, duration: float) -> Until:

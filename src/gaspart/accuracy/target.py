@@ -6,12 +6,13 @@ import math
 import shlex
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from gaspart.accuracy.conditions import Conditions, known_conditions
 from gaspart.analysis.diffusion import LINEAR_FROM
-from gaspart.analysis.impulses import USUAL_BINS, knows_energies
+from gaspart.analysis.impulses import USUAL_BINS, knows_energies, useful_impulses
 from gaspart.analysis.observables import (
     OBSERVABLES,
     Named,
@@ -30,9 +31,10 @@ from gaspart.scene.faces import wall_of
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.initial import initial_state
-from gaspart.state.optional_tallies import ImpulseTally, useful_impulses
+from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
 from gaspart.trajectory.correlator import Correlations
+from gaspart.trajectory.run_options import required_contents
 
 SEED = 0
 _FRAMES = 48, 512
@@ -166,7 +168,7 @@ class Target:
         """True if the run accumulates correlations."""
         return self.declared.lags > 0
 
-    def tallies(self, engine: Engine) -> tuple[ImpulseTally, ...]:
+    def tallies(self, engine: Engine) -> tuple[OptionalTally, ...]:
         """Return the optional tallies that make the observable more accurate in a run by an engine.
 
         The tallies are impulses along the last axis. For pressures they are along the only axis across which
@@ -181,6 +183,10 @@ class Target:
         if len(axes) != 1:
             return ()
         return useful_impulses(self.scene, engine.tallies, axes.pop(), USUAL_BINS)
+
+    def contents(self, engine: Engine) -> dict[str, Any]:
+        """Return the fields of `Contents` that a run of the observable needs, without correlations."""
+        return {**required_contents({self.declared.needs}), "tallies": self.tallies(engine)}
 
     @property
     def span(self) -> tuple[float, float]:

@@ -1,8 +1,8 @@
 """Theory of a plain gas without an end, by the equation that an engine solves (`Engine.equation`).
 
-"exact": particles that meet where they touch; "boltzmann": points; "enskog": pairs that meet a diameter
-apart as often as the contact value states that the engine is given, without correlated collisions. Each
-function takes a `Gas` and an equation; NaN where nothing is known.
+"exact": particles that collide when they touch. "boltzmann": points. "enskog": pairs at the distance of a
+diameter collide at a rate proportional to the contact value of the engine, without correlated collisions.
+Each function takes a `Gas` and an equation; NaN where nothing is known.
 """
 
 from __future__ import annotations
@@ -50,7 +50,8 @@ def collision_rate(gas: Gas, equation: str) -> float:
 def diffusion(gas: Gas, equation: str) -> float:
     """Compute the coefficient of self-diffusion of spheres; NaN for discs.
 
-    It is Erpenbeck and Wood's for the exact dynamics, otherwise the coefficient of the kinetic equation.
+    For the exact dynamics it is the result of Erpenbeck and Wood, otherwise the coefficient of the kinetic
+    equation.
     """
     if gas.dimension == 2 or (equation == EXACT and not _fluid(gas)):
         return math.nan

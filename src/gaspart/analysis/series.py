@@ -24,12 +24,12 @@ def compressibility(run: Run) -> np.ndarray:
 
         Z = P V / (N k_B T) = 1 + sum |dr . dp| / (d N k_B T t).
 
-    The temperature is defined by the motion about the centre of mass, k_B T = 2 E' / (d (N - 1)). A pair at
-    contact gives |dp| proportional to |v_n| at a rate proportional to it, so the sum grows with <v_n^2>, v_n
-    one component of v_1 - v_2. That is linear in the energy (fixing the energy changes nothing), and with
-    zero total momentum <v_1 . v_2> = -<v^2> / (N - 1), hence <v_n^2> = 2 k_B T / m with this T. So Z - 1 is
-    the value of the canonical ensemble of N particles, whose distance from the infinite system is known to
-    first order in 1/N (`theory.finite_size_correction(..., ensemble="canonical")`).
+    The temperature is defined by the motion about the centre of mass, k_B T = 2 E' / (d (N - 1)). In a pair
+    collision |dp| and the collision rate are both proportional to |v_n|, where v_n is the normal component of
+    v_1 - v_2. So the sum is proportional to <v_n^2>. This mean is linear in the energy, so a fixed energy
+    changes nothing. With zero total momentum <v_1 . v_2> = -<v^2> / (N - 1), hence <v_n^2> = 2 k_B T / m with
+    this T. So Z - 1 is the value of the canonical ensemble of N particles. Its difference from the infinite
+    system is known to first order in 1/N (`theory.finite_size_correction(..., ensemble="canonical")`).
     """
     return compressibility_factor(
         run.increments("virial_sum"), run.count, run.dimension, run.temperature, np.diff(run.time)
@@ -60,7 +60,7 @@ def collision_rate(run: Run) -> np.ndarray:
 def face_impulses(run: Run) -> np.ndarray:
     """Compute the momentum (T - 1, 2d) given to each face in each interval.
 
-    It is 0 without a wall.
+    It is 0 on an axis without walls.
     """
     return np.asarray(np.abs(run.increments("wall_impulse")[:, : 2 * run.dimension]))
 
@@ -75,10 +75,10 @@ def face_pressures(run: Run) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Blocks:
-    """K blocks of equal length of a run; a remainder is in no block.
+    """K blocks of equal length of a run; the remainder of the run is not used.
 
-    Neighbours share the frame at which counters are read; averages over frames leave out the first frame of
-    the run. Raises ValueError for more blocks than intervals.
+    Neighbouring blocks share the frame at which counters are read. Averages over frames exclude the first
+    frame of the run. Raises ValueError for more blocks than intervals.
     """
 
     run: Run
@@ -96,7 +96,7 @@ class Blocks:
 
     @property
     def frames(self) -> slice:
-        """The frames of all of them."""
+        """All frames of the blocks."""
         return slice(1, self.number * self.length + 1)
 
     @property
@@ -153,11 +153,11 @@ def plateau(
 
     The arguments `volume` (per particle, any order), `pressure` and its standard errors have the shape (P,).
     A finite system in the coexistence region has a loop (Mayer and Wood, J. Chem. Phys. 42, 4268 (1965))
-    because its interface costs free energy; the area between the ends is the difference in free energy, so
-    the line is where both phases have the same chemical potential. The loop is interpolated monotonically
-    between points (Fritsch and Carlson). The error is half of the width of the middle 68 % of loops redrawn
-    from the points' errors. Without a loop, or if less than half of the redrawn ones have a loop: NaN, NaN,
-    (NaN, NaN).
+    because the interface of the finite system costs free energy. The area between the ends is the difference
+    in free energy, so at the line both phases have the same chemical potential. The loop is interpolated
+    monotonically between points (Fritsch and Carlson). The error is half of the width of the middle 68 % of
+    loops redrawn from the points' errors. Without a loop, or if less than half of the bootstrap samples have
+    a loop: NaN, NaN, (NaN, NaN).
     """
     order = np.argsort(volume)
     volume, pressure, error = (np.asarray(values, dtype=float)[order] for values in (volume, pressure, error))

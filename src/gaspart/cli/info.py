@@ -98,8 +98,6 @@ def _measurable(recipe: Recipe) -> list[str]:
     """
     from gaspart.analysis.observables import OBSERVABLES, require_defined, require_kept
 
-    correlations = recipe.correlations
-    kept = ["fluxes"] * bool(correlations and correlations.stress) + ["pairs"] * recipe.pairs
     measured, others = [], []
     for name, observable in OBSERVABLES.items():
         try:
@@ -107,7 +105,7 @@ def _measurable(recipe: Recipe) -> list[str]:
         except SceneError:
             continue
         try:
-            require_kept(name, kept)
+            require_kept(name, recipe.kept)
             measured.append(name)
         except SceneError:
             others.append(f"{name} ({observable.needs})")

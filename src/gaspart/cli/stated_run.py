@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from gaspart.cli.engine_options import changed_options, engine_settings, join_numbers
 from gaspart.engines import engine_to_dict
-from gaspart.trajectory.run_options import OPTIONS
+from gaspart.trajectory.run_options import OPTIONS, stated_options
 
 if TYPE_CHECKING:
     from gaspart.accuracy.reached import AccuracyStatus
@@ -67,7 +67,6 @@ def _why_ended(path: Path, reached: list[AccuracyStatus]) -> str:
 
 def run_options(path: Path, recipe: Recipe) -> list[str]:
     """Return the options of `gaspart run` for a recipe; for a replica, options of all replicas."""
-    from gaspart.trajectory.recipe import stated_options
     from gaspart.trajectory.replicas import of_all, path_of_all
 
     path, (recipe, replicas) = path_of_all(path, recipe), of_all(recipe)

@@ -96,7 +96,7 @@ class Engine:
     excludes : pairs of features that it does not model together
     neutral_settings : settings that change no bit of its results
     forbids_overlap : whether particles never overlap
-    tallies : names of the `state.optional_tallies` that it supports
+    tallies : names of the optional tallies (`state.tally`) that it supports
     first_segment : work, in events or steps, of the first part of a run, after which the clock is read for
         the first time
     reference : True if the engine has no systematic error, so that other engines are compared with it

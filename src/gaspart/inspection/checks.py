@@ -27,10 +27,12 @@ from gaspart.inspection.statistics import (
     contact_values,
     decorrelated_frames,
     density_modulation,
+    describe_motion,
     diffusion,
     expected_diffusion,
     first_relaxed_frame,
     groups_of,
+    has_too_few_contacts,
     judge_speeds,
     why_not,
     why_not_speeds,
@@ -166,7 +168,7 @@ def _pressure(frames: Frames) -> Check:
     way, spacing = frames.path, frames.spacing
     first = first_relaxed_frame(way, spacing)
     if first is None:
-        return Check(name, None, _describe_motion(way, spacing))
+        return Check(name, None, describe_motion(way, spacing))
     chosen = np.array(decorrelated_frames(way, WIDTH * gas.diameter, first))
     if len(chosen) < _LEAST_FRAMES:
         text = f"{len(chosen)} independent samples are too few for an error: it needs {_LEAST_FRAMES}"
@@ -176,9 +178,10 @@ def _pressure(frames: Frames) -> Check:
     if frames.counted is not None and frames.time is not None:
         return _by_collisions(frames.counted, float(frames.time[first]))
     chosen = chosen[np.unique(np.linspace(0, len(chosen) - 1, MOST_FRAMES).astype(int))]
-    contact_value = correlated_mean(
-        contact_values(replace(frames, positions=frames.positions[chosen]))
-    ).estimate
+    used = replace(frames, positions=frames.positions[chosen])
+    if has_too_few_contacts(used):
+        return Check(name, None, f"pairs near contact are too few in {len(chosen)} independent samples")
+    contact_value = correlated_mean(contact_values(used)).estimate
     first_order = 2.0 ** (d - 1) * eta
     try:
         side = float(np.min(frames.lengths)) / gas.diameter
@@ -221,14 +224,6 @@ def _no_pressure(frames: Frames) -> str | None:
     return None
 
 
-def _describe_motion(way: np.ndarray, distance: float) -> str:
-    """Return the reason why a run is not relaxed."""
-    there = math.sqrt(float((way[-1] ** 2).sum(axis=1).mean()))
-    return (
-        f"particles must move by {distance:.3g} after the first frame, to relax; they have moved {there:.2g}"
-    )
-
-
 def _diffusion(frames: Frames) -> Check:
     """Check D of spheres, from their mean-squared displacement, against theory."""
     name = _DIFFUSION
@@ -237,7 +232,7 @@ def _diffusion(frames: Frames) -> Check:
     way, spacing = frames.path, frames.spacing
     first = first_relaxed_frame(way, spacing)
     if first is None:
-        return Check(name, None, _describe_motion(way, spacing))
+        return Check(name, None, describe_motion(way, spacing))
     assert frames.velocities is not None and frames.time is not None, "see `why_not`"
     used = replace(
         frames,

@@ -17,6 +17,8 @@ from gaspart.files import open_regular
 from gaspart.inspection.contents import Contents, Overrides
 
 _PAIR = re.compile(r"""([^\s="'{}\[\],]+)\s*=\s*("[^"]*"|'[^']*'|\{[^}]*\}|\[.*?\](?=\s|$)|\S+)""")
+_EXPONENT = re.compile(r"[eEdD]\S*")
+_NO_SIGNS = str.maketrans("", "", "+-.")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
 _NAMES = {
     "pos": ("pos", "positions"),
@@ -258,12 +260,10 @@ def _vector(pairs: dict[str, str], key: str, sizes: tuple[int, ...], option: str
 
 def _most_digits(tokens: Iterable[str]) -> int:
     """Return the largest number of significant digits of some printed numbers."""
-    most = 0
-    for token in tokens:
-        if len(token) > most:  # else it cannot have more
-            mantissa = re.split("[eEdD]", token)[0].lstrip("+-").replace(".", "")
-            most = max(most, len(mantissa.lstrip("0")))
-    return most
+    text = " ".join(tokens)
+    if _EXPONENT.search(text):
+        text = _EXPONENT.sub("", text)
+    return max((len(token.lstrip("0")) for token in text.translate(_NO_SIGNS).split(" ")), default=0)
 
 
 def _resolution(positions: np.ndarray, digits: int) -> float:

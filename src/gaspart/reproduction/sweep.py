@@ -41,6 +41,7 @@ from gaspart.runs.ending import Accuracy
 from gaspart.scene.scene import Scene, require_scene
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.recipe import multiple
+from gaspart.trajectory.run_options import required_contents
 from gaspart.trajectory.until import Until
 from gaspart.workers import in_processes, require_processes
 from gaspart.yaml_text import dump_yaml
@@ -282,10 +283,9 @@ def _length(
 
 def _contents(names: list[str], correlations: Correlations | None, length: dict[str, Any]) -> dict[str, Any]:
     """Return the keys of the contents of a point's files, or raise SceneError."""
-    needs = {OBSERVABLES[name].needs for name in names}
-    stored: dict[str, Any] = {"displacements": "paths" in needs}
-    if "until" not in length:
-        stored["pairs"] = "pairs" in needs
+    stored: dict[str, Any] = required_contents({OBSERVABLES[name].needs for name in names})
+    if "until" in length:
+        del stored["pairs"]
     if correlations is None:
         return stored
     if "until" in length:

@@ -5,25 +5,26 @@ They run scenes for a duration or until observables are accurate, also as replic
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 
 from gaspart.accuracy.reached import AccuracyStatus, Examiner
-from gaspart.analysis.observables import OBSERVABLES
 from gaspart.engines import Engine, resolve_engine
 from gaspart.errors import SceneError
 from gaspart.files import is_same_file, output_path
+from gaspart.keys.classes import field_values
 from gaspart.keys.values import count_of
 from gaspart.runs.ending import (
     Accuracy,
+    contents_until,
     default_sample_interval,
-    require_end,
-    require_measurable,
     require_reachable,
 )
 from gaspart.runs.replicas import record_together, resume_together
 from gaspart.scene.scene import Scene, require_scene
+from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
 from gaspart.trajectory import run as trajectory
 from gaspart.trajectory.checkpoint import checkpoint_path
@@ -34,7 +35,7 @@ from gaspart.trajectory.recipe import MOST_REPLICAS, Recipe
 from gaspart.trajectory.recording import Progress
 from gaspart.trajectory.replicas import find_run, in_replicas, replica_paths
 from gaspart.trajectory.run import WriteOptions
-from gaspart.trajectory.run_options import recipe_fields
+from gaspart.trajectory.run_options import Contents
 from gaspart.trajectory.until import Until
 
 
@@ -53,8 +54,7 @@ def run(
     keep: str | None = None,
     correlations: Correlations | None = None,
     pairs: bool = False,
-    impulses: str | None = None,
-    pair_impulses: str | None = None,
+    tallies: Iterable[OptionalTally] = (),
     initial: State | str | Path | None = None,
     checkpoint_seconds: float = 30.0,
     progress: Progress | None = None,
@@ -101,15 +101,13 @@ def run(
         with ``Correlations(stress=True)``, of the stress tensor and the heat flux.
     pairs : bool, default False
         Count the collisions of each pair of species in each frame.
-    impulses : str, optional
-        Axis and number of bins of a density profile from impulses, such as "z:200", which is more accurate
-        than counts. Event-driven engine only.
-    pair_impulses : str, optional
-        Distance, number of shells and fraction of contacts of a g(r) from impulses, such as "3:300:0.5",
-        which is more accurate than counts. Event-driven engine only.
-    initial : State, str or Path, optional Initial state: a state, the last state of a trajectory
-        (`last_state`), or a GSD or XYZ file (`read_state`). The particles and the size of the container must
-        be the same as in `scene`. Defaults of engines still follow from the scene's speeds or temperatures.
+    tallies : iterable of OptionalTally, optional
+        Sums to store that not every run has: ``ImpulseTally("z", 200)`` for densities and pressures,
+        ``PairImpulseTally(3.0, 300, 0.5)`` for g(r), more accurate than by counts.
+    initial : State, str or Path, optional
+        Initial state: a state, the last state of a trajectory (`last_state`), or a GSD or XYZ file
+        (`read_state`). The particles and the size of the container must be the same as in `scene`. Defaults
+        of engines still follow from the scene's speeds or temperatures.
     checkpoint_seconds : float, default 30.0
         Wall-clock time between checkpoints, in seconds.
     progress : callable, optional
@@ -159,16 +157,18 @@ def run(
     """
     engine = _engine_of(scene, engine)
     request = _request(duration, sample_interval, until, at_most)
-    needs_paths = _needs_paths(request, scene, engine, follow, correlations, initial)
+    contents = Contents(
+        displacements=displacements, follow=follow, keep=keep, correlations=correlations, pairs=pairs,
+        tallies=tallies,
+    )  # fmt: skip
+    if request is not None:
+        contents = contents_until(request, scene, engine, contents, from_state=initial is not None)
+        contents = _with_useful_tally(contents, request, scene, engine)
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
-    if impulses is None and request is not None:
-        impulses = _useful_impulses(request, scene, engine)
-    tallies = {"impulses": impulses, "pair_impulses": pair_impulses}
     recipe = Recipe(
-        scene, engine, seed, duration, sample_interval, displacements or needs_paths,
-        correlations=correlations, until=request, initial=_start(initial, scene, path, replicas),
-        **recipe_fields({"follow": follow, "keep": keep, "pairs": pairs, **tallies}),
+        scene, engine, seed, duration, sample_interval, until=request,
+        initial=_start(initial, scene, path, replicas), **field_values(contents),
     )  # fmt: skip
     options = WriteOptions(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
     return _record(_in_replicas(recipe, replicas), _require_path(path), options, examined)
@@ -181,17 +181,6 @@ def _engine_of(scene: object, engine: Engine | str | None) -> Engine:
     """
     require_scene(scene)
     return resolve_engine(engine)
-
-
-def _useful_impulses(request: Until, scene: Scene, engine: Engine) -> str | None:
-    """Return the tally of impulses that makes requested accuracies cheaper; None without one."""
-    from gaspart.accuracy.target import Target  # loads the analysis, which few runs need
-
-    each = (
-        Target(scene, requirement.observable, requirement.face).tallies(engine)
-        for requirement in request.accuracies
-    )
-    return next((tally.to_text() for tallies in each for tally in tallies), None)
 
 
 def _in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
@@ -218,25 +207,18 @@ def _record(
     return trajectory.record(recipes[0], path, options)
 
 
-def _needs_paths(
-    request: Until | None,
-    scene: Scene,
-    engine: Engine,
-    follow: int | None,
-    correlations: Correlations | None,
-    initial: State | str | Path | None,
-) -> bool:
-    """Return True if a requested accuracy needs displacements.
+def _with_useful_tally(contents: Contents, request: Until, scene: Scene, engine: Engine) -> Contents:
+    """Add a tally that makes requested accuracies cheaper, if there is one, to the contents of a file."""
+    from gaspart.accuracy.target import Target  # loads the analysis, which few runs need
 
-    Raises SceneError if the observable cannot be measured or never becomes accurate, also for a run from a
-    given state.
-    """
-    if request is None:
-        return False
-    for requirement in request.accuracies:
-        require_measurable(requirement, scene, engine, follow, correlations)
-        require_end(requirement, scene, request.at_most, initial is not None)
-    return any(OBSERVABLES[requirement.observable].needs == "paths" for requirement in request.accuracies)
+    useful = (
+        tally
+        for requirement in request.accuracies
+        for tally in Target(scene, requirement.observable, requirement.face).tallies(engine)
+    )
+    present = {tally.name for tally in contents.tallies}
+    first = next((tally for tally in useful if tally.name not in present), None)
+    return replace(contents, tallies=(*contents.tallies, first)) if first else contents
 
 
 def _start(

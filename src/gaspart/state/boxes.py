@@ -10,12 +10,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from itertools import chain, combinations_with_replacement
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.keys.values import partition
 from gaspart.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
 
 NOWHERE = -1
 
@@ -378,6 +382,27 @@ def work(scene: Scene, largest: float) -> float:
 # Deepest overlap of particles of any sizes, in time and memory that grow as their number.
 
 
+_CROWD, _SAMPLE = 32.0, 256
+"""Mean number of neighbours of some particles from which on others are not only those that touch."""
+
+
+def _reach_of_deepest(tree: cKDTree, other: cKDTree, reach: float) -> float:
+    """Return the largest distance at which the deepest overlap of two classes of sizes can be.
+
+    It is `reach` for particles that touch. Where many lie on top of each other, their pairs within `reach`
+    are more than memory holds. Contact distances differ by less than a factor of two. So if the nearest pair
+    is at q, no deeper one is beyond 2 q. The distance is 0 if two centres coincide.
+    """
+    itself = tree is other
+    sample = tree.data[:: max(1, tree.n // _SAMPLE)]
+    if other.query_ball_point(sample, reach, return_length=True).mean() <= _CROWD:
+        return reach
+    if tree.count_neighbors(other, 0.0) > (tree.n if itself else 0):
+        return 0.0
+    distances, _ = other.query(tree.data, k=[2] if itself else [1])
+    return min(reach, 2.0 * float(distances.min()))
+
+
 def deepest_overlap(
     positions: np.ndarray, radii: np.ndarray, lengths: np.ndarray, periodic: tuple[bool, ...]
 ) -> float:
@@ -417,6 +442,9 @@ def deepest_overlap(
     trees = [cKDTree(positions[indices], boxsize=sides) for indices in members]
     for a, b in combinations_with_replacement(range(len(members)), 2):
         reach = float(radii[members[a]].max() + radii[members[b]].max())
+        reach = _reach_of_deepest(trees[a], trees[b], reach)
+        if reach == 0.0:
+            return 1.0
         if a == b:
             pairs = trees[a].query_pairs(reach, output_type="ndarray")
         else:  # the larger ones ask: they are fewer where sizes differ much

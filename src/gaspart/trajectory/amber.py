@@ -18,11 +18,11 @@ from typing import TYPE_CHECKING, BinaryIO
 import numpy as np
 
 from gaspart.engines import ENGINES, Engine
-from gaspart.state.optional_tallies import OptionalTally, tallied_fields
+from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.tally import Tally
 from gaspart.system import read_at, write_at
 from gaspart.trajectory.correlator import meaning_of
-from gaspart.trajectory.run_options import KEPT
+from gaspart.trajectory.run_options import KEPT, tallied_fields
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene

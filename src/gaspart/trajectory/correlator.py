@@ -19,8 +19,8 @@ from gaspart.errors.guidance import with_guidance
 from gaspart.keys.values import count_of, number
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
-from gaspart.state.optional_tallies import OptionalTally, StressTally
-from gaspart.state.tally import ACTION, HEAT
+from gaspart.state.optional_tallies import OptionalTally
+from gaspart.state.tally import ACTION, HEAT, StressTally
 
 SUMS = {
     "velocity_product_sum": "v(0).v(t)",

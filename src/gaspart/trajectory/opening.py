@@ -133,16 +133,16 @@ def open_verified(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
     """
     try:
         with open_regular(path) as file:
-            status = os.fstat(file.fileno())
             if path.suffix == PARTIAL and amber.is_blank(file):
                 raise ValueError("nothing was written to it yet; start the run again with `gaspart run`")
             header, frames = amber.stored_header(file), frame_count(file)
             expected = len(header) + frames * amber.frame_bytes(header)
-            if status.st_size < expected:
-                rule = f"is truncated: {status.st_size} bytes, where {frames} frames need {expected}"
+            size = os.fstat(file.fileno()).st_size  # last: another replica may append frames meanwhile
+            if size < expected:
+                rule = f"is truncated: {size} bytes, where {frames} frames need {expected}"
                 raise ValueError(rule)
-            if status.st_size > expected and path.suffix != PARTIAL:  # a partial file may end within a frame
-                rule = f"is damaged: {status.st_size} bytes, where {frames} frames need {expected}"
+            if size > expected and path.suffix != PARTIAL:  # a partial file may end within a frame
+                rule = f"is damaged: {size} bytes, where {frames} frames need {expected}"
                 raise ValueError(rule)
             yield file, header, frames
     except OSError as error:

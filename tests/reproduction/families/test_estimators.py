@@ -53,7 +53,7 @@ def run(tmp_path_factory):
     container = gp.Container((6.0, 6.0, 4.0), ("periodic", "periodic", "wall"))
     scene = gp.Scene(container, [gp.Species(20, 0.4, temperature=1.0)], gravity=(0.0, 0.0, -0.5))
     path = tmp_path_factory.mktemp("falling") / "run.nc"
-    gp.run(scene, gp.EventDriven(), 5, 65.0, 0.5, path, impulses="z:16")
+    gp.run(scene, gp.EventDriven(), 5, 65.0, 0.5, path, tallies=[gp.ImpulseTally("z", 16)])
     with open_trajectory(path) as data, open_run(data, 0.0) as found:
         yield found
 
@@ -79,7 +79,9 @@ def test_pressures_of_a_run_by_impulses_and_with_what_is_known(run, tmp_path):
     """Under gravity nothing is known beside them, so that both are one."""
     assert pressures_of(run) == {"pressure": 1.0, "pressures_apart": 0.0}
     scene = replace(run.scene, gravity=None)
-    path = gp.run(scene, gp.EventDriven(), 1, 200.0, 0.5, tmp_path / "run.nc", impulses="z:4")
+    path = gp.run(
+        scene, gp.EventDriven(), 1, 200.0, 0.5, tmp_path / "run.nc", tallies=[gp.ImpulseTally("z", 4)]
+    )
     with open_trajectory(path) as data, open_run(data, 20.0) as found:
         gained = pressures_of(found)
     assert gained["pressure"] > 4.0 and abs(gained["pressures_apart"]) < 0.1

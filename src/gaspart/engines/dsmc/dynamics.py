@@ -14,7 +14,7 @@ from gaspart.engines.dsmc.resolution import EPOCH, HIGHEST, Resolution
 from gaspart.engines.dynamics import check_parts
 from gaspart.engines.features.law import LawPart, contact_law
 from gaspart.engines.features.part import Part, TallyPart, step_kicks
-from gaspart.engines.features.tallies import ThreadedPerAreaPart
+from gaspart.engines.features.tallies import ThreadedPerAreaPart, tallied_fluxes
 from gaspart.engines.step.limits import oversized_particles
 from gaspart.engines.stepped import SteppedDynamics
 from gaspart.errors import SceneError, SimulationError
@@ -27,7 +27,6 @@ from gaspart.kernels.physics.exact_sum import WIDTH, exact_parts, sum_over_threa
 from gaspart.scene.scene import Scene
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State, drift_of
-from gaspart.state.tally import tallied_fluxes
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.settings import DSMC

@@ -11,7 +11,7 @@ from gaspart.errors import SceneError
 from gaspart.errors.guidance import with_guidance
 from gaspart.keys import choice, declare, per_side
 from gaspart.scene.features import FEATURES
-from gaspart.state.optional_tallies import TALLIES
+from gaspart.state.tally import TALLIES
 
 if TYPE_CHECKING:
     from gaspart.engines.event.dynamics import EventDynamics
@@ -80,7 +80,7 @@ class EventDriven(Engine):
     name: ClassVar[str] = "event"
     title: ClassVar[str] = "event-driven"
     records_events: ClassVar[bool] = True
-    tallies: ClassVar[frozenset[str]] = frozenset(tally.name for tally in TALLIES)
+    tallies: ClassVar[frozenset[str]] = frozenset(TALLIES)
     models: ClassVar[frozenset[str]] = frozenset(FEATURES)
     neutral_settings: ClassVar[tuple[str, ...]] = ("search", "boxes_per_side")
     first_segment: ClassVar[int] = 256  # events with crossings and predictions

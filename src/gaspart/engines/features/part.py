@@ -124,7 +124,7 @@ class Part:
 
 
 class TallyPart(Part):
-    """Optional tally in a run (`state.optional_tallies`).
+    """Optional tally in a run (`state.tally`).
 
     name : name of the tally
     kernel : data for the kernels, which add to the entry of this name in their own tally

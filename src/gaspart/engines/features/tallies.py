@@ -23,9 +23,31 @@ from gaspart.scene.faces import FLOW, GRADIENT
 from gaspart.scene.features import row_count
 from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
-from gaspart.state.optional_tallies import ImpulseTally, OptionalTally, PairImpulseTally, PerAreaTally
+from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State, drift_of
-from gaspart.state.tally import tallied_fluxes
+from gaspart.state.tally import ImpulseTally, PairImpulseTally, PerAreaTally
+
+
+def tallied_fluxes(sums: np.ndarray, drift: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the fields of `Tally` for the fluxes of momentum and heat.
+
+    Parameters
+    ----------
+    sums : ndarray, shape (2 d^2 + d,)
+        Sums of the stress tensor and of its collisional part, each by rows, and of the heat flux.
+    drift : ndarray, shape (d,), [length/time]
+        Velocity about which the sums are.
+
+    Returns
+    -------
+    dict of str to ndarray
+        `stress_sum`, `collisional_stress_sum`, `heat_sum` and `flux_velocity`.
+    """
+    dimension = len(drift)
+    stress = sums[: 2 * dimension**2].reshape(2, dimension, dimension)
+    heat = sums[2 * dimension**2 :]
+    fluxes = {"stress_sum": stress[0], "collisional_stress_sum": stress[1], "heat_sum": heat}
+    return {**fluxes, "flux_velocity": drift.copy()}
 
 
 class StressPart(TallyPart):

@@ -22,8 +22,9 @@ from gaspart.scene.features import row_count
 from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
 from gaspart.state.boxes import cube_side, make_boxes
-from gaspart.state.optional_tallies import ImpulseTally, OptionalTally
+from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
+from gaspart.state.tally import ImpulseTally
 
 if TYPE_CHECKING:
     from gaspart.engines.step.settings import TimeStepped

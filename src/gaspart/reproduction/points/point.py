@@ -47,7 +47,7 @@ class Job(Protocol):
         """Return the engines whose kernels it compiles, if particles are not only placed."""
 
     def arguments(self, point: Point) -> dict:
-        """Return the arguments of its function; raise SceneError."""
+        """Return the arguments of the point's function; raise SceneError."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ class Point:
     def seed(self, replica: int = 0) -> tuple[int, ...]:
         """Return four 32-bit words that depend on the names alone.
 
-        They do not depend on the position of the point in its grid.
+        The seeds do not depend on the position of the point in its grid.
         """
         text = f"{self.config_seed}/{self.experiment}/{self.name}/{replica}"
         digest = hashlib.sha256(text.encode()).digest()
@@ -127,8 +127,8 @@ class Point:
     def kind_of_job(self) -> Job:
         """Module of the job.
 
-        Here and below modules are imported by their names: measurements, which read points too, so depend on
-        no job.
+        In this module jobs are imported by their names, so measurements, which read points too, do not depend
+        on any job.
         """
         return import_module(f"{_JOBS}.{self.job}")
 
@@ -145,7 +145,7 @@ class Point:
 
     @cached_property
     def arguments(self) -> dict:
-        """Arguments of the job's function: exactly those on which its result depends."""
+        """Arguments of the job's function: exactly the values on which its result depends."""
         return self.kind_of_job.arguments(self)
 
     @property
@@ -158,7 +158,7 @@ class Point:
         return SceneError(f"experiments.{self.experiment}.{key}", self.settings.get(key), rule)
 
     def to_dict(self) -> dict:
-        """Return plain values without `root`, which depends on where a workflow keeps its files."""
+        """Return plain values without `root`, which depends on the folder of the files of a workflow."""
         return {key: value for key, value in asdict(self).items() if key != "root"}
 
     @classmethod
@@ -170,8 +170,8 @@ class Point:
 def name_of(varying: dict, where: str) -> str:
     """Return the name of a point for a file system: its varying keys and their values.
 
-    Raises SceneError, naming the key below ``where``, for a value that no file name can hold, and a name that
-    is too long.
+    Raises SceneError, naming the key below ``where``, for a value that a file name cannot contain, and for a
+    name that is too long.
     """
     parts = [f"{_text(key, where)}={_text(value, f'{where}.{key}')}" for key, value in varying.items()]
     name = ",".join(parts) or "single"
@@ -221,7 +221,7 @@ def variant(point: Point) -> str:
 def compiled_features(scene: Scene) -> set[str]:
     """Return the names of features that change the kernels of a scene.
 
-    They include those which every engine models but compiles only for scenes that have them.
+    They include features that every engine models but compiles only for scenes with these features.
     """
     names = scene.features - _NUMBERS - {"contact_duration"}
     if names & _LAW:
@@ -248,8 +248,8 @@ def _has_oversized(scene: Scene) -> bool:
 def compile_task(point: Point) -> str:
     """Return the task of `compile_kernels` for a point, as JSON.
 
-    It has its engine, its scene, with only a few particles if these have all of its features, and states if
-    it tallies the stress, and if it records events.
+    The task consists of the engine, the scene, and two flags: whether stress is tallied, and whether events
+    are recorded. The scene has only a few particles if these have all of its features.
     """
     from gaspart.scene.scene import Scene
 

@@ -81,7 +81,7 @@ def pressure(point: Point) -> Pressure:
 
 
 def combine(replicas: list[Series]) -> Pressure:
-    """Average over replicas of equal length; errors of correlated series add in quadrature."""
+    """Average over replicas of equal length; errors of correlated series are added in quadrature."""
     means = [correlated_mean(series.z) for series in replicas]
     z = average([mean.estimate for mean in means])
     deviations = [(mean.estimate - z.value).deviation for mean in means]

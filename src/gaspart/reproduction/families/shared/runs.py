@@ -41,8 +41,9 @@ def reduced_curves(point: Point, path: str, longest: float) -> Curves:
 
     `longest` is in reduced time.
 
-    The particles' diameter, mass and temperature are 1: the temperature 2 E' / (d (N - 1)) is the replica's
-    own, E' the energy about the centre of mass. One species. Raises SceneError for a point without `lags`.
+    Units are the particles' diameter, mass and temperature. The temperature 2 E' / (d (N - 1)) is computed
+    for each replica, where E' is the energy relative to the centre of mass. One species. Raises SceneError
+    for a point without `lags`.
     """
     if "lags" not in point.settings:
         raise SceneError(f"experiments.{point.experiment}.lags", None, "is required")
