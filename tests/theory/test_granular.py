@@ -11,7 +11,7 @@ from scipy.integrate import quad
 import gaspart as gp
 from gaspart import theory
 from gaspart.theory.boltzmann import homogeneous_gas, rough_discs, rough_start
-from gaspart.theory.granular import ROUGH_START_UNCERTAINTY
+from gaspart.theory.rough import ROUGH_START_UNCERTAINTY
 
 
 def drawn_matrix(q, tangential, normal, pairs=400_000):

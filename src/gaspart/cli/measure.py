@@ -197,7 +197,7 @@ def _measure_each(
 
 def _of_drift(trajectory: Any, name: str, times: tuple[float | None, float | None]) -> dict[str, str]:
     """Return the remark that the measured part of a run drifts, if it does."""
-    from gaspart.analysis.drift import drift_of
+    from gaspart.analysis.series import drift_of
 
     with until_time(trajectory, times[1]) as part:
         drift = drift_of(part, times[0], "position" in OBSERVABLES[name].along)

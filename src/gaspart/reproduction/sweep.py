@@ -163,7 +163,7 @@ def sweep(
     point |= {**_settings(scene, axes, engine), **_contents(names, correlations, point)}
     point["replicas"] = POINT["replicas"].check("replicas", replicas)
     varied = {key if key in _point_keys(engine) else PREFIX + key: values for key, values in axes.items()}
-    config = {
+    config: dict[str, Any] = {
         "experiments": {EXPERIMENT: {"job": "simulate", "point": point, "grid": varied}},
         "points": _root(folder),
         "seed": count_of("seed", seed),

@@ -17,7 +17,7 @@ from functools import lru_cache
 import numpy as np
 
 from gaspart.theory.geometry import checked_dimension, unit_sphere_surface
-from gaspart.theory.granular import rough_ratio
+from gaspart.theory.rough import rough_ratio
 
 _FLUXES = {"viscosity": (2, 0), "conductivity": (1, 1)}
 """Rank of the harmonic tensor and order of the Sonine polynomial of the stress and of the heat flux."""
@@ -317,7 +317,7 @@ def rough_discs(
 
     Notes
     -----
-    Velocities and spins start Maxwellian, at the ratio of `granular.rough_ratio`. They become correlated with
+    Velocities and spins start Maxwellian, at the ratio of `rough.rough_ratio`. They become correlated with
     time.
     """
     rng = np.random.default_rng(seed)

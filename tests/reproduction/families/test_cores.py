@@ -16,8 +16,7 @@ from gaspart.reproduction.families.cost.claims import cores as claims_of_cores
 from gaspart.reproduction.families.cost.figure import cores as draw_cores
 from gaspart.reproduction.families.cost.measure import _model
 from gaspart.reproduction.families.cost.measure import cores as measure_cores
-from gaspart.reproduction.families.cost.model import SLABS, speed_up
-from gaspart.reproduction.families.shared.timings import SYSTEMATIC
+from gaspart.reproduction.families.shared.timings import SLABS, SYSTEMATIC, speed_up
 from gaspart.reproduction.jobs.measure_cost import measure_cost
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table

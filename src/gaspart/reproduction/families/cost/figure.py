@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from gaspart.rendering import style
 from gaspart.reproduction.families.cost.claims import LARGEST_RATIO
-from gaspart.reproduction.families.cost.model import SLABS, speed_up
+from gaspart.reproduction.families.shared.timings import SLABS, speed_up
 from gaspart.reproduction.table import Row, Table
 
 WORK = {"pair_tests": "pair tests", "crossings": "crossings"}

@@ -23,8 +23,8 @@ import xarray as xr
 from scipy.optimize import nnls
 
 from gaspart.analysis.estimate import Estimate
-from gaspart.reproduction.families.cost.model import SLABS
 from gaspart.reproduction.families.shared.timings import (
+    SLABS,
     SYSTEMATIC,
     log_ratios,
     median,

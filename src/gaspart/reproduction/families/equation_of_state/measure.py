@@ -48,8 +48,7 @@ from gaspart.analysis.statistics import (
 )
 from gaspart.analysis.transport import green_kubo
 from gaspart.reproduction.families.motion.measure import spheres
-from gaspart.reproduction.families.shared.pressure import Series, combine, pressure, series_of, totals
-from gaspart.reproduction.families.shared.runs import runs
+from gaspart.reproduction.families.shared.runs import Series, combine, pressure, runs, series_of, totals
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, table
 from gaspart.scene.gas import Gas, plain_gas

@@ -11,7 +11,7 @@ from gaspart import theory
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.families.shared import PARTICLES, SOURCE_C
 from gaspart.reproduction.table import Row, Table, each
-from gaspart.theory.granular import ROUGH_START_UNCERTAINTY
+from gaspart.theory.rough import ROUGH_START_UNCERTAINTY
 
 HUTHMANN = (
     "[Huthmann 1997]: averages over Maxwellian velocities and spins, computed in "

@@ -334,10 +334,10 @@ def driven_gas(points: list[Point], settings: dict) -> xr.Dataset:
     and lost (see `means`), with their errors from replicas.
     """
     units = {"temperature": "energy", **dict.fromkeys(("power", "given", "lost"), "energy / time")}
-    return table("gas", points, _driven, units=units)
+    return table("gas", points, _steady_state, units=units)
 
 
-def _driven(point: Point) -> dict[str, Any]:
+def _steady_state(point: Point) -> dict[str, Any]:
     scene = point.scene
     assert scene.restitution is not None and scene.thermostat is not None, "a driven granular gas"
     replicas = [means(run) for run in runs(point)]
