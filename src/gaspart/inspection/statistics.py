@@ -276,7 +276,7 @@ def contact_values(frames: Frames) -> np.ndarray:
 
 
 def has_too_few_contacts(frames: Frames) -> bool:
-    """Return True if pairs near contact are too few for the scatter of `contact_values` to be an error.
+    """Return True if pairs near contact are too few for an error of `contact_values`.
 
     The number of pairs in a shell has Poisson's distribution about the mean of an ideal gas. If few are
     expected, their mean over frames is skewed. Without any pair its scatter is 0.
@@ -287,7 +287,7 @@ def has_too_few_contacts(frames: Frames) -> bool:
 
 
 def _contact_fit(frames: Frames) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the edges of shells in diameters, coefficients of their counts, and counts of an ideal gas."""
+    """Return edges of shells in diameters, coefficients of counts, counts of an ideal gas."""
     n, d, sigma = frames.count, frames.dimension, frames.diameter
     assert sigma is not None, "requires equal particles"
     edges = 1.0 + WIDTH * np.linspace(0.0, 1.0, _SHELLS + 1)

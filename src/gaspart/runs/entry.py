@@ -208,7 +208,7 @@ def _record(
 
 
 def _with_useful_tally(contents: Contents, request: Until, scene: Scene, engine: Engine) -> Contents:
-    """Add a tally that makes requested accuracies cheaper, if there is one, to the contents of a file."""
+    """Add a tally, if there is one, that makes requested accuracies cheaper."""
     from gaspart.accuracy.target import Target  # loads the analysis, which few runs need
 
     useful = (
