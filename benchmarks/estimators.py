@@ -32,7 +32,7 @@ from gaspart.analysis.impulses import mixture, numbers_by_impulses
 from gaspart.analysis.pairs import STRETCHES, g_by_impulses, radial_distribution
 from gaspart.analysis.run import Run, open_run
 from gaspart.engines import Engine
-from gaspart.state.optional_tallies import ImpulseTally
+from gaspart.state.tally import ImpulseTally
 
 BLOCKS = 32
 FINE, COARSE = 64, 16
@@ -151,8 +151,8 @@ def scenes(given: argparse.Namespace) -> None:
         for seed in range(given.seeds):
             with TemporaryDirectory() as folder, ExitStack() as stack:
                 duration, path = case.interval * (given.frames - 1), Path(folder) / "run.nc"
-                kept = f"{case.axis}:{FINE}"
-                gp.run(case.scene, engine, seed, duration, case.interval, path, impulses=kept)
+                kept = gp.ImpulseTally(case.axis, FINE)
+                gp.run(case.scene, engine, seed, duration, case.interval, path, tallies=[kept])
                 run = stack.enter_context(open_run(path, 50.0))
                 for bins, rows in found.items():
                     rows.append(compared(run, "xyz".index(case.axis), bins))
@@ -184,8 +184,8 @@ def pairs(given: argparse.Namespace) -> None:
         found: dict[int, list[np.ndarray]] = {width: [] for width in widths}
         for seed in range(given.seeds):
             with TemporaryDirectory() as folder:
-                path, kept = Path(folder) / "run.nc", f"{furthest}:250:0.5"
-                gp.run(scene, gp.EventDriven(), seed, 200.0, 1.0, path, pair_impulses=kept)
+                path, kept = Path(folder) / "run.nc", gp.PairImpulseTally(furthest, 250, 0.5)
+                gp.run(scene, gp.EventDriven(), seed, 200.0, 1.0, path, tallies=[kept])
                 with open_run(path, 8.0) as run:
                     for width, rows in found.items():
                         rows.append(pairs_apart(run, furthest, 250 // width))
@@ -231,7 +231,7 @@ def walls(given: argparse.Namespace) -> None:
             continue
         rows, along = [], "xyz"[scene.dimension - 1]
         for seed in range(given.seeds):
-            rows.append(wall_pressures(scene, engine, seed, f"{along}:8", f"{along} low"))
+            rows.append(wall_pressures(scene, engine, seed, gp.ImpulseTally(along, 8), f"{along} low"))
         values, errors, _ = np.array(rows).transpose(1, 2, 0)
         apart = values[0] - values[1]
         z = apart.mean() / apart.std(ddof=1) * math.sqrt(len(apart))
@@ -239,12 +239,14 @@ def walls(given: argparse.Namespace) -> None:
         print(f"{name:20} apart by {z:.1f} errors; ratio of squared errors {gain:.1f}", flush=True)
 
 
-def wall_pressures(scene: gp.Scene, engine: Engine, seed: int, kept: str, face: str) -> np.ndarray:
+def wall_pressures(
+    scene: gp.Scene, engine: Engine, seed: int, kept: gp.ImpulseTally, face: str
+) -> np.ndarray:
     """(3, 2) the pressure on a face, its error and the degrees of freedom of that, by impulses alone and with
     what is known."""
     with TemporaryDirectory() as folder:
         path = Path(folder) / "run.nc"
-        gp.run(scene, engine, seed, 300.0, 0.5, path, impulses=kept)
+        gp.run(scene, engine, seed, 300.0, 0.5, path, tallies=[kept])
         return pressures_of(path, face)
 
 
@@ -269,12 +271,19 @@ def coverage(given: argparse.Namespace) -> None:
     for seed in range(given.runs):
         with TemporaryDirectory() as folder:
             path = Path(folder) / "run.nc"
-            gp.run(slit, gp.EventDriven(), seed, 300.0, 0.5, path, impulses=f"z:{COARSE}")
+            gp.run(slit, gp.EventDriven(), seed, 300.0, 0.5, path, tallies=[gp.ImpulseTally("z", COARSE)])
             found = gp.analysis.profile(path).isel(position=slice(1, -1))
             density.append([found.estimate, found.error, found["density_freedom"]])
             pressure.append(pressures_of(path, "z low"))
             gp.run(
-                fluid, gp.EventDriven(), seed, 200.0, 1.0, path, pair_impulses="2.5:25:0.2", overwrite=True
+                fluid,
+                gp.EventDriven(),
+                seed,
+                200.0,
+                1.0,
+                path,
+                tallies=[gp.PairImpulseTally(2.5, 25, 0.2)],
+                overwrite=True,
             )
             found = gp.analysis.rdf(path).isel(distance=slice(10, None))
             pair.append([found.estimate, found.error, np.full(15, STRETCHES - 1.0)])

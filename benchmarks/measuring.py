@@ -27,7 +27,7 @@ import netCDF4
 import numpy as np
 
 import gaspart as gp
-from gaspart.analysis.correlations import autocorrelation, squared_displacement
+from gaspart.analysis.motion import autocorrelation, squared_displacement
 from gaspart.analysis.pairs import radial_distribution
 from gaspart.analysis.structure_factors import factors, shells_of
 from gaspart.yaml_text import dump_yaml, parse_yaml

@@ -24,7 +24,7 @@ WITHOUT = """
     import gaspart as gp
     from gaspart.errors import SceneError
     from gaspart.interruption import exit_on_signals
-    from gaspart.reproduction.families.extremes.measure import run_guarded
+    from gaspart.reproduction.families.stability.measure import run_guarded
     from gaspart.reproduction.sweep import make_all
 
     exit_on_signals()

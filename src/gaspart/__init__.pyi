@@ -38,6 +38,9 @@ from gaspart.scene.walls import Wall as Wall
 from gaspart.simulation import Simulation as Simulation
 from gaspart.state.compression import compress as compress
 from gaspart.state.state import State as State
+from gaspart.state.tally import ImpulseTally as ImpulseTally
+from gaspart.state.tally import PairImpulseTally as PairImpulseTally
+from gaspart.state.tally import StressTally as StressTally
 from gaspart.state.tally import Tally as Tally
 from gaspart.trajectory.correlator import Correlations as Correlations
 from gaspart.trajectory.export import export as export

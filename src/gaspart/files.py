@@ -62,10 +62,10 @@ def output_path(path: str | Path) -> Path:
 
 
 def open_regular(path: str | Path, follow: bool = True) -> BinaryIO:
-    """Open a file to read; all input is opened by this function.
+    """Open a file to read; this function opens all input.
 
-    Raises OSError, also for a folder, pipe, socket or device, which could block or never end, and, without
-    `follow`, for a link; ValueError for a name that holds a NUL.
+    Raises OSError for a folder, pipe, socket or device, because reading could block or never end, and without
+    `follow` for a link; ValueError for a name that contains a NUL.
     """
     _require_regular(os.stat(path, follow_symlinks=follow), path)  # before: some devices act when opened
     flags = OPEN_AS_IT_IS | (0 if follow else NO_LINK)
@@ -150,16 +150,16 @@ def remove_own(path: Path, kind: FileKind) -> None:
 
 
 def place_folder(scratch: Path, path: Path) -> None:
-    """Rename a folder to `path`, where there is nothing. Raises FileExistsError, and other OSErrors."""
+    """Rename a folder to `path`, which must not exist. Raises FileExistsError, and other OSErrors."""
     rename_to_new(scratch, path)
 
 
 @contextmanager
 def writing(path: str | Path, kind: FileKind | None = None, overwrite: bool = False) -> Iterator[Path]:
-    """Give a scratch file to write to; on success it is renamed to `path`, atomically.
+    """Provide a scratch file to write to, and rename it to `path` atomically on success.
 
-    `may_replace` is applied before the work and again at its end. The scratch file is in the folder of
-    `path`, under a unique name, and is removed if the work fails; after a kill the next attempt removes it.
+    `may_replace` is applied before the work and again at its end. The scratch file is in the folder of `path`
+    and has a unique name. It is removed if writing fails; after a kill the next attempt removes it.
 
     Raises SceneError as `output_path` and `may_replace` do, and for a missing folder, a full disk and the
     like.
@@ -181,7 +181,7 @@ def writing(path: str | Path, kind: FileKind | None = None, overwrite: bool = Fa
 
 
 def whole_file(path: str | Path) -> AbstractContextManager[Path]:
-    """Perform `writing` for a declared output of the workflow, which may replace any file."""
+    """Perform `writing` for an output of the workflow, which may replace any file."""
     return writing(path, overwrite=True)
 
 
@@ -224,7 +224,7 @@ def is_remainder(path: Path) -> bool:
 def _is_lock(path: Path) -> bool:
     """Return True for a lock of filelock where a file system has no locks.
 
-    It begins with the number of a process.
+    The name begins with the number of a process.
     """
     with open_regular(path) as file:
         return file.read(1).isdigit()
@@ -238,8 +238,8 @@ def only_process(path: Path, wait: bool = False) -> Iterator[None]:
     """Hold the lock of a path, so that no other process has it within the block.
 
     The lock is the file `path`.lock, which the system releases when the process ends, however it does. Raises
-    BlockingIOError while another process holds it, unless `wait` is set; SceneError for a file of that name
-    that is no lock. May raise OSError.
+    BlockingIOError while another process has the lock, unless `wait` is set; SceneError for a file of that
+    name that is no lock. May raise OSError.
     """
     from filelock import FileLock, Timeout  # 0.3 s
 

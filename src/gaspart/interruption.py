@@ -1,13 +1,15 @@
 """SIGINT and SIGTERM: when they take effect, and what the process does before it ends.
 
-An exception raised by a signal handler surfaces wherever the interpreter happens to be: also while a compiled
-kernel hands its result over, which then fails with a SystemError. So no handler of this module raises.
+An exception raised by a signal handler appears wherever the interpreter is at this moment. If a compiled
+kernel is returning its result, the kernel then fails with a SystemError. Therefore no handler of this module
+raises an exception.
 
 `exit_on_signals` is for processes that belong to gaspart: the command line, and the jobs of the workflow. A
 thread waits for the signal, so that imports, compilers and kernels need not return first.
 
-`defer_signals` is for work with state to save. In a process of gaspart a signal then waits until the work has
-saved its state; in any other program, such as a notebook, that program's own handler is called thereafter.
+`defer_signals` is for work whose state must be saved. In a process of gaspart, a signal then waits until the
+work has saved its state. In any other program, such as a notebook, the handler of that program is called
+afterwards.
 """
 
 from __future__ import annotations
@@ -37,7 +39,7 @@ class Deferral:
     ----------
     pending : signal that waits, if any
     since : time of its arrival
-    unsaved : whether there is work that an exit would lose; before that, a process of gaspart ends at once
+    unsaved : True if there is work that an exit would lose; before that, a process of gaspart ends at once
     """
 
     def __init__(self) -> None:
@@ -53,7 +55,7 @@ class Deferral:
     def deliver(self) -> None:
         """Deliver the waiting signal, if there is one.
 
-        This ends a process of gaspart. Elsewhere the program's own handler is called: Python's handler raises
+        A process of gaspart then ends. Elsewhere the program's own handler is called: Python's handler raises
         KeyboardInterrupt, and SIGTERM ends the process unless it is handled. If the handler returns, so does
         this method, and the work continues.
         """
@@ -77,7 +79,7 @@ class _Process:
     Attributes
     ----------
     announce : function that prints the line
-    note : the part of the work that is kept
+    note : the part of the work that is saved
     """
 
     def __init__(self) -> None:
@@ -98,7 +100,7 @@ def exit_on_signals(announce: Callable[[str], None] | None = None) -> None:
     No scratch files are left. Call it again to replace `announce`. Signals that are ignored, as in a process
     in the background of a shell script, stay ignored. Main thread only.
 
-    announce : function that prints the line; by default on stderr
+    announce : function that prints the line; by default to stderr
     """
     _process.announce = announce
     if _process.watched:
@@ -130,8 +132,8 @@ def _watch(reader: int) -> None:
 def _defer(signum: int) -> bool:
     """Return True if a signal can wait.
 
-    A repeated signal does not wait, because files are resumable at any moment; unless it arrives with the
-    first, as when a terminal and a parent process both send one.
+    A repeated signal takes effect at once, because files are resumable at any moment. An exception is a
+    signal that arrives together with the first, for example if a terminal and a parent process both send one.
     """
     with _process.lock:
         deferral = _process.deferral
@@ -155,19 +157,19 @@ def _exit(signum: int) -> NoReturn:
 
 
 def _announce(text: str) -> None:
-    """Print a line on stderr without its locks, which the main thread may hold."""
+    """Print a line on stderr without its locks, because the main thread may have them."""
     clear = "\r\033[K" if os.isatty(2) else ""
     os.write(2, f"{clear}gaspart: {text}\n".encode(errors="surrogateescape"))
 
 
 def describe_interruption(signum: int = signal.SIGINT) -> str:
-    """Return one line about an interruption, and about the part of the work that is kept."""
+    """Return one line about an interruption and about the part of the work that is saved."""
     how = "interrupted" if signum == signal.SIGINT else "terminated"
     return f"{how}; {_process.note}" if _process.note else how
 
 
 def set_note(text: str) -> None:
-    """Set the text about the kept work for the line at an interruption."""
+    """Set the text about the saved work for the line at an interruption."""
     _process.note = visible(text)
 
 
@@ -185,7 +187,7 @@ def scratch_file(path: Path) -> Iterator[None]:
 def prevent_interruption() -> Iterator[None]:
     """Defer signals to the end of this block where their handlers might raise within it.
 
-    This holds in programs other than gaspart, such as a notebook. In a process of gaspart signals end it at
+    This is for programs other than gaspart, such as a notebook. In a process of gaspart signals end it at
     once, as ever.
     """
     if _process.watched:

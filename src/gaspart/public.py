@@ -1,8 +1,8 @@
 """Public names of packages, loaded when first used.
 
-A package states them once, in the stub `__init__.pyi` next to its `__init__.py`, a line for each: `from
-gaspart.scene.scene import Scene as Scene`, or `Z = compressibility_factor` for an alias. Type checkers and
-editors read the stub, and `attach` gives its names to the package.
+A package lists its public names once, in the stub `__init__.pyi` next to its `__init__.py`, one line per
+name: `from gaspart.scene.scene import Scene as Scene`, or `Z = compressibility_factor` for an alias. Type
+checkers and editors read the stub, and `attach` gives its names to the package.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ if TYPE_CHECKING:  # it takes longer to import than the rest of this module
 
 
 def read_stub(path: str) -> dict[str, str]:
-    """Return the module of each name that a stub states, aliases included."""
+    """Return the module of each name in a stub, including aliases."""
     homes, aliases = entries(path)
     return homes | {alias: homes[name] for alias, name in aliases.items()}
 

@@ -21,9 +21,9 @@ from gaspart.scene.scene import DRAWN, THUMBNAIL, Scene, require_scene
 from gaspart.scene.walls import Plate, Wall, box_of_walls
 from gaspart.state.given import check_apart, state_at_time_zero
 from gaspart.state.initial import initial_state
-from gaspart.state.optional_tallies import OptionalTally, StressTally
+from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
-from gaspart.state.tally import Tally
+from gaspart.state.tally import StressTally, Tally
 
 if TYPE_CHECKING:
     from gaspart.rendering.view import View
@@ -64,10 +64,10 @@ class Simulation:
         Also tally the stress tensor and the heat flux, of a periodic scene without gravity. This adds a
         `StressTally` to the `tallies`.
     initial : State, optional
-        State with the positions, velocities and spins at time 0, instead of those that the scene states. Its
-        particles and the size of its container must be the same as in the scene.
+        State with the positions, velocities and spins at time 0, instead of the initial state of the
+        scene. Its particles and the size of its container must be the same as in the scene.
     tallies : iterable of OptionalTally, optional
-        Tallies that not every run counts (`state.optional_tallies`).
+        Tallies that a run counts only on request: `StressTally`, `ImpulseTally`, `PairImpulseTally`.
 
     Raises
     ------
@@ -81,10 +81,10 @@ class Simulation:
 
     Notes
     -----
-    In a sheared scene the velocities of `initial` are about the flow: they are unchanged at the shear rate of
-    the state, otherwise they are peculiar velocities to which the flow is added. Sheared images keep their
-    displacement, and a piston its motion; if the state has none, the piston is at rest at its side. Vibrating
-    faces start at the beginning of a period.
+    If `initial` has another shear rate than the scene, its flow is subtracted from the velocities, and the
+    flow of the scene is added. Displacements of sheared images and the motion of a piston are taken from the
+    state. If the state has no piston, the piston is at rest at its side. Vibrating faces start at the
+    beginning of a period.
 
     Examples
     --------
@@ -129,7 +129,7 @@ class Simulation:
         return gaspart.render(self, size=THUMBNAIL).figure(repr(self))
 
     def _set_up(self) -> None:
-        """Set up the initial state and the engine."""
+        """Create the initial state and the dynamics of the engine."""
         self.engine = self._asked.for_scene(self.scene)
         if self._given is None:
             self._initial = initial_state(self.scene, self.seed)
@@ -288,7 +288,7 @@ class Simulation:
         self._change(self.scene.with_walls(*box_of_walls(tuple(lower), tuple(upper))))
 
     def _change(self, scene: Scene) -> None:
-        """Set up the simulation of another scene; without any change if that is impossible."""
+        """Set up the simulation of another scene; if this fails, nothing changes."""
         if self._advanced:
             raise SceneError(
                 "scene", "under way", "particles and walls can only be added before the first advance"
@@ -320,13 +320,13 @@ class Simulation:
         until : float, [time], optional
             Time to which to advance. It may be infinite together with `max_events`.
         max_work : int, optional
-            Event-driven engine: also stop after about this number of events, crossings of boxes and of
-            periodic faces, and predictions, so that a call takes a bounded time, however rare events are.
+            Event-driven engine: also stop after about this number of events, including crossings of boxes and
+            of periodic faces, and predictions. So a call takes a limited time even if events are rare.
 
         Raises
         ------
         SceneError
-            If there is no target, or the target is in the past or no number. Nothing is changed then.
+            If no target is given, or the target is in the past or not a number. Nothing is changed then.
 
         Notes
         -----
@@ -397,7 +397,7 @@ class Simulation:
 
     @property
     def state(self) -> State:
-        """All particles at the present time; read-only, `copy` returns a state that can be changed.
+        """State of all particles at the present time, read-only; its `copy` can be changed.
 
         Examples
         --------
@@ -410,7 +410,7 @@ class Simulation:
 
     @property
     def initial_state(self) -> State:
-        """All particles at time 0; read-only, `copy` returns a state that can be changed.
+        """State of all particles at time 0, read-only; its `copy` can be changed.
 
         Examples
         --------
@@ -423,7 +423,7 @@ class Simulation:
 
     @property
     def tally(self) -> Tally:
-        """Counters and sums since the start, or since the last `reset_tally`; a copy.
+        """Copy of the counters and sums since the start, or since the last `reset_tally`.
 
         Examples
         --------
@@ -447,7 +447,7 @@ class Simulation:
         Returns
         -------
         ndarray
-            The sums. Of "stress", shape (2 d^2 + d,): the sums of the stress tensor, of its collisional part
+            The sums. For "stress", shape (2 d^2 + d,): the sums of the stress tensor, of its collisional part
             and of the heat flux.
 
         Raises
@@ -508,10 +508,10 @@ class Simulation:
     def events(self) -> dict[str, np.ndarray]:
         """Recorded events: times, particles, and their positions and velocities just after.
 
-        Arrays of M events: time (M,), particles (M, 2), positions and velocities (M, 2, d); with rough
-        contacts also spins, (M, 2) in 2D and (M, 2, 3) in 3D. The second of `particles` is -1 - face for a
-        hit at a face of the container or at the edge of its well, and -1 - 2d - n for a hit at interior wall
-        n.
+        Arrays of M events: time (M,), particles (M, 2), positions and velocities (M, 2, d). With rough
+        contacts also spins, (M, 2) in 2D and (M, 2, 3) in 3D. The second entry of `particles` is -1 - face
+        for a hit at a face of the container or at the edge of its well. It is -1 - 2d - n for a hit at
+        interior wall n.
 
         Raises
         ------
@@ -597,7 +597,7 @@ class Simulation:
             raise SceneError("by", by, 'must be "time" or "event"')
 
     def _states_at(self, times: Iterable[float]) -> Iterator[State]:
-        """Yield the states at ascending times; the simulation is run again for them."""
+        """Run the simulation again and yield the states at ascending times."""
         again = self.again()
         for time in times:
             again.advance(until=time)
@@ -622,8 +622,8 @@ class Simulation:
         Raises
         ------
         SceneError
-            If a name is unknown, a time is outside the run, or times are given in a scene with open faces,
-            whose particles change with time.
+            If a name is unknown, if a time is outside the run, or if times are given in a scene with open
+            faces, because its particles change.
 
         Examples
         --------
@@ -727,8 +727,8 @@ class Simulation:
         Returns
         -------
         dict of str to ndarray
-            Arrays of the present state, and their identity: scene, seed, engine, version and, if it was
-            given, the initial state.
+            Arrays of the present state, and the data that identify the run: scene, seed, engine, version and,
+            if it was given, the initial state.
 
         Examples
         --------

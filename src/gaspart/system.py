@@ -1,7 +1,7 @@
 """Differences between operating systems.
 
-The rest of the package uses this module, and otherwise only functions that Python has on all systems. Of
-Windows and macOS the tests simulate what is absent there (`tests/test_system.py`); nothing was run on them.
+The rest of the package uses this module, and otherwise only functions that Python has on all systems. The
+tests simulate what Windows and macOS lack (`tests/test_system.py`); the code was not run on these systems.
 """
 
 from __future__ import annotations
@@ -66,15 +66,15 @@ def is_own(status: os.stat_result) -> bool:
 def is_private(status: os.stat_result) -> bool:
     """Return True if no other user may write to a file or folder, and on Windows.
 
-    The modes of files on Windows do not tell.
+    On Windows the modes of files do not show this.
     """
     return is_own(status) and not (POSIX and status.st_mode & 0o022)
 
 
 def is_running(process: int) -> bool:
-    """Return True if there is a process of this number, or if that cannot be known.
+    """Return True if a process with this number exists, or if this cannot be known.
 
-    It cannot be known on Windows.
+    On Windows it cannot be known.
     """
     if not POSIX:  # where signal 0 is Ctrl-C
         return True
@@ -99,14 +99,15 @@ def descriptor_path(file: IO[bytes]) -> str:
 def path_for_others(file: IO[bytes]) -> str:
     """Return a path by which another process opens a file that this process has open.
 
-    It works even when the file's name is gone; if the system has no such path, it is the file's name.
+    The path is valid even if the file has been renamed or removed. If the system has no such path, the result
+    is the name of the file.
     """
     path = f"/proc/{os.getpid()}/fd/{file.fileno()}"
     return path if os.path.exists(path) else str(file.name)
 
 
 def read_at(descriptor: int, size: int, offset: int) -> bytes:
-    """Read up to `size` bytes from `offset` on; the position in the file stays.
+    """Read up to `size` bytes from `offset` on, without moving the position in the file.
 
     May raise OSError.
     """
@@ -122,7 +123,7 @@ def read_at(descriptor: int, size: int, offset: int) -> bytes:
 
 
 def write_at(descriptor: int, data: bytes, offset: int) -> None:
-    """Write a few bytes at `offset`; the position in the file stays. May raise OSError."""
+    """Write a few bytes at `offset`, without moving the position in the file. May raise OSError."""
     if hasattr(os, "pwrite"):
         os.pwrite(descriptor, data, offset)
         return
@@ -136,7 +137,7 @@ def write_at(descriptor: int, data: bytes, offset: int) -> None:
 
 
 def rename_to_new(old: Path, new: Path) -> None:
-    """Rename a file or folder without replacing one. Raises FileExistsError if there is one."""
+    """Rename a file or folder without replacing one. Raises FileExistsError if the path exists."""
     if not POSIX:  # where this never replaces
         os.rename(old, new)
         return

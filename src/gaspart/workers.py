@@ -1,8 +1,8 @@
 """Work that several processes or threads share.
 
 Processes make calls of a function that writes files which can be continued. Unlike the processes of a pool,
-these do not run the caller's script again, and signals of the terminal do not reach them: each ends at a
-signal, or when the process that began it has ended, after a checkpoint.
+these processes do not run the caller's script again, and do not receive signals of the terminal. Each process
+writes a checkpoint and ends at a signal, or when the process that began it has ended.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class Lost:
 
 
 def require_processes(key: str, count: int) -> None:
-    """Raise SceneError for more than one process where they cannot be given a connection."""
+    """Raise SceneError for several processes if no connection to them is possible."""
     if count > 1 and not POSIX:
         raise SceneError(key, count, f"more than one process needs Linux or macOS; {key}=1")
 
@@ -48,7 +48,7 @@ def require_processes(key: str, count: int) -> None:
 def in_threads(function: Callable[[Any], Any], items: Iterable[Any], threads: int) -> list[Any]:
     """Return the results of a function for all items, in their order.
 
-    It pays for functions whose time is spent in kernels, which hold no lock.
+    This saves time for functions that spend their time in kernels, which release the lock of the interpreter.
 
     Parameters
     ----------
@@ -80,8 +80,8 @@ def in_processes(
     """Call a function of a module in several processes at a time.
 
     The call is function(send, *arguments). A signal takes effect when all calls have ended after a
-    checkpoint; if the caller's handler returns, they are begun again. A SceneError or SimulationError of a
-    call is raised after all others have ended.
+    checkpoint. If the handler of the caller returns, the calls are started again. A SceneError or
+    SimulationError of a call is raised after all others have ended.
 
     calls : arguments of each call
     workers : number of processes at a time

@@ -1,14 +1,15 @@
 """YAML, read within limits and written.
 
-What is read is a tree of mappings with text keys, lists, text, numbers, true, false and null, as YAML 1.1
-defines them, and `1e3` is a number. An alias gives a copy; `<<` merges mappings. Tags and dates do not exist:
-a date is text. Duplicate keys are errors.
+The result is a tree of mappings with text keys, lists, text, numbers, true, false and null, as defined by
+YAML 1.1; in addition `1e3` is a number. An alias gives a copy; `<<` merges mappings. Tags are rejected, and
+dates are text. Duplicate keys are errors.
 """
 
 from __future__ import annotations
 
 import os
 import re
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -26,7 +27,6 @@ _LONGEST_NUMBER = 1000  # characters
 _NUMBERS = re.compile(r"[-+]?(\d[\d_]*(\.[\d_]*)?|\.\d[\d_]*)[eE][-+]?\d+\Z")
 _SCALARS = tuple(f"tag:yaml.org,2002:{kind}" for kind in ("null", "bool", "int", "float"))
 _MERGE = "tag:yaml.org,2002:merge"
-_MERGING = object()  # marks the key <<
 
 
 def read_yaml(path: str | Path) -> Any:
@@ -94,7 +94,7 @@ def is_exponential(text: str) -> bool:
 def _with_exponents(base: Any) -> Any:
     """Return a loader or dumper that reads 1e3 and 1.5e3 as numbers.
 
-    They are text in YAML 1.1.
+    In YAML 1.1 such numbers are text.
     """
     subclass: Any = type("WithExponents", (base,), {})
     subclass.add_implicit_resolver(_SCALARS[-1], _NUMBERS, list("-+.0123456789"))
@@ -119,121 +119,97 @@ def _error(mark: yaml.Mark, value: object, rule: str) -> SceneError:
     return SceneError(f"line {mark.line + 1}, column {mark.column + 1}", value, rule)
 
 
-class _Open:
-    """List or mapping whose end has not been read."""
-
-    def __init__(self, content: list | dict, start: yaml.CollectionStartEvent) -> None:
-        self.content, self.start = content, start
-        self.key: Any = None  # whose value comes next
-        self.lines: dict[str, int] = {}  # the line of each key
-        self.merged: dict[str, Any] = {}
-
-    def close(self) -> list | dict:
-        """Return the content; the mapping's own entries replace merged entries."""
-        return {**self.merged, **self.content} if self.merged else self.content  # type: ignore[dict-item]
-
-
 class _Document:
-    """Reads one document event by event: no recursion, whatever the depth of the text."""
+    """Reads one document event by event, within the limits: its depth bounds the recursion."""
 
     def __init__(self, text: str) -> None:
         import yaml
 
         self._yaml, self._loader = yaml, _loader()(text)
         self._anchors: dict[str, Any] = {}
-        self._values, self._copies, self._documents = 0, 0, 0
-        self._result: Any = None
-        self._open: list[_Open] = []
+        self._values, self._copies = 0, 0
 
     def read(self) -> Any:
         """Return the content. Raises SceneError with line and column, or yaml.YAMLError."""
         yaml = self._yaml
-        while True:
-            event = self._loader.get_event()
-            if isinstance(event, yaml.NodeEvent):
-                self._node(event)
-            elif isinstance(event, yaml.CollectionEndEvent):
-                closed = self._open.pop()
-                self._place(closed.close(), closed.start)
-            elif isinstance(event, yaml.DocumentStartEvent):
-                self._documents += 1
-                if self._documents > 1:
+        results: list[Any] = []
+        while not isinstance(event := self._loader.get_event(), yaml.StreamEndEvent):
+            if isinstance(event, yaml.DocumentStartEvent):
+                if results:
                     raise _error(event.start_mark, "---", "begins a second document; there may be one")
-            elif isinstance(event, yaml.StreamEndEvent):
-                return self._result
+                results.append(self._value(self._loader.get_event(), 0))
+        return results[0] if results else None
 
-    def _node(self, event: yaml.NodeEvent) -> None:
+    def _value(self, event: yaml.NodeEvent, depth: int) -> Any:
+        """Return the value that begins with an event."""
         yaml, mark = self._yaml, event.start_mark
-        self._count(len(self._open), mark)
+        self._count(depth, mark)
         if isinstance(event, yaml.AliasEvent):
             if event.anchor not in self._anchors:
                 raise _error(mark, f"*{event.anchor}", "no value above has this name")
-            self._place(self._copy(self._anchors[event.anchor], len(self._open), mark), event)
-        elif event.tag is not None:
+            return self._copy(self._anchors[event.anchor], depth, mark)
+        if event.tag is not None:
             raise _error(mark, event.tag, "tags are not supported")
-        elif isinstance(event, yaml.ScalarEvent):
-            self._place_scalar(event)
+        if isinstance(event, yaml.ScalarEvent):
+            value = self._scalar(event)
+        elif isinstance(event, yaml.SequenceStartEvent):
+            value = [self._value(item, depth + 1) for item in self._items()]
         else:
-            if self._key_is_next():
-                raise _error(mark, "a list or mapping", "a key must be text")
-            self._open.append(_Open([] if isinstance(event, yaml.SequenceStartEvent) else {}, event))
-
-    def _key_is_next(self) -> bool:
-        return bool(self._open) and isinstance(self._open[-1].content, dict) and self._open[-1].key is None
-
-    def _place_scalar(self, event: yaml.ScalarEvent) -> None:
-        tag, text = self._loader.resolve(self._yaml.ScalarNode, event.value, event.implicit), event.value
-        if self._key_is_next() and tag == _MERGE:
-            self._open[-1].key = _MERGING
-        elif tag not in _SCALARS:
-            self._place(text, event)
-        elif len(text) > _LONGEST_NUMBER:
-            raise _error(event.start_mark, text, "has too many digits")
-        else:
-            node = self._yaml.ScalarNode(tag, text, event.start_mark, event.end_mark)
-            try:
-                value = self._loader.yaml_constructors[tag](self._loader, node)
-            except (ArithmeticError, ValueError):
-                raise _error(event.start_mark, text, "is not a number that can be read") from None
-            self._place(value, event)
-
-    def _place(self, value: Any, event: yaml.NodeEvent) -> None:
-        """Store a complete value in its list or mapping."""
-        if getattr(event, "anchor", None) and not isinstance(event, self._yaml.AliasEvent):
+            value = self._mapping(depth + 1)
+        if event.anchor:
             self._anchors[event.anchor] = value
-        if not self._open:
-            self._result = value
-            return
-        top = self._open[-1]
-        if isinstance(top.content, list):
-            top.content.append(value)
-        elif top.key is None:
-            self._place_key(top, value, event.start_mark)
-        elif top.key is _MERGING:
-            top.key = None
-            self._merge(top, value, event.start_mark)
-        else:
-            top.content[top.key], top.key = value, None
+        return value
 
-    @staticmethod
-    def _place_key(top: _Open, key: Any, mark: yaml.Mark) -> None:
-        if not isinstance(key, str):
-            raise _error(mark, key, "a key must be text: write it in quotes")
-        if key in top.lines:
-            raise _error(mark, key, f"is a duplicate key, first in line {top.lines[key]}")
-        top.lines[key], top.key = mark.line + 1, key
+    def _items(self) -> Iterator[yaml.NodeEvent]:
+        """Yield the first event of each value up to the end of a list or mapping."""
+        while not isinstance(event := self._loader.get_event(), self._yaml.CollectionEndEvent):
+            yield event
 
-    @staticmethod
-    def _merge(top: _Open, value: Any, mark: yaml.Mark) -> None:
-        """Merge a mapping, or a list of mappings of which the first take precedence."""
-        parts = value if isinstance(value, list) else [value]
-        if top.merged or not all(isinstance(part, dict) for part in parts):
-            raise _error(mark, value, "<< must be given once, with a mapping or a list of mappings")
-        for part in reversed(parts):
-            top.merged.update(part)
+    def _mapping(self, depth: int) -> dict[str, Any]:
+        """Return a mapping; its own entries replace merged entries."""
+        content: dict[str, Any] = {}
+        merged: dict[str, Any] = {}
+        lines: dict[str, int] = {}
+        for event in self._items():
+            mark = event.start_mark
+            if isinstance(event, self._yaml.ScalarEvent) and self._tag(event) == _MERGE:
+                self._count(depth, mark)
+                first = self._loader.get_event()
+                parts = value if isinstance(value := self._value(first, depth), list) else [value]
+                if merged or not all(isinstance(part, dict) for part in parts):
+                    rule = "<< must be given once, with a mapping or a list of mappings"
+                    raise _error(first.start_mark, value, rule)
+                for part in reversed(parts):  # the first ones take precedence
+                    merged.update(part)
+                continue
+            if isinstance(event, self._yaml.CollectionStartEvent):
+                raise _error(mark, "a list or mapping", "a key must be text")
+            key = self._value(event, depth)
+            if not isinstance(key, str):
+                raise _error(mark, key, "a key must be text: write it in quotes")
+            if key in lines:
+                raise _error(mark, key, f"is a duplicate key, first in line {lines[key]}")
+            lines[key] = mark.line + 1
+            content[key] = self._value(self._loader.get_event(), depth)
+        return {**merged, **content} if merged else content
+
+    def _tag(self, event: yaml.ScalarEvent) -> str:
+        return str(self._loader.resolve(self._yaml.ScalarNode, event.value, event.implicit))
+
+    def _scalar(self, event: yaml.ScalarEvent) -> Any:
+        tag, text = self._tag(event), event.value
+        if tag not in _SCALARS:
+            return text
+        if len(text) > _LONGEST_NUMBER:
+            raise _error(event.start_mark, text, "has too many digits")
+        node = self._yaml.ScalarNode(tag, text, event.start_mark, event.end_mark)
+        try:
+            return self._loader.yaml_constructors[tag](self._loader, node)
+        except (ArithmeticError, ValueError):
+            raise _error(event.start_mark, text, "is not a number that can be read") from None
 
     def _copy(self, value: Any, depth: int, mark: yaml.Mark) -> Any:
-        """Return a copy of an alias's value; its values count like written ones."""
+        """Return a copy of the value of an alias; its values count like written values."""
         self._count(depth, mark)
         self._copies += 1
         if self._copies > MOST_COPIES:

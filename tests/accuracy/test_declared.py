@@ -14,6 +14,7 @@ from gaspart.analysis.measuring import measure
 from gaspart.analysis.observables import OBSERVABLES, require_defined
 from gaspart.runs.ending import require_measurable
 from gaspart.state.initial import initial_state
+from gaspart.trajectory.run_options import Contents
 from gaspart.yaml_text import dump_yaml
 
 CUBE = gp.Container((9.0, 9.0, 9.0), "periodic")
@@ -56,7 +57,7 @@ def test_all_refuse_alike(kind):
             reason = error.rule
         else:
             if one.ends_runs and one.needs != "fluxes" and not one.drives:
-                require_measurable(gp.Accuracy(name, 0.1), scene, gp.EventDriven())
+                require_measurable(gp.Accuracy(name, 0.1), scene, gp.EventDriven(), Contents())
             continue
         refused += 1
         with pytest.raises(gp.SceneError) as caught:
@@ -67,7 +68,7 @@ def test_all_refuse_alike(kind):
         assert reason in caught.value.rule, name
         if one.ends_runs:
             with pytest.raises(gp.SceneError) as caught:
-                require_measurable(gp.Accuracy(name, 0.1), scene, gp.EventDriven())
+                require_measurable(gp.Accuracy(name, 0.1), scene, gp.EventDriven(), Contents())
             assert reason in caught.value.rule, name
     assert refused
 

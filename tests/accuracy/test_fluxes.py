@@ -8,6 +8,7 @@ from gaspart.accuracy.estimates import components
 from gaspart.analysis.measuring import measure
 from gaspart.analysis.observables import OBSERVABLES
 from gaspart.runs.ending import require_measurable
+from gaspart.trajectory.run_options import Contents
 
 SLIT = gp.Container((10.0, 6.0), ("periodic", "wall"))
 COLD = gp.Scene(
@@ -74,4 +75,4 @@ def test_what_vanishes_is_refused(scene, observable, reason):
         plan.plan(scene, observable, 0.1, pilot_seconds=0.1)
     if OBSERVABLES[observable.partition(":")[0]].ends_runs:
         with pytest.raises(gp.SceneError, match=reason):
-            require_measurable(gp.Accuracy.from_name(observable, 0.1), scene, gp.EventDriven())
+            require_measurable(gp.Accuracy.from_name(observable, 0.1), scene, gp.EventDriven(), Contents())

@@ -1,5 +1,8 @@
 """The data set of collisions: rows that follow from one another, and what kinetic theory says of them."""
 
+from __future__ import annotations
+
+from dataclasses import replace
 from time import sleep
 
 import numpy as np
@@ -10,7 +13,9 @@ from scipy import stats
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.analysis.collisions import record_collisions
+from gaspart.analysis.collisions import COMPLETE, record_collisions
+from gaspart.analysis.lyapunov import Deviation, follow
+from gaspart.errors import SceneError
 
 
 @pytest.mark.parametrize("boundary", ["periodic", "wall"])
@@ -82,3 +87,171 @@ def test_a_file_written_a_second_later_has_the_same_bytes(tmp_path):
     assert (tmp_path / "one.nc").read_bytes() == (tmp_path / "other.nc").read_bytes()
     with xr.open_dataset(tmp_path / "one.nc") as read:
         xr.testing.assert_identical(read.load(), data)
+
+
+# Free flights of recorded events: against a count by hand, and against theory.
+
+
+def recorded(scene, collisions, seed=1):
+    """A simulation with so many recorded collisions per particle, after some that are not."""
+    sim = gp.Simulation(scene, gp.EventDriven(), seed)
+    sim.advance(max_events=5 * scene.count)
+    sim.record_events = True
+    sim.advance(max_events=int(0.5 * collisions * scene.count))
+    return sim
+
+
+def test_flights_are_those_counted_by_hand():
+    sim = recorded(gas(2, 20, 0.2), 80)
+    found = gp.analysis.free_flight_times(sim, bins=10)
+    events, last, flights = sim.events, {}, []
+    for time, pair, velocities in zip(events["time"], events["particles"], events["velocities"], strict=True):
+        for particle, velocity in zip(pair.tolist(), velocities, strict=True):
+            if particle in last:
+                begun, speed = last[particle]
+                flights.append((begun, particle % 16, time - begun, speed * (time - begun)))
+            last[particle] = time, np.linalg.norm(velocity)
+    mean = (sim.time - events["time"][0]) * 20 / (2 * len(events["time"]))
+    flights = np.array([flight for flight in flights if flight[0] < sim.time - COMPLETE * mean])
+    assert float(found["mean_free_time"]) == pytest.approx(flights[:, 2].mean())  # not of each particle
+    assert float(found["mean_free_path"]) == pytest.approx(flights[:, 3].mean())
+    density = np.histogram(flights[:, 2], 10, (0, 5 * mean))[0] / len(flights)
+    assert np.allclose(found.estimate, density / (0.5 * mean))
+    filled = density > 0.0
+    freedom = found["free_flight_times_freedom"].values
+    assert (freedom[filled] == 15.0).all() and np.isnan(freedom[~filled]).all()
+
+
+@pytest.mark.parametrize(("dimension", "eta"), [(2, 0.02), (3, 0.002), (3, 0.01)])
+def test_a_dilute_gas_flies_as_theory_says(dimension, eta):
+    """In a dense gas consecutive collisions are not independent, and short flights rarer than in theory."""
+    found = gp.analysis.free_flight_times(recorded(gas(dimension, 1000, eta), 150))
+    judged = found.estimate.values * found["mean_free_time"].values > 0.02  # enough in each group
+    chi_square = _chi_square(found, judged)
+    assert stats.chi2.sf(chi_square, judged.sum()) > 1e-3
+    for name in ("mean_free_time", "mean_free_path"):
+        error = float(found[f"{name}_error"])
+        assert error < 0.01 * float(found[name])
+        assert abs(float(found[name] - found[f"{name}_theory"])) < 4.0 * error
+
+
+def _chi_square(found, judged):
+    """Of Student's deviations with 15 degrees of freedom, as Gaussian ones of the same probability."""
+    t = ((found.estimate - found.theory) / found.error).values[judged]
+    return float((stats.norm.isf(stats.t.sf(np.abs(t), 15)) ** 2).sum())
+
+
+def test_an_exponential_is_told_apart():
+    """The test above could fail: the distribution is not that of one rate for all speeds."""
+    found = gp.analysis.free_flight_times(recorded(gas(3, 1000, 0.01), 150))
+    judged = found.estimate.values * found["mean_free_time"].values > 0.02
+    mean = float(found["mean_free_time"])
+    found["free_flight_times_theory"] = np.exp(-found["free_time"] / mean) / mean
+    assert stats.chi2.sf(_chi_square(found, judged), judged.sum()) < 1e-6
+
+
+def test_what_has_no_free_flights_is_refused():
+    sim = gp.Simulation(gas(2, 20, 0.2), gp.EventDriven())
+    with pytest.raises(gp.SceneError, match="set record_events to True"):
+        gp.analysis.free_flight_times(sim)
+    with pytest.raises(gp.SceneError, match="must be 32 collisions of a particle or more"):
+        gp.analysis.free_flight_times(recorded(gas(2, 20, 0.2), 20))
+    with pytest.raises(gp.SceneError, match="has walls, which end flights"):
+        gp.analysis.free_flight_times(recorded(gas(2, 20, 0.2, "wall"), 80))
+    with pytest.raises(gp.SceneError, match="needs 16 moving particles"):
+        gp.analysis.free_flight_times(recorded(gas(2, 10, 0.2), 80))
+
+
+# The tangent map against runs that start a little apart, the exponent against an independent program's.
+
+
+SPECIES = (gp.Species(12, 0.5, mass=1.0, temperature=1.0), gp.Species(6, 0.3, mass=4.0, temperature=1.0))
+
+
+@pytest.mark.parametrize(
+    "container",
+    [
+        gp.Container((7.0, 8.0), "wall"),
+        gp.Container((7.0, 8.0), "periodic"),
+        gp.Container((4.5, 4.0, 5.0), ("wall", "periodic", "wall")),
+    ],
+    ids=["discs between walls", "periodic discs", "spheres"],
+)
+def test_a_deviation_is_the_difference_of_two_runs_over_their_first_distance(container):
+    """Of two sizes and masses. The difference of runs 2 h apart about the first is right to order h^2."""
+    scene = gp.Scene(container, species=SPECIES)
+    run = gp.Simulation(scene, gp.EventDriven(), seed=3)
+    run.record_events = True
+    start = run.state
+    run.advance(duration=1.2)
+    assert run.tally.collisions > 8
+    rng = np.random.default_rng(1)
+    shift, push = rng.standard_normal((2, *start.positions.shape))
+    deviation = Deviation(shift, push, 0.0)
+    follow(deviation, scene, start.masses, run.events)
+    for n in range(start.count):
+        deviation.advance(n, 1.2)
+    h, ends = 1e-7, []
+    for sign in (1.0, -1.0):
+        moved = replace(
+            start,
+            positions=start.positions + sign * h * shift,
+            velocities=start.velocities + sign * h * push,
+        )
+        beside = gp.EventDriven().start(scene, moved)
+        beside.advance(1.2)
+        assert beside.tally.collisions == run.tally.collisions
+        ends.append(beside.state)
+    lengths = np.array(container.lengths)
+    apart = ends[0].positions - ends[1].positions
+    apart -= np.where(container.periodic, lengths * np.rint(apart / lengths), 0.0)
+    scale = np.abs(deviation.positions).max()
+    assert np.array(deviation.positions) == pytest.approx(apart / (2.0 * h), abs=1e-4 * scale)
+    faster = (ends[0].velocities - ends[1].velocities) / (2.0 * h)
+    assert np.array(deviation.velocities) == pytest.approx(faster, abs=1e-4 * np.abs(faster).max())
+
+
+def test_the_exponent_of_discs_is_that_of_an_independent_program():
+    """2.760(9) per collision of a particle: 100 discs at 0.1 between walls, tangent dynamics of a session."""
+    side = np.sqrt(100 * np.pi / 4.0 / 0.1)
+    scene = gp.Scene(gp.Container((side, side), "wall"), species=[gp.Species(100, 0.5, temperature=1.0)])
+    found = []
+    for seed in range(6):
+        run = gp.Simulation(scene, gp.EventDriven(), seed=seed)
+        run.advance(duration=20.0)
+        run.reset_tally()
+        run.record_events = True
+        run.advance(duration=150.0)
+        exponent = gp.analysis.lyapunov_exponent(run)
+        rate = 2.0 * run.tally.collisions / (100 * run.tally.time)
+        assert 0.0 < float(exponent.error) < 0.1 * float(exponent.estimate)
+        found.append(float(exponent.estimate) / rate)
+    error = np.std(found, ddof=1) / np.sqrt(6)
+    assert error < 0.04
+    assert np.mean(found) == pytest.approx(2.760, abs=4.0 * np.hypot(error, 0.009))
+
+
+def test_a_long_run_of_a_dilute_gas_does_not_overflow():
+    """The deviation grows by exp(13) in a collision of each sphere: beyond the range of numbers within 60."""
+    side = (60 * np.pi / 6.0 / 0.001) ** (1.0 / 3.0)
+    scene = gp.Scene(gp.Container((side,) * 3), species=[gp.Species(60, 0.5, temperature=1.0)])
+    run = gp.Simulation(scene, gp.EventDriven(), seed=1)
+    run.record_events = True
+    run.advance(duration=25_000.0)
+    assert run.tally.collisions > 100 * 60
+    per_collision = 60 * run.time / (2.0 * run.tally.collisions)
+    exponent = gp.analysis.lyapunov_exponent(run, start=0.6 * run.time)
+    assert float(exponent.estimate) * per_collision == pytest.approx(13.0, abs=2.5)
+
+
+def test_what_has_no_exponent_is_refused():
+    scene = gp.Scene(gp.Container((9.0, 9.0)), species=[gp.Species(9, 0.5, temperature=1.0)])
+    run = gp.Simulation(scene, gp.EventDriven())
+    with pytest.raises(SceneError, match="record_events"):
+        gp.analysis.lyapunov_exponent(run)
+    run.record_events = True
+    with pytest.raises(SceneError, match="events = 0: must be at least"):
+        gp.analysis.lyapunov_exponent(run)
+    inelastic = gp.Simulation(replace(scene, restitution=gp.Restitution(0.9)), gp.EventDriven())
+    with pytest.raises(SceneError, match="restitution.*smooth elastic contacts"):
+        gp.analysis.lyapunov_exponent(inelastic)

@@ -65,6 +65,17 @@ def test_speeds_of_runs_of_other_energies_are_in_joint_bins(tmp_path):
     assert (found.error.values[~empty] > 0.0).all()
 
 
+def test_equal_counts_of_two_runs_are_no_error_of_zero(tmp_path):
+    """Few particles: some bins have by chance the same count in both runs."""
+    scene = gas(3, 16, 0.05)
+    files = [gp.run(scene, gp.EventDriven(), n, 4.0, 0.5, tmp_path / f"{n}.nc") for n in range(2)]
+    speeds = gp.analysis.replicas("speeds", files)
+    each = speeds["speed_distribution_replicas"].values
+    same = np.isclose(each[0], each[1], rtol=1e-9) & (each[0] > 0.0)
+    assert same.any() and np.isnan(speeds.error.values[same]).all()
+    assert (speeds.error.values[~same & (each.max(axis=0) > 0.0)] > 0.0).all()
+
+
 def test_what_are_no_replicas_is_refused(paths, tmp_path):
     def refused(rule, *sources, name="Z"):
         with pytest.raises(gp.SceneError, match=rule):

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.signal import lfilter
 
 import gaspart as gp
-from gaspart.analysis import drift
+from gaspart.analysis import series as drift
 from gaspart.cli import main
 
 

@@ -12,14 +12,14 @@ from gaspart.trajectory.recipe import read_recipe
 
 A = gp.analysis
 SCENE = gp.Scene(gp.Container((7.0, 6.0, 5.0), "periodic"), [gp.Species(60, 0.5, temperature=1.0)])
-ASKED = "2.4:48:0.5"
+ASKED = gp.PairImpulseTally(2.4, 48, 0.5)
 
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
     """Spheres with their impulses of pairs."""
     path = tmp_path_factory.mktemp("spheres") / "run.nc"
-    return gp.run(SCENE, gp.EventDriven(), 5, 160.0, 0.4, path, pair_impulses=ASKED)
+    return gp.run(SCENE, gp.EventDriven(), 5, 160.0, 0.4, path, tallies=[ASKED])
 
 
 def counted(run):
@@ -83,7 +83,15 @@ def test_impulses_take_the_number_of_pairs_from_counts():
 
 def test_particles_that_hardly_meet_have_the_g_of_an_ideal_gas(tmp_path):
     small = gp.Scene(SCENE.container, [gp.Species(60, 0.03, temperature=1.0)])
-    path = gp.run(small, gp.EventDriven(), 2, 200.0, 2.0, tmp_path / "run.nc", pair_impulses="2:20:0.5")
+    path = gp.run(
+        small,
+        gp.EventDriven(),
+        2,
+        200.0,
+        2.0,
+        tmp_path / "run.nc",
+        tallies=[gp.PairImpulseTally(2.0, 20, 0.5)],
+    )
     with open_trajectory(path) as data:
         found, other = A.rdf(data), A.rdf(counted(data), bins=20, furthest=2.0)
     assert ((found.estimate - 1.0) / found.error)[5:].values == pytest.approx(np.zeros(15), abs=4.0)
@@ -92,7 +100,9 @@ def test_particles_that_hardly_meet_have_the_g_of_an_ideal_gas(tmp_path):
 
 def test_particles_that_never_meet_have_the_g_of_counts(tmp_path):
     points = gp.Scene(SCENE.container, [gp.Species(40, 1e-4, temperature=1.0)])
-    path = gp.run(points, gp.EventDriven(), 2, 20.0, 0.5, tmp_path / "run.nc", pair_impulses="2:20")
+    path = gp.run(
+        points, gp.EventDriven(), 2, 20.0, 0.5, tmp_path / "run.nc", tallies=[gp.PairImpulseTally(2.0, 20)]
+    )
     with open_trajectory(path) as data:
         assert data["collisions"][-1] == 0
         found, other = A.rdf(data), A.rdf(counted(data), bins=20, furthest=2.0)
@@ -104,10 +114,8 @@ def test_particles_that_never_meet_have_the_g_of_counts(tmp_path):
 
 def test_a_run_that_is_extended_keeps_its_impulses(tmp_path):
     made = [
-        gp.run(
-            SCENE, gp.EventDriven(), 1, time, 0.5, tmp_path / name, pair_impulses=ASKED, keep_checkpoint=True
-        )
+        gp.run(SCENE, gp.EventDriven(), 1, time, 0.5, tmp_path / name, tallies=[ASKED], keep_checkpoint=True)
         for time, name in ((4.0, "whole.nc"), (2.0, "short.nc"))
     ]
     assert gp.resume(made[1], duration=4.0).read_bytes() == made[0].read_bytes()
-    assert f"--pair-impulses {ASKED}" in " ".join(run_options(made[0], read_recipe(made[0])))
+    assert f"--pair-impulses {ASKED.to_text()}" in " ".join(run_options(made[0], read_recipe(made[0])))

@@ -1,5 +1,7 @@
 """Pressures and densities in containers whose faces move."""
 
+from __future__ import annotations
+
 import math
 
 import numpy as np
@@ -9,7 +11,6 @@ import gaspart as gp
 from gaspart.analysis.flow import accessible_lengths, face_areas, sides
 from gaspart.analysis.run import open_run
 
-A = gp.analysis
 GAS = [gp.Species(60, 0.1, temperature=1.0)]
 TUBE = gp.Container((30.0, 8.0))
 
@@ -78,3 +79,134 @@ def test_density_is_that_of_the_room_in_front_of_the_piston(pushed):
     inner = found.estimate[2 : nearest - 1]
     crossed = found.estimate[nearest : max(nearest + 1, math.floor(place.mean()))]
     assert (abs(crossed / inner.mean() - 1.0) < 0.15).all()
+
+
+# Observables beside fixed particles and interior walls: rates of those that move, and what is refused.
+
+
+STILL = (0.0, 0.0)
+
+
+def posts(radius, period, number=2):
+    """Fixed discs on a square lattice."""
+    places = [(period * (i + 0.5), period * (k + 0.5)) for i in range(number) for k in range(number)]
+    return [gp.Particle(place, STILL, radius, fixed=True) for place in places]
+
+
+def agrees(found, exact, uncertainty=0.0):
+    error = math.hypot(float(found.error), uncertainty)
+    assert error < 0.05 * exact
+    assert abs(float(found.estimate) - exact) < 4.0 * error
+
+
+@pytest.mark.parametrize("engine", [gp.EventDriven(), gp.TimeStepped(0.03125)])
+def test_a_particle_among_fixed_ones_has_the_rate_of_santalo(engine, tmp_path):
+    """v S / (pi A), with the perimeter S and the area A outside of the posts, which its radius widens."""
+    scene = gp.Scene(
+        gp.Container((10.0, 10.0), "periodic"), [gp.Species(1, 0.1, speed=1.0)], particles=posts(1.5, 5.0)
+    )
+    path = gp.run(scene, engine, 1, 9000.0, 6.0, tmp_path / "a.nc")
+    exact = 8.0 * 1.6 / (100.0 - 4.0 * math.pi * 1.6**2)
+    agrees(gp.analysis.collision_rate(path), exact)
+
+
+@pytest.mark.parametrize("engine", [gp.EventDriven(), gp.TimeStepped(0.004, threads=2)])
+def test_collisions_with_fixed_particles_count_once(engine, tmp_path):
+    """20 discs around 4 posts: 1.2435(12) by a Metropolis sampler, from the densities of pairs at contact."""
+    gas = gp.Species(20, 0.15, temperature=1.0, exact_temperature=True)
+    scene = gp.Scene(gp.Container((6.0, 6.0), "periodic"), [gas], particles=posts(0.8, 3.0))
+    path = gp.run(scene, engine, 1, 400.0, 1.0, tmp_path / "a.nc")
+    agrees(gp.analysis.collision_rate(path), 1.2435, 0.0012)
+    with gp.open_trajectory(path) as data:
+        lacking = data.drop_vars("fixed_collisions").load()
+    with pytest.raises(gp.SceneError, match="are not counted apart; make the run again"):
+        gp.analysis.collision_rate(lacking)
+
+
+PERIODIC = gp.Container((6.0, 6.0), "periodic")
+OBSTACLES_GAS = gp.Species(20, 0.15, temperature=1.0)
+WALLS = [gp.Wall((1.0, 1.0), (1.0, 5.0))]
+
+
+@pytest.mark.parametrize("keys", [{"particles": posts(0.8, 3.0)}, {"walls": WALLS}], ids=["fixed", "walls"])
+@pytest.mark.parametrize("name", ["Z", "rdf", "structure_factor", "order", "chemical_potential"])
+def test_what_a_homogeneous_gas_has_is_refused_beside_obstacles(name, keys):
+    scene = gp.Scene(PERIODIC, [OBSTACLES_GAS], **keys)
+    sim = gp.Simulation(scene, gp.EventDriven(), 1)
+    sim.advance(duration=2.0)
+    with pytest.raises(gp.SceneError, match="pressure|homogeneous|smooth and elastic particles alone"):
+        gp.measure(sim, name)
+
+
+def test_contact_values_are_refused_beside_interior_walls(tmp_path):
+    scene = gp.Scene(PERIODIC, [OBSTACLES_GAS], walls=WALLS)
+    path = gp.run(scene, gp.EventDriven(), 1, 20.0, 0.5, tmp_path / "a.nc", pairs=True)
+    with pytest.raises(gp.SceneError, match="walls = 1: make places unlike"):
+        gp.analysis.contact_values(path)
+    assert (gp.analysis.pair_collision_rates(path).estimate > 0.0).all()
+
+
+# Profiles in scenes with obstacles: uniform where centres can be, as in an ideal gas.
+
+
+A = gp.analysis
+
+
+@pytest.mark.parametrize(
+    ("side", "dimension", "count", "reach"), [(20.0, 2, 40, 4.0), (20.0, 3, 200, 6.0), (20.0, 2, 40, 9.0)]
+)
+def test_an_obstacle_is_not_counted_and_takes_its_volume(side, dimension, count, reach):
+    place = (3.0, 10.0, 5.0)[:dimension]  # across a periodic face
+    post = gp.Particle(place, (0.0,) * dimension, reach - 0.05, fixed=True)
+    gas = gp.Species(count, 0.05, temperature=1.0)
+    scene = gp.Scene(gp.Container((side,) * dimension, "periodic"), [gas], [post])
+    simulation = gp.Simulation(scene, gp.EventDriven(), seed=1)
+    simulation.advance(duration=700.0)
+    excluded = math.pi * reach**2 if dimension == 2 else 4.0 / 3.0 * math.pi * reach**3
+    found = A.profile(simulation, axis="x", bins=10)
+    apart = (found.estimate - count / (side**dimension - excluded)) / found.error
+    assert float((apart**2).mean()) < 1.0 + 3.0 * math.sqrt(2.0 / 10.0) + 2.0 / 15.0
+    assert found.theory is None
+
+
+def test_bins_inside_an_obstacle_are_empty_of_room():
+    species = [gp.Species(20, 0.5, temperature=1.0), gp.Species(10, 1.0, temperature=1.0)]
+    lid = gp.Particle((15.0, 15.0), (0.0, 0.0), 9.0, fixed=True)
+    scene = gp.Scene(gp.Container((18.0, 30.0), ("periodic", "wall")), species, [lid])
+    simulation = gp.Simulation(scene, gp.EventDriven(), seed=1)
+    simulation.advance(duration=10.0)
+    found = A.profile(simulation, bins=30)
+    blocked = np.flatnonzero(np.isnan(found.estimate))
+    assert len(blocked) and set(blocked) <= set(range(11, 19))
+
+
+def test_without_obstacles_the_sum_is_the_number_of_particles():
+    species = [gp.Species(20, 0.5, temperature=1.0), gp.Species(10, 1.0, temperature=1.0)]
+    simulation = gp.Simulation(gp.Scene(gp.Container((20.0, 20.0)), species), gp.EventDriven(), seed=1)
+    simulation.advance(duration=10.0)
+    assert float(A.profile(simulation, bins=20).estimate.sum()) * 20.0 == pytest.approx(30.0)
+
+
+def test_some_particles_of_one_kind_stand_for_all(tmp_path):
+    scene = gp.Scene(gp.Container((20.0, 20.0), "periodic"), [gp.Species(50, 0.5, temperature=1.0)])
+    path = gp.run(scene, gp.EventDriven(), 1, 20.0, 0.5, tmp_path / "a.nc", follow=10)
+    found = A.profile(path, bins=5)
+    assert float(found.estimate.mean()) * 400.0 == pytest.approx(50.0)
+    assert float(found.theory[0]) == pytest.approx(50.0 / 400.0)
+
+
+def test_what_one_particle_brings_along_has_no_error():
+    """Its velocity is the same in all cells that it passes: nothing is known of the scatter of others."""
+    ends = (gp.Particle((x, 2.0, 2.0), (v, 0.0, 0.0), 0.5) for x, v in ((1.0, 0.5), (9.0, -0.25)))
+    scene = gp.Scene(gp.Container((10.0, 4.0, 4.0), "wall"), particles=list(ends))
+    simulation = gp.Simulation(scene, gp.EventDriven(), 1)
+    simulation.advance(until=4.0)
+    found = gp.analysis.velocity_profile(simulation, "x", bins=10, start=0.0)
+    passed = found.estimate.sel(component="x").notnull()
+    assert int(passed.sum()) > 4 and np.isnan(found.error.sel(component="x").values).all()
+    assert not (found["velocity_freedom"].sel(component="x").where(passed) > 0.0).any()
+    rest = gp.Scene(scene.container, [gp.Species(3, 0.5, speed=0.0)])
+    simulation = gp.Simulation(rest, gp.EventDriven(), 1)
+    simulation.advance(until=4.0)
+    density = gp.analysis.profile(simulation, "density", "x", bins=4, start=0.0)
+    assert (density.error.where(density.estimate > 0.0, 0.0) == 0.0).all()

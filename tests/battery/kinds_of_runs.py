@@ -11,8 +11,8 @@ import gaspart as gp
 from gaspart.analysis.run import repeat_run
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
-from gaspart.state.optional_tallies import ImpulseTally, PairImpulseTally, StressTally
 from gaspart.state.state import State
+from gaspart.state.tally import ImpulseTally, PairImpulseTally, StressTally
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.reading import open_trajectory
 
@@ -228,7 +228,7 @@ class Start:
             "fluxes": {"correlations": Correlations(half, LAGS, stress=True)},
         }
         for form, tally in self.tallies.items():
-            found[form] = {form: tally.to_text()}
+            found[form] = {"tallies": [tally]}
         if self.scene.shear_rate is not None:  # correlations of the motion have no meaning
             del found["correlations"]
         try:

@@ -9,7 +9,7 @@ import pytest
 from engines.planes import carried, rows_of
 
 import gaspart as gp
-from gaspart.state.optional_tallies import ImpulseTally
+from gaspart.state.tally import ImpulseTally
 
 BINS = 7
 MIXTURE = [gp.Species(12, 0.3, temperature=1.0), gp.Species(6, 0.2, mass=3.0, temperature=1.0)]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.state.optional_tallies import PairImpulseTally
+from gaspart.state.tally import PairImpulseTally
 
 ASKED = PairImpulseTally(1.6, 6, 0.4)
 FLAT = gp.Scene(

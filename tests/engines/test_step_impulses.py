@@ -10,7 +10,7 @@ from engines.planes import carried, rows_of
 from engines.test_impulses import BOX, FALLING, MIXTURE, REFUSED, SCENES
 
 import gaspart as gp
-from gaspart.state.optional_tallies import ImpulseTally
+from gaspart.state.tally import ImpulseTally
 
 BINS = 7
 STEP = 2.0**-8

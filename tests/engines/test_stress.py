@@ -10,7 +10,7 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.state.optional_tallies import StressTally
+from gaspart.state.tally import StressTally
 from gaspart.trajectory.recipe import Recipe, read_recipe
 from gaspart.trajectory.run import simulation_of
 

@@ -152,14 +152,14 @@ PLANTS = [
     ),
     Plant(
         "half of the crossed term",
-        "analysis.correlations",
+        "analysis.motion",
         "- 2.0 * _products(r)",
         "- _products(r)",
         ("points_walls", "msd"),
     ),
     Plant(
         "displacements per N - 1",
-        "analysis.correlations",
+        "analysis.motion",
         "sums / ((frames - lag) * count)",
         "sums / ((frames - lag) * (count - 1))",
         ("spheres_short", "msd"),
@@ -194,7 +194,7 @@ PLANTS = [
     ),
     Plant(
         "correlation per frame",
-        "analysis.correlations",
+        "analysis.motion",
         "* flat.shape[1])",
         "* len(flat))",
         ("spheres_short", "vacf"),

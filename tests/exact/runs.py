@@ -10,7 +10,7 @@ from exact.kinds import kinds
 
 import gaspart as gp
 from gaspart.errors import SceneError
-from gaspart.state.optional_tallies import ImpulseTally, StressTally
+from gaspart.state.tally import ImpulseTally, StressTally
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.reading import open_trajectory
 
@@ -43,7 +43,7 @@ def options(kind, scene, engine):
         except SceneError:
             pass
     if "impulses" in kind.run and ImpulseTally.name in engine.tallies:
-        found["impulses"] = f"{kind.run['impulses']}:{IMPULSE_BINS}"
+        found["tallies"] = [ImpulseTally(kind.run["impulses"], IMPULSE_BINS)]
     return found
 
 

@@ -87,6 +87,37 @@ def test_a_run_that_is_too_short_is_not_judged(tmp_path):
     assert halves["speed law"].text == "the temperature is not uniform: not relaxed"
 
 
+def test_speeds_are_not_judged_before_positions_are_relaxed(tmp_path):
+    """Random insertion is no equilibrium; while it relaxes, speeds deviate from Maxwell's law."""
+    scene = gas(3, 1000, 0.3)
+    short, long = (
+        {check.name: check for check in judge(read_frames(path))}
+        for path in (
+            gp.run(scene, EVENT, 1, duration, 0.1, tmp_path / f"{duration}.nc") for duration in (0.7, 3.0)
+        )
+    )
+    for name in ("speed law", "kurtosis of speeds"):
+        assert short[name].passed is None and long[name].passed
+        assert "particles must move by 1.2 after the first frame, to relax; they have" in short[name].text
+
+
+@pytest.mark.thorough
+def test_speeds_deviate_while_positions_after_random_insertion_relax():
+    """The reason for the test above: velocities that were Maxwell's are not after 6 collisions of each."""
+    count, deviations = 50_000, []
+    expected = 5.0 / 3.0 * (count - 1.0) / (count - 1.0 + 2.0 / 3.0)
+    for seed in range(1, 41):
+        simulation = gp.Simulation(gas(3, count, 0.3), EVENT, seed=seed)
+        for time in (0.6, 2.5):
+            simulation.advance(until=time)
+            squares = (simulation.state.velocities**2).sum(axis=1)
+            deviations.append((squares**2).mean() / squares.mean() ** 2 - expected)
+    values = np.reshape(deviations, (40, 2))
+    means, errors = values.mean(axis=0), values.std(axis=0, ddof=1) / np.sqrt(40.0)
+    assert means[0] < -3.0 * errors[0] and abs(means[0] + 0.0044) < 4.0 * errors[0]
+    assert abs(means[1]) < 4.0 * errors[1]
+
+
 @pytest.fixture(scope="module")
 def good(tmp_path_factory):
     """Frames of a good run, positions in double precision."""

@@ -141,6 +141,14 @@ def test_values_of_a_scene_file_and_of_the_engine_vary(tmp_path):
             "over.packing_fraction = .*needs a container with equal sides",
         ),
         (
+            {
+                "scene": gp.Scene(
+                    gp.Container((8.0, 8.0)), particles=[gp.Particle((4.0, 4.0), (1.0, 0.0), 0.5)]
+                )
+            },
+            "over.packing_fraction = .*varies one species alone in a container",
+        ),
+        (
             {"scene": gp.Scene(gp.Container((8.0, 8.0)), [gp.Species(6, 0.5)], gravity=(0.0, -1.0))},
             "over.packing_fraction = .*varies one species alone in a container",
         ),
@@ -316,3 +324,10 @@ def test_transport_coefficients_of_correlations(tmp_path):
     for name in names[:2]:
         assert abs(data[name] - data[f"{name}_theory"])[0] < 3.0 * data[f"{name}_error"][0] + 0.05
     assert np.isfinite(data.D).all()
+
+
+def test_a_gas_at_rest_is_run_at_its_temperature_of_zero(tmp_path):
+    cold = replace(GAS, species=(replace(GAS.species[0], temperature=0.0),))
+    with pytest.warns(UserWarning, match="all particles are at rest"):
+        data = swept(tmp_path, {"packing_fraction": [0.05]}, "collision_rate", cold)
+    assert data.duration.values.tolist() == [30.0] and "none happened" in data.failure.values[0]

@@ -8,7 +8,7 @@ import pytest
 
 import gaspart as gp
 from gaspart.engines.engine import ENGINES, engine_from_dict, required_settings
-from gaspart.state.optional_tallies import ASKED, ImpulseTally, PairImpulseTally, StressTally
+from gaspart.state.tally import ImpulseTally, PairImpulseTally, StressTally
 
 DISCS = gp.Scene(gp.Container((12.0, 12.0), "periodic"), [gp.Species(20, 0.5, temperature=1.0)])
 MIXED = gp.Scene(
@@ -130,7 +130,11 @@ SEARCH = {"search", "boxes_per_side", "origin", "skin", "per_side", "threads"}
 @pytest.mark.filterwarnings("ignore:gaspart")
 @pytest.mark.parametrize(
     ("engine", "tally"),
-    [(engine, tally) for engine in one_of_each() for tally in (None, *sorted(engine.tallies & set(ASKED)))],
+    [
+        (engine, tally)
+        for engine in one_of_each()
+        for tally in (None, *sorted(engine.tallies & OPTIONAL.keys()))
+    ],
 )
 def test_a_checkpoint_that_lacks_anything_is_refused(engine, tally):
     """Whatever the engine, with each optional tally that it makes, and with nothing changed."""

@@ -1,13 +1,18 @@
 """Initial states: particles placed where they may be, moving as they should."""
 
+from __future__ import annotations
+
 import math
+import tracemalloc
 
 import numpy as np
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 from scenes import closest, gas, mixtures
 
 import gaspart as gp
+from gaspart.state.boxes import deepest_overlap
 from gaspart.state.initial import initial_state, random_insertion
 from gaspart.state.random import stream
 
@@ -168,3 +173,136 @@ def test_arrangements_that_share_a_lattice_do_not_mix():
     kinds = [gp.Species(8, 0.5, arrangement=name) for name in ("lattice", "slab")]
     with pytest.raises(gp.SceneError, match="is shared by all"):
         gp.Scene(gp.Container((8.0, 8.0, 8.0)), kinds)
+
+
+# The deepest overlap of particles of any sizes.
+
+
+@given(st.integers(0, 10**6))
+def test_the_deepest_overlap_is_that_of_all_pairs(seed):
+    rng = np.random.default_rng(seed)
+    count, d = rng.integers(1, 40), rng.integers(2, 4)
+    lengths, periodic = rng.uniform(1.0, 6.0, d), rng.integers(0, 2, d).astype(bool)
+    radii, places = 10.0 ** rng.uniform(-2.0, 0.2, count), rng.random((count, d)) * lengths
+    gap = places[:, None] - places
+    gap -= np.where(periodic, lengths * np.round(gap / lengths), 0.0)
+    depth = 1.0 - np.sqrt((gap**2).sum(axis=2)) / (radii[:, None] + radii)
+    np.fill_diagonal(depth, 0.0)
+    own = 1.0 - np.where(periodic, lengths, np.inf).min() / (2.0 * radii.max())
+    found = deepest_overlap(places, radii, lengths, tuple(periodic))
+    assert found == pytest.approx(max(0.0, depth.max(), own), abs=1e-12)
+
+
+def test_a_large_particle_does_not_make_all_small_ones_neighbours():
+    rng = np.random.default_rng(4)
+    places = rng.random((4000, 3)) * 30.0
+    places = places[((places - 15.0) ** 2).sum(axis=1) > 9.0**2]
+    places, radii = np.vstack([[[15.0] * 3], places]), np.append(8.0, np.full(len(places), 0.05))
+    reached = []
+
+    class Counted(np.ndarray):
+        """Positions that tell how many pairs are looked at."""
+
+        def __getitem__(self, key):
+            found = super().__getitem__(key)
+            reached.append(len(found))
+            return found
+
+    deepest_overlap(places.view(Counted), radii, np.full(3, 30.0), (False,) * 3)
+    assert sum(reached) < 10 * len(places)
+
+
+# Initial velocities of exactly the temperature that a scene states.
+
+
+def scene(boundary="periodic", exact=True, count=50, **more):
+    gas = gp.Species(count, 0.3, mass=2.0, temperature=1.7, exact_temperature=exact)
+    return gp.Scene(gp.Container((12.0, 9.0, 15.0), boundary), [gas], **more)
+
+
+@pytest.mark.parametrize(
+    ("boundary", "axes"),
+    [("periodic", 3), (("periodic", "wall", "periodic"), 2), ("wall", 0)],
+)
+def test_the_temperature_about_the_conserved_momentum_is_exact(boundary, axes):
+    for seed in range(3):
+        state = initial_state(scene(boundary), seed)
+        assert 2.0 * state.kinetic_energy / (3 * 50 - axes) == pytest.approx(1.7, rel=1e-14)
+        still = np.array(scene(boundary).container.periodic)
+        assert np.abs(state.momentum[still]).max(initial=0.0) < 1e-12
+        assert (np.abs(state.momentum[~still]) > 1e-3).all()
+
+
+def test_without_the_key_velocities_are_as_drawn():
+    drawn, exact = (initial_state(scene("wall", exact), 3).velocities for exact in (False, True))
+    assert np.ptp(exact / drawn) < 1e-12 and abs((exact / drawn).mean() - 1.0) > 1e-4
+    assert "exact_temperature" not in scene(exact=False).to_dict()["species"][0]
+    assert gp.Scene.from_dict(scene().to_dict()) == scene()
+
+
+def test_obstacles_and_friction_take_up_momentum():
+    post = gp.Particle((6.0, 4.5, 7.0), (0.0, 0.0, 0.0), 0.5, fixed=True)
+    plate = gp.Plate((1.0, 1.0, 1.0), ((2.0, 0.0, 0.0), (0.0, 2.0, 0.0)))
+    rough, slit = gp.Restitution(tangential=1.0), ("periodic", "periodic", "wall")
+    hot = {"z_low": gp.Thermal(1.0)}
+    for boundary, more in (
+        ("periodic", {"particles": [post]}),
+        ("periodic", {"walls": [plate]}),
+        (slit, {"restitution": rough}),
+        (slit, {"faces": hot}),
+    ):
+        assert not any(scene(boundary, **more).conserved_axes)
+        state = initial_state(scene(boundary, **more), 1)
+        assert 2.0 * state.kinetic_energy == pytest.approx(1.7 * 150.0, rel=1e-14)
+    assert all(scene(restitution=rough).conserved_axes)
+    assert scene(slit, faces={"z_low": gp.Thermal(1.0, "normal")}).conserved_axes == (True, True, False)
+
+
+def test_species_that_have_it_are_scaled_together():
+    kinds = [
+        gp.Species(20, 0.3, temperature=1.5, exact_temperature=True),
+        gp.Species(10, 0.3, temperature=1.5),
+        gp.Species(20, 0.3, mass=5.0, temperature=1.5, exact_temperature=True),
+    ]
+    drawn = [gp.Species(it.count, it.radius, mass=it.mass, temperature=1.5) for it in kinds]
+    container = gp.Container((20.0, 20.0), "periodic")
+    state, plain = (initial_state(gp.Scene(container, it), 1) for it in (kinds, drawn))
+    chosen = np.r_[0:20, 30:50]
+    energy = 0.5 * (state.masses[chosen, None] * state.velocities[chosen] ** 2).sum()
+    assert 2.0 * energy / (2 * 40 - 2) == pytest.approx(1.5, rel=1e-14)
+    assert (state.velocities[20:30] == plain.velocities[20:30]).all()
+
+
+def test_what_has_no_temperature_is_refused():
+    with pytest.raises(gp.SceneError, match="exact_temperature = True: needs the temperature of a species"):
+        gp.Species(5, 0.5, speed=1.0, exact_temperature=True)
+    with pytest.raises(gp.SceneError, match="exact_temperature = True: needs two particles or more"):
+        initial_state(scene(count=1), 1)
+    assert math.isfinite(initial_state(scene("wall", count=1), 1).kinetic_energy)
+    resting = gp.Species(5, 0.5, temperature=0.0, exact_temperature=True)
+    assert initial_state(gp.Scene(gp.Container((9.0, 9.0)), [resting]), 1).kinetic_energy == 0.0
+
+
+@pytest.mark.parametrize("periodic", [True, False])
+@pytest.mark.parametrize("width", [0.0, 1e-3])
+def test_a_heap_of_particles_is_no_list_of_all_pairs(width, periodic):
+    """20000 in one place have 2e8 pairs, of 3 GB; those of a file whose positions were never set are such."""
+    rng = np.random.default_rng(5)
+    positions = 5.0 + width * rng.random((20000, 3))
+    tracemalloc.start()
+    deepest = deepest_overlap(positions, np.full(20000, 0.5), np.full(3, 10.0), (periodic,) * 3)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 100e6
+    assert deepest == 1.0 if width == 0.0 else 1.0 - 1e-4 < deepest < 1.0
+
+
+@given(st.integers(0, 10**6), st.floats(1e-6, 0.3))
+def test_the_deepest_overlap_in_a_heap_is_that_of_all_pairs(seed, width):
+    rng = np.random.default_rng(seed)
+    positions = 2.0 + width * rng.random((150, 3))
+    radii = rng.uniform(0.3, 0.9, 150)
+    apart = np.sqrt(((positions[:, None] - positions) ** 2).sum(axis=2))
+    depth = 1.0 - apart / (radii[:, None] + radii)
+    np.fill_diagonal(depth, 0.0)
+    assert deepest_overlap(positions, radii, np.full(3, 4.0), (False,) * 3) == pytest.approx(depth.max())

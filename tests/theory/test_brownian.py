@@ -1,7 +1,12 @@
+""""""
+
+from __future__ import annotations
+
 import numpy as np
 import pytest
 
 from gaspart import theory
+from gaspart.theory.boltzmann import relaxing_speeds, tagged_paths
 
 
 def test_friction_of_a_particle_as_large_as_the_gas_is_enskogs():
@@ -57,3 +62,60 @@ def test_langevin_displacements():
         ]
     )
     assert 2.0 * np.trapezoid(rv, fine) == pytest.approx(rest[5], rel=1e-5)
+
+
+# The linear Boltzmann equation of a tagged sphere, against what is known in closed form.
+
+
+MAXWELL = np.asarray(theory.maxwell_ppf((np.arange(20_000) + 0.5) / 20_000, 3))
+
+
+def hits(rate, mass):
+    """n pi a^2 of a gas at temperature 1 in which a sphere's velocity decays at `rate` at first."""
+    return float(rate * np.pi / theory.friction_rate(1.0, 1.0, mass))
+
+
+def test_a_light_sphere_in_maxwells_gas_has_equipartition_and_sonines_diffusion():
+    """D is 1.01895 k_B T / (M g), from an autocorrelation that decays at the rate g at first, later more
+    slowly."""
+    count, interval = 6000, 0.25
+    found = tagged_paths([MAXWELL] * 96, interval, hits(1.0, 1.0), 1.0, count, seed=1)
+    v, x = found.velocities[32:], found.displacements[32:]
+    energies = (v**2).mean(axis=(0, 2))
+    assert energies.mean() == pytest.approx(1.0, abs=4.0 * energies.std() / count**0.5)
+    # 6 D t from where the velocity has been forgotten on: the slope of the msd from 6 to 12 friction times
+    late = ((x[48:] - x[:-48]) ** 2).sum(axis=2).mean(axis=0)
+    early = ((x[24:] - x[:-24]) ** 2).sum(axis=2).mean(axis=0)
+    slopes = (late - early) / (6.0 * 6.0)
+    assert slopes.mean() == pytest.approx(1.01895, abs=4.0 * slopes.std() / count**0.5)
+
+
+def test_the_initial_friction_is_that_of_the_closed_form():
+    """-d<V(0).V(t)>/dt at 0, of spheres in equilibrium, in a time in which few are hit."""
+    share, count, mass = 0.05, 20_000, 2.0
+    found = tagged_paths([MAXWELL] * 200, share, hits(1.0, mass), mass, count, seed=2)
+    v = found.velocities[120:]
+    lost = ((v[:-1] - v[1:]) * v[:-1]).sum(axis=2).mean(axis=0) / (v[:-1] ** 2).sum(axis=2).mean()
+    error = lost.std() / count**0.5
+    assert lost.mean() == pytest.approx(1.0 - np.exp(-share), abs=4.0 * error)
+
+
+def test_a_heavy_sphere_feels_the_mean_speed_of_the_gas():
+    """M g V = (4/3) pi a^2 n m <c> V whatever the distribution of speeds: of equal speeds it is sqrt(3 pi /
+    8) = 1.085 of that in Maxwell's gas of the same energy."""
+    mass = 40.0
+    found = tagged_paths([np.full(1, 3.0**0.5)] * 40, 0.5, hits(1.0, mass), mass, 4000, seed=3)
+    v = found.velocities[12:]
+    decay = -np.log((v[2:] * v[:-2]).mean() / (v**2).mean())
+    assert decay == pytest.approx((3.0 * np.pi / 8.0) ** 0.5, abs=0.03)
+
+
+def test_a_gas_of_equal_speeds_relaxes_by_its_own_collisions():
+    """As fast as the table of relaxation states, in which time counts collisions: 4/3 n pi d^2 at first."""
+    times = np.array([0.02, 0.3, 0.6])
+    speeds = relaxing_speeds(40_000, times, 1.0, seed=4)
+    squares = speeds**2
+    assert squares.mean(axis=1) == pytest.approx(np.ones(3), rel=1e-10)
+    kurtosis = (squares**2).mean(axis=1)
+    collisions = 4.0 / 3.0 * times  # <g> falls to 0.977 of 4/3, hardly during these
+    assert kurtosis == pytest.approx(theory.relaxation(3).kurtosis(collisions), abs=0.012)

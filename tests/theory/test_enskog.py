@@ -1,7 +1,17 @@
+""""""
+
+from __future__ import annotations
+
+import math
+
 import numpy as np
 import pytest
+from scipy.integrate import quad
+from theory.half_space import temperature_jump, velocity_slip
 
 from gaspart import theory
+from gaspart.theory import heat, shear
+from gaspart.theory.boltzmann import brackets, collisions, flux_relaxation
 
 SAME_FORMULA = {
     "contact_value": theory.contact_value,
@@ -111,3 +121,171 @@ def test_finite_collision_rate_in_the_dilute_limit(dimension):
     factor = theory.collision_rate_finite_size_factor(1e-9, dimension, 2)
     assert factor == pytest.approx(exact, rel=1e-3)
     assert theory.collision_rate_finite_size_factor(0.1, dimension, 10**6) == pytest.approx(1.0, abs=1e-6)
+
+
+# Numbers of kinetic theory that gaspart.theory has from the literature, derived again.
+
+
+@pytest.mark.parametrize(("dimension", "orders", "nodes"), [(2, 5, 12), (3, 4, 8)])
+def test_chapman_and_enskogs_transport_coefficients_of_a_dilute_gas(dimension, orders, nodes):
+    """The first approximations exactly; the fifth in two dimensions, the fourth in three, are below the last
+    digits by what the sequence still gains."""
+    d, eta = dimension, 1e-9
+    met = collisions(d, nodes)
+    density = theory.number_density(eta, d)
+    flux = np.eye(orders)[0]
+
+    def inverse(rank, first, tagged, size):
+        """Entry (0, 0) of the inverse, by the number of polynomials."""
+        matrix = brackets(rank, range(first, first + orders), met, tagged)
+        return [size**2 * np.linalg.solve(matrix[:n, :n], flux[:n])[0] for n in (1, orders - 1, orders)]
+
+    approximations = {
+        "diffusion": np.array(inverse(1, 0, True, d)) / d,
+        "viscosity": np.array(inverse(2, 0, False, d * (d + 2))) * (d - 1) / (d * (d - 1) * (d + 2)),
+        "conductivity": np.array(inverse(1, 1, False, 0.5 * d * (d + 2))) / d,
+    }
+    tabulated = {
+        "diffusion": theory.enskog_diffusion(eta, d) * density,
+        "viscosity": theory.enskog_viscosity(eta, d),
+        "conductivity": theory.enskog_conductivity(eta, d),
+    }
+    exact_first = {2: (0.5, 0.5, 2.0), 3: (3 / 8, 5 / 16, 75 / 64)}[d]
+    for (name, found), factor in zip(approximations.items(), exact_first, strict=True):
+        assert found[0] == pytest.approx(factor / np.sqrt(np.pi), rel=1e-9), name
+        gained = found[2] - found[1]
+        assert 0.0 < gained < 1e-3 * found[2], name
+        assert found[2] <= tabulated[name] * (1.0 + 1e-5) <= found[2] + gained + 4e-5 * found[2], name
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("restitution", [0.2, 0.6, 0.9])
+def test_the_cumulants_of_inelastic_gases_follow_from_the_moments(dimension, restitution):
+    """To first order in a2, f = M (1 + a2 S2): the losses mu_2 and mu_4 of <c^2> and <c^4>, c^2 = v^2/2."""
+    d = dimension
+    weights, velocities = collisions(d, 8, restitution)
+    first, second, *after = (0.5 * (v**2).sum(axis=0) for v in velocities)
+
+    def sonine(x):
+        return 0.5 * x**2 - 0.5 * (d + 2) * x + 0.125 * d * (d + 2)
+
+    change = sonine(first) + sonine(second)
+    losses = [first**p + second**p - after[0] ** p - after[1] ** p for p in (1, 2)]
+    (m2, more2), (m4, more4) = ((weights @ lost, (weights * change) @ lost) for lost in losses)
+    cooling = (m4 - (d + 2) * m2) / ((d + 2) * (m2 + more2) - more4)
+    driven = (m4 - (d + 2) * m2) / ((d + 2) * more2 - more4)
+    assert theory.fourth_cumulant(restitution, d) == pytest.approx(cooling, rel=1e-9)
+    assert theory.driven_cumulant(restitution, d) == pytest.approx(driven, rel=1e-9)
+    # energy lost per time, and collisions per time, over those of Maxwell's gas: 1 + 3 a2 / 16, 1 - a2 / 16
+    assert more2 / m2 == pytest.approx(3.0 / 16.0, rel=1e-9)
+    assert (weights @ change) / weights.sum() == pytest.approx(-1.0 / 16.0, rel=1e-9)
+
+
+def test_the_temperature_jump_is_that_of_the_linearised_boltzmann_equation():
+    """Moments up to degree 3, 5, 7 (9, 11) give 1.879, 2.075, 2.103 (2.111, 2.116): the errors fall with
+    about the third power of the degree. Maxwell's elementary value is far off."""
+    less, more = (temperature_jump(highest, highest + 1) for highest in (5, 7))
+    limit = more + (more - less) / ((7.0 / 5.0) ** 3 - 1.0)
+    assert less < more < limit
+    assert abs(limit - heat.TEMPERATURE_JUMP) < more - less
+    assert limit - heat.ELEMENTARY_JUMP > 8.0 * (more - less)
+
+
+def test_the_velocity_slip_is_that_of_the_linearised_boltzmann_equation():
+    """Moments up to degree 4, 6, 8 give 1.084, 1.098, 1.103. Maxwell's elementary value is far off."""
+    less, more = (velocity_slip(highest, highest) for highest in (4, 6))
+    limit = more + (more - less) / ((6.0 / 4.0) ** 3 - 1.0)
+    assert less < more < limit
+    assert abs(limit - theory.VELOCITY_SLIP) < more - less
+    assert more - shear.ELEMENTARY_SLIP > 6.0 * (more - less)
+
+
+# How fluxes relax by the linearised Boltzmann operator.
+
+
+@pytest.mark.parametrize("quantity", ["viscosity", "conductivity"])
+def test_the_integral_of_the_correlation_is_the_transport_coefficient(quantity):
+    rates, weights = flux_relaxation(quantity)
+    assert weights.sum() == pytest.approx(1.0, rel=1e-12)
+    first = {"viscosity": 1.0, "conductivity": 0.5}[quantity]  # of the first polynomial, exact
+    assert weights @ rates == pytest.approx(first, rel=1e-9)
+    eta = 1e-9
+    static = theory.number_density(eta, 2) * {"viscosity": 1.0, "conductivity": 2.0}[quantity]
+    coefficient = {"viscosity": theory.enskog_viscosity, "conductivity": theory.enskog_conductivity}[quantity]
+    expected = coefficient(eta, 2) * theory.collision_rate(eta, 2) / static
+    assert (weights / rates).sum() == pytest.approx(expected, rel=5e-5)
+
+
+def test_the_heat_flux_of_discs_relaxes_half_as_fast_as_their_stress():
+    """Integrals of the correlations, 2.059 and 1.022 collisions; their mean times, 2.102 and 1.045."""
+    for quantity, delay, mean_time in (("conductivity", 2.0594, 2.1019), ("viscosity", 1.0220, 1.0455)):
+        rates, weights = flux_relaxation(quantity)
+        parts = weights / rates
+        assert parts.sum() == pytest.approx(delay, abs=2e-4)
+        assert (parts / rates).sum() / parts.sum() == pytest.approx(mean_time, abs=1e-3)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_sums_of_collisional_invariants_make_fluxes_by_collisions(dimension):
+    """By which the vertices of mode coupling are delayed: <i1 + i2 |T| a1 b2 + a2 b1> = 2 r_i <i|ab>, here of
+    momenta a = b = v_n, and all parts of the stress together."""
+    weights, velocities = collisions(dimension, 8)
+    normal, other = (np.array([v[-1] for v in velocities]) for _ in range(2))
+    crossed = [normal[0] * other[1], normal[2] * other[3]]  # a1 b2 before and after
+    own = [normal[0] * other[0] + normal[1] * other[1], normal[2] * other[2] + normal[3] * other[3]]
+    gained = weights @ ((crossed[1] - crossed[0]) * own[0])
+    lost = weights @ ((own[1] - own[0]) * own[0])
+    assert 2.0 * gained == pytest.approx(-lost, rel=1e-12)
+
+
+def test_unequal_polynomials_do_not_depend_on_the_number_of_nodes():
+    few, many = (brackets(1, range(1, 4), collisions(2, nodes)) for nodes in (9, 12))
+    np.testing.assert_allclose(few, many, rtol=1e-10, atol=1e-12)
+    assert math.isclose(few[0, 1], few[1, 0], rel_tol=1e-10)
+
+
+# Free flights: the rate at a speed against a mean over partners, the distribution against its moments.
+
+
+GAS = {"packing_fraction": 0.1, "diameter": 2.0, "temperature": 3.0, "mass": 0.5}
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_mean_over_speeds_is_the_collision_rate(dimension):
+    def weighted(v):
+        pdf = theory.maxwell_pdf(v, dimension, GAS["temperature"], GAS["mass"])
+        return pdf * theory.collision_rate_at_speed(v, dimension=dimension, **GAS)
+
+    mean, _ = quad(weighted, 0.0, 40.0, epsabs=1e-12)
+    assert mean == pytest.approx(float(theory.collision_rate(dimension=dimension, **GAS)), rel=1e-9)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("speed", [0.0, 0.7, 2.0, 9.0])
+def test_the_rate_is_that_of_partners_of_all_velocities(dimension, speed):
+    """S sigma^(d-1) rho chi / S' times the mean relative speed, drawn instead of integrated."""
+    partners = np.random.default_rng(1).normal(size=(400_000, dimension)) * math.sqrt(3.0 / 0.5)
+    partners[:, 0] -= speed
+    relative = np.sqrt((partners**2).sum(axis=1))
+    section = {2: 2.0 * 2.0, 3: math.pi * 2.0**2}[dimension]  # of a pair: 2 sigma, pi sigma^2
+    density = theory.number_density(0.1, dimension, 2.0) * theory.contact_value(0.1, dimension)
+    expected, error = section * density * relative.mean(), section * density * relative.std() / 632.0
+    assert abs(theory.collision_rate_at_speed(speed, dimension=dimension, **GAS) - expected) < 4.0 * error
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_distribution_of_free_times_has_its_moments(dimension):
+    rate = float(theory.collision_rate(dimension=dimension, **GAS))
+
+    def pdf(t):
+        return float(theory.free_time_pdf(t, dimension=dimension, **GAS))
+
+    whole, mean, square = (
+        quad(lambda t, n=n: t**n * pdf(t), 0.0, 60.0 / rate, limit=200)[0] for n in (0, 1, 2)
+    )
+    assert whole == pytest.approx(1.0, abs=1e-7)
+    assert mean == pytest.approx(1.0 / rate, rel=1e-6)
+    assert 1.02 < square / (2.0 * mean**2) < 1.2  # broader than an exponential
+    assert pdf(0.0) > rate
+    values = theory.free_time_pdf(np.array([[0.0, 1.0], [2.0, 3.0]]), dimension=dimension, **GAS)
+    assert values.shape == (2, 2) and values[0, 0] == pytest.approx(pdf(0.0))

@@ -1,3 +1,7 @@
+""""""
+
+from __future__ import annotations
+
 import numpy as np
 import pytest
 
@@ -63,3 +67,97 @@ def test_values_outside_their_range_are_refused():
         theory.verlet_weis_rdf(1.5, 0.0)
     with pytest.raises(ValueError, match="wave_number = -1"):
         theory.percus_yevick_structure_factor(-1.0, 0.3)
+
+
+BULK = theory.number_density(0.35, 3)
+
+
+def test_the_functional_obeys_the_contact_theorem():
+    # Its pressure follows from its bulk alone, the density at the wall from the profile: an exact sum rule.
+    _, density = theory.white_bear_slit(BULK, 8.0)
+    assert density[0] == pytest.approx(theory.white_bear_pressure(BULK), rel=3e-4)
+    assert density[0] == pytest.approx(density[-1], rel=1e-6)
+
+
+def test_far_from_the_walls_the_functional_has_its_bulk():
+    place, density = theory.white_bear_slit(BULK, 11.0, 0.02)
+    middle = np.abs(place - 5.0) < 1.0
+    assert density[middle].mean() == pytest.approx(BULK, rel=2e-3)
+
+
+def test_a_dilute_gas_is_uniform():
+    _, density = theory.white_bear_slit(1e-5, 3.0, 0.02)
+    assert density == pytest.approx(1e-5, rel=1e-3)
+
+
+def test_first_order_of_the_profile_is_exact():
+    # A wall keeps half of a sphere's surroundings free of others: rho(0) / rho_b = 1 + (2 pi / 3) rho_b.
+    bulk = 0.01
+    _, density = theory.white_bear_slit(bulk, 6.0)
+    assert density[0] / bulk == pytest.approx(1.0 + 2.0 * np.pi / 3.0 * bulk, abs=4e-4)
+
+
+def test_a_narrow_slit_pushes_where_layers_fit():
+    pressure = [theory.white_bear_slit(BULK, width, 0.02)[1][0] for width in (2.0, 2.5, 3.0, 3.5)]
+    bulk = theory.white_bear_pressure(BULK)
+    assert [p > bulk for p in pressure] == [True, False, True, False]
+
+
+def test_no_slit_narrower_than_a_sphere():
+    with pytest.raises(ValueError, match="width"):
+        theory.white_bear_slit(BULK, 1.0)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_chemical_potential_is_that_of_the_equation_of_state(dimension):
+    # Gibbs and Duhem: d(eta Z) / d eta = 1 + eta d mu_excess / d eta.
+    eta = np.linspace(0.01, 0.5, 30)
+    low, high = (theory.excess_chemical_potential(eta + d, dimension) for d in (-1e-3, 1e-3))
+    z_low, z_high = ((eta + d) * theory.compressibility_factor(eta + d, dimension) for d in (-1e-3, 1e-3))
+    assert (z_high - z_low) / 2e-3 == pytest.approx(1.0 + eta * (high - low) / 2e-3, rel=1e-4)
+    assert theory.excess_chemical_potential(1e-4, dimension) == pytest.approx(2.0**dimension * 1e-4, rel=1e-3)
+
+
+@pytest.mark.parametrize("eta", [1e-7, 1e-4, 0.05, 0.6])
+def test_the_packing_fraction_at_an_activity_is_found_again(eta):
+    activity = eta * np.exp(theory.excess_chemical_potential(eta, 2))
+    assert theory.packing_fraction_at(activity, 2) == pytest.approx(eta, rel=1e-5)
+
+
+def test_it_is_the_virial_series_and_carnahan_and_starling():
+    # Virial series: mu_ex = sum of n/(n-1) b_n eta^(n-1); Carnahan and Starling's closed form when dense.
+    exact, _ = theory.virial_coefficients(3, 6)
+    series = sum(n / (n - 1) * exact[n - 1] * 0.05 ** (n - 1) for n in range(2, 7))
+    assert theory.excess_chemical_potential(0.05, 3) == pytest.approx(series, rel=1e-5)
+    eta = 0.35
+    starling = (8.0 * eta - 9.0 * eta**2 + 3.0 * eta**3) / (1.0 - eta) ** 3
+    assert theory.excess_chemical_potential(eta, 3) == pytest.approx(starling, rel=4e-3)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_free_energy_is_that_of_the_chemical_potential(dimension):
+    """Its derivative, times the packing fraction, is Z - 1; its mean over smaller ones that of mu."""
+    eta, step = 0.4, 1e-3
+    high, low = (theory.excess_free_energy(eta + d, dimension) for d in (step, -step))
+    excess = theory.compressibility_factor(eta, dimension) - 1.0
+    assert eta * (high - low) / (2.0 * step) == pytest.approx(excess, rel=1e-4)
+    below = np.linspace(0.0, eta, 2001)
+    mean = np.trapezoid(theory.excess_chemical_potential(below, dimension), below) / eta
+    assert theory.excess_free_energy(eta, dimension) == pytest.approx(mean, rel=1e-5)
+
+
+def test_the_uncertainty_of_the_chemical_potential_is_that_of_z():
+    """With an uncertainty that is a constant part of Z: that part of the integral too."""
+    eta = 0.4  # where it is 4.3e-6 of Z, but for low densities
+    whole = theory.compressibility_factor(eta, 3) + theory.excess_free_energy(eta, 3)
+    assert theory.chemical_potential_uncertainty(eta, 3) == pytest.approx(4.3e-6 * whole, rel=0.4)
+
+
+def test_fewer_pairs_change_the_chance_of_an_insertion():
+    """To second order in the density: P_N = 1 - N c_1 / V + N (N - 1) c_2 / V^2 exactly."""
+    eta, count = 0.01, 50
+    _, second, third, *_ = theory.virial_coefficients(3, 4)[0]
+    c_2 = 0.5 * (2.0 * second) ** 2 - 1.5 * third
+    chances = [1.0 - 2.0 * second * eta + pairs * c_2 * eta**2 for pairs in (1.0, 1.0 - 1.0 / count)]
+    exact = np.log(chances[0] / chances[1])
+    assert theory.insertion_finite_size_correction(eta, 3, count) == pytest.approx(exact, rel=0.15)

@@ -159,7 +159,7 @@ def test_rough_particles_have_spins_and_only_followed_particles_are_written(tmp_
         assert data["displacements"].shape == (3, 3, dimension) and data.sizes["atom"] == 3
         assert data.attrs["count"] == 20 and last["kinetic_energy"] == state.kinetic_energy
         assert last["dissipated_energy"] == simulation.tally.dissipated_energy > 0.0
-    assert read_recipe(path) == Recipe(scene, ENGINE, 5, 4.0, 2.0, True, 3)
+    assert read_recipe(path) == Recipe(scene, ENGINE, 5, 4.0, 2.0, displacements=True, follow=3)
 
 
 def test_a_file_states_its_recipe(tmp_path):

@@ -7,8 +7,7 @@ import pytest
 from scenes import centred, gas
 
 import gaspart as gp
-from gaspart.analysis.correlations import correlate
-from gaspart.analysis.motion import average_correlations
+from gaspart.analysis.motion import average_correlations, correlate
 from gaspart.trajectory.correlator import SUMS, Correlations, Correlator
 from gaspart.trajectory.opening import partial_path
 from gaspart.trajectory.recipe import read_recipe

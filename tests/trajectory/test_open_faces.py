@@ -177,8 +177,8 @@ def test_the_last_state_is_that_of_a_checkpoint(trajectory, tmp_path):
         ({"follow": 3}, "excludes follow"),
         ({"pairs": True}, "excludes pairs"),
         ({"correlations": gp.Correlations(0.5, 4)}, "excludes correlations"),
-        ({"impulses": "x:8"}, "excludes impulses"),
-        ({"pair_impulses": "2:8"}, "needs a periodic container"),
+        ({"tallies": [gp.ImpulseTally("x", 8)]}, "excludes impulses"),
+        ({"tallies": [gp.PairImpulseTally(2.0, 8)]}, "needs a periodic container"),
     ],
 )
 def test_runs_that_are_refused(settings, rule, tmp_path):

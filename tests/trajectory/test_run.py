@@ -12,7 +12,7 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart.files import only_process
-from gaspart.trajectory import recording, run
+from gaspart.trajectory import amber, opening, recording, run
 from gaspart.trajectory import run as stage
 from gaspart.trajectory.amber import stored_header
 from gaspart.trajectory.checkpoint import checkpoint_path
@@ -190,6 +190,25 @@ def test_files_that_are_no_trajectories(tmp_path):
         with pytest.raises(gp.SceneError, match=complaint) as caught:
             gp.open_trajectory(tmp_path / name)
         assert "\n" not in str(caught.value) and name in str(caught.value)
+
+
+def test_a_file_that_another_process_appends_to_while_it_is_opened(tmp_path, monkeypatch):
+    complete = gp.run(gas(2, 10, 0.1), gp.EventDriven(), 1, 1.0, 0.5, tmp_path / "run.nc").read_bytes()
+    with open(tmp_path / "run.nc", "rb") as file:
+        frame = amber.frame_bytes(stored_header(file))
+    partial = tmp_path / "replica.nc.partial"
+    shorter = bytearray(complete[:-frame])
+    shorter[7] -= 1
+    partial.write_bytes(shorter)
+    is_blank = amber.is_blank
+
+    def after_one_more(file):
+        partial.write_bytes(complete)
+        return is_blank(file)
+
+    monkeypatch.setattr(amber, "is_blank", after_one_more)
+    with opening.open_verified(partial) as (_, _, frames):
+        assert frames == 3
 
 
 def test_folders_that_cannot_be_written_to(tmp_path):

@@ -1,7 +1,10 @@
 """Options of a run, each declared once: in Python, on the command line, in a config and in the file."""
 
+import ast
 import inspect
+import re
 from dataclasses import fields, replace
+from pathlib import Path
 
 import pytest
 
@@ -12,8 +15,9 @@ from gaspart.errors import SceneError
 from gaspart.reproduction.config import checked_points
 from gaspart.reproduction.jobs.simulate import recipes
 from gaspart.runs import entry
+from gaspart.state.tally import WallShearTally
 from gaspart.trajectory.recipe import Recipe, read_recipe
-from gaspart.trajectory.run_options import OPTIONS, recipe_fields, stated_options
+from gaspart.trajectory.run_options import OPTIONS, REQUESTED, Contents, recipe_fields, stated_options
 from gaspart.yaml_text import dump_yaml
 
 VALUES = {
@@ -24,22 +28,23 @@ VALUES = {
     "impulses": "y:8",
     "pair_impulses": "2.5:20:0.5",
 }
+UNTIL_Z = {"keep": "keep = 'positions': has no meaning with until", "follow": "'Z': follow: needs all 20"}
+"""Why a run until Z is accurate cannot have an option."""
 SCENE = gp.Scene(gp.Container((8.0, 9.0), "periodic"), [gp.Species(20, 0.5, temperature=1.0)])
 CORRELATIONS = gp.Correlations(0.25, 4, 0.5, stress=True)
 PLAIN = Recipe(SCENE, gp.EventDriven(), (3, 1), 4.0, 0.5)
 RECIPES = {
     **{name: replace(PLAIN, **recipe_fields({name: value})) for name, value in VALUES.items()},
-    "all": replace(PLAIN, **recipe_fields({**VALUES, "correlations": CORRELATIONS})),
+    "all": replace(PLAIN, correlations=CORRELATIONS, **recipe_fields(VALUES)),
     "none": PLAIN,
 }
 
 
 def test_every_option_has_a_value_here_and_a_parameter_of_run():
     assert VALUES.keys() == OPTIONS.keys()
-    assert OPTIONS.keys() <= inspect.signature(gp.run).parameters.keys()
-    assert {name for name in OPTIONS if name not in {item.name for item in fields(Recipe)}} == {
-        tally.name for tally in RECIPES["all"].tallies
-    }
+    names = {item.name for item in fields(Contents)}
+    assert names <= inspect.signature(gp.run).parameters.keys()
+    assert OPTIONS.keys() - names == REQUESTED.keys() == {tally.name for tally in RECIPES["all"].tallies}
 
 
 @pytest.mark.parametrize("name", RECIPES)
@@ -61,8 +66,7 @@ def test_the_stated_command_asks_for_the_same_run(name, tmp_path, monkeypatch, c
     monkeypatch.setattr(entry, "run", take)
     assert main(["run", str(scene), *run_options(tmp_path / "run.nc", recipe)]) == 2
     assert "seen = True: is enough" in capsys.readouterr().err
-    names = {item.name for item in fields(Recipe)} | OPTIONS.keys()
-    again = Recipe(**recipe_fields({key: asked[key] for key in asked.keys() & names}))
+    again = Recipe(**{key: asked[key] for key in asked.keys() & {item.name for item in fields(Recipe)}})
     assert again == recipe
 
 
@@ -75,9 +79,13 @@ def test_a_point_of_a_config_has_the_option(name):
     (recipe,) = recipes(**made.arguments)
     assert stated_options(recipe) == stated_options(RECIPES[name])
     config["experiments"]["gas"]["point"] = {**point, "until": {"Z": 0.1}}
-    if name != "displacements":
-        with pytest.raises(SceneError, match=f"{name} = .*: has no meaning with until"):
+    if rule := UNTIL_Z.get(name):
+        with pytest.raises(SceneError, match=f"^experiments.gas.*{rule}"):
             checked_points(config, "gas")
+    else:
+        (made,) = checked_points(config, "gas").values()
+        (recipe,) = recipes(**made.arguments)
+        assert recipe.until and stated_options(recipe) == stated_options(RECIPES[name])
 
 
 @pytest.mark.parametrize(
@@ -88,12 +96,79 @@ def test_a_point_of_a_config_has_the_option(name):
         ("follow", 2.5, "must be a whole number"),
         ("keep", "spins", "must be one of"),
         ("pairs", 1, "must be true or false"),
-        ("impulses", "y:8:8", "must be of the form AXIS:BINS"),
-        ("impulses", 8, "must be of the form AXIS:BINS"),
-        ("pair_impulses", "2.5", r"must be of the form DISTANCE:SHELLS\[:FRACTION\]"),
+        ("correlations", 1.0, "must be a gaspart.Correlations"),
+        ("tallies", "y:8", "must be of gaspart.StressTally, gaspart.ImpulseTally, gaspart.PairImpulseTally"),
+        ("tallies", gp.ImpulseTally, "must be of gaspart.StressTally"),
+        ("tallies", [WallShearTally()], "must be of gaspart.StressTally"),
     ],
 )
 def test_a_wrong_value_is_refused_by_its_rule(name, value, rule, tmp_path):
     with pytest.raises(SceneError, match=f"^{name} = .*{rule}"):
         gp.run(SCENE, None, 1, 4.0, 0.5, tmp_path / "run.nc", **{name: value})
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "rule"),
+    [
+        ("impulses", "y:8:8", "must be of the form AXIS:BINS"),
+        ("impulses", "w:8", "must be"),
+        ("pair_impulses", "2.5", r"must be of the form DISTANCE:SHELLS\[:FRACTION\]"),
+    ],
+)
+def test_a_wrong_text_is_refused_on_the_command_line_and_in_a_config(name, text, rule, tmp_path, capsys):
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(dump_yaml(SCENE.to_dict()))
+    command = ["run", str(scene), "-o", str(tmp_path / "run.nc"), "--duration", "4", "--sample-interval", "1"]
+    assert main([*command, f"--{name.replace('_', '-')}", text]) == 2
+    assert re.search(f"{name}.*{text[0]}.*{rule}", capsys.readouterr().err)
+    point = {"dimension": 2, "count": 20, "radius": 0.5, "packing_fraction": 0.1, "boundary": "periodic"}
+    point |= {"temperature": 1.0, "duration": 4.0, "samples": 8, name: text}
+    config = {"experiments": {"gas": {"point": point}}, "points": "results/points", "seed": 1}
+    with pytest.raises(SceneError, match=f"^experiments.gas.{name}.*{rule}"):
+        checked_points(config, "gas")
+
+
+def test_a_tally_is_requested_once():
+    tallies = [gp.ImpulseTally("x", 8), gp.ImpulseTally("y", 8)]
+    with pytest.raises(SceneError, match="^impulses = 'y:8': must be requested only once"):
+        replace(PLAIN, tallies=tallies)
+    both = [gp.PairImpulseTally(2.5, 20), gp.ImpulseTally("y", 8)]
+    assert replace(PLAIN, tallies=both) == replace(PLAIN, tallies=[*both[::-1], both[0]])
+
+
+SOURCES = Path(gp.__file__).parent
+NAMED_IN = {
+    "impulses": {
+        "analysis/impulses.py", "engines/step/arrays.py", "engines/step/settings.py",
+        "reproduction/families/pressure/measure.py", "reproduction/jobs/count_instructions.py",
+    },
+    "pair_impulses": {"analysis/pairs.py"},
+}  # fmt: skip
+"""Modules that name a tally beside its declaration, the parts of the event-driven engine, and kernels.
+
+The last two of `impulses` have a column of a figure, and an argument of kernels, of this name.
+"""
+
+
+def names_in(text):
+    """Return the texts, parameters, keywords and imported names of a module, without docstrings."""
+    nodes = list(ast.walk(ast.parse(text)))
+    docstrings = {node.value for node in nodes if isinstance(node, ast.Expr)}
+    for node in nodes:
+        if isinstance(node, ast.Constant) and node not in docstrings:
+            yield node.value
+        elif isinstance(node, ast.arg | ast.keyword):
+            yield node.arg
+        elif isinstance(node, ast.alias):
+            yield node.name
+
+
+@pytest.mark.parametrize("name", REQUESTED)
+def test_a_tally_is_named_in_its_declaration_its_parts_and_its_analysis_only(name):
+    words = {name, f"--{name.replace('_', '-')}", REQUESTED[name].__name__}
+    texts = {path: path.read_text(encoding="utf-8") for path in SOURCES.rglob("*.py")}
+    texts = {path: text for path, text in texts.items() if any(word in text for word in words)}
+    named = {path.relative_to(SOURCES) for path, text in texts.items() if words & set(names_in(text))}
+    own = {"state/tally.py", "engines/features/tallies.py", *NAMED_IN[name]}
+    assert {path.as_posix() for path in named if path.parts[0] != "kernels"} == own

@@ -9,7 +9,7 @@ from importlib import import_module
 import pytest
 
 from gaspart import analysis, theory
-from gaspart.analysis import bulk, finite
+from gaspart.analysis import bulk
 from gaspart.analysis.declaration import DIMENSIONS, powers_of, units_in
 from gaspart.analysis.observables import OBSERVABLES, about, observables_with
 from gaspart.reproduction.points.modules import PACKAGE
@@ -83,7 +83,7 @@ def test_a_declaration_is_complete(name):
     if one.mixture:
         assert callable(getattr(theory, one.mixture))
     if one.tabulated:
-        assert callable(getattr(finite, one.bulk))
+        assert callable(getattr(bulk, f"finite_{one.bulk}"))
     assert one.lags == 0 or one.samples == ""
 
 

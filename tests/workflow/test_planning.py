@@ -119,9 +119,9 @@ def test_a_longer_run_reruns_its_experiment_only(smoke, tmp_path):
 @pytest.mark.parametrize(
     ("paths", "expected"),
     [
-        (["src/gaspart/reproduction/families/virial/figure.py"], {"draw", "report", "all"}),
+        (["src/gaspart/reproduction/families/equation_of_state/figure.py"], {"draw", "report", "all"}),
         (
-            ["src/gaspart/reproduction/families/virial/claims.py"],
+            ["src/gaspart/reproduction/families/equation_of_state/claims.py"],
             {"measure", "judge", "draw", "claims", "report", "all"},  # and the scatter of all claims
         ),
         (["src/gaspart/theory/virial.py"], {"measure", "judge", "draw", "claims", "report", "all"}),

@@ -1,8 +1,8 @@
 """Local density and temperature of a steady scene, its steady state, and columns under gravity.
 
-A homogeneous gas has its mean values everywhere; a gas under gravity has the profiles of hydrostatics
-(`gaspart.theory.columns`), where theory knows them; any other gas has the values that a pilot run of the
-exact engine measures. They bound the errors of DSMC.
+A homogeneous gas has its mean values everywhere. For a gas under gravity, the profiles of hydrostatics are
+used (`gaspart.theory.columns`), where theory knows them. For all other gases, a pilot run of the exact engine
+measures the values. The conditions are used to bound the errors of DSMC.
 """
 
 from __future__ import annotations
@@ -108,8 +108,8 @@ class Conditions(Layers):
     def memory(self) -> float:
         """Effect |D / Enskog's - 1| of correlated collisions on the transport of spheres.
 
-        The coefficients of discs grow with the size of the system; their estimate is the value at the same
-        packing fraction.
+        For discs the transport coefficients grow with the size of the system; their estimate is the value at
+        the same packing fraction.
         """
         densest = min(float(self.filled.max()), theory.ERPENBECK_WOOD_HIGHEST)
         return abs(float(theory.erpenbeck_wood_ratio(densest)) - 1.0) if densest > 0.0 else 0.0
@@ -124,7 +124,7 @@ class Conditions(Layers):
     def _top(self, face: str | None) -> bool | None:
         """Return True if a face of the container is at the top of a column.
 
-        None for a face that is not across the axis of the column.
+        None for a face that is not perpendicular to the axis of the column.
         """
         scene, axis = self.scene, self.axis
         if face is None or axis is None or face[0] != "xyz"[axis] or scene.gravity is None:
@@ -133,9 +133,9 @@ class Conditions(Layers):
 
 
 def known_conditions(scene: Scene, start: State) -> Conditions | None:
-    """Compute conditions by theory; None where theory knows nothing.
+    """Compute conditions by theory; None if there is no theory.
 
-    The initial state `start` determines the energy of the scene.
+    The energy of the scene is computed from the initial state `start`.
     """
     if column := gravity_column(scene):
         try:
@@ -175,7 +175,7 @@ def even_conditions(scene: Scene, temperature: float) -> Conditions:
 
 
 def _of_column(scene: Scene, pulled_scene: GravityColumn, start: State) -> Conditions:
-    """Compute the conditions under gravity; raise ValueError where theory knows nothing."""
+    """Compute the conditions under gravity; raise ValueError if there is no theory."""
     energy, heat = pulled_scene.energy_of(start), max(scene.face_temperatures, default=None)
     real, ideal = (pulled_scene.equilibrate(energy, heat, is_ideal) for is_ideal in (False, True))
     z, numbers = real.heights, real.numbers.sum(axis=0)
@@ -236,7 +236,7 @@ def _along(scene: Scene, axis: int, positions: np.ndarray, thermal: np.ndarray) 
 def require_steady(scene: Scene) -> None:
     """Raise SceneError for an empty scene, and for a scene that cools or heats.
 
-    The observables of the latter depend on the time.
+    The observables of a scene without a steady state depend on the time.
     """
     if not scene.count:
         raise SceneError("count", 0, "advice is for a gas: the scene is empty")
@@ -254,7 +254,7 @@ def require_steady(scene: Scene) -> None:
 def is_driven(scene: Scene) -> bool:
     """Return True if something exchanges energy with the particles.
 
-    It is a thermostat, or a face that is at a temperature or moves.
+    The drive is a thermostat, or a face that is at a temperature or moves.
     """
     moves = any(face.moves for face in scene.faces.values())
     return scene.thermostat is not None or moves or at_temperature(scene)
@@ -266,7 +266,7 @@ def at_temperature(scene: Scene) -> bool:
 
 
 def keeps_energy(scene: Scene) -> bool:
-    """Return True if a run keeps its initial energy, or its enthalpy under a loaded piston."""
+    """Return True if a run conserves its initial energy, or its enthalpy under a loaded piston."""
     loaded = [piston for _, piston in scene.pistons if piston.pressure is not None]
     moved = any(face.moves for face in scene.faces.values() if face not in loaded)
     exchanged = moved or at_temperature(scene) or scene.thermostat is not None or scene.is_open

@@ -1,11 +1,11 @@
 """Observables of a trajectory by component, with their errors: of pilots, and of runs `until` accurate.
 
 The squared error of a mean over a time t is S / t + C / t^2. S is the spectrum of the series at frequency 0,
-by `correlated_mean`. C is due to stored quantities: a wall takes from the gas the momentum and the sum m x v
-that the gas has stored, and gives them back, so that impulses in consecutive intervals are anticorrelated. In
-a short run C dominates, and an error that is extrapolated as t^(-1/2) is too large; in a series of short
-intervals S is hidden by it. Both stored quantities are known in each frame: the series is regressed on their
-changes, and S is the spectrum of the rest.
+by `correlated_mean`. C is due to stored quantities. A wall takes from the gas the momentum and the sum m x v
+that the gas has stored, and returns them later. So impulses in consecutive intervals are anticorrelated. In a
+short run C dominates, and an error that is extrapolated as t^(-1/2) is too large. In a series of short
+intervals S is hidden by C. Both stored quantities are known in each frame. The series is regressed on their
+changes, and S is the spectrum of the residual.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ _DOUBT = 0.1
 def bound(freedom: float) -> float:
     """Compute the upper bound of an error with some degrees of freedom, divided by the error.
 
-    It follows from the quantile of chi-square.
+    The bound is computed from the quantile of chi-square.
     """
     from scipy.special import chdtri
 
@@ -75,7 +75,7 @@ class Component:
 
     @property
     def accuracy(self) -> float:
-        """The relative error; inf where it is not known."""
+        """The relative error, or inf if it is unknown."""
         return self.error(self.time) / self.scale if self.scale > 0.0 else math.inf
 
     def error(self, time: float) -> float:
@@ -156,7 +156,7 @@ def _names(observable: Observable) -> list[str]:
 
 
 def _norm(values: np.ndarray) -> float:
-    """Compute the root mean square; 0 for an empty array."""
+    """Compute the root mean square, or 0 for an empty array."""
     return float(np.sqrt(np.mean(values**2))) if values.size else 0.0
 
 
@@ -199,7 +199,7 @@ def _remaining_freedom(series: np.ndarray, rest: Estimate, controls: int) -> flo
     """Return the degrees of freedom of the error of a series (K,) without its controls.
 
     Controls may explain a series to rounding, as the momentum of a single particle does the impulses on two
-    walls. What remains is the same in all samples, but the series is not: its error is known to be 0, with
+    walls. The residual is the same in all samples, but the series is not. So its error is known to be 0, with
     the degrees of freedom of the changes that were explained.
     """
     from gaspart.analysis.statistics import count_changes
@@ -211,9 +211,9 @@ def _remaining_freedom(series: np.ndarray, rest: Estimate, controls: int) -> flo
 def with_stores(series: np.ndarray, stores: np.ndarray, interval: float) -> Component:
     """Estimate the mean of a series (K,) that contains changes of stored quantities.
 
-    The quantities (K + 1, stores) are given at the ends of the intervals, which have one length. The
+    The quantities (K + 1, stores) are given at the ends of the intervals, which have equal lengths. The
     coefficients of the changes come from a regression of the series. The sum of all changes remains in the
-    mean. This sum has twice the variance of the stored quantities.
+    mean. The variance of this sum is twice the variance of the stored quantities.
     """
     from gaspart.analysis.statistics import correlated_mean
 

@@ -2,8 +2,9 @@
 
     python -m gaspart.accuracy.fit results/measurements > src/gaspart/accuracy/data/accuracy.csv
 
-takes speed_accuracy.nc (errors and times of the engines), virial_spheres.nc and virial_discs.nc (noise of Z
-and of the collision rate), msd_spheres.nc (noise of D) and price_of_features.nc from the folder it is given.
+It reads the following files from a folder: speed_accuracy.nc (errors and times of the engines),
+virial_spheres.nc and virial_discs.nc (noise of Z and of the collision rate), msd_spheres.nc (noise of D) and
+price_of_features.nc.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from gaspart.trajectory import provenance
 
 
 def rows(folder: Path) -> list[dict]:
-    """Return all rows of the table; their meaning is in `gaspart.accuracy.table`."""
+    """Return all rows of the table; `gaspart.accuracy.table` explains them."""
     accuracy = xr.load_dataset(folder / "speed_accuracy.nc")
     entries = [
         *_events(accuracy),
@@ -78,7 +79,7 @@ def _steps(accuracy: xr.Dataset) -> Iterator[dict]:
 
 
 def _models(accuracy: xr.Dataset) -> Iterator[dict]:
-    """Yield times of the models of the DSMC engine, with its own step and longer ones."""
+    """Yield times of the models of the DSMC engine, with its default step and longer steps."""
     names = {engine.equation: engine.timed_as for engine in DSMC.variants()}
     for n in range(accuracy.sizes["dsmc"]):
         run = accuracy.isel(dsmc=n)
@@ -103,7 +104,7 @@ def _noise(virial: xr.Dataset, dimension: int) -> Iterator[dict]:
 def _diffusion(msd: xr.Dataset) -> Iterator[dict]:
     """Yield the relative variance of D of spheres, times its number of contacts.
 
-    It is one number, the median of all gases (each has few replicas).
+    The result is one number, the median over all gases, since each gas has few replicas.
     """
     length = msd.time.max("lag") * 2.0 * msd.collision_rate  # lags reach to half a run
     contacts = 0.5 * msd["count"] * length * msd.replicas

@@ -1,8 +1,8 @@
 """Engine with its settings for a scene, and the cost of a run with it.
 
 The relative error of a run of a measured time t is its standard error sqrt(variance(t)) and, in full, the
-bound on its bias. The bias is bounded by the engine, from theory or from measurements; noise and CPU time
-come from a pilot run, or from the table, which has the results of earlier pilots.
+bound on its bias. The engine bounds the bias, from theory or from measurements. Noise and CPU time are from a
+pilot run, or from the table, which contains results of earlier pilots.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class Option:
 
     @property
     def measured(self) -> float:
-        """Measured time for the requested accuracy, or the longest one; inf if out of reach."""
+        """Measured time for the requested accuracy, or the longest time; inf if out of reach."""
         return max(0.0, min(self._length(self.accuracy), self.part(self.most)))
 
     @property
@@ -72,7 +72,7 @@ class Option:
     def error(self) -> float:
         """Relative standard error of the run plus the bound on its bias; inf without a run.
 
-        It is inf if the accuracy is out of reach.
+        The time is inf if the accuracy is out of reach.
         """
         measured = self.measured
         return self.bias + self.noise.reaches(measured) if math.isfinite(measured) else math.inf
@@ -98,7 +98,7 @@ class Option:
 
 
 def sort_by_cost(options: list[Option]) -> list[Option]:
-    """Sort options, the best first: the cheapest accurate option, or else the most accurate one.
+    """Sort options from the best: the cheapest accurate option, or otherwise the most accurate option.
 
     The exact engine is preferred unless another one is `WORTH` times as cheap.
     """
@@ -113,8 +113,8 @@ def sort_by_cost(options: list[Option]) -> list[Option]:
 def replicas_of(option: Option, longest: float) -> int:
     """Return the number of runs that share the measured time.
 
-    There is one for each processor, if each is much longer than its equilibration and not shorter than a run
-    may be, and enough of them that none is longer than `longest`.
+    The number is one replica per processor, under three conditions: each replica is much longer than its
+    equilibration, is not shorter than a run may be, and is not longer than `longest`.
     """
     if not math.isfinite(option.measured):
         return 1
@@ -177,7 +177,7 @@ def make_request(target: Target, accuracy: float, conditions: Conditions) -> Acc
 def depends_on_transport(scene: Scene, observable: str) -> bool:
     """Return True if transport coefficients govern an observable.
 
-    These are observables with lags, and any observable where something drives a flow of heat or of momentum.
+    These are observables with lags, and all observables if something drives a flow of heat or momentum.
     """
     lost = scene.dissipates
     flows = len(scene.face_temperatures) > 1 or lost or bool(scene.sliding_faces)

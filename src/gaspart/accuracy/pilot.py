@@ -29,11 +29,11 @@ from gaspart.kernels.compile.cache import cache_directory
 from gaspart.kernels.compile.policy import source_digest
 from gaspart.simulation import Simulation
 from gaspart.state.given import state_at_time_zero
-from gaspart.state.optional_tallies import tallies_to_json
 from gaspart.trajectory.last_state import last_state
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.run import WriteOptions, extend, record
+from gaspart.trajectory.run_options import tallies_to_json
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -66,9 +66,9 @@ class Pilot:
 
     speed : CPU seconds per unit of time.
     seconds : CPU time of the pilot, 0 if it was stored before.
-    component : the least accurate component, None where the observable could not be measured, for the reason
-        in `rule`.
-    counted : this component without the impulses that the run has stored, None if it has none.
+    component : the least accurate component, None if the observable could not be measured, for the reason in
+        `rule`.
+    counted : this component without the impulses that the run has stored, None if the run has stored none.
     interval : time between frames.
     settled : time from which the run is steady (`settling_time`).
     path : file, None for a run that failed.
@@ -128,7 +128,7 @@ def speed_of(target: Target, engine: Engine) -> float:
 
 
 def _speed_of_sampling(target: Target, engine: Engine) -> float:
-    """Measure the speed of a run with correlations, by two short ones; the first compiles."""
+    """Measure the speed of a run with correlations by two short runs; the first one compiles."""
     took, correlations = math.inf, target.correlations(engine)
     interval = correlations.lags * correlations.interval
     with TemporaryDirectory() as folder:
@@ -153,9 +153,8 @@ def _make(
     """
     duration, interval, correlations = scheduled
     recipe = Recipe(
-        target.scene, engine, SEED, duration, interval,
-        displacements=displacements, correlations=correlations,
-        pairs=target.declared.needs == "pairs", initial=target.start, tallies=target.tallies(engine),
+        target.scene, engine, SEED, duration, interval, initial=target.start, correlations=correlations,
+        **{**target.contents(engine), "displacements": displacements},
     )  # fmt: skip
     return record(recipe, path, WriteOptions(overwrite=True, keep_checkpoint=True))
 
@@ -231,7 +230,7 @@ def _worst(estimates: dict[str, Component]) -> Component:
 def _equilibrate(path: Path) -> float:
     """Return the `settling_time` of a pilot, and continue the pilot until it is steady.
 
-    It is steady if the settling time is within the part that is discarded.
+    The run is steady if the settling time is within the discarded part.
     """
     for last in (False,) * _CONTINUED + (True,):
         with open_trajectory(path) as trajectory:
@@ -245,8 +244,9 @@ def _equilibrate(path: Path) -> float:
 def settling_time(trajectory: xr.Dataset) -> float:
     """Return the time from which a run is steady.
 
-    From then on the kinetic energy, and the mean position of the particles along each axis with walls, have
-    reached their means of the second half, and have left the range of the second half for the last time.
+    After the settling time two conditions hold for the kinetic energy, and for the mean position of the
+    particles along each axis with walls. They have reached their means of the second half, and they never
+    leave the range of the second half again.
     """
     with open_run(trajectory, 0.0, sheared=True) as run:
         velocities, masses = run.peculiar, run.masses[run.moving]
@@ -300,7 +300,7 @@ class Trials:
     speeds : CPU time of a unit of time by candidate.
     refused : reasons why other engines are rejected.
     pilots : pilots made so far, the exact engine's first.
-    target : it starts from a steady state if a pilot has one.
+    target : if a pilot has a steady state, runs start from it.
     """
 
     target: Target
@@ -315,8 +315,8 @@ class Trials:
     def begin(self) -> None:
         """Find the candidates and make the pilot of the exact engine.
 
-        It takes half the time if another engine may be cheaper. Raises SceneError if no engine runs the
-        scene, and for an observable that the scene does not have.
+        The pilot takes half the time if another engine may be cheaper. Raises SceneError if no engine runs
+        the scene, and for an observable that the scene does not have.
         """
         engines, self.refused = suitable_engines(self.target)
         if not engines or not engines[0].reference:
@@ -404,7 +404,7 @@ class Trials:
 
     @property
     def reference(self) -> Pilot:
-        """Longest pilot of an engine that is accurate enough, or else of any engine.
+        """Longest pilot of an engine that is accurate enough, or otherwise of any engine.
 
         Raises SceneError if the observable was not measured.
         """
@@ -453,7 +453,7 @@ class Trials:
                 self.refused[candidate.engine.timed_as] = f"{error.key}: {error.rule}"
 
     def _settle(self, pilot: Pilot) -> None:
-        """Start what follows from the end of a pilot, if its file holds the state."""
+        """Start the continuation from the end of a pilot, if its file contains the state."""
         try:
             state = state_at_time_zero(self.target.scene, last_state(pilot.path or ""))
         except SceneError:  # as of a piston

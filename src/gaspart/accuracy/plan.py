@@ -1,8 +1,8 @@
 """The cheapest engine and run for an accuracy of any observable of any steady scene.
 
 Scenes in the table need no run (`plan_from_table`). For all other scenes pilot runs give the noise and the
-CPU time of a unit of time (`plan_from_pilots`). Both give an `Option` for each engine, and the best one is
-planned.
+CPU time of a unit of time (`plan_from_pilots`). Both functions return an `Option` for each engine, and the
+plan uses the best option.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from gaspart.accuracy.scatter import Scatter, start_scatter
 from gaspart.accuracy.table import EQUILIBRATION as EQUILIBRATED
 from gaspart.accuracy.table import LEAST
 from gaspart.accuracy.target import Target, rounded_to_12_digits
-from gaspart.analysis import finite
+from gaspart.analysis import bulk
 from gaspart.analysis.pairs import MOST_FRAMES
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine
@@ -57,9 +57,9 @@ class Plan:
     value : value of the observable, by the pilots or by theory.
     replicas : number of runs that share the measured time.
     pilots : their results, none if the table has the answer.
-    differing : pilots that differ from the exact engine's by more than their bounds.
-    points : for a curve, the number of points that the pilots know, to which the accuracy refers, and the
-        number of points.
+    differing : pilots that differ from the pilot of the exact engine by more than their bounds.
+    points : for a curve, the number of points that the pilots measured, to which the accuracy refers, and the
+        number of all points.
     budget : CPU time of the run in s, if it is limited.
     """
 
@@ -101,7 +101,7 @@ class Plan:
         For this number the difference is a quarter of the accuracy.
         """
         gas = known.fluid_of(self.target.scene)
-        differing, power = getattr(finite, self.target.declared.bulk)(gas)
+        differing, power = getattr(bulk, f"finite_{self.target.declared.bulk}")(gas)
         return differing, gas.count * (abs(differing) * _BULK / self.accuracy) ** power
 
     @property
@@ -132,8 +132,8 @@ class Plan:
     def longest_interval(self) -> float:
         """Maximum time between frames.
 
-        For diffusion it follows from the lags; an observable that frames sample has the time of the pilot,
-        whose noise is known.
+        For diffusion the interval follows from the lags. For an observable that frames sample, it is the
+        interval of the pilot, whose noise is known.
         """
         declared = self.target.declared
         if declared.samples == "paths":
@@ -145,8 +145,8 @@ class Plan:
     def recipe(self) -> Recipe:
         """Recipe of the run to make, one of the replicas.
 
-        Its duration is fixed where the noise is in the table or the observable ends no run; otherwise it runs
-        until it is accurate.
+        The duration is fixed if the noise is in the table, or if the observable cannot end a run. Otherwise
+        the run ends when it is accurate.
         """
         target, duration = self.target, self.duration
         scene, engine, correlations = target.scene, self.best.engine, None
@@ -162,9 +162,8 @@ class Plan:
         intervals = max(1, math.ceil(duration / interval - 1e-6))
         fixed = None if until else rounded_to_12_digits(intervals * interval)
         return Recipe(
-            scene, engine, 1, fixed, interval,
-            displacements=target.needs_paths, correlations=correlations, until=until,
-            pairs=target.declared.needs == "pairs", tallies=target.tallies(engine),
+            scene, engine, 1, fixed, interval, until=until, correlations=correlations,
+            **target.contents(engine),
         )  # fmt: skip
 
     def _until(self, duration: float) -> Until:
@@ -190,18 +189,18 @@ def plan(
 
     The observable may be the pressure on one wall, like `pressure:x low`.
 
-    accuracy : standard error plus, in full, the bound on systematic errors, divided by the value; without
-        these bounds it is the accuracy that `--until` requires.
-    budget : CPU time in seconds of the run; if it does not suffice, the most accurate run within it is
+    accuracy : standard error plus the bound on systematic errors, divided by the value; without these bounds
+        this is the accuracy that `--until` requires.
+    budget : CPU time of the run in seconds; if it does not suffice, the most accurate run within it is
         advised.
-    pilot_seconds : for scenes and observables that the table does not cover, CPU time of the two pilots that
-        most scenes have, or of the only one. Up to half of it is spent on the preparation, if that takes more
-        than 5 s, for example to compress particles. More is needed where a third engine turns out to be the
-        best, and by a pilot in a transient, which is continued.
+    pilot_seconds : for scenes and observables that the table does not cover, total CPU time of the pilots.
+        Most scenes need two pilots. Up to half of this time is spent on the preparation if the preparation
+        takes more than 5 s, for example to compress particles. More is needed where a third engine turns out
+        to be the best, and by a pilot in a transient, which is continued.
     announce : function of a text, called before each pilot.
 
-    Raises SceneError for a scene without a steady state, and for an observable that it does not have, or for
-    which the pilots are too short.
+    Raises SceneError for a scene without a steady state, for an observable that is not defined in the scene,
+    and for an observable for which the pilots are too short.
     """
     if known.is_tabulated(scene, observable):
         return plan_from_table(scene, observable, accuracy, budget)
@@ -214,7 +213,7 @@ def plan_from_table(
     accuracy: float,
     budget: float | None = None,
 ) -> Plan:
-    """Make a `plan` by the table; its times hold for the machine of the table.
+    """Make a `plan` by the table; its times are for the machine of the table.
 
     Raises SceneError for anything that the table does not cover.
     """
@@ -268,7 +267,7 @@ def plan_from_pilots(
 
 
 def _check_arguments(accuracy: float, budget: float | None) -> tuple[float, float | None]:
-    """Return valid arguments; raise SceneError for others."""
+    """Return the arguments if they are valid; raise SceneError otherwise."""
     low, high = ACCURACIES
     accuracy = number("accuracy", accuracy, f"must be from {low:g} to {high:g}", least=low, most=high)
     return accuracy, None if budget is None else number("budget", budget, "must be positive", above=0.0)
@@ -296,8 +295,8 @@ def _options(trials: Trials, budget: float | None) -> list[Option]:
 def _can_share(target: Target, engine: Engine) -> bool:
     """Return True if replicas can share the measured time.
 
-    These are runs until accurate, which differ by their seeds. Otherwise the scatter of a few runs would be
-    the error.
+    These are runs that end when they are accurate and differ by their seeds. For other runs, the error would
+    be the scatter of a few runs.
     """
     return target.declared.ends_runs and differ(target.scene, engine)
 
@@ -305,8 +304,8 @@ def _can_share(target: Target, engine: Engine) -> bool:
 def _longest(target: Target, pilot: Pilot) -> float:
     """Return the longest duration that is of use.
 
-    An observable of positions has a limited number of frames, and the frames of the pilot show how much each
-    of them contributes; more time between them is not known to help.
+    For an observable of positions the number of frames is limited. The frames of the pilot show how much each
+    frame contributes; a longer time between frames is not known to improve this.
     """
     if target.declared.samples != "structure":
         return math.inf
@@ -317,9 +316,9 @@ def _longest(target: Target, pilot: Pilot) -> float:
 def _least(target: Target, engine: Engine, pilot: Pilot) -> float:
     """Return the shortest duration of a run.
 
-    It covers the least equilibration and measurement of the table, crossings of a container with walls, the
-    time in which the pilot became steady, and the steps between frames; with correlations, the frames that
-    give an error.
+    The time covers the least equilibration and measurement of the table, crossings of a container with walls,
+    the time in which the pilot became steady, and the steps between frames. With correlations it also covers
+    the frames that are needed for an error.
     """
     scene, frequency = target.scene, target.frequency
     collisions = (EQUILIBRATED + LEAST) / frequency if frequency > 0.0 else 0.0

@@ -1,31 +1,32 @@
 """Accuracy that a run until accurate has reached, and the rule that ends the run.
 
-A run is examined when it has 64, 96, 128, 192 ... frames, at any time of day and after any number of kills,
-on its frames so far without their first quarter. Each examination gives a value and its standard error e with
-f degrees of freedom. A run that ended at the first e that is small enough would end when e happens to be too
-small. Its 95 % intervals would cover the true value in 88 to 94 % of runs. Two rules prevent this:
+A run is examined when it has 64, 96, 128, 192 ... frames, without their first quarter. The result does not
+depend on the speed of the machine or on interruptions. Each examination gives a value and its standard error
+e with f degrees of freedom. A run that ended at the first e that is small enough would end when e happens to
+be too small. The 95 % intervals at the first small error would contain the true value in only 88 to 94 % of
+runs. Two rules prevent this:
 
 - The error that counts is the larger one of two successive examinations, the earlier one multiplied by the
-  root of the ratio of their lengths. An error that fell by chance alone does not end the run, and intervals
-  from this one, with Student's t for f degrees of freedom, cover the true value in 95 % of runs.
-- An upper bound of this error must be as small as required: e sqrt(f / chi2), chi2 the lower 10 % quantile of
-  chi-square for f, which is 1.32 e for f = 15 and 1.10 e for 100. f must be 15 or more, from 16 independent
-  blocks. So the true standard error is as small as required in 98 % of runs.
+  root of the ratio of their lengths. So an error that is small by chance does not end the run. Intervals from
+  the larger error, with Student's t for f degrees of freedom, contain the true value in 95 % of runs.
+- An upper bound of this error must be as small as required. The bound is e sqrt(f / chi2), where chi2 is the
+  lower 10 % quantile of chi-square for f; it is 1.32 e for f = 15 and 1.10 e for 100. f must be at least 15,
+  from 16 independent blocks. Then the true standard error is as small as required in 98 % of runs.
 
-Samples that are all the same so far have the error 0, which says nothing: the next one may differ. Such a run
-goes on, and is given up after 16384 frames unless a longest duration ends it. A series that changed k times
-has at most k degrees of freedom, so that one jump, or a few, end no run either.
+Samples that are all equal have the error 0, which is not informative, because the next sample may differ.
+Such a run continues, and is stopped after 16384 frames unless it has a longest duration. A series that
+changed k times has at most k degrees of freedom, so that one jump, or a few, end no run either.
 
-For replicas, which are independent, the value is the mean, and the error follows from the errors of the
-replicas; their degrees of freedom add up. They are examined when all have the same number of frames.
+For replicas, which are independent, the value is the mean. The error is computed from the errors of the
+replicas, and their degrees of freedom add up. Replicas are examined when all have the same number of frames.
 
-If a run keeps the energy of its start, which its seed draws, the run shows only the error for this energy;
-other seeds scatter by more (`gaspart.accuracy.scatter`). The mean of replicas is of no single energy, so that
-its error has the scatter of the starts in it. No longer run reduces this part. Noise has to be as small as
+If a run conserves the energy of its start, which is drawn by its seed, its error is only for this energy;
+other seeds scatter by more (`gaspart.accuracy.scatter`). The mean of replicas is over several energies, so
+its error includes the scatter of the starts. No longer run reduces this part. Noise has to be as small as
 what the part leaves of the required accuracy, or as the accuracy itself if nothing is left.
 
-Both rules were measured with autoregressive series (`tests/accuracy/test_until.py`); for fixed widths and
-independent samples the first is the problem of Chow and Robbins, Ann. Math. Stat. 36, 457 (1965).
+Both rules were tested with autoregressive series (`tests/accuracy/test_until.py`). For fixed widths and
+independent samples the first rule is the problem of Chow and Robbins, Ann. Math. Stat. 36, 457 (1965).
 """
 
 from __future__ import annotations
@@ -61,12 +62,12 @@ class AccuracyStatus:
     request : requirement.
     component : the least accurate face or axis, "" for a scalar.
     value : its value.
-    noise : its standard error at the energies of the runs, correlations included, the larger one of the last
-        two examinations, inf where nothing was measured, for the reason in `rule`.
+    noise : its standard error at the energies of the runs, correlations included: the larger one of the last
+        two examinations, or inf if nothing was measured, for the reason in `rule`.
     freedom : degrees of freedom of the noise.
     confirmed : True if there were two examinations.
-    scatter : relative standard deviation of the value from seed to seed by the energy of the start, beyond
-        the noise.
+    scatter : relative standard deviation of the value from seed to seed due to the energy of the start, in
+        addition to the noise.
     replicas : number of runs.
     """
 
@@ -84,7 +85,7 @@ class AccuracyStatus:
     def of_starts(self) -> float:
         """Relative standard error of the mean of replicas by the energies of their starts.
 
-        It is 0 for a single run, whose interval is for its energy.
+        The error is 0 for a single run, whose interval is for its own energy.
         """
         return self.scatter / math.sqrt(self.replicas) if self.replicas > 1 else 0.0
 
@@ -98,7 +99,7 @@ class AccuracyStatus:
 
     @property
     def accuracy(self) -> float:
-        """The relative standard error; inf where it is not known."""
+        """The relative standard error, or inf if it is unknown."""
         return self._relative(self.error)
 
     @property
@@ -118,7 +119,7 @@ class AccuracyStatus:
 
     @property
     def excess(self) -> float:
-        """Upper bound of the noise divided by the required one; above 1 until confirmed."""
+        """Upper bound of the noise divided by the required noise; above 1 until confirmed."""
         if not self.confirmed or not math.isfinite(self.accuracy):
             return math.inf
         few = math.sqrt(LEAST_FREEDOM / self.freedom)
@@ -167,7 +168,7 @@ def confirm_estimate(now: Estimate, before: Estimate | None, ratio: float) -> Es
 def combine_replicas(estimates: Sequence[Estimate]) -> Estimate:
     """Average independent estimates, with the error that follows from their errors.
 
-    `gaspart.analysis.replicas` does the same: the scatter of a few replicas says less.
+    `gaspart.analysis.replicas` does the same, because the scatter of a few replicas is less informative.
     """
     first, *others = estimates
     return sum(others, first) / len(estimates) if others else first
@@ -179,13 +180,13 @@ def reached_accuracy(path: str | Path) -> list[AccuracyStatus]:
     Parameters
     ----------
     path : str or Path
-        The trajectory, finished or not; one of several replicas stands for all.
+        The trajectory, finished or not. One of several replicas represents all of them.
 
     Returns
     -------
     list of AccuracyStatus
-        Reached accuracies in the order of the required ones, by all frames of the run; for replicas, by the
-        frames that all of them have. Empty for a run of a fixed duration.
+        Reached accuracies in the order of the required accuracies, by all frames of the run. For replicas, by
+        the frames that all of them have. Empty for a run of a fixed duration.
 
     Raises
     ------
@@ -209,9 +210,9 @@ def reached_accuracy(path: str | Path) -> list[AccuracyStatus]:
 
 
 class Examiner:
-    """Examination of a run, or of all replicas, which is given to `report`.
+    """Examination of a run, or of all replicas, whose result is passed to `report`.
 
-    It remembers the last examination, whose frames do not change any more.
+    The last examination is stored, because its frames do not change any more.
     """
 
     def __init__(self, report: Callable[[list[AccuracyStatus]], None] | None = None) -> None:
@@ -222,8 +223,8 @@ class Examiner:
     def __call__(self, runs: Sequence[xr.Dataset], until: Until, frames: int) -> float:
         """Return the largest error divided by the required one, by the first frames of trajectories.
 
-        The trajectories are open. It is 0 for a run without a longest duration that is given up, since
-        nothing happens that could be measured.
+        The trajectories are open. The result is 0 for a run without a longest duration that is stopped,
+        because nothing happens that could be measured.
         """
         reached = self.examine(runs, until.accuracies, frames)
         collisions = sum(_contacts(data.isel(frame=frames - 1)) for data in runs)
@@ -293,7 +294,7 @@ class Examiner:
 
 
 def _contacts(frame: xr.Dataset) -> float:
-    """Count collisions until a frame; with open faces, also particles that entered or hit a face."""
+    """Count collisions until a frame; with open faces, add entries and hits of faces."""
     entered = "entries" in frame and bool(frame["entries"].any())  # not of every engine
     names = ("collisions", "entries", "wall_hits") if entered else ("collisions",)
     return float(sum(frame[name].sum() for name in names))

@@ -1,7 +1,7 @@
 """Characteristic scales of a scene, which suggest a duration and an interval.
 
-They are a speed, a length and two times, at the start: of a gas that fills its container uniformly, with the
-speeds of its initial velocities or of its faces, whichever is hotter.
+The scales are a speed, a length and two times, at the start. They are for a homogeneous gas, with the speeds
+of its initial velocities or of its faces, whichever is hotter.
 """
 
 from __future__ import annotations
@@ -32,7 +32,8 @@ class Scales:
     """Characteristic scales of a scene.
 
     thermal_speed : sqrt(k_B T / m), 0 if nothing moves at the start.
-    mean_free_path, collision_time : of a particle between two collisions, infinite without collisions.
+    mean_free_path, collision_time : length and time between two collisions of a particle, infinite without
+        collisions.
     crossing_time : time in which a particle crosses the shortest side of the container, with its speed or by
         falling.
     packing_fraction : packing fraction.
@@ -60,7 +61,7 @@ class Scales:
     def event_time(self) -> float:
         """Time between collisions, or the time to cross the container; infinite if nothing moves.
 
-        The latter holds without collisions, and for a `free_molecular` gas that has walls.
+        The time to cross the container is used without collisions, and for a `free_molecular` gas with walls.
         """
         collides = math.isfinite(self.collision_time) and not self.free_molecular
         return self.collision_time if collides else self.crossing_time
@@ -69,7 +70,7 @@ class Scales:
     def interval(self) -> float | None:
         """Suggested time between frames, to two digits; None if nothing moves.
 
-        It is the `event_time`, or a longer time, so that the suggested duration has 1000 frames at most.
+        It is the `event_time`, or a longer time, so that the suggested duration has at most 1000 frames.
         """
         if not math.isfinite(self.event_time):
             return None
@@ -79,7 +80,8 @@ class Scales:
     def duration(self) -> float | None:
         """Suggested duration, a multiple of the interval.
 
-        It covers 200 collisions of a particle and ten crossings, or 200 crossings of a `free_molecular` gas.
+        The duration is 200 collisions of a particle and ten crossings, or 200 crossings of a `free_molecular`
+        gas.
         """
         if self.interval is None:
             return None
@@ -144,7 +146,7 @@ def scales(scene: Scene) -> Scales:
 
 
 def _few_kinds(scene: Scene) -> list[Species | Particle]:
-    """Return the kinds of particles that move; one representative for very many kinds.
+    """Return the kinds of particles that move; a few representatives if there are many.
 
     The representative has their mean volume, mass and energy.
     """
@@ -161,7 +163,7 @@ def _few_kinds(scene: Scene) -> list[Species | Particle]:
 def collision_frequency(scene: Scene) -> float:
     """Compute the collisions of a particle of a plain gas per time, by theory.
 
-    It is 0 where theory does not know it.
+    The frequency is 0 if there is no theory.
     """
     gas = scene.gas
     if gas is None or gas.count < 2 or not gas.temperature > 0.0:

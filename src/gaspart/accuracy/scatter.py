@@ -1,8 +1,8 @@
 """Scatter of an observable from seed to seed by the energy of the start.
 
-Where nothing exchanges energy with the particles, each run keeps the energy of its start; under a piston with
-a load, its enthalpy. Velocities that are drawn have a temperature only on average. So have random positions
-under gravity, whatever the velocities.
+If nothing exchanges energy with the particles, each run conserves the energy of its start, or under a loaded
+piston its enthalpy. Velocities that are drawn have a temperature only on average. Random positions under
+gravity also have random energies, for any velocities.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ class Scatter:
 def scatter_of_run(run: xr.Dataset, observable: str, face: str | None = None) -> Scatter:
     """Compute the scatter of an observable between runs like an open trajectory with other seeds.
 
-    Runs from a given state have one energy.
+    Runs from the same state have the same energy.
     """
     if GIVEN_START in run.attrs:
         return Scatter()
@@ -87,7 +87,7 @@ def _of_velocities(scene: Scene) -> float:
 def _of_places(scene: Scene) -> float:
     """Compute the standard deviation of the potential energy at the start.
 
-    It is the deviation of uniform positions in a region, reduced by the density.
+    The result is the deviation for uniform positions in a region, reduced by the density.
     """
     kinds = [kind for kind in scene.species if kind.count and kind.arrangement == "random" and not kind.fixed]
     square = 0.0
@@ -109,7 +109,7 @@ def _range(scene: Scene, kind: Species, axis: int) -> float:
 def _compressibility(scene: Scene, kinds: list[Species]) -> float:
     """Return the factor by which excluded volume reduces the scatter of positions.
 
-    It is the reduced compressibility of the fluid.
+    The result is the reduced compressibility of the fluid.
     """
     d = scene.dimension
     filled = 0.0
@@ -145,7 +145,7 @@ def _of_observable(target: Target, deviation: float) -> float:
 def _of_column(target: Target, deviation: float) -> float | None:
     """Compute the deviation of an observable under gravity, by hydrostatics.
 
-    None where hydrostatics knows nothing.
+    None if hydrostatics gives no column.
     """
     column = gravity_column(target.scene)
     assert column is not None

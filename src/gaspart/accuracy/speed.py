@@ -9,7 +9,7 @@ from functools import cache
 
 from gaspart import theory
 from gaspart.accuracy import table
-from gaspart.engines import Engine, candidate_engines
+from gaspart.engines import candidate_engines
 from gaspart.scene.container import Container
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
@@ -29,7 +29,7 @@ def factor(dimension: int, engine: str, precision: str, count: int) -> float:
     """
     growth = max(1.0, count / _MOST) ** _GROWTH
     count = min(max(count, _LEAST), _MOST)
-    timed = _find_engine(engine)
+    timed = next(candidate for candidate in candidate_engines() if candidate.timed_as == engine)
     fraction, step = timed.timed_at
     side = (count * theory.particle_volume(dimension) / fraction) ** (1.0 / dimension)
     particles = Species(count, 0.5, temperature=1.0, arrangement="lattice")
@@ -45,8 +45,3 @@ def factor(dimension: int, engine: str, precision: str, count: int) -> float:
         seconds.append((time.process_time() - start) / (0.5 * count * rate * (run.time - before)))
     table_seconds = table.seconds(dimension, fraction, engine, precision, step)
     return growth * statistics.median(seconds) / table_seconds if math.isfinite(table_seconds) else math.inf
-
-
-def _find_engine(name: str) -> Engine:
-    """Return an engine by its name in the table."""
-    return next(engine for engine in candidate_engines() if engine.timed_as == name)

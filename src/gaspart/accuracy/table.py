@@ -1,13 +1,13 @@
 """Table of measured costs and errors, and interpolation between its points.
 
 Columns: ``dimension``, ``packing_fraction``; ``engine`` (event; step, with its standard four passes and
-rewinding; dsmc and dsmc enskog, by its model), ``precision``, ``time_step`` in diameters divided by the
-thermal speed (kT / m)^(1/2), for DSMC in its own step, a fifth of a mean free time, 0 for event;
-``quantity``, its ``value`` and standard ``error``. Quantities: ``seconds`` of CPU time for one exact contact
-of two particles; ``bias_<observable>``, relative error; ``noise_<observable>``, the relative variance of an
-estimate times the number of its contacts; ``price_<feature>``, the time per event with a feature divided by
-the time without it. Observables: Z, collision_rate, D. Other errors follow from theory
-(`gaspart.accuracy.tabulated`).
+rewinding; dsmc and dsmc enskog, by its model), ``precision``, and ``time_step``. The time step is in
+diameters divided by the thermal speed (kT / m)^(1/2). For DSMC it is in units of its default step, a fifth of
+a mean free time; for event it is 0; ``quantity``, its ``value`` and standard ``error``. Quantities:
+``seconds``, the CPU time for one exact contact of two particles; ``bias_<observable>``, relative error;
+``noise_<observable>``, the relative variance of an estimate times the number of its contacts;
+``price_<feature>``, the time per event with a feature divided by the time without it. Observables: Z,
+collision_rate, D. Other errors follow from theory (`gaspart.accuracy.tabulated`).
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ def steps(dimension: int, engine: str) -> list[tuple[str, float]]:
 
 
 def has_biases(engine: str) -> bool:
-    """Return True if errors of an engine were measured; otherwise they follow from theory."""
+    """Return True if errors of an engine were measured; otherwise they are computed from theory."""
     return any(row["engine"] == engine and row["quantity"].startswith(_BIAS) for row in read())
 
 
@@ -77,7 +77,7 @@ def bias(
 ) -> float:
     """Return a bound on the relative error of an engine, with two standard errors.
 
-    The default engine is the one with time steps. The bound is inf where no error was measured. Between
+    The default engine is the time-stepped engine. The bound is inf where no error was measured. Between
     packing fractions the larger error of both neighbours is taken: errors change their sign between them.
     """
     eta, value, error = _curve(dimension, engine, precision, step, f"{_BIAS}{observable}")
@@ -94,8 +94,8 @@ def seconds(
 ) -> float:
     """Return the CPU time of one exact contact, on the machine of the table.
 
-    It is inf where it was not measured. Outside the gases of the table an engine without steps has the time
-    of the nearest gas.
+    The result is inf if the time was not measured. Outside the gases of the table an engine without steps has
+    the time of the nearest gas.
     """
     eta, value, _ = _curve(dimension, engine, precision, step, "seconds")
     if not eta.size or (step and not eta[0] / _BEYOND <= fraction <= eta[-1] * _BEYOND):
@@ -106,9 +106,9 @@ def seconds(
 def noise(dimension: int, fraction: float, observable: str) -> float:
     """Return the relative variance of an observable times the number of its contacts.
 
-    It is inf if it was not measured. In a gas more dilute than the gases of the table the variance of Z falls
-    with the square of (Z - 1) / Z, since Z - 1 is in proportion to the contacts, and the others are those in
-    the most dilute gas.
+    The result is inf if the noise was not measured. In a gas more dilute than the gases of the table, the
+    variance of Z decreases as the square of (Z - 1) / Z, since Z - 1 is proportional to the number of
+    contacts. The other variances are equal to their values in the most dilute gas of the table.
     """
     eta, value, _ = _curve(dimension, _EXACT, "float64", 0.0, f"noise_{observable}")
     if not eta.size:
@@ -171,8 +171,8 @@ class Price:
 
     ratios : time per event with each measured feature, divided by the time without it.
     unknown : features of the scene whose cost was not measured.
-    single : time in single precision divided by the time in double precision, None for an engine that has one
-        precision only.
+    single : time in single precision divided by the time in double precision, None for an engine with only
+        one precision.
     """
 
     ratios: dict[str, float]
@@ -183,8 +183,8 @@ class Price:
 def price_of(scene: Scene, engine: Engine, observable: str) -> Price:
     """Return the price of an observable of a scene with an engine.
 
-    It was measured in a gas of 4000 spheres at a packing fraction of 0.2 (figure `price_of_features`), where
-    a feature that is absent costs nothing.
+    The cost was measured in a gas of 4000 spheres at a packing fraction of 0.2 (figure `price_of_features`).
+    A feature that the scene does not use costs no time.
     """
     has = {
         "walls": not scene.is_periodic,
@@ -203,7 +203,8 @@ def price_of(scene: Scene, engine: Engine, observable: str) -> Price:
 def _single(engine: Engine, dimension: int) -> float | None:
     """Compute the time per contact in single precision divided by the time in double precision.
 
-    The gas is the one at which the engine is timed; None for an engine that was not timed in both.
+    The ratio is for the gas in which the engine is timed; None for an engine that was not timed in both
+    precisions.
     """
     fraction, step = engine.timed_at
     single, double = (

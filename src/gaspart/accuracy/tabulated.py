@@ -1,7 +1,7 @@
 """Options from the table, for fluids and observables whose errors, noise and times were measured.
 
-A row of the table is a stored pilot: its noise is in contacts instead of time, and its CPU time holds for the
-machine of the table. Nothing is run or compiled for a look-up.
+A row of the table is a stored pilot: its noise is given per contact instead of per time, and its CPU time is
+for the machine of the table. Nothing is run or compiled for a look-up.
 """
 
 from __future__ import annotations
@@ -29,11 +29,10 @@ from gaspart.theory.dsmc import step_factor
 def model_error(packing_fraction: float, dimension: int, equation: str, observable: str) -> float:
     """Return the |error| of an observable due to the equation that an engine solves.
 
-    The equation is `Engine.equation`; the error is relative to hard spheres or discs, inf where either of
-    them has no value, like D of discs. The Boltzmann equation has a contact value of 1, and no virial. The
-    Enskog model is given the contact value of Carnahan and Starling, in two dimensions the value of
-    Henderson. In neither does D have the memory of correlated collisions [Erpenbeck 1991], whose uncertainty
-    is added.
+    The equation is `Engine.equation`. The error is relative to hard spheres or discs. It is inf if one of the
+    two has no value, like D of discs. The Boltzmann equation has a contact value of 1, and no virial. The
+    Enskog model uses the contact value of Carnahan and Starling, in two dimensions the value of Henderson. In
+    neither does D have the memory of correlated collisions [Erpenbeck 1991], whose uncertainty is added.
     """
     if equation == bulk.EXACT:
         return 0.0
@@ -49,8 +48,8 @@ def model_error(packing_fraction: float, dimension: int, equation: str, observab
 def step_error(packing_fraction: float, step: float) -> float:
     """Compute the relative error of D of spheres due to steps, which make it too high.
 
-    Steps are in diameters divided by the thermal speed. The law is given for a dilute gas; a dense gas
-    collides more often by the contact value, as if its free path were shorter by this factor.
+    Steps are in diameters divided by the thermal speed. The law is for a dilute gas. In a dense gas the
+    collision rate is larger by the contact value, as if the free path were shorter by this factor.
     """
     path = float(theory.mean_free_path(packing_fraction, 3))
     return float(step_factor("diffusion", step * math.sqrt(2.0) / path)) - 1.0
@@ -153,7 +152,8 @@ def _option(target: Target, engine: Engine, accuracy: float, budget: float | Non
 def _with_bounds(target: Target, engine: Engine, gas: Gas, step: float) -> Candidate:
     """Return the engine with bounds of its errors, measured or by theory.
 
-    By theory they are the errors of its equation, and of its cells and steps as the engine states them.
+    From theory these are the errors of its equation, and the errors of its cells and steps as computed by the
+    engine.
     """
     observable, row = target.observable, (gas.dimension, gas.packing_fraction)
     if table.has_biases(engine.timed_as):

@@ -6,12 +6,13 @@ import math
 import shlex
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from gaspart.accuracy.conditions import Conditions, known_conditions
 from gaspart.analysis.diffusion import LINEAR_FROM
-from gaspart.analysis.impulses import USUAL_BINS, knows_energies
+from gaspart.analysis.impulses import USUAL_BINS, knows_energies, useful_impulses
 from gaspart.analysis.observables import (
     OBSERVABLES,
     Named,
@@ -30,9 +31,10 @@ from gaspart.scene.faces import wall_of
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.initial import initial_state
-from gaspart.state.optional_tallies import ImpulseTally, useful_impulses
+from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
 from gaspart.trajectory.correlator import Correlations
+from gaspart.trajectory.run_options import required_contents
 
 SEED = 0
 _FRAMES = 48, 512
@@ -55,8 +57,8 @@ _COLLIDED = 40.0
 class Target:
     """Observable of `gaspart measure` of a scene.
 
-    face : for observables of walls, the wall (`x low`), by default each of them.
-    settled : state in which the scene has become steady, if one is known.
+    face : for observables of walls, the wall (`x low`), by default all walls.
+    settled : state at which the scene has become steady, if it is known.
     """
 
     scene: Scene
@@ -86,9 +88,10 @@ class Target:
 
     @cached_property
     def start(self) -> State | None:
-        """State from which pilots start; None for the usual start.
+        """State from which pilots start; None for the default start.
 
-        It is a settled state, or the state at time 0 of particles that are compressed, which takes long.
+        It is a settled state, or, for particles that are compressed, the state at time 0, because compression
+        takes long.
         """
         if self.settled is not None:
             return self.settled
@@ -97,7 +100,7 @@ class Target:
 
     @cached_property
     def initial(self) -> State:
-        """State at the start of pilots, by default the one at time 0 of their seed."""
+        """State at the start of pilots; by default the state at time 0 of their seed."""
         return self.start or initial_state(self.scene, SEED)
 
     @cached_property
@@ -109,8 +112,8 @@ class Target:
     def frequency(self) -> float:
         """Collisions of a particle per time.
 
-        By theory in a gas as hot as at the start, or in the column that it becomes; or, if its particles
-        start at rest, in the second half of a short run.
+        The frequency is computed by theory in a gas as hot as at the start, or in the column that the gas
+        becomes. If the particles start at rest, it is measured in the second half of a short run.
         """
         at_start = rates(self.scene, dense=True).frequency
         if at_start > 0.0:
@@ -165,11 +168,11 @@ class Target:
         """True if the run accumulates correlations."""
         return self.declared.lags > 0
 
-    def tallies(self, engine: Engine) -> tuple[ImpulseTally, ...]:
+    def tallies(self, engine: Engine) -> tuple[OptionalTally, ...]:
         """Return the optional tallies that make the observable more accurate in a run by an engine.
 
-        They are impulses along the last axis; for pressures, along the only axis across which they are
-        requested.
+        The tallies are impulses along the last axis. For pressures they are along the only axis across which
+        pressures are requested.
         """
         if not self.declared.by_impulses:
             return ()
@@ -180,6 +183,10 @@ class Target:
         if len(axes) != 1:
             return ()
         return useful_impulses(self.scene, engine.tallies, axes.pop(), USUAL_BINS)
+
+    def contents(self, engine: Engine) -> dict[str, Any]:
+        """Return the fields of `Contents` that a run of the observable needs, without correlations."""
+        return {**required_contents({self.declared.needs}), "tallies": self.tallies(engine)}
 
     @property
     def span(self) -> tuple[float, float]:
@@ -224,7 +231,7 @@ class Target:
         return Correlations(sample, lags, stress=self.declared.needs == "fluxes")
 
     def _schedule_correlations(self, engine: Engine, length: float) -> tuple[float, float, Correlations]:
-        """Return the `schedule` with correlations; frames are at least the longest lag apart."""
+        """Return the `schedule` with correlations; the time between frames is at least the longest lag."""
         correlations = self.correlations(engine)
         sample = correlations.interval
         per_frame = max(correlations.lags, round(length / sample / _FRAMES[0]))

@@ -1,7 +1,7 @@
-"""Observables with uncertainties. The functions below are the public ones, `gp.analysis`.
+"""Observables with uncertainties. The functions below are public (`gp.analysis`).
 
 Each takes a trajectory, by its path or open, or a `Simulation`, and returns an `Observable`: an
-xarray.Dataset with uncertainties, units and theory, which plots itself. They are loaded when first
+xarray.Dataset with uncertainties, units and theory, which plots itself. A function is loaded when it is first
 used. `lyapunov_exponent` takes a simulation that has recorded its events.
 """
 

@@ -1,8 +1,8 @@
 """Bond order of particles, by freud, and Fourier modes of discs.
 
-Ramasubramani and others, Comput. Phys. Commun. 254, 107275 (2020). Everywhere: positions (N, d) in [0, L]
-of a periodic container of lengths (d,). freud works in single precision, and here on one thread, as the
-workflow assumes of a job. It is an extra: `pip install 'gaspart[order]'`.
+Ramasubramani and others, Comput. Phys. Commun. 254, 107275 (2020). In all functions, positions (N, d) are in
+[0, L] of a periodic container of lengths (d,). freud works in single precision. It uses one thread here,
+because a job of the workflow has one. It is an extra: `pip install 'gaspart[order]'`.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def _freud() -> ModuleType:
 def _system(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> tuple[Any, np.ndarray]:
     """Return the box and the positions in the convention of freud.
 
-    The origin is in the middle of the box; discs have z = 0.
+    The origin is in the middle of the box. Discs have z = 0.
     """
     box = _freud().box.Box(*map(float, lengths), is2D=len(lengths) == 2)
     points = np.zeros((len(positions), 3), dtype=np.float32)
@@ -41,9 +41,9 @@ def _system(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> tup
 def hexatic(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> np.ndarray:
     """Compute the hexatic order parameter psi_6 of each disc, complex, shape (N,).
 
-    It is the mean of exp(6 i theta) over the bonds of a disc to its Voronoi neighbours. |psi_6| is 1 in a
-    triangular lattice; the mean over discs measures whether all have one orientation. Halperin and Nelson,
-    Phys. Rev. Lett. 41, 121 (1978).
+    The order parameter is the mean of exp(6 i theta) over the bonds of a disc to its Voronoi neighbours.
+    |psi_6| is 1 in a triangular lattice. The mean over discs shows whether all discs have one orientation.
+    Halperin and Nelson, Phys. Rev. Lett. 41, 121 (1978).
     """
     system = _system(positions, lengths)
     neighbours = _freud().locality.Voronoi().compute(system).nlist  # by default freud takes the 6 nearest
@@ -79,10 +79,10 @@ def structure_factor(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Compute S(k) = |sum exp(i k.r)|^2 / N of discs on a grid of wave vectors.
 
-    Returned are the wave numbers (K,) and (L,) along x and y up to `highest`, and S(k), shape (K, L): the
-    mean over frames (T, N, 2), at the wave vectors that the container admits; S(0) is NaN. Computed here,
-    because the structure factors of freud reject two dimensions, and its diffraction pattern rejects boxes
-    that are not square.
+    Returns the wave numbers (K,) and (L,) along x and y up to `highest`, and S(k), shape (K, L): the mean
+    over frames (T, N, 2), at the wave vectors that the container permits; S(0) is NaN. Computed here, because
+    the structure factors of freud reject two dimensions, and its diffraction pattern rejects boxes that are
+    not square.
     """
     unit = 2.0 * np.pi / np.asarray(lengths)
     waves = [step * np.arange(-int(highest / step), int(highest / step) + 1) for step in unit]

@@ -1,8 +1,8 @@
 """Theory of a plain gas without an end, by the equation that an engine solves (`Engine.equation`).
 
-"exact": particles that meet where they touch; "boltzmann": points; "enskog": pairs that meet a diameter
-apart as often as the contact value states that the engine is given, without correlated collisions. Each
-function takes a `Gas` and an equation; NaN where nothing is known.
+"exact": particles that collide when they touch. "boltzmann": points. "enskog": pairs at the distance of a
+diameter collide at a rate proportional to the contact value of the engine, without correlated collisions.
+Each function takes a `Gas` and an equation; NaN where nothing is known.
 """
 
 from __future__ import annotations
@@ -50,7 +50,8 @@ def collision_rate(gas: Gas, equation: str) -> float:
 def diffusion(gas: Gas, equation: str) -> float:
     """Compute the coefficient of self-diffusion of spheres; NaN for discs.
 
-    It is Erpenbeck and Wood's for the exact dynamics, otherwise the coefficient of the kinetic equation.
+    For the exact dynamics it is the result of Erpenbeck and Wood, otherwise the coefficient of the kinetic
+    equation.
     """
     if gas.dimension == 2 or (equation == EXACT and not _fluid(gas)):
         return math.nan
@@ -99,3 +100,36 @@ def _enskog_arguments(gas: Gas, equation: str) -> dict[str, Any]:
     if equation == BOLTZMANN:
         return {**gas.parameters, "packing_fraction": 0.0, "contact": 1.0}
     return {**gas.parameters, "contact": contact_value(gas, equation)}
+
+
+# Difference between a finite gas in a periodic container and an infinite one, to first order.
+#
+# Each function takes a `Gas` of two particles or more. It returns the relative difference, and the power
+# with which the number of particles grows for a smaller one: 1 for a difference in proportion to 1/N.
+
+
+def finite_compressibility_factor(gas: Gas) -> tuple[float, float]:
+    """Compute the relative difference of Z at fixed energy."""
+    fraction, dimension = gas.packing_fraction, gas.dimension
+    shift = theory.finite_size_correction(fraction, dimension, gas.count, ensemble="canonical")
+    return float(shift / theory.compressibility_factor(fraction, dimension)), 1.0
+
+
+def finite_collision_rate(gas: Gas) -> tuple[float, float]:
+    """Compute the relative difference of the collisions of a particle per time at fixed energy."""
+    factor = theory.collision_rate_finite_size_factor(gas.packing_fraction, gas.dimension, gas.count)
+    return float(factor) - 1.0, 1.0
+
+
+def finite_diffusion(gas: Gas) -> tuple[float, float]:
+    """Compute the relative difference of D, by Yeh and Hummer's shift.
+
+    The shift is proportional to one over the side.
+    """
+    fraction, dimension = gas.packing_fraction, gas.dimension
+    side = (gas.count * theory.particle_volume(dimension) / fraction) ** (1.0 / dimension)
+    value = float(theory.enskog_diffusion(fraction, dimension))
+    carried = float(theory.number_density(fraction, dimension)) * value  # modes decay with nu + D
+    viscosity = float(theory.enskog_viscosity(fraction, dimension) * theory.viscosity_ratio(fraction))
+    lost = theory.yeh_hummer(side, viscosity + carried)
+    return -float(lost) / value, float(dimension)

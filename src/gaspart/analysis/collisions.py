@@ -1,8 +1,8 @@
 """Data set of collisions: the particles, the geometry of the contact, the flights before it.
 
-These are the quantities that kinetic theory averages over, one row per collision of two particles: free times
-and free paths since each particle's last event, the normal at contact, the speeds of approach. Hits of walls
-end flights but are no rows.
+These quantities are averaged in kinetic theory. There is one row per collision of two particles: free times
+and free paths since the last event of each particle, the normal at contact, and the speed of approach. Hits
+of walls end flights but are no rows.
 """
 
 from __future__ import annotations
@@ -186,7 +186,7 @@ COLLISIONS = FileKind("a data set of collisions written by gaspart", _is_collisi
 
 
 def _check_memory(collisions: int, scene: Scene) -> None:
-    """Raise SceneError for more collisions than this machine can hold, twice."""
+    """Raise SceneError for more collisions than the memory can hold twice."""
     required = 16.0 * collisions * (9 + scene.dimension)
     there = memory()
     if there is not None and required > there:
@@ -216,7 +216,7 @@ def contact_value(data: xr.Dataset, blocks: int = 20) -> Estimate:
 
     Notes
     -----
-    chi = 2 M / (N t S rho sigma^(d-1) sqrt(kT / (pi m))), with S = 2 pi (2D) or 4 pi (3D), exact in
+    chi = 2 M / (N t S rho sigma^(d-1) sqrt(kT / (pi m))), with S = 2 pi (2D) or 4 pi (3D); this is exact in
     equilibrium [1]_. The temperature follows from the mean approach, sqrt(pi kT / m).
 
     References
@@ -331,19 +331,20 @@ def free_flight_times(simulation: Simulation, bins: int = 40) -> Observable:
     Returns
     -------
     Observable
-        Density (free_time,) in [1/time]. The mean time and path of a flight are the variables
-        `mean_free_time` and `mean_free_path`, each with _error and, if there is a theory, _theory.
+        Density (free_time,) in [1/time]. The mean time and the mean path of a flight are the variables
+        `mean_free_time` and `mean_free_path`. Each has an _error and, if theory is known, a _theory.
 
     Raises
     ------
     SceneError
-        If there is no record or it is too short, and for gravity, walls, and fewer than 16 moving particles.
+        If there is no record or the record is too short; also with gravity, with walls, and for fewer than 16
+        moving particles.
 
     Notes
     -----
     Uncertainties are the scatter of 16 groups of particles, NaN in an empty bin. Theory, for equal particles:
-    `theory.free_time_pdf`, for independent collisions; means exact in equilibrium, to the accuracy of the
-    contact value, and corrected for the number of particles.
+    `theory.free_time_pdf`, for independent collisions. The means are exact in equilibrium, to the accuracy of
+    the contact value, and corrected for the number of particles.
 
     Examples
     --------

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import partial
@@ -14,7 +14,6 @@ import numpy as np
 import xarray as xr
 
 from gaspart import analysis
-from gaspart.analysis.impulses import read_impulses
 from gaspart.analysis.measuring import measure, until_time
 from gaspart.analysis.observable import Observable
 from gaspart.analysis.observables import OBSERVABLES
@@ -24,10 +23,14 @@ from gaspart.engines import engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError, short_repr
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
-from gaspart.state.optional_tallies import ImpulseTally
+from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import by_number
 from gaspart.trajectory.reading import open_trajectory
+from gaspart.trajectory.run_options import tallies_from_json
 from gaspart.yaml_text import parse_yaml
+
+_ROUNDING = 1e-12
+"""Relative scatter of equal values that are computed in different order."""
 
 
 def replicas(
@@ -44,7 +47,7 @@ def replicas(
     name : str
         Name of the observable as in `gaspart measure`.
     sources : sequence of str, Path, Dataset or Simulation
-        At least two runs of different seeds or initial states: trajectories, by their paths or open, or
+        At least two runs of different seeds or initial states: paths of trajectories, open trajectories, or
         simulations.
     start : float, [time], optional
         Frames before this time are discarded, as by the observable's function.
@@ -62,15 +65,16 @@ def replicas(
     Raises
     ------
     SceneError
-        If there are fewer than two runs; if scenes or engines differ (with the first difference); if two runs
-        are the same bit for bit (of one initial state and one seed, or of one initial state in a scene that
-        draws nothing afterwards); if curves are at different positions, as densities in the bins of different
-        impulses that runs have stored; and as the observable's function does.
+        If there are fewer than two runs; if scenes or engines differ (the message names the first
+        difference); if two runs are identical (same initial state and same seed, or same initial state in a
+        scene without random numbers); if curves have different positions, such as densities in different bins
+        of impulses; and for the reasons of the observable's function.
 
     Notes
     -----
-    The uncertainty is the standard error of the mean from the scatter of the runs. It needs no assumption
-    about correlations within a run. It has one degree of freedom less than there are runs (`freedom`).
+    The uncertainty is the standard error of the mean from the scatter of the runs. The error requires no
+    assumption about correlations within a run. The number of degrees of freedom is the number of runs minus
+    one (`freedom`).
 
     Examples
     --------
@@ -125,9 +129,9 @@ class _Recipe:
     settings : scene and engine.
     seed : seed.
     draws : True if the seed matters after the start.
-    times : times of its states, all until the last one if `every`.
-    state : function that returns the bits of the state at a time, as a file has them.
-    impulses : the impulses that it has stored.
+    times : times of its states, or of all states up to the last time if `every`.
+    state : function that returns the bits of the state at a time, as they are in a file.
+    tallies : texts of the optional tallies that it has stored, by their names.
     """
 
     name: str
@@ -137,7 +141,7 @@ class _Recipe:
     times: np.ndarray
     every: bool
     state: Callable[[float], bytes]
-    impulses: str
+    tallies: dict[str, str]
 
 
 def _recipe(run: Any, name: str) -> _Recipe:
@@ -146,21 +150,20 @@ def _recipe(run: Any, name: str) -> _Recipe:
         settings = {"scene": run.scene.to_dict(), "engine": engine_to_dict(run.engine)}
         times = np.array([0.0, run.time])
         draws, state = run.engine.draws(run.scene), partial(_state_at, run)
-        tally = next((item for item in run.tallies if isinstance(item, ImpulseTally)), None)
-        return _Recipe(name, settings, str(run.seed), draws, times, True, state, _describe_tally(tally))
+        return _Recipe(name, settings, str(run.seed), draws, times, True, state, _texts(run.tallies))
     if not isinstance(run, xr.Dataset) or not {"scene", "engine", "seed"} <= set(run.attrs):
         raise SceneError("sources", type(run).__name__, "must be trajectories, their paths or simulations")
     settings = {"scene": parse_yaml(run.attrs["scene"]), "engine": json.loads(run.attrs["engine"])}
     draws = engine_from_dict(settings["engine"]).draws(Scene.from_dict(settings["scene"]))
     frames = {key: run[key].values for key in ("time", "coordinates", "velocities") if key in run}
     stored = partial(_state_in_frame, frames)
-    seed, impulses = str(run.attrs["seed"]), _describe_tally(read_impulses(run))
-    return _Recipe(name, settings, seed, draws, frames["time"], False, stored, impulses)
+    seed, tallies = str(run.attrs["seed"]), _texts(tallies_from_json(run.attrs.get("tallies", "[]")))
+    return _Recipe(name, settings, seed, draws, frames["time"], False, stored, tallies)
 
 
-def _describe_tally(tally: ImpulseTally | None) -> str:
-    """Return the impulses that a run has stored, in the words of its option."""
-    return "none" if tally is None else tally.to_text()
+def _texts(tallies: Iterable[OptionalTally]) -> dict[str, str]:
+    """Return the texts of tallies in the words of their options, by name."""
+    return {tally.name: tally.to_text() for tally in tallies if tally.form}
 
 
 def _state_in_frame(frames: dict[str, np.ndarray], time: float) -> bytes:
@@ -189,7 +192,7 @@ def _bits(*vectors: np.ndarray) -> bytes:
 def _check_replica(recipe: _Recipe, others: list[_Recipe]) -> None:
     """Raise SceneError unless a run is a replica of others.
 
-    Replicas differ in nothing but the seed or the first state.
+    Replicas differ only in the seed or in the first state.
     """
     for other in others:
         if difference := _difference(recipe.settings, other.settings):
@@ -207,7 +210,7 @@ def _check_replica(recipe: _Recipe, others: list[_Recipe]) -> None:
 
 
 def _last_common(recipe: _Recipe, other: _Recipe) -> float | None:
-    """Return the last time at which both have a state; None without a common start."""
+    """Return the last time at which both runs have a state; None without a common start."""
     if recipe.every and other.every:
         return float(min(recipe.times[-1], other.times[-1]))
     if recipe.every or other.every:
@@ -221,7 +224,7 @@ def _last_common(recipe: _Recipe, other: _Recipe) -> float | None:
 def _difference(first: Any, second: Any, key: str = "") -> tuple[str, Any, Any] | None:
     """Find the first difference of two trees: its dotted key and both values.
 
-    None if they are equal.
+    The result is absent if the two are equal.
     """
     if isinstance(first, dict) and isinstance(second, dict):
         pairs = {str(name): (first.get(name), second.get(name)) for name in {**first, **second}}
@@ -264,14 +267,18 @@ def _mean(measurements: list[Observable], recipes: list[_Recipe]) -> Observable:
         if not same or any(
             not np.array_equal(measurement[dim], first[dim]) for dim in dims if dim in first.coords
         ):
-            if recipe.impulses != recipes[0].impulses:
-                rule = f"are {recipes[0].impulses} in {recipes[0].name}: {quantity} is in the bins of these"
-                raise SceneError("impulses", recipe.impulses, rule, recipe.name)
+            for key in {**recipes[0].tallies, **recipe.tallies}:
+                usual, own = (each.tallies.get(key, "none") for each in (recipes[0], recipe))
+                if usual != own:
+                    rule = f"are {usual} in {recipes[0].name}: {quantity} is in the bins of these"
+                    raise SceneError(key, own, rule, recipe.name)
             raise _other_coordinate(first, measurement, recipes[0].name, recipe.name)
     each = np.array([measurement.estimate.values for measurement in measurements])
     values, errors = means_of(each)
-    unknown = np.isnan([single.error.values for single in measurements]).all(axis=0)
-    errors = np.where(unknown & (errors == 0.0), np.nan, errors)  # as of bins that are empty in all runs
+    single = np.array([measurement.error.values for measurement in measurements])
+    rounding = _ROUNDING * np.abs(values)
+    exact = (single <= rounding).all(axis=0)  # a value that does not scatter within a run either
+    errors = np.where((errors <= rounding) & ~exact, np.nan, errors)  # equal counts by chance
     parts = {"": values, "_error": errors}
     if all(measurement.theory is not None for measurement in measurements):
         for part in ("_theory", "_theory_error"):

@@ -1,7 +1,7 @@
-"""Conditions of a scene in which observables are defined; each raises SceneError with its reason.
+"""Conditions of a scene under which observables are defined; each raises SceneError with its reason.
 
-They are tested before a run is made and when it is measured, so that both reject the same scenes. A selection
-is the choice of a caller: `species`, `particles`, `axis`, `at`, `lag`, `per_axis`.
+The conditions are tested before a run and when the run is measured, so both reject the same scenes. A
+selection is the choice of a caller: `species`, `particles`, `axis`, `at`, `lag`, `per_axis`.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from typing import Any
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
 from gaspart.scene.faces import FACES, Open
-from gaspart.scene.features import require_tallied
 from gaspart.scene.gas import plain_mixture
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.scene.walls import MOVING_WALL
+from gaspart.state.tally import StressTally
 
 Selection = Mapping[str, Any]
 GROUPS = 16
@@ -113,7 +113,7 @@ def walled_axis(scene: Scene, selection: Selection) -> None:
 def walled_axis_of(scene: Scene, name: str | None) -> int:
     """Return the number of the named axis.
 
-    The default is the last axis with open faces, or else with walls.
+    The default is the last axis with open faces, or otherwise the last axis with walls.
 
     Raises SceneError for an axis without walls, and for an unknown one.
     """
@@ -127,14 +127,14 @@ def walled_axis_of(scene: Scene, name: str | None) -> int:
 
 
 def elastic(scene: Scene, selection: Selection) -> None:
-    """Contacts that keep energy."""
+    """Contacts that conserve energy."""
     law = scene.restitution
     if law is not None and law.normal < 1.0:
         raise SceneError("restitution.normal", law.normal, "a gas that loses energy is in no equilibrium")
 
 
 def homogeneous(scene: Scene, selection: Selection) -> None:
-    """Neither walls, nor interior walls and fixed particles, around which places are not alike."""
+    """No walls, interior walls and fixed particles, so that all positions are equivalent."""
     _periodic(scene, "this observable needs a periodic container; set boundary: periodic")
     _without_obstacles(
         scene,
@@ -143,7 +143,7 @@ def homogeneous(scene: Scene, selection: Selection) -> None:
 
 
 def without_obstacles(scene: Scene, selection: Selection) -> None:
-    """No interior walls and fixed particles, which carry a part of the pressure."""
+    """No interior walls and fixed particles, which would take a part of the pressure."""
     _without_obstacles(scene, "carry a part of the pressure, which the virial of the particles does not have")
 
 
@@ -166,7 +166,7 @@ def _moving(scene: Scene) -> int:
 
 
 def thermal(scene: Scene, selection: Selection) -> None:
-    """More than one particle in a periodic container, whose centre keeps its velocity."""
+    """More than one particle, in a periodic container that conserves momentum."""
     if scene.dimension * _moving(scene) - sum(scene.conserved_axes) < 1:
         raise SceneError("count", _moving(scene), "too few moving particles for a temperature")
 
@@ -212,7 +212,7 @@ def _enough(scene: Scene) -> None:
 
 
 def _in_species(scene: Scene, species: Any) -> int:
-    """Count the moving particles of a species, given by its number.
+    """Count the moving particles of a species, given by the number of the species.
 
     Single particles have the number after the last species.
     """
@@ -239,7 +239,7 @@ def free_axis(scene: Scene, selection: Selection) -> None:
 
 
 def no_lasting_discs(scene: Scene, selection: Selection) -> None:
-    """Spheres, or discs whose momentum does not last, unless a lag is stated."""
+    """Spheres, or discs whose momentum decays fast, unless the user gives a lag."""
     if selection.get("lag") is None and scene.dimension == 2 and any(scene.conserved_axes):
         raise SceneError("container.lengths", scene.container.lengths, DISCS)
 
@@ -292,7 +292,7 @@ def has_axis(scene: Scene, selection: Selection) -> None:
 
 def require_elastic_periodic(scene: Scene, selection: Selection) -> None:
     """Raise SceneError unless the container is periodic and only contacts change velocities."""
-    require_tallied(scene)
+    StressTally().check(scene)
 
 
 def shears(scene: Scene, selection: Selection) -> None:

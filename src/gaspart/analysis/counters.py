@@ -12,12 +12,12 @@ from gaspart.analysis import series
 from gaspart.analysis.expected.equilibrium import describe
 from gaspart.analysis.flow import accessible_lengths, face_areas
 from gaspart.analysis.impulses import (
-    USUAL_BINS,
     engine_class,
     estimator,
     group_count,
     knows_energies,
     subtract_controls,
+    usual_tally,
     wall_controls,
 )
 from gaspart.analysis.observable import Observable, observable, scalar, with_freedom
@@ -25,7 +25,6 @@ from gaspart.analysis.observables import name_of, require_defined
 from gaspart.analysis.run import Run, Source, open_run, require_collisions
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
-from gaspart.state.optional_tallies import ImpulseTally
 from gaspart.trajectory.amber import face_names
 
 _BLOCKS = 16
@@ -45,18 +44,18 @@ def compressibility_factor(source: Source, start: float | None = None) -> Observ
     Returns
     -------
     Observable
-        The compressibility factor Z, dimensionless. Theory is given for the fluid, with the correction of
-        first order in 1/N; of mixtures an approximation, without an uncertainty.
+        The compressibility factor Z, dimensionless. Theory is for the fluid, with the correction of first
+        order in 1/N. For mixtures it is an approximation, without an uncertainty.
 
     Raises
     ------
     SceneError
-        If the scene has walls, fixed particles or contacts that lose energy, there are too few frames, or no
-        collision occurs.
+        If the scene has walls, fixed particles or contacts that lose energy; if there are too few frames; or
+        if no collision occurs.
 
     Notes
     -----
-    Z = 1 + sum |dr . dp| / (d N k_B T t), with k_B T = 2 E / (d (N - 1)) about the centre of mass.
+    Z = 1 + sum |dr . dp| / (d N k_B T t), with k_B T = 2 E / (d (N - 1)) relative to the centre of mass.
 
     Examples
     --------
@@ -95,23 +94,23 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
     Raises
     ------
     SceneError
-        If the scene has no walls, for too few frames, if particles rest where obstacles may carry them, and
-        for particles of several sizes whose file has no tally per area.
+        If the scene has no walls; for too few frames; if particles rest where obstacles may support them; and
+        for particles of several sizes if the file has no tally per area.
 
     Notes
     -----
-    The sum over sizes a of the force F_a of their particles divided by the area A_a of the face
-    that their centres can reach, without those that fixed particles and interior walls cover
-    (`gaspart.scene.accessible`), at that time where faces move. By the contact theorem it is k_B T times the
-    density at contact, summed: n k_B T of the volume that is accessible in an ideal gas, and unchanged by a
-    particle that never touches the face. Across the axis of a piston with a load it is the force divided by
-    the area of the container, as the load is defined, so that the mean is the load. The force on a face has
-    no such convention: `wall_force`.
+    The pressure is a sum over sizes a: the force F_a of particles of this size divided by the area A_a of the
+    face that their centres can reach. Areas covered by fixed particles and interior walls are excluded
+    (`gaspart.scene.accessible`). If faces move, the area is the present one. By the contact theorem the
+    pressure is k_B T times the density at contact, summed over sizes. In an ideal gas it is n k_B T with the
+    density in the accessible volume. A particle that never touches the face does not change it. Across the
+    axis of a piston with a load, the force is divided by the area of the container, as the load is defined.
+    So the mean is the load. The force on a face has no such convention: `wall_force`.
 
     Contacts of particles at rest are no events: they press a floor with what gravity gives the particles and
-    no event takes. With impulses that the run has kept along an axis, the pressures across it are freed from
-    what fluctuates with them and is known exactly (`gaspart.analysis.impulses`); the attribute `estimator`
-    says so.
+    no event takes. If the run has stored impulses along an axis, the known fluctuations of these impulses are
+    subtracted from the pressures across this axis (`gaspart.analysis.impulses`). The attribute `estimator`
+    names this method.
 
     Examples
     --------
@@ -146,11 +145,12 @@ def wall_force(source: Source, start: float | None = None) -> Observable:
     Raises
     ------
     SceneError
-        If the scene has no walls, for too few frames, and if particles rest where obstacles may carry them.
+        If the scene has no walls; for too few frames; and if particles rest where obstacles may support them.
 
     Notes
     -----
-    The momentum given to the face per time. It depends on no area; a pressure does (`wall_pressure`).
+    The force is the momentum given to the face divided by the time. The force does not depend on an area,
+    while the pressure does (`wall_pressure`).
 
     Examples
     --------
@@ -192,14 +192,14 @@ def _of_faces(function: str, run: Run, ends: np.ndarray, about: dict[str, Any]) 
     along = {"face": (faces, {"long_name": "face of the container"})}
     result = observable(function, along, values + samples[0], errors, **about)
     serves = knows_energies(engine_class(run), run.scene)
-    tally = ImpulseTally(str(faces[-1])[0], USUAL_BINS) if serves else None
+    tally = usual_tally(str(faces[-1])[0]) if serves else None
     of = "wall impulses", "wall impulses, with the known mean of the energy along an axis"
     result.attrs |= estimator(run, *of, bool(improved), tally)
     return with_freedom(result, freedoms) if improved else result
 
 
 def controlled_on_walls(run: Run, name: str) -> dict[int, tuple[str, int, np.ndarray]]:
-    """Compute the pressures or forces on the walls of which the run has stored enough.
+    """Compute the pressures or forces on walls for which the run has stored impulses.
 
     Parameters
     ----------
@@ -269,8 +269,9 @@ def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
 
         change of the momentum = its gain by gravity + impulses of the lower face - impulses of the upper one.
 
-    On a ceiling it is 0; on side walls 0, or NaN if the momentum on a floor is more than a millionth of the
-    weight. Raises SceneError if particles rest where something other than faces may carry them.
+    On a ceiling the force is 0. On side walls it is 0, or NaN if the momentum on a floor is more than a
+    millionth of the weight. Raises SceneError if particles rest where something other than a face may support
+    them.
     """
     carried = np.zeros((len(ends) - 1, 2 * run.dimension))
     if not run.has_gravity or (run.is_subset and not run.dissipates):
@@ -331,8 +332,8 @@ def collision_rate(source: Source, start: float | None = None) -> Observable:
     Returns
     -------
     Observable
-        The rate, in [1/time]. Theory: exact in equilibrium, with the contact value of the fluid's equation of
-        state, corrected for the number of particles.
+        The rate, in [1/time]. Theory is exact in equilibrium. It uses the contact value of the equation of
+        state of the fluid, corrected for the number of particles.
 
     Raises
     ------
@@ -341,8 +342,8 @@ def collision_rate(source: Source, start: float | None = None) -> Observable:
 
     Notes
     -----
-    The rate is (2 M + F) / (N t) for M collisions of pairs of the N particles that move, and F collisions
-    with fixed particles: the mean of a particle's own count.
+    The rate is (2 M + F) / (N t), the mean number of collisions of a particle per time. M is the number of
+    collisions between pairs of the N moving particles, and F the number of collisions with fixed particles.
 
     Examples
     --------

@@ -22,7 +22,7 @@ _EXPONENT = re.compile(r"\^(?:\((\d*d?)-(\d*d?)\)|d)")
 
 
 def units_in(units: str, dimension: int) -> str:
-    """Replace exponents of declared units that depend on the dimension d by numbers.
+    """Replace exponents that depend on the dimension d by numbers.
 
     For example, `mass length^(2-d) / time` is `mass length^-1 / time` in three dimensions.
     """

@@ -1,7 +1,7 @@
 """The diffusion coefficient, from the paths of particles.
 
-Its uncertainty is the scatter of groups of particles, which are taken as independent, or, of fewer particles
-than groups, the scatter of as many blocks of the run.
+The uncertainty is the scatter of groups of particles, which are treated as independent. If there are fewer
+particles than groups, it is the scatter of as many blocks of the run.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def diffusion_coefficient(
     species : int, optional
         Only this species, as in `mean_squared_displacement`.
     particles : sequence of int, optional
-        Only these particles, as in `mean_squared_displacement`. Of fewer than 16 particles, such as one
+        Only these particles, as in `mean_squared_displacement`. For fewer than 16 particles, such as one
         tracer, each of 16 blocks of the run must be long enough.
     per_axis : bool, default False
         D along each periodic axis instead of the mean over axes.
@@ -68,28 +68,29 @@ def diffusion_coefficient(
     Returns
     -------
     Observable
-        D in [length^2/time]. Of a periodic container a scalar; of a container with walls, or `per_axis`,
-        along each periodic axis, (axis,): across walls displacements are bounded, and D does not exist. The
-        variable `lags` has the ends of the lags of the slope.
+        D in [length^2/time]. A scalar for a periodic container. For a container with walls, or with
+        `per_axis`, one value along each periodic axis, (axis,). Displacements across walls are limited, so D
+        does not exist there. The variable `lags` has the ends of the lags of the slope.
 
     Raises
     ------
     SceneError
-        If there is no periodic axis, or the run is too short or has too few frames. Without a lag also for
-        discs whose momentum lasts longer than 12 collisions, so that their squared displacement grows like
+        If there is no periodic axis, if the run is too short, or if it has too few frames. Without a lag also
+        for discs whose momentum lasts longer than 12 collisions, because their squared displacement grows as
         t ln t, and if the slope still changes at the longest lags.
 
     Notes
     -----
-    Slopes are taken between 6, 12, 24, 48 ... collisions of a particle, as far as the run allows. D is the
-    first slope that equals the one before within two standard errors of their difference. If the last slope
-    has changed by less than 6 %, a slow tail is missing, whose size is added to the error.
+    Slopes are computed between 6, 12, 24, 48 ... collisions of a particle, as far as the length of the run
+    permits. D is the first slope that equals the previous slope within two standard errors of their
+    difference. If the last slope has changed by less than 6 %, a slow tail is missing, whose size is added to
+    the error.
 
     D at a `lag` is the integral of the velocity autocorrelation until then, which exists where D does not: of
     discs, and between walls.
 
-    Theory: of spheres in a periodic cube, Erpenbeck and Wood's with the shift of Yeh and Hummer, half of
-    which is its uncertainty; at a lag the theory of the mean-squared displacement.
+    Theory: for spheres in a periodic cube, the result of Erpenbeck and Wood with the shift of Yeh and Hummer;
+    the uncertainty is half of the shift. At a given lag, the theory of the mean-squared displacement.
 
     Examples
     --------
@@ -144,7 +145,7 @@ def _all_lags(run: Run, stride: int, parts: int) -> tuple[int, ...]:
 
 
 def _extend_lags(lags: tuple[int, ...], frames: int) -> tuple[int, ...]:
-    """Extend lags by doubled ones, up to half of a number of frames."""
+    """Extend lags by doubled lags, up to half of a number of frames."""
     while 4 * lags[-1] <= frames:
         lags = (*lags, 2 * lags[-1])
     return lags
@@ -203,7 +204,7 @@ def require_spheres(run: Run, lasting: np.ndarray) -> None:
 def linear_lags(rate: float, interval: float) -> tuple[int, int, int]:
     """Return the lags, in frames, after which a particle has had 6, 12 and 24 collisions.
 
-    These are before the window of D, at its start and at its end.
+    These lags are before the window of D, at its start and at its end.
 
     Parameters
     ----------
@@ -222,7 +223,7 @@ def linear_lags(rate: float, interval: float) -> tuple[int, int, int]:
 
 
 def lags_of_slopes(run: Run, stride: int = 1, parts: int = 1) -> tuple[int, ...]:
-    """Return the `linear_lags` of a run, no two of them equal.
+    """Return the `linear_lags` of a run without duplicates.
 
     Parameters
     ----------
@@ -231,7 +232,7 @@ def lags_of_slopes(run: Run, stride: int = 1, parts: int = 1) -> tuple[int, ...]
     stride : int, default 1
         One of this number of frames is taken.
     parts : int, default 1
-        Number of parts of the run, in each of which the lags must be.
+        Number of parts of the run; the lags must fit into each part.
 
     Returns
     -------
@@ -261,8 +262,8 @@ def lags_of_slopes(run: Run, stride: int = 1, parts: int = 1) -> tuple[int, ...]
 def _lasting_momentum(run: Run, lag: int) -> np.ndarray:
     """Return the axes (d,) along which the momentum of the moving particles persists for `lag` frames.
 
-    These are the axes where it is conserved, and where more than half of it remains, for example with a few
-    obstacles among many particles.
+    These are the axes along which momentum is conserved, or more than half of it remains, for example with a
+    few obstacles among many particles.
     """
     masses = run.masses[run.moving]
     if run.flow_axes:
@@ -290,9 +291,9 @@ def _slopes(groups: Groups, lags: tuple[int, ...]) -> np.ndarray:
 def settled_slope(slopes: np.ndarray, sizes: Sequence[int] | None = None) -> tuple[int, np.ndarray | float]:
     """Find the slope that no longer changes, among slopes (G, K, ...) at increasing lags.
 
-    Returns its number and the size of the tail that it lacks: 0 if the slope equals the one before within its
-    error along every axis. `sizes` (G,) are the numbers of particles in the groups. Raises SceneError if the
-    last slopes change by more than a slow tail explains.
+    Returns the number of the slope and an estimate of the neglected tail. The tail is 0 if the slope equals
+    the previous slope within its error along every axis. `sizes` (G,) are the numbers of particles in the
+    groups. Raises SceneError if the last slopes change by more than a slow tail explains.
     """
     for k in range(1, slopes.shape[1]):
         change, error = means_of(slopes[:, k] - slopes[:, k - 1], sizes)
@@ -331,9 +332,9 @@ def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
     Raises
     ------
     SceneError
-        For other numbers of species, fixed particles, walls, contacts that lose energy, discs, which have no
-        such coefficient, frames too far apart, runs that are too short, and if the rise still changes at the
-        longest lags.
+        If there are not two species; with fixed particles, walls or contacts that lose energy; for discs,
+        which have no such coefficient; if frames are too far apart or runs too short; and if the rise still
+        changes at the longest lags.
 
     Notes
     -----
@@ -341,13 +342,13 @@ def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
 
         D_12 = x_1 x_2 N / (2 d) d/dt <|X_1(t) - X_2(t)|^2>,
 
-    by the first rise between 6, 12, 24, 48 ... collisions of a particle that equals the one before within two
-    standard errors [1]_ [2]_; the attribute `lags` has its ends. The longest lag is a 32nd of the run, but 24
-    collisions at least. If the last rise has changed by less than 6 %, a slow tail is missing, whose size is
-    added to the error. Fick's coefficient is D_12 times the
-    thermodynamic factor, which is 1 for species of one size. Of species that differ in nothing but their
-    numbers D_12 is the D of a single particle, exactly. X_1 - X_2 is one vector, however many particles there
-    are: only longer runs are more accurate.
+    by the first rise between 6, 12, 24, 48 ... collisions of a particle that equals the previous rise within
+    two standard errors [1]_ [2]_; the attribute `lags` has the two lags. The longest lag is a 32nd of the
+    run, but 24 collisions at least. If the last rise has changed by less than 6 %, a slow tail is missing,
+    whose size is added to the error. Fick's coefficient is D_12 times the thermodynamic factor, which is 1
+    for species of one size. Of species that differ in nothing but their numbers D_12 is the D of a single
+    particle, exactly. X_1 - X_2 is one vector, however many particles there are: only longer runs are more
+    accurate.
 
     References
     ----------

@@ -10,6 +10,7 @@ half of the run than that in which it is used, so that it depends on no noise th
 from __future__ import annotations
 
 import json
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,12 +22,9 @@ from gaspart.engines import ENGINES, Engine
 from gaspart.errors import SceneError
 from gaspart.scene.features import shares_energy_evenly
 from gaspart.scene.scene import Scene
-from gaspart.state.optional_tallies import (
-    ImpulseTally,
-    OptionalTally,
-    stored_tally,
-    useful_impulses,
-)
+from gaspart.state.optional_tallies import OptionalTally
+from gaspart.state.tally import ImpulseTally
+from gaspart.trajectory.run_options import stored_tally
 
 # How an observable was estimated, and what a run must keep for a better estimate.
 
@@ -152,6 +150,27 @@ class MomentumFlux:
             numbers[:, k] = (flux + self.pull * below) / shares[k]
             below += numbers[:, k]
         return numbers
+
+
+def useful_impulses(scene: Scene, tallies: Collection[str], axis: int, bins: int) -> tuple[ImpulseTally, ...]:
+    """Return the impulse tally along an axis, if it gives the density of a scene.
+
+    tallies : names of the tallies that the engine can make
+    """
+    tally = ImpulseTally("xyz"[axis], bins)
+    try:
+        tally.check(scene)
+    except SceneError:
+        return ()
+    one_mass = all(kind.alike for kind in scene.kinds)
+    pulled = bool(scene.gravity and scene.gravity[axis])
+    by_mass = pulled or scene.container.periodic[axis]
+    return (tally,) if tally.name in tallies and (one_mass or not by_mass) else ()
+
+
+def usual_tally(axis: str) -> ImpulseTally:
+    """Return the impulse tally along an axis in `USUAL_BINS`."""
+    return ImpulseTally(axis, USUAL_BINS)
 
 
 def read_impulses(data: xr.Dataset) -> ImpulseTally | None:

@@ -17,6 +17,7 @@ from gaspart.errors import SceneError, unknown_word
 from gaspart.scene.face_checks import refuse_open
 from gaspart.scene.faces import Open
 from gaspart.scene.scene import Scene
+from gaspart.state.tally import StressTally, WallShearTally
 
 if TYPE_CHECKING:
     from gaspart.engines import Engine
@@ -582,8 +583,6 @@ def require_modelled(name: str, scene: Scene, engine: Engine) -> None:
     Its equation does not have the observable, or has one value of it in any case, or the engine does not
     store the required data.
     """
-    from gaspart.state.optional_tallies import StressTally, WallShearTally  # which load numpy
-
     declared = OBSERVABLES[observable_name(name)]
     if engine.equation in declared.nothing:
         raise SceneError("observable", name, declared.nothing[engine.equation])

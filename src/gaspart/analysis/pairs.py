@@ -20,11 +20,11 @@ from gaspart.analysis.run import Run, Source, open_run, require_collisions
 from gaspart.analysis.statistics import correlated_mean, histogram_means
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number
-from gaspart.scene.features import FURTHEST
-from gaspart.state.optional_tallies import PairImpulseTally, stored_tally
+from gaspart.state.tally import FURTHEST, PairImpulseTally
 from gaspart.theory.geometry import unit_sphere_surface
 from gaspart.theory.speeds import mean_speed_factor
 from gaspart.trajectory.pairs import pair_names, pairs_of
+from gaspart.trajectory.run_options import stored_tally
 from gaspart.workers import in_threads
 
 # Pairs of a periodic container, counted by their distance.

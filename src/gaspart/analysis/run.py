@@ -26,11 +26,11 @@ from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.simulation import Simulation
 from gaspart.state.insertion import per_particle
-from gaspart.state.optional_tallies import tallies_to_json
 from gaspart.state.state import by_number
 from gaspart.state.tally import Tally
 from gaspart.trajectory.pairs import PairCounter
 from gaspart.trajectory.reading import open_trajectory
+from gaspart.trajectory.run_options import tallies_to_json
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
 Source: TypeAlias = str | Path | xr.Dataset | Simulation
@@ -352,7 +352,7 @@ class Run:
     def fluid(self) -> Gas | None:
         """Gas of the scene, if it has two particles or more in a periodic container.
 
-        Outside the range of the equation of state of the fluid there is no such gas: None.
+        Outside the range of the equation of state of the fluid, the result is absent. None.
         """
         gas = self.scene.gas
         if gas is None or gas.count < 2 or not self.periodic.all():
@@ -361,7 +361,7 @@ class Run:
 
     @property
     def mixture(self) -> Mixture | None:
-        """Mixture of the scene, in which equal species are one; None under the conditions of `fluid`."""
+        """Mixture of the scene, in which equal species are combined; None under the conditions of `fluid`."""
         mixture = self.scene.mixture
         if mixture is None or not self.periodic.all() or self.count < 2:
             return None

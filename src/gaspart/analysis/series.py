@@ -11,8 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gaspart.analysis.estimate import Estimate, concise
 from gaspart.analysis.flow import Grid, per_area
-from gaspart.analysis.run import Run
+from gaspart.analysis.fluxes import particle_numbers
+from gaspart.analysis.run import Run, Source, open_run
+from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
 from gaspart.state.tally import compressibility_factor
 
@@ -24,12 +27,12 @@ def compressibility(run: Run) -> np.ndarray:
 
         Z = P V / (N k_B T) = 1 + sum |dr . dp| / (d N k_B T t).
 
-    The temperature is defined by the motion about the centre of mass, k_B T = 2 E' / (d (N - 1)). A pair at
-    contact gives |dp| proportional to |v_n| at a rate proportional to it, so the sum grows with <v_n^2>, v_n
-    one component of v_1 - v_2. That is linear in the energy (fixing the energy changes nothing), and with
-    zero total momentum <v_1 . v_2> = -<v^2> / (N - 1), hence <v_n^2> = 2 k_B T / m with this T. So Z - 1 is
-    the value of the canonical ensemble of N particles, whose distance from the infinite system is known to
-    first order in 1/N (`theory.finite_size_correction(..., ensemble="canonical")`).
+    The temperature is defined by the motion about the centre of mass, k_B T = 2 E' / (d (N - 1)). In a pair
+    collision |dp| and the collision rate are both proportional to |v_n|, where v_n is the normal component of
+    v_1 - v_2. So the sum is proportional to <v_n^2>. This mean is linear in the energy, so a fixed energy
+    changes nothing. With zero total momentum <v_1 . v_2> = -<v^2> / (N - 1), hence <v_n^2> = 2 k_B T / m with
+    this T. So Z - 1 is the value of the canonical ensemble of N particles. Its difference from the infinite
+    system is known to first order in 1/N (`theory.finite_size_correction(..., ensemble="canonical")`).
     """
     return compressibility_factor(
         run.increments("virial_sum"), run.count, run.dimension, run.temperature, np.diff(run.time)
@@ -60,7 +63,7 @@ def collision_rate(run: Run) -> np.ndarray:
 def face_impulses(run: Run) -> np.ndarray:
     """Compute the momentum (T - 1, 2d) given to each face in each interval.
 
-    It is 0 without a wall.
+    It is 0 on an axis without walls.
     """
     return np.asarray(np.abs(run.increments("wall_impulse")[:, : 2 * run.dimension]))
 
@@ -75,10 +78,10 @@ def face_pressures(run: Run) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Blocks:
-    """K blocks of equal length of a run; a remainder is in no block.
+    """K blocks of equal length of a run; the remainder of the run is not used.
 
-    Neighbours share the frame at which counters are read; averages over frames leave out the first frame of
-    the run. Raises ValueError for more blocks than intervals.
+    Neighbouring blocks share the frame at which counters are read. Averages over frames exclude the first
+    frame of the run. Raises ValueError for more blocks than intervals.
     """
 
     run: Run
@@ -96,7 +99,7 @@ class Blocks:
 
     @property
     def frames(self) -> slice:
-        """The frames of all of them."""
+        """All frames of the blocks."""
         return slice(1, self.number * self.length + 1)
 
     @property
@@ -153,11 +156,11 @@ def plateau(
 
     The arguments `volume` (per particle, any order), `pressure` and its standard errors have the shape (P,).
     A finite system in the coexistence region has a loop (Mayer and Wood, J. Chem. Phys. 42, 4268 (1965))
-    because its interface costs free energy; the area between the ends is the difference in free energy, so
-    the line is where both phases have the same chemical potential. The loop is interpolated monotonically
-    between points (Fritsch and Carlson). The error is half of the width of the middle 68 % of loops redrawn
-    from the points' errors. Without a loop, or if less than half of the redrawn ones have a loop: NaN, NaN,
-    (NaN, NaN).
+    because the interface of the finite system costs free energy. The area between the ends is the difference
+    in free energy, so at the line both phases have the same chemical potential. The loop is interpolated
+    monotonically between points (Fritsch and Carlson). The error is half of the width of the middle 68 % of
+    loops redrawn from the points' errors. Without a loop, or if less than half of the bootstrap samples have
+    a loop: NaN, NaN, (NaN, NaN).
     """
     order = np.argsort(volume)
     volume, pressure, error = (np.asarray(values, dtype=float)[order] for values in (volume, pressure, error))
@@ -200,3 +203,61 @@ def _equal_areas(volume: np.ndarray, pressure: np.ndarray) -> tuple[float, tuple
     level = brentq(excess, low + margin, high - margin, xtol=1e-6)
     first, last = ends(level)
     return float(level), (float(v[last]), float(v[first]))
+
+
+# Drift of a run: change between both halves of its measured part beyond the noise.
+#
+# A line is fitted to a series of n values. Its rise over the run has the variance 12 S / n, with S the
+# spectrum at frequency 0 of the series without its cubic part, from `statistics.correlated_mean`: the
+# drift itself is not in its error, as it is in the error of the mean.
+
+
+LEAST_FRAMES = 32
+"""Frames without which no drift is looked for."""
+SIGNIFICANT = 4.0
+"""Standard errors of a rise that is a drift: by chance once in 16 000 series."""
+_DEGREE = 3
+"""Degree of the polynomial that follows a drift."""
+_CONSTANT = 1e-6
+"""Relative scatter of what does not change but for rounding."""
+
+
+def drift_of(data: Source, start: float | None = None, positions: bool = False) -> str:
+    """Describe what drifts in the measured part of an open trajectory; "" if nothing does.
+
+    The number of particles is examined where faces are open, the kinetic energy of a particle, and, with
+    `positions`, the mean position of the particles along axes with walls.
+    """
+    with open_run(data, start, sheared=True, varying=True) as run:
+        if len(run.time) < LEAST_FRAMES:
+            return ""
+        drifts = [_drift(name, series) for name, series in _series(run, positions).items()]
+    return "; ".join(filter(None, drifts))
+
+
+def _series(run: Run, positions: bool) -> dict[str, np.ndarray]:
+    """Return the series (T,) that are examined, by their names."""
+    numbers, series = np.full(len(run.time), max(1, run.scene.moving_count), dtype=float), {}
+    if run.scene.is_open:
+        numbers = series["the number of particles"] = particle_numbers(run.scene, run.data).astype(float)
+    series["the kinetic energy of a particle"] = run.data["kinetic_energy"].values / np.maximum(numbers, 1.0)
+    if positions and "coordinates" in run.data and not run.is_subset:
+        moving = np.ones(run.count, dtype=bool) if run.scene.is_open else run.moving
+        means = np.concatenate([np.nanmean(part.positions[:, moving], axis=1) for _, part in run.parts()])
+        for axis in run.scene.walled_axes:
+            series[f"the mean position along {'xyz'[axis]}"] = means[:, axis]
+    return series
+
+
+def _drift(name: str, series: np.ndarray) -> str:
+    """Describe the drift of a series (T,); "" if it has none."""
+    if not np.isfinite(series).all() or np.ptp(series) <= _CONSTANT * np.abs(series).max():
+        return ""
+    time = np.linspace(-0.5, 0.5, len(series))
+    rise = float(time @ (series - series.mean()) / (time @ time))
+    rest = correlated_mean(series - np.polynomial.Polynomial.fit(time, series, _DEGREE)(time)).estimate
+    if abs(Estimate(rise, math.sqrt(12.0) * rest.error, rest.freedom).deviation) <= SIGNIFICANT:
+        return ""
+    halves = [half.mean() for half in np.array_split(series, 2)]
+    first, second = (concise(float(mean), math.sqrt(2.0) * rest.error) for mean in halves)
+    return f"{name} drifts from {first} in the first half to {second} in the second"

@@ -28,22 +28,22 @@ def by_species(source: Source, start: float | None = None, about: str = FLOW) ->
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
     about : {"flow", "rest"}, default "flow"
-        Frame of reference. "flow": velocities and paths are about the local flow where the gas flows,
-        otherwise about the centre of mass along axes on which the total momentum is conserved (see
-        `gaspart.analysis.flow`). "rest": in the frame of the container, without a correction.
+        Frame of reference. "flow": velocities and paths are relative to the local flow if the gas flows,
+        otherwise relative to the centre of mass along axes on which the total momentum is conserved (see
+        `gaspart.analysis.flow`). "rest": relative to the container.
 
     Returns
     -------
     Dataset
-        Properties (species,) with standard uncertainties (suffix _error). The coordinate `species` has the
-        numbers of the scene; single particles have the number after the last. Variables:
+        Properties (species,) with standard uncertainties (suffix _error). The coordinate `species` contains
+        the numbers of the scene; single particles have the number after the last species. Variables:
 
         - `count`, number of moving particles;
-        - `temperature` [energy], twice the mean kinetic energy of flight per degree of freedom;
+        - `temperature` [energy], twice the mean translational energy per degree of freedom;
         - `mean_speed` [length/time];
         - `D` [length^2/time], and the curves `msd` and `vacf` (species, lag), as by `gaspart measure` with a
-          species. NaN where a species cannot have one, such as a D between walls, for the reason in the
-          attribute `not_measured`, and where it has fewer lags than others.
+          species. NaN if a quantity is not defined for a species, such as D between walls, and if the species
+          has fewer lags than others. The attribute `not_measured` has the reason.
 
     Raises
     ------
@@ -52,9 +52,10 @@ def by_species(source: Source, start: float | None = None, about: str = FLOW) ->
 
     Notes
     -----
-    About the centre of mass the mean square of a particle of mass m is 1 - m / M of its value without this
-    condition, M the mass of all whose mean is subtracted (exact in equilibrium). Temperatures and speeds are
-    corrected for this. `to_dataframe` of the variables without lags is a table with a row for each species.
+    Relative to the centre of mass the mean square of a particle of mass m is 1 - m / M of its value without
+    this condition. M is the mass of all particles whose mean is subtracted. This is exact in equilibrium.
+    Temperatures and speeds are corrected for this. `to_dataframe` of the variables without lags is a table
+    with a row for each species.
 
     Examples
     --------

@@ -63,8 +63,9 @@ def speed_distribution(
     -----
     Velocities about the flow (see `gaspart.analysis.flow`) are multiplied by sqrt(M / (M - m)), M the mass of
     the particles whose mean is subtracted. The error is the scatter of groups of particles, NaN in an empty
-    bin. Theory: Maxwell's, of the run's own temperature; of one species at a constant kinetic energy the
-    exact distribution for their number; no theory where the gas flows and has no single temperature.
+    bin. Theory: Maxwell's distribution at the temperature of the run. For one species at a constant kinetic
+    energy, the exact distribution for the number of particles. No theory if the gas flows and has no single
+    temperature.
 
     Examples
     --------
@@ -100,10 +101,10 @@ def speed_distribution(
 
 
 def _speeds(run: Run, grid: Grid) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Count speeds in bins; the frames are read in parts.
+    """Count speeds in bins, reading the frames in parts.
 
-    Returned are the counts (groups, bins) and the numbers (groups,) of speeds of each group of particles,
-    and the sum of squares of velocities in each frame (T,).
+    Returns the counts (groups, bins) and the numbers (groups,) of speeds of each group of particles, and the
+    sum of squares of velocities in each frame (T,).
     """
     about, energy = mean_motion(run), np.zeros(len(run.time))
     # every group has a share of each species, which come one after the other
@@ -141,22 +142,23 @@ def profile(
     source : str, Path, Dataset or Simulation
         A trajectory, by its path or open, or a simulation.
     of : {"density", "temperature"}, default "density"
-        "density": moving particles per volume within the container of the moment (faces may move), without
-        the volume from which fixed particles keep their centres (NaN if no volume is left). "temperature" of
-        the moving particles (NaN where there are no particles).
+        "density": moving particles per volume within the present container (faces may move), without the
+        volume from which fixed particles exclude centres (NaN if no volume is left). "temperature" of the
+        moving particles (NaN if there are no particles).
     axis : {"x", "y", "z"}, optional
         The axis. Default: the last one.
     bins : int, optional
-        Number of bins. Default: 40; for a density the number of bins of the impulses that the run has stored
+        Number of bins. Default: 40. For a density, the number of bins of the impulses that the run has stored
         along the axis.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
     species : int, optional
         Only this species, by its number in the scene.
     about : {"flow", "rest"}, default "flow"
-        Frame of reference of a temperature. "flow": about the local flow between faces that slide, under a
-        force along a periodic axis, in a wind and before faces that move, otherwise about the velocity of the
-        centre of mass where that is conserved (see `gaspart.analysis.flow`). "rest": the container.
+        Frame of reference of a temperature. "flow": relative to the local flow between faces that slide,
+        under a force along a periodic axis, in a uniform wind and before faces that move; otherwise relative
+        to the velocity of the centre of mass if it is conserved (see `gaspart.analysis.flow`). "rest":
+        relative to the container.
 
     Returns
     -------
@@ -167,19 +169,20 @@ def profile(
     Raises
     ------
     SceneError
-        If the property or the axis is unknown, the species does not move, or there are too few frames.
+        If the property or the axis is unknown, if the species does not move, or if there are too few frames.
 
     Notes
     -----
-    Errors hold for correlated series, for each bin separately. They are NaN where their degrees of freedom
-    are fewer than two, of a run that is too short for the correlation there, and where the value of a bin
-    does not change (0 if nothing moves, or all bins have one value).
+    Errors are valid for correlated series, for each bin separately. An error is NaN if it has fewer than two
+    degrees of freedom, because the run is too short for the correlation in this bin. It is also NaN if the
+    value of a bin does not change (0 if nothing moves, or if all bins have one value).
 
-    Impulses that the run has stored along the axis, in bins of which each of these has as many, make the
-    density more accurate than counts (`gaspart.analysis.impulses`); the attribute `estimator` says so.
+    If the run has stored impulses along the axis, and each bin contains an integer number of their bins, the
+    density is computed from them, which is more accurate than counts (`gaspart.analysis.impulses`). The
+    attribute `estimator` names this method.
 
-    Theory: the density of equal particles under gravity along this axis, by hydrostatics with the fluid's
-    equation of state; a uniform temperature in equilibrium.
+    Theory: the density of equal particles under gravity along this axis, from hydrostatics with the equation
+    of state of the fluid. In equilibrium, a uniform temperature.
 
     Examples
     --------
@@ -299,8 +302,8 @@ def order_parameter(source: Source, start: float | None = None) -> Observable:
 
     Notes
     -----
-    It is 1 in a triangular lattice of discs, 0.5745 in a face-centred cubic lattice, and small in a fluid
-    (about 1 / sqrt(12 N) for spheres).
+    The parameter is 1 in a triangular lattice of discs, 0.5745 in a face-centred cubic lattice, and small in
+    a fluid (about 1 / sqrt(12 N) for spheres).
 
     Examples
     --------
@@ -333,8 +336,8 @@ def order_parameter(source: Source, start: float | None = None) -> Observable:
 def _density(run: Run, axis: int, bins: int, species: int | None) -> Means:
     """Compute the density of the moving particles, or one species.
 
-    It is NaN where fixed ones exclude centres. Raises SceneError for a file that holds the first particles of
-    several kinds only.
+    The density is NaN where fixed particles exclude centres. Raises SceneError for a file that contains only
+    the first particles of several kinds.
     """
     if len(run.scene.kinds) > 1:
         run.require_all()

@@ -33,8 +33,8 @@ def wave_vectors(lengths: Sequence[float] | np.ndarray, highest: float) -> tuple
 
     The wave vectors are k = 2 pi n / L.
 
-    Both vectors of a pair have one S. The lengths have the shape (d,). Returns the integers n (M, d) and |k|
-    (M,), by ascending |k|.
+    Both vectors of a pair k, -k have the same S. The lengths have the shape (d,). Returns the integers n (M,
+    d) and |k| (M,), by ascending |k|.
     """
     unit = 2.0 * np.pi / np.asarray(lengths, dtype=float)
     most = (highest / unit).astype(int)
@@ -55,9 +55,9 @@ def shells_of(
 
     There are `bins` equal intervals.
 
-    They are evenly chosen; where there are many, from every second (fourth, ...) wave along each axis.
-    Returns n (M, d), the number of the shell of each (M,), and the mean |k| of each of the S shells that are
-    not empty (S,).
+    The vectors are chosen evenly. If there are many, they are taken from every second (fourth, ...) wave
+    along each axis. Returns n (M, d), the number of the shell of each (M,), and the mean |k| of each of the S
+    shells that are not empty (S,).
     """
     parts, low, step = [], 0.0, 1
     while low < highest:
@@ -104,7 +104,7 @@ def amplitudes(
     waves : ndarray of int, shape (M, d)
         The integers n.
     threads : int, default 1
-        Number of threads, each of which sums whole frames.
+        Number of threads; each thread sums whole frames.
 
     Returns
     -------
@@ -190,9 +190,9 @@ def structure_factor(
     Notes
     -----
     Exact sums, at wave vectors that the container admits: k = 2 pi (n_x / L_x, ...), without 0, where S is N,
-    of any number. They are averaged in the intervals, with up to 24 vectors of each; an interval without any
-    is left out. S(k) of a fluid tends to its reduced compressibility k_B T d rho / dP at small k, and to 1 at
-    large k. Theory: of equal spheres Verlet and Weis's, an approximation.
+    of any number. The values are averaged in intervals, with up to 24 vectors in each interval. An interval
+    without vectors is omitted. S(k) of a fluid tends to its reduced compressibility k_B T d rho / dP at small
+    k, and to 1 at large k. Theory: of equal spheres Verlet and Weis's, an approximation.
 
     Examples
     --------
@@ -239,7 +239,7 @@ def partial_structure_factors(
     Raises
     ------
     SceneError
-        As `structure_factor`, and for single particles, which are of no species.
+        As for `structure_factor`; also for single particles, which do not belong to a species.
 
     Notes
     -----
@@ -247,10 +247,10 @@ def partial_structure_factors(
 
         S_ab(k) = <rho_a(k) rho_b(-k)> / sqrt(N_a N_b),    rho_a(k) = sum over species a of exp(i k.r).
 
-    They are 1 of equal and 0 of other species at large k, and of an ideal mixture. With the fractions x the
-    sum over all a and b of sqrt(x_a x_b) S_ab is the `structure_factor`, exactly. Wave vectors and errors are
-    as there. Theory: of spheres of one size Verlet and Weis's, of a mixture Percus and Yevick's, both
-    approximations.
+    At large k, and for an ideal mixture, the values are 1 for equal and 0 for different species. With the
+    fractions x the sum over all a and b of sqrt(x_a x_b) S_ab is the `structure_factor`, exactly. Wave
+    vectors and errors are the same as in `structure_factor`. Theory: of spheres of one size Verlet and
+    Weis's, of a mixture Percus and Yevick's, both approximations.
 
     References
     ----------

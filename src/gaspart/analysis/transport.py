@@ -1,15 +1,15 @@
 """Viscosities, thermal conductivity and pressure tensor, from the tally of the stress and the heat flux.
 
-A run with `Correlations(stress=True)` has summed products of these fluxes about the velocity of the centre of
-mass, J, each the mean over an interval h between two samples, and squared differences of their time
-integrals, G = V int J dt (Helfand, Phys. Rev. 119, 1 (1960)). A transport coefficient is the limit at long
-times of
+A run with `Correlations(stress=True)` has summed products of these fluxes relative to the velocity of the
+centre of mass, J, each averaged over an interval h between two samples. It has also summed squared
+differences of their time integrals, G = V int J dt (Helfand, Phys. Rev. 119, 1 (1960)). A transport
+coefficient is the limit at long times of
 
     <(G(t) - G(0))^2> / (2 V t x)  and of its derivative  h [C(0)/2 + C(h) + C(2h) + ... ] / (V x),
 
-with C the correlation of V J, and x = k_B T for the viscosities, k_B T^2 for the conductivity of a gas of one
-species, the forms of Helfand and of Green and Kubo. With the means over intervals in place of instantaneous
-values the second form holds exactly, with the impulses at collisions, at the times between two lags.
+with C the correlation of V J. x = k_B T for the viscosities, and k_B T^2 for the conductivity of a gas of one
+species. These are the forms of Helfand and of Green and Kubo. If means over intervals replace instantaneous
+values, the second form is still exact, including the impulses at collisions, at the times between two lags.
 """
 
 from __future__ import annotations
@@ -102,8 +102,9 @@ def _products(flux: np.ndarray, other_flux: np.ndarray, lags: int) -> np.ndarray
     """Compute products of changes of two sets of time integrals of fluxes.
 
     The integrals have the shapes (A, T, d) and (B, T, d), the products (A, B, T - 1 - lags). The change of
-    one over an interval is multiplied by half of the change of the other over the same interval plus its
-    change over the next `lags` ones; the mean is over both orders and over axes.
+    one quantity over an interval is multiplied by the change of the other: half of the change over the same
+    interval plus the change over the next `lags` intervals. The result is the mean over both orders and over
+    axes.
     """
 
     def half(first: np.ndarray, second: np.ndarray) -> np.ndarray:
@@ -188,8 +189,8 @@ def bulk_viscosity(source: Source, lag: float | None = None, start: float | None
 
     Notes
     -----
-    The mean is taken over the run, of duration T, which makes the value too low by about 2 lag / T of it.
-    Theory as for `shear_viscosity`.
+    The mean is computed over the run, of duration T. This makes the value too low by about the fraction 2 lag
+    / T. Theory as for `shear_viscosity`.
 
     Examples
     --------
@@ -225,12 +226,13 @@ def thermal_conductivity(source: Source, lag: float | None = None, start: float 
     Raises
     ------
     SceneError
-        As `shear_viscosity`, and for particles of many sizes and single particles in a mixture.
+        As for `shear_viscosity`; also for particles of many sizes and single particles in a mixture.
 
     Notes
     -----
-    Of a mixture it is the conductivity without diffusion (see `conduction`), from the fluxes between frames,
-    whose interval may not be longer than the lag, without the curves. Theory as for `shear_viscosity`.
+    For a mixture it is the conductivity without diffusion (see `conduction`). It is computed from the fluxes
+    between frames, without the curves; the interval of frames may not be longer than the lag. Theory as for
+    `shear_viscosity`.
 
     Examples
     --------
@@ -274,8 +276,8 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
 
     Notes
     -----
-    Of a sheared gas it is computed from velocities about the flow. Theory: the equation of state, of a gas at
-    rest.
+    In a sheared gas it is computed from velocities relative to the flow. Theory: the equation of state, for a
+    gas at rest.
 
     Examples
     --------
@@ -309,7 +311,7 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
 def _read_settings(run: Run) -> Correlations:
     """Return the settings of a run's correlations of the stress.
 
-    Raises SceneError for a run without them. An older version stored fluxes of absolute velocities: such a
+    Raises SceneError for a run without them. An older version stored fluxes of absolute velocities. Such a
     run is rejected if the gas moves as a whole.
     """
     text = run.data.attrs.get("correlations")
@@ -340,7 +342,7 @@ def _initial(run: Run) -> State:
 
 
 def _response(run: Run, lag: float | None) -> Observable:
-    """Measure the shear viscosity of a sheared gas, from the momentum carried across the flow."""
+    """Measure the shear viscosity of a sheared gas from the momentum transported across the flow."""
     _read_settings(run)
     scene, rate = run.scene, run.scene.shear_rate
     if lag is not None:
@@ -441,7 +443,7 @@ def helfand(run: Run, name: str) -> np.ndarray:
 
 
 def _scale(run: Run, name: str) -> float:
-    """Return 1 / (V x); raise SceneError if nothing moves about the mean velocity."""
+    """Return 1 / (V x); raise SceneError if nothing moves relative to the mean velocity."""
     if not run.temperature > 0.0:
         raise SceneError("temperature", run.temperature, "without motion no flux fluctuates")
     return 1.0 / (math.prod(run.scene.container.lengths) * run.temperature ** (2 if name == "heat" else 1))
@@ -450,7 +452,7 @@ def _scale(run: Run, name: str) -> float:
 def _blocks(run: Run, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Return the correlation of V J and the squared change of G, each (B, lags).
 
-    They are by blocks. The mean of the flux is subtracted where it is not zero.
+    The results are given by blocks. The mean of the flux is subtracted where it is not zero.
     """
     data: xr.Dataset = run.data
     samples = data["correlated_samples"].values

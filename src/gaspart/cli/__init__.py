@@ -59,7 +59,7 @@ def lines() -> dict[str, str]:
 def main(arguments: Sequence[str] | None = None, without_output: bool = False) -> int:
     """Execute a command line, and return the exit code.
 
-    If `without_output`, the standard output is closed; a command whose result would be printed there has
+    If `without_output`, the standard output is closed. A command that would print its result there has then
     failed.
     """
     options: argparse.Namespace | None = None
@@ -96,7 +96,7 @@ def main(arguments: Sequence[str] | None = None, without_output: bool = False) -
 def _for_command(error: Exception, options: argparse.Namespace | None) -> str:
     """Return the text of an error for the given command.
 
-    It has the file of its scene, and the option for Python's `overwrite`.
+    The text names the file of the scene, and the option in place of Python's `overwrite`.
     """
     if (
         isinstance(error, SceneError)
@@ -122,7 +122,7 @@ def _scene_keys() -> set[str]:
 
 
 def _complain(text: str, code: int) -> int:
-    """Print one line on stderr; returns the exit code."""
+    """Print one line on stderr and return the exit code."""
     for stream, line in (
         (sys.stdout, ""),
         (sys.stderr, f"{clear_line()}gaspart: {visible(' '.join(text.split()))}\n"),
@@ -167,8 +167,8 @@ def _describe_unrecognised(words: list[str], parser: Parser) -> str:
 def _parser(words: Sequence[str]) -> Parser:
     """Return the parser of a command line.
 
-    It has only the command with which the line begins, or else a list of all. Only the named command is
-    imported; `completion` needs all.
+    The parser contains only the command at the beginning of the line, or a list of all commands. Only the
+    named command is imported; `completion` needs all.
     """
     parser = Parser(
         prog="gaspart",
@@ -185,7 +185,7 @@ def _parser(words: Sequence[str]) -> Parser:
 
 
 def _add_commands(parser: Parser, names: Iterable[str], complete: Iterable[str]) -> dict[str, Parser]:
-    """Add commands; those not in `complete` with their name and brief description only."""
+    """Add commands; commands that are not in `complete` have only their name and a brief description."""
     added = parser.add_subparsers(required=True, metavar="COMMAND", title="commands", parser_class=Parser)
     for name in names:
         module, brief = _COMMANDS[name]

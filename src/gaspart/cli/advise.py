@@ -187,7 +187,7 @@ def _energy_scatter(plan: Plan, scatter: Scatter) -> list[str]:
 
 
 def _differences(plan: Plan) -> list[str]:
-    """Describe pilots that disagree beyond their bounds; the exact one is believed."""
+    """Describe pilots that disagree beyond their bounds, and name the exact engine, whose pilot is used."""
     lines = []
     for pilot in plan.differing:
         exact = plan.pilots[0]

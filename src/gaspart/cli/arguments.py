@@ -23,18 +23,18 @@ class UsageError(Exception):
 
 
 class CheckFailed(Exception):
-    """A check has failed; its line is printed already."""
+    """A check has failed, and its line is already printed."""
 
 
 class Suggested(tuple):
-    """Words of which a shell completes one, where others may be given too."""
+    """Words that a shell completes. Other words are accepted, too."""
 
     def __contains__(self, name: object) -> bool:
         return True
 
 
 class Parser(argparse.ArgumentParser):
-    """Raises UsageError instead of leaving, accepts complete options only, and keeps line breaks."""
+    """Parser that raises UsageError, accepts only complete options, and preserves line breaks."""
 
     def __init__(self, **settings: Any) -> None:
         super().__init__(allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter, **settings)
@@ -98,7 +98,7 @@ def set_command(
     description: str,
     examples: str | None = None,
 ) -> None:
-    """Describe a command in its parser, and let `run` carry it out."""
+    """Describe a command in its parser; `run` is the function that executes it."""
     parser.description, parser.epilog = fill(description, width=WIDTH), examples
     parser.set_defaults(command=run, parser=parser)
 
@@ -143,8 +143,8 @@ def run_files(name: str) -> list[str]:
 def config_command(command: str) -> Callable:
     """Return the function of a command for a config of the workflow, or its results.
 
-    It is an entry point, since the library does not import the reproduction. An entry point of another
-    package is not used.
+    The command is an entry point, since the library does not import the reproduction. An entry point of
+    another package is not used.
     """
     ours = [entry for entry in entry_points_of("gaspart.configs") if entry.value.startswith("gaspart.")]
     return next(entry for entry in ours if entry.name == command).load()

@@ -57,7 +57,7 @@ def add_check(parser: Parser) -> None:
 
 
 def _words(text: str) -> str | tuple[str, ...]:
-    """Return a word, or several words with commas between; `Container` rejects other ones."""
+    """Return a word, or several words separated by commas; `Container` rejects invalid words."""
     words = tuple(text.split(","))
     return words[0] if len(words) == 1 else words
 

@@ -1,4 +1,4 @@
-"""`gaspart export`: states and trajectories for other programs, and how these read them."""
+"""`gaspart export`: states and trajectories for other programs, with remarks on their use."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ _SLAB = "g(r) of discs is theirs times 2 r / L_z, that of a slab"
 
 
 def conventions(scene: Scene, suffix: str) -> str:
-    """Return a line on a scene's file in other programs; "" if they read it correctly.
+    """Return a remark on a scene's file for other programs; "" without one.
 
     The suffix is .nc for a trajectory, or the suffix of an exported file.
     """

@@ -92,14 +92,12 @@ def _lines_of(scene: str) -> list[str]:
 
 
 def _measurable(recipe: Recipe) -> list[str]:
-    """Describe the observables that can be measured in a run, and those that need another run.
+    """Describe the observables that a run has, and those that require another run.
 
-    The former are defined for the scene, and the run has stored their data.
+    An observable can be measured if it is defined for the scene and if the run has stored its data.
     """
     from gaspart.analysis.observables import OBSERVABLES, require_defined, require_kept
 
-    correlations = recipe.correlations
-    kept = ["fluxes"] * bool(correlations and correlations.stress) + ["pairs"] * recipe.pairs
     measured, others = [], []
     for name, observable in OBSERVABLES.items():
         try:
@@ -107,7 +105,7 @@ def _measurable(recipe: Recipe) -> list[str]:
         except SceneError:
             continue
         try:
-            require_kept(name, kept)
+            require_kept(name, recipe.kept)
             measured.append(name)
         except SceneError:
             others.append(f"{name} ({observable.needs})")
@@ -116,7 +114,7 @@ def _measurable(recipe: Recipe) -> list[str]:
 
 
 def _request(recipe: Recipe, path: Path, frames: int) -> list[str]:
-    """Describe the accuracies that end a run of no fixed duration, and those reached so far."""
+    """Describe the accuracies that end a run, and the accuracies reached so far."""
     from gaspart.cli.stated_run import accuracy_lines
 
     if recipe.until is None:

@@ -97,7 +97,7 @@ def add_measure(parser: Parser) -> None:
 
 
 class _Words(tuple):
-    """Names of observables, which a shell completes; files may be among the words too."""
+    """Names of observables, which a shell completes. Names of files are accepted, too."""
 
     def __contains__(self, argument: object) -> bool:
         return super().__contains__(argument) or argument in ALIASES or _is_file(str(argument))
@@ -114,7 +114,7 @@ def _is_file(argument: str) -> bool:
 def _split_words(options: argparse.Namespace) -> tuple[list[str], list[str]]:
     """Return the files and the names of observables of a command line; raise UsageError.
 
-    The files must stand first.
+    Files must precede the names.
     """
     names = list(options.words)
     files = [options.trajectory]
@@ -197,7 +197,7 @@ def _measure_each(
 
 def _of_drift(trajectory: Any, name: str, times: tuple[float | None, float | None]) -> dict[str, str]:
     """Return the remark that the measured part of a run drifts, if it does."""
-    from gaspart.analysis.drift import drift_of
+    from gaspart.analysis.series import drift_of
 
     with until_time(trajectory, times[1]) as part:
         drift = drift_of(part, times[0], "position" in OBSERVABLES[name].along)
@@ -287,7 +287,7 @@ def _print_curve(name: str, observable: Observable) -> None:
 
 
 def _parts(observable: Observable) -> list[tuple[str, Observable]]:
-    """Return the curves of an observable with their names; a single curve has no name."""
+    """Return the curves of an observable with their names. A single curve has no name."""
     if observable.estimate.ndim == 1:
         return [("", observable)]
     over = observable.estimate.dims[0]

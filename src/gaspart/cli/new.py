@@ -1,7 +1,7 @@
 """`gaspart new`: a scene file from a template.
 
-The templates are files of this package. Comments at their beginning state the title, what happens, the
-command that runs the scene and the figure of the workflow that measures it.
+The templates are files of this package. Comments at the beginning of a template contain the title, a
+description, the command that runs the scene, and the figure of the workflow that measures it.
 """
 
 from __future__ import annotations
@@ -57,8 +57,8 @@ _SCENE = FileKind("a scene file", _is_scene)
 class Template:
     """Template of a scene.
 
-    It has its name, the chapter of the gallery, its title and description, the command that runs it, the
-    figure of the workflow (None without a figure), and the text of the file.
+    A template has a name, the chapter of the gallery, a title and a description, the command that runs it,
+    the figure of the workflow (None without a figure), and the text of the file.
     """
 
     name: str
@@ -107,23 +107,19 @@ def _new(options: argparse.Namespace) -> None:
     output, template = output_path(options.scene), templates()[options.template]
     if output.suffix not in (".yaml", ".yml") or not options.scene.isprintable():
         raise SceneError("scene", options.scene, "must be a printable name that ends in .yaml")
+    command, lines = named_command(template, output), template.text.splitlines(keepends=True)
+    text = "".join(line for line in lines if not line.startswith("#   figure"))  # a note for this project
     with writing(output, _SCENE, options.force) as scratch:
-        scratch.write_text(_scene_text(template, output), encoding="utf-8")
+        scratch.write_text(text.replace(template.command, command), encoding="utf-8")
     print_line(f"{output}: {template.title}. Run it:")
-    print_line(named_command(template, output))
+    print_line(command)
 
 
 def named_command(template: Template, path: Path) -> str:
     """Return the command that runs the scene, with the names of its two files.
 
-    These are the file of the scene and its trajectory.
+    The names are the file of the scene and its trajectory.
     """
     scene, trajectory = shlex.quote(str(path)), shlex.quote(str(path.with_suffix(".nc")))
     command = template.command.replace(f"{template.name}.yaml", scene)
     return command.replace(f"{template.name}.nc", trajectory)
-
-
-def _scene_text(template: Template, path: Path) -> str:
-    """Return the text of the file, without the note on the figure."""
-    kept = [line for line in template.text.splitlines(keepends=True) if not line.startswith("#   figure")]
-    return "".join(kept).replace(template.command, named_command(template, path))

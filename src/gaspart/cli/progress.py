@@ -53,7 +53,7 @@ def waiting(text: str, quiet: bool = False) -> Iterator[Callable[[], None]]:
 def picture_progress() -> Callable[[int, int], None] | None:
     """Return a function that shows the number of pictures done and the time left.
 
-    None without a terminal.
+    Without a terminal there is no line (None).
     """
     if not sys.stderr.isatty():
         return None
@@ -72,7 +72,7 @@ def progress(
 ) -> Progress | None:
     """Return a function that shows the progress of a run.
 
-    None if quiet or without a terminal.
+    Without a terminal, or if `quiet`, there is no line (None).
 
     started : function that is called first.
     remark : function that returns the end of the line.

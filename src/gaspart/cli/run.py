@@ -30,7 +30,7 @@ from gaspart.interruption import set_note
 from gaspart.kernels.compile.cache import load_numba
 from gaspart.runs.ending import Accuracy
 from gaspart.scene.scene import Scene
-from gaspart.trajectory.run_options import OPTIONS
+from gaspart.trajectory.run_options import OPTIONS, recipe_fields
 
 if TYPE_CHECKING:
     from gaspart.accuracy.reached import AccuracyStatus
@@ -176,7 +176,7 @@ def _run(options: argparse.Namespace) -> None:
             overwrite=options.force,
             keep_checkpoint=options.keep_checkpoint,
             replicas=options.replicas,
-            **contents,
+            **recipe_fields(contents),
         )
     _report(path)
     if not options.quiet:

@@ -1,4 +1,4 @@
-"""Engines that advance a state, with a common interface: see `engine`."""
+"""Engines that advance a state, with a common interface (`engine`)."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ class Layers:
     Attributes
     ----------
     scene : scene
-    share : (S,), fraction of all particles in each layer
+    share : array (S,), fraction of all particles in each layer
     crowding : (S,), density divided by the density of a gas that fills evenly the volume that centres can
         reach
     temperature : (S,), k_B T
@@ -71,12 +71,12 @@ class Layers:
 
     @cached_property
     def contact_of_few(self) -> np.ndarray:
-        """Contact value for the scene's number of particles, inf without space for a pair; shape (S,).
+        """Contact value for the number of particles, shape (S,); inf without space for a pair.
 
-        A pair at contact need not avoid itself. Let v be the volume that one of the pair excludes to the
-        centre of the other: 1 / (1 - v / V), exact for two particles, is multiplied by the contact value of
-        the other particles. To first order in the packing fraction of spheres it is 1 + (5/2 + 3/N) eta:
-        4 eta for two, 5/2 eta for many.
+        A pair at contact need not avoid itself. The result is the contact value of the other particles times
+        1 / (1 - v / V), where v is the volume from which one particle of a pair excludes the centre of the
+        other. The factor is exact for two particles. To first order in the packing fraction of spheres it is
+        1 + (5/2 + 3/N) eta: 4 eta for two, 5/2 eta for many.
         """
         radii, _, numbers = self._kinds
         d, count = self.scene.dimension, self.scene.count

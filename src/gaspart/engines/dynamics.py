@@ -43,7 +43,7 @@ class EventLog:
         )
 
     def _copy(self, count: int) -> tuple[np.ndarray, ...]:
-        """Copy the first events of the kernel's record; in 2D, spins normal to the plane."""
+        """Copy the first events of the kernel's record; in 2D, spins are normal components."""
         record = {key: getattr(self.room, key)[:count] for key in self._keys}
         if "spins" in record and self._dimension == 2:
             record["spins"] = record["spins"][..., 2]
@@ -80,7 +80,7 @@ def checkpoint_identity(
 ) -> dict[str, np.ndarray]:
     """Return texts of all that the results of a simulation depend on, by checkpoint keys.
 
-    initial : state at time 0, if it does not follow from the scene and the seed
+    initial : state at time 0, unless it follows from the scene and the seed
     """
     settings = {key: x for key, x in engine_to_dict(engine).items() if key not in engine.neutral_settings}
     texts = {
@@ -133,7 +133,7 @@ def check_parts(parts: Mapping[str, np.ndarray], expected: Mapping[str, np.ndarr
 class Dynamics(ABC):
     """Scene in progress under an engine.
 
-    numbers : names of the plain numbers in a checkpoint; the attributes have an underscore before the name
+    numbers : names of the plain numbers in a checkpoint; the attributes have an underscore before these names
     """
 
     numbers: ClassVar[tuple[str, ...]]
@@ -175,8 +175,8 @@ class Dynamics(ABC):
     ) -> None:
         """Advance to the time `until`, or by a number of events or of work.
 
-        Events are recorded in `log`. Raises SceneError for a limit that the engine does not have, and
-        SimulationError, with the state kept, for a run that cannot continue.
+        Events are recorded in `log`. Raises SceneError for a limit that the engine does not support, and
+        SimulationError, with the state saved, for a run that cannot continue.
         """
 
     @abstractmethod

@@ -1,8 +1,8 @@
 """Engines: settings with which a scene can be started, and the resulting dynamics.
 
-An engine is a frozen dataclass derived from `Engine`, each field of which declares its kind and its meaning
-(`gaspart.keys`): the options of the command line, the keys of a config and the reference page follow from
-them. `register` makes an engine known by its name.
+An engine is a frozen dataclass derived from `Engine`. Each field defines its type and its description
+(`gaspart.keys`). The options of the command line, the keys of a config and the reference page are derived
+from the fields. `register` makes an engine known by its name.
 """
 
 from __future__ import annotations
@@ -96,12 +96,13 @@ class Engine:
     excludes : pairs of features that it does not model together
     neutral_settings : settings that change no bit of its results
     forbids_overlap : whether particles never overlap
-    tallies : names of the `state.optional_tallies` that it can make
-    first_segment : work, in events or steps, with which a run begins between two looks at the clock
-    reference : whether it has no systematic error, so that others are compared with it
-    timed_at : packing fraction and time step, as in the table of costs, by which its times are transferred to
-        another machine
-    advised : settings that `engine: auto` of a config states
+    tallies : names of the optional tallies (`state.tally`) that it supports
+    first_segment : work, in events or steps, of the first part of a run, after which the clock is read for
+        the first time
+    reference : True if the engine has no systematic error, so that other engines are compared with it
+    timed_at : packing fraction and time step in the table of costs, used to transfer its times to another
+    machine
+    advised : settings that `engine: auto` of a config contains
     """
 
     name: ClassVar[str]
@@ -125,20 +126,20 @@ class Engine:
     def equation(self) -> str:
         """Law of its particles: "exact" for hard particles, or the kinetic equation of its partners.
 
-        The kinetic equation is "boltzmann" or "enskog"; it determines how partners are drawn. A run is
-        compared with the theory of this equation.
+        The kinetic equation is "boltzmann" or "enskog". Collision partners are drawn according to it. A run
+        is compared with the theory of this equation.
         """
         return "exact"
 
     @property
     def quantum(self) -> float | None:
-        """Time of which all times that it reaches are multiples; None without such a time."""
+        """Smallest time interval, of which all times are multiples; None without it."""
         return None
 
     def for_scene(self, scene: Scene, interval: float | None = None) -> Engine:
         """Return these settings completed for a scene.
 
-        `interval`, if given, becomes a multiple of the quantum. Raises SceneError.
+        If `interval` is given, it becomes a multiple of the quantum. Raises SceneError.
         """
         return self
 
@@ -173,7 +174,7 @@ class Engine:
 
     @property
     def precision(self) -> str:
-        """Floating-point type of its state."""
+        """Floating-point type of the state."""
         return "float64"
 
     def timed_step(self, scene: Scene) -> float:
@@ -235,8 +236,8 @@ class Engine:
     def draws(self, scene: Scene) -> bool:
         """Return True if random numbers are drawn after the start.
 
-        They are drawn by its equation, by faces or by the thermostat. Without draws, runs from one state are
-        one run, for any seeds.
+        Random numbers are used by the kinetic equation, by faces or by the thermostat. Without random
+        numbers, all runs from one state are identical for all seeds.
         """
         return self.equation != "exact" or bool(scene.face_temperatures) or scene.thermostat is not None
 
@@ -267,7 +268,7 @@ class Engine:
         seed: int | tuple[int, ...] = 0,
         tallies: Sequence[OptionalTally] = (),
     ) -> Dynamics:
-        """Set the engine up for a scene in a given state.
+        """Prepare the engine for a scene in an initial state.
 
         Raises SceneError for features that the engine does not model.
 
@@ -323,7 +324,7 @@ def required_settings(engine: type[Engine]) -> list[str]:
 def constructors() -> str:
     """Return the calls that make an engine of each kind, for messages.
 
-    They include the settings without default.
+    They include the settings that have no default.
     """
     *others, last = (
         f"{engine.__name__}({', '.join(required_settings(engine))})" for engine in ENGINES.values()

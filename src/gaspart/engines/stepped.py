@@ -100,14 +100,14 @@ class SteppedDynamics(Dynamics):
     @property
     @abstractmethod
     def _heat(self) -> np.ndarray:
-        """Energy given to each face by particles that left it at its temperature, shape (2d, 2).
+        """Energy given to each face by particles that left the face thermally, shape (2d, 2).
 
-        The unit is the one of `_loss`.
+        The unit is the same as for `_loss`.
         """
 
     @property
     def _given(self) -> np.ndarray:
-        """Energy given by kicks, shape (1, 2), in the unit of `_loss`."""
+        """Energy added by kicks, shape (1, 2), in the unit of `_loss`."""
         return np.zeros((1, 2))
 
     @property
@@ -135,8 +135,8 @@ class SteppedDynamics(Dynamics):
     ) -> None:
         """Step to the last whole step not after `until` (to within 1e-9 of a step).
 
-        Raises SceneError for limits or records of events, which need the event-driven engine, and for a time
-        that is not within 2^53 steps; SimulationError if the particles are too fast for a step.
+        Raises SceneError for limits or records of events, which require the event-driven engine, and for a
+        time beyond 2^53 steps; SimulationError if the particles are too fast for a step.
         """
         limits = {
             "max_events": max_events,
@@ -159,7 +159,7 @@ class SteppedDynamics(Dynamics):
         self._advance_to(target)
 
     def reset_tally(self) -> None:
-        """Begin to count anew."""
+        """Reset all counters."""
         self._lost[:] = self.dissipated, self.exchanged
         for sums in self._sums().values():
             sums[...] = 0
@@ -233,5 +233,5 @@ class SteppedDynamics(Dynamics):
             sums[0] = checkpoint[key]
 
     def _place_again(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Place the particles in their slots of a checkpoint; counts of this are overwritten."""
+        """Place the particles in their slots of a checkpoint. Counts of this work are overwritten."""
         self._place(*(checkpoint[key] for key in _PLACED))

@@ -1,4 +1,4 @@
-"""Checks of a trajectory of hard particles; each gives its result in one line."""
+"""Checks of a trajectory of hard particles. The result of each check is one line."""
 
 from __future__ import annotations
 
@@ -27,10 +27,12 @@ from gaspart.inspection.statistics import (
     contact_values,
     decorrelated_frames,
     density_modulation,
+    describe_motion,
     diffusion,
     expected_diffusion,
     first_relaxed_frame,
     groups_of,
+    has_too_few_contacts,
     judge_speeds,
     why_not,
     why_not_speeds,
@@ -63,15 +65,12 @@ def judge(frames: Frames, tolerance: float | None = None) -> list[Check]:
     `tolerance` is the allowed overlap, as a fraction of a diameter.
     """
     checks = [*judge_places(frames, tolerance), *judge_conserved(frames)]
-    if reason := frames.no_identity or _acting(checks):
+    reason, acting = frames.no_identity, [check.name for check in checks if check.acts]
+    if acting and not reason:  # more than elastic contacts: nothing is known of equilibrium
+        reason = f"something acts on the particles (see {' and '.join(acting)})"
+    if reason:
         return [*checks, *(Check(name, None, reason) for name in (*SPEEDS, _PRESSURE, _DIFFUSION))]
     return [*checks, *judge_speeds(frames), _pressure(frames), _diffusion(frames)]
-
-
-def _acting(checks: list[Check]) -> str | None:
-    """Return the reason why nothing is known of equilibrium: a check found more than elastic contacts."""
-    names = [check.name for check in checks if check.acts]
-    return f"something acts on the particles (see {' and '.join(names)})" if names else None
 
 
 def judge_places(frames: Frames, tolerance: float | None = None) -> list[Check]:
@@ -114,7 +113,7 @@ def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Chec
 def _overlap_bounds(frame: Frames) -> tuple[float, float]:
     """Return bounds on the deepest overlap of equal particles, as a fraction of the contact distance.
 
-    It counts their pairs by distance, in a tenth of the time of `deepest_overlap`. Without a bound, (0, inf).
+    Pairs are counted by distance, in a tenth of the time of `deepest_overlap`. Without a bound, (0, inf).
     """
     if frame.diameter is None or not np.isfinite(frame.positions).all():
         return 0.0, math.inf
@@ -137,7 +136,7 @@ def _overlap_bounds(frame: Frames) -> tuple[float, float]:
 
 
 def _inside(frames: Frames, tolerance: float | None) -> Check:
-    """Check the largest distance of a centre outside the walls; periodic axes have none."""
+    """Check the largest distance of a centre outside the walls; periodic axes have no walls."""
     walls = ~np.array(frames.periodic)
     if not walls.any():
         return Check("container", None, "periodic, so that nothing can leave it")
@@ -153,12 +152,12 @@ def _inside(frames: Frames, tolerance: float | None) -> Check:
 
 
 def _pressure(frames: Frames) -> Check:
-    """Check Z against the equation of state, corrected for the finite number.
+    """Check Z against the equation of state, corrected for the finite number of particles.
 
     Z follows from the collisions of a file that counts them, otherwise from the pair distribution at contact.
-    Frames count from the one on until which particles have moved by the distance of neighbours, so that
-    nothing is left of a lattice (its order decays by exp(-k^2 <r^2> / 2d)); and only frames between which
-    they have moved across the shells that are counted.
+    Two conditions select frames. Particles must have moved by the distance of neighbours since the start, so
+    that no order of a lattice is left (its order decays by exp(-k^2 <r^2> / 2d)). Between two frames,
+    particles must have moved across the shells in which pairs are counted.
     """
     name = _PRESSURE
     if reason := _no_pressure(frames):
@@ -169,7 +168,7 @@ def _pressure(frames: Frames) -> Check:
     way, spacing = frames.path, frames.spacing
     first = first_relaxed_frame(way, spacing)
     if first is None:
-        return Check(name, None, _describe_motion(way, spacing))
+        return Check(name, None, describe_motion(way, spacing))
     chosen = np.array(decorrelated_frames(way, WIDTH * gas.diameter, first))
     if len(chosen) < _LEAST_FRAMES:
         text = f"{len(chosen)} independent samples are too few for an error: it needs {_LEAST_FRAMES}"
@@ -179,9 +178,10 @@ def _pressure(frames: Frames) -> Check:
     if frames.counted is not None and frames.time is not None:
         return _by_collisions(frames.counted, float(frames.time[first]))
     chosen = chosen[np.unique(np.linspace(0, len(chosen) - 1, MOST_FRAMES).astype(int))]
-    contact_value = correlated_mean(
-        contact_values(replace(frames, positions=frames.positions[chosen]))
-    ).estimate
+    used = replace(frames, positions=frames.positions[chosen])
+    if has_too_few_contacts(used):
+        return Check(name, None, f"pairs near contact are too few in {len(chosen)} independent samples")
+    contact_value = correlated_mean(contact_values(used)).estimate
     first_order = 2.0 ** (d - 1) * eta
     try:
         side = float(np.min(frames.lengths)) / gas.diameter
@@ -207,7 +207,7 @@ def _by_collisions(path: Path, start: float) -> Check:
 
 
 def _no_pressure(frames: Frames) -> str | None:
-    """Return the reason why the pressure cannot be checked; None if it can."""
+    """Return the reason why the pressure cannot be checked; None if it can be checked."""
     gas = frames.gas
     if not all(frames.periodic) or gas is None:
         return "needs equal particles in a periodic container, moved by elastic contacts alone"
@@ -224,14 +224,6 @@ def _no_pressure(frames: Frames) -> str | None:
     return None
 
 
-def _describe_motion(way: np.ndarray, distance: float) -> str:
-    """Return the reason why a run is not relaxed."""
-    there = math.sqrt(float((way[-1] ** 2).sum(axis=1).mean()))
-    return (
-        f"particles must move by {distance:.3g} after the first frame, to relax; they have moved {there:.2g}"
-    )
-
-
 def _diffusion(frames: Frames) -> Check:
     """Check D of spheres, from their mean-squared displacement, against theory."""
     name = _DIFFUSION
@@ -240,7 +232,7 @@ def _diffusion(frames: Frames) -> Check:
     way, spacing = frames.path, frames.spacing
     first = first_relaxed_frame(way, spacing)
     if first is None:
-        return Check(name, None, _describe_motion(way, spacing))
+        return Check(name, None, describe_motion(way, spacing))
     assert frames.velocities is not None and frames.time is not None, "see `why_not`"
     used = replace(
         frames,
@@ -291,7 +283,7 @@ def judge_open(path: Path, tolerance: float | None = None) -> tuple[str, list[Ch
 
 
 def _frames(scene: Scene, data: xr.Dataset) -> Frames:
-    """Return the frames of a run; absent particles have no position (NaN), and are at rest."""
+    """Return the frames of a run. Absent particles have no position (NaN) and are at rest."""
     lengths = np.array(scene.container.lengths)
     positions, velocities = (data[name].values.astype(float) for name in ("coordinates", "velocities"))
     return Frames(
@@ -307,7 +299,7 @@ def _frames(scene: Scene, data: xr.Dataset) -> Frames:
 
 
 def _particles(data: xr.Dataset, counts: np.ndarray) -> Check:
-    """Compare the particles in each frame with those that have entered and left since the start."""
+    """Compare the particles in each frame with the counted entries and exits."""
     stored = data["coordinates"] if "coordinates" in data else data["velocities"]
     there = np.isfinite(stored.values[..., 0]).sum(axis=1)
     wrong = int(np.abs(there - counts).argmax())
@@ -332,7 +324,7 @@ def _energy(scene: Scene, data: xr.Dataset) -> Check:
 
 
 def judge_scene(path: Path, tolerance: float | None = None) -> list[Check]:
-    """Check a scene, and the placement of its particles; raise SceneError for an invalid scene."""
+    """Check a scene and the placement of its particles; raise SceneError for an invalid scene."""
     scene = Scene.from_file(path)
     facts = f"{scene.count} particles, packing fraction {scene.packing_fraction:.6g}"
     checks = [Check("scene", True, f"{facts}, number density {scene.number_density:.6g}")]

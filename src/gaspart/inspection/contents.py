@@ -9,7 +9,7 @@ import numpy as np
 
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
-from gaspart.inspection.continuity import continuous
+from gaspart.inspection.conserved import continuous
 from gaspart.inspection.frames import Frames
 from gaspart.scene.container import Container
 from gaspart.scene.scene import Scene
@@ -24,7 +24,7 @@ _SAME = 1e-6
 class Contents:
     """Fields of T frames of N particles, as a reader found them.
 
-    A field that the file does not state has the value None.
+    Missing fields have the value None.
 
     positions, velocities : (T, N, 2 or 3), as stored.
     time : (T,).
@@ -35,15 +35,16 @@ class Contents:
     boundary : (3,), a word for each axis.
     centred : True if the origin is the middle of the container.
     flat : True for two dimensions.
-    plain : True if nothing but elastic contacts moves the particles, as far as the file states.
-    isolated : True if the file states that it is plain.
+    plain : True if only elastic contacts move the particles, according to the file.
+    isolated : True if the file declares its scene to be plain.
     part : True if there are more particles.
     sampled : True if particles may overlap.
     engine, scene : of a file of gaspart.
     counted : the file, if it counts exact collisions.
     resolution, time_resolution : errors of a coordinate and of a time because of their type.
-    velocities_from_first : reason to doubt velocities that are equal to those in frame 0 in all frames.
-    no_velocities : reason why there are no velocities.
+    velocities_from_first : reason to doubt velocities that are in all frames equal to the velocities in frame
+    0.
+    no_velocities : reason for missing velocities.
     """
 
     positions: np.ndarray
@@ -74,9 +75,9 @@ class Contents:
 
 @dataclass(frozen=True)
 class Overrides:
-    """Statements of the user about a file, which take precedence over it; see `readers.read_frames`.
+    """Values from the user, which take precedence over a file; see `readers.read_frames`.
 
-    If `last`, only the last frame of a file of GSD or XYZ is read; it must be complete.
+    If `last`, only the last frame of a GSD or XYZ file is read; this frame must be complete.
     """
 
     radius: float | None = None
@@ -168,14 +169,14 @@ def _origin(contents: Contents, overrides: Overrides, sides: np.ndarray, path: s
 
 
 def _require_finite(name: str, values: np.ndarray, path: str) -> None:
-    """Refuse a file with values that are not finite, with the first frame of them."""
+    """Reject a file with values that are not finite, and name the first such frame."""
     wrong = ~np.isfinite(values).all(axis=(1, 2))
     if wrong.any():
         raise SceneError("file", path, f"has {name} that are not finite or absent, in frame {wrong.argmax()}")
 
 
 def sort_by_id(contents: Contents, path: str) -> None:
-    """Sort the particles of every frame by their ids; reject frames of other particles."""
+    """Sort the particles of every frame by their ids; reject frames with other particles."""
     if contents.ids is None:
         species = contents.species
         if species is not None and np.any(species != species[0]):
@@ -204,9 +205,9 @@ def sort_by_id(contents: Contents, path: str) -> None:
 def _dimension(contents: Contents, overrides: Overrides, diameter: float) -> int:
     """Return the number of dimensions, 2 or 3.
 
-    It is stated by the file, or depends on motion along z. Particles that stay at one z are discs, unless
-    three sides are given; particles of a single frame without velocities are discs only if the container is
-    less than two diameters high, or no height is stated.
+    The file gives the dimension, or it is found from the motion along z. Particles that stay at the same z
+    are discs, unless three sides are given. Particles of a single frame without velocities are discs only if
+    the container is less than two diameters high, or has no height.
     """
     positions, velocities = contents.positions, contents.velocities
     if positions.shape[2] == 2:
@@ -271,11 +272,11 @@ def _radii(contents: Contents, overrides: Overrides, path: str) -> np.ndarray:
 
 
 def _times(contents: Contents, overrides: Overrides, path: str) -> np.ndarray | None:
-    """Return the times (T,), or None if the file states no times.
+    """Return the times (T,), or None if the file contains no times.
 
-    It states none if the time is the same in every frame, like a field that was never set. Times that are
-    uniform within their resolution are made uniform: numbers in single precision or with few digits deviate
-    from it by more, the later they are.
+    If the time is the same in every frame, as in a field that was never set, the file contains no times.
+    Times that are evenly spaced within their resolution are made evenly spaced. In single precision, or with
+    few digits, late times deviate more.
     """
     frames = len(contents.positions)
     time, resolution = contents.time, contents.time_resolution

@@ -24,8 +24,8 @@ _FRAMES = 64  # that are in memory at once
 def energy_line(scene: Scene, data: xr.Dataset) -> str:
     """Return a line on the drift of the energy of a run.
 
-    The conserved quantity of every scene is the total energy less what contacts, faces and kicks have
-    exchanged; its drift is relative to the largest energy of motion.
+    The conserved quantity of every scene is the total energy minus the energy that contacts, faces and kicks
+    have exchanged. Its drift is relative to the largest kinetic energy.
     """
     kinetic = data["kinetic_energy"].values
     try:
@@ -38,13 +38,16 @@ def energy_line(scene: Scene, data: xr.Dataset) -> str:
     text = f"drift of the energy: {drift:.1e} of it at most"
     if _removed_energy(data).any():
         text += ", less what contacts, faces and kicks have exchanged"
-    return text + (" (positions have single precision)" if _needs_positions(scene, data) else "")
+    if scene.gravity is not None and "displacements" not in data:  # the potential energy is of the positions
+        text += " (positions have single precision)"
+    return text
 
 
 def conserved_energy(scene: Scene, data: xr.Dataset) -> np.ndarray:
     """Compute the energy (T,) of the frames with the exchanged energy added, relative to any zero.
 
-    The energy is kinetic, vibrational and potential. Raises SceneError where the file does not state it.
+    The energy is kinetic, vibrational and potential. Raises SceneError if the file does not contain the
+    energy.
     """
     energy = data["kinetic_energy"].values + _removed_energy(data)
     if "vibrations" in data:
@@ -70,15 +73,10 @@ def _removed_energy(data: xr.Dataset) -> np.ndarray:
     return np.asarray(removed - data["thermostat_energy"].values, dtype=float)
 
 
-def _needs_positions(scene: Scene, data: xr.Dataset) -> bool:
-    """Return True if the potential energy follows from positions in single precision."""
-    return scene.gravity is not None and "displacements" not in data
-
-
 def _potential(scene: Scene, data: xr.Dataset) -> np.ndarray:
     """Compute the energy (T,) of all particles under gravity and in wells.
 
-    The energy under gravity is relative to time 0 if there are displacements.
+    If there are displacements, the energy under gravity is relative to time 0.
     """
     positions = data["coordinates"].values.astype(float)
     energy = np.zeros(len(positions))
@@ -133,8 +131,8 @@ def _contacts(series: dict) -> str:
 def _samples(scene: Scene, series: dict) -> str:
     """Return a line on the number of independent values of the pressure.
 
-    It is the number of intervals between frames divided by twice their correlation time, at most the number
-    of collisions.
+    The number is the number of intervals between frames divided by twice their correlation time, but at most
+    the number of collisions.
     """
     counted = np.diff(series["virial_sum"])
     per_particle = 2.0 * series["collisions"][-1] / max(scene.count, 1)

@@ -24,21 +24,21 @@ class Frames:
 
     positions : (T, N, d), on periodic axes inside the container [0, L], NaN for particles that are absent
         from a frame.
-    velocities, time : (T, N, d) and (T,), or None if the file does not state it.
+    velocities, time : (T, N, d) and (T,), or None if the file does not contain them.
     lengths, radii, masses : (d,), (N,), (N,), of the first frame where they change.
     lengths_by_frame, radii_by_frame : (T, d) and (T, N), where they change.
     periodic : (d,), True for each periodic axis.
-    plain : True if nothing but elastic contacts moves particles of one mass in a constant container, as far
-        as the file knows.
+    plain : True if only elastic contacts move particles of equal mass in a constant container, according to
+        the file.
     resolution : error of a position, as a length.
-    isolated : True if the file states that it is plain.
-    part : True if there are more particles than the file has.
+    isolated : True if the file declares its scene to be plain.
+    part : True if the scene has more particles than the file.
     sampled : True if contacts were sampled, so that particles may overlap.
     engine, scene : by which a file of gaspart was made.
     counted : file of gaspart that counts the exact collisions of these frames.
-    no_velocities : reason why there are no velocities.
-    reordered : first frame that lists its particles in another order than the one before, without ids to
-        restore it, or None.
+    no_velocities : reason for missing velocities.
+    reordered : first frame that lists its particles in another order than the frame before, without ids to
+        restore the order, or None.
     """
 
     positions: np.ndarray
@@ -78,7 +78,7 @@ class Frames:
 
     @property
     def no_identity(self) -> str | None:
-        """The reason why particles cannot be followed from frame to frame; None if they can."""
+        """Reason why particles cannot be followed between frames; None if they can."""
         if self.reordered is None:
             return None
         return f"rows are in another order in frame {self.reordered}, and there are no ids to follow them by"
@@ -95,10 +95,10 @@ class Frames:
 
     @cached_property
     def gas(self) -> Gas | None:
-        """Plain gas of these particles, as far as the file knows, or None.
+        """Plain gas of these particles, as far as the file contains it, or None.
 
         The mass is 1, the temperature is the mean of `temperatures` (NaN without velocities). None if the
-        particles differ or more than elastic contacts moves them.
+        particles differ, or if forces move them in addition to elastic contacts.
         """
         if not self.plain or self.diameter is None:
             return None
@@ -125,13 +125,13 @@ class Frames:
     def temperatures(self) -> np.ndarray:
         """Temperature k_B T of each frame, of particles of mass 1, shape (T,).
 
-        It is 0 for a particle that cannot move about the mean.
+        The temperature is 0 for a particle that cannot move about the mean.
         """
         freedom = self.dimension * self.count - sum(self.periodic)
         return np.asarray(self.peculiar_squares.sum(axis=1) / max(freedom, 1))
 
     def steps(self) -> Iterator[np.ndarray]:
-        """Yield the displacements (N, d) to each frame from the one before, by nearest images."""
+        """Yield the displacements (N, d) from each frame to the next, by nearest images."""
         for before, after in pairwise(self.positions):
             yield self.nearest(after - before)
 
@@ -145,7 +145,7 @@ class Frames:
     def path(self) -> np.ndarray:
         """The path (T, N, d) of each particle since the first frame.
 
-        It is about the centre of mass along axes on which only particles exchange momentum.
+        The path is relative to the centre of mass along axes on which only particles exchange momentum.
         """
         path = np.zeros(self.positions.shape)
         for n, step in enumerate(self.steps()):

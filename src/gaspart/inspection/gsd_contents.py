@@ -23,7 +23,7 @@ _SPHERE_RADIUS = "state/hpmc/sphere/radius"
 def read_gsd(path: Path, overrides: Overrides) -> Contents:
     """Read all frames, or the last one.
 
-    A field that no frame states is unknown, although the schema has a default. The origin is the middle of
+    A field that no frame contains is unknown, although the schema has a default. The origin is the middle of
     the box. Raises SceneError for contents that cannot be checked, and what the library raises for a file
     that cannot be read.
     """
@@ -84,7 +84,7 @@ def _refuse_bodies(frames: list[Any], path: Path) -> None:
 
 
 def _old_radii(file: Any, chunks: set[str], path: Path) -> np.ndarray | None:
-    """Return the radii (types,) of the first frame's state of HOOMD 2, if there is one."""
+    """Return the radii (types,) of HOOMD 2 in the first frame, if there are any."""
     shapes = {name.split("/")[2] for name in chunks if name.startswith("state/hpmc/")}
     if shapes := shapes - {"integrate", "sphere"}:
         raise SceneError("file", str(path), f"has particles that are no spheres: {', '.join(sorted(shapes))}")
@@ -96,7 +96,7 @@ def _radii(
 ) -> np.ndarray | None:
     """Return the radii (T, N) by the diameters or by the shapes of the types.
 
-    Both are rejected if they differ.
+    If the two values differ, the file is rejected.
     """
     by_diameter = 0.5 * np.array([frame.particles.diameter for frame in frames], dtype=float)
     shapes = []
@@ -114,7 +114,7 @@ def _radii(
 
 
 def _of_shapes(shapes: list[dict], path: Path) -> list[float]:
-    """Return the radii of the types, NaN where none is stated; reject other shapes than spheres."""
+    """Return the radii of the types, NaN for types without radius; reject shapes other than spheres."""
     radii = []
     for shape in shapes:
         kind = shape.get("type")

@@ -176,7 +176,7 @@ def _foreign(path: Path) -> Iterator[Any]:
 
 
 def _check_convention(file: Any, path: Path) -> None:
-    """Refuse another convention or version of it, and frames that are not of one system."""
+    """Reject another convention or another version of it, and frames of several systems."""
     conventions = re.split(r"[,\s]+", str(getattr(file, "Conventions", "")))
     if not {"AMBER", "AMBERRESTART"} & set(conventions):
         raise SceneError("Conventions", " ".join(conventions), "must be AMBER or AMBERRESTART", str(path))
@@ -200,7 +200,7 @@ def _check_convention(file: Any, path: Path) -> None:
 def _read(file: Any, name: str) -> np.ndarray | None:
     """Read the values of a variable, NaN where it was never filled.
 
-    None if it does not exist, or is empty.
+    None if the variable does not exist, or is empty.
     """
     if name not in file.variables:
         return None
@@ -268,7 +268,7 @@ def _contents(file: Any, overrides: Overrides, path: Path) -> Contents:
 def _find_variable(file: Any, *names: str) -> str:
     """Return the first of some names that a file has, in small or capital letters (Radius).
 
-    If it has none of them, the first name is returned.
+    If the file has none of the names, the first name is returned.
     """
     there = {name.lower(): name for name in file.variables} | {name: name for name in file.variables}
     return next((there[name] for name in names if name in there), names[0])
@@ -373,7 +373,7 @@ def _check_shapes(contents: Contents, path: Path) -> None:
 
 
 def _add_scene(contents: Contents, path: Path) -> None:
-    """Add what the scene of a trajectory of gaspart states."""
+    """Add the information in the scene of a trajectory of gaspart."""
     recipe = read_recipe(path)
     scene = recipe.scene
     elastic = scene.restitution is None or scene.restitution.smooth_and_elastic

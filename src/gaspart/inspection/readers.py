@@ -1,6 +1,6 @@
 """Reading trajectories: AMBER and LAMMPS netCDF, GSD, and XYZ, extended or plain.
 
-`docs/files.md` lists every field of these formats, and what is done with it.
+`docs/files.md` lists every field of these formats and how it is used.
 """
 
 from __future__ import annotations
@@ -50,9 +50,9 @@ def read_frames(
 
     radius : radius of all particles.
     lengths : (d,), sides.
-    boundary : "periodic" (the default for files of other programs without a statement) or "wall", or one for
-        each axis.
-    time_step : simulated time of one step, where a file counts steps (GSD), or between frames.
+    boundary : "periodic" (the default for files of other programs without a boundary) or "wall", or one word
+        for each axis.
+    time_step : simulated time of one step if a file counts steps (GSD), otherwise between frames.
     origin : (d,), lower corner of the container, or "centre" if its middle is at 0.
 
     Raises SceneError for a file that cannot be read, or for missing data.
@@ -126,31 +126,32 @@ _SAME = 1e-6
 def read_state(path: str | Path, scene: Scene) -> State:
     r"""Return the initial state of a scene from a GSD or XYZ file.
 
-    The file has the state in its last frame.
+    The state is in the last frame of the file.
 
     Parameters
     ----------
     path : str or Path
         GSD file, or XYZ file (extended, with velocities).
     scene : Scene
-        The scene, whose radii, masses and container hold.
+        The scene, which defines the radii, the masses and the container.
 
     Returns
     -------
     State
-        State at time 0, with the positions and velocities of the frame, in the precision of the file.
-        Velocities are about the flow of a sheared scene; spins are 0.
+        State at time 0, with the positions and velocities of the frame, in the precision of the file. In a
+        sheared scene the velocities are relative to the flow. Spins are 0.
 
     Raises
     ------
     SceneError
-        If the file has no velocities, another number of particles, other sizes or masses, or another
-        container, if `gaspart check` cannot read it, or if `Simulation` rejects the state.
+        If the file has no velocities, or another number of particles, other sizes or masses, or another
+        container; if `gaspart check` cannot read it; or if `Simulation` rejects the state.
 
     Notes
     -----
     The particles of the file are in the order of their ids, if it has ids. This order is the order of the
-    scene, unless the stated radii and masses are in another order: then these decide.
+    scene. If the radii and masses of the file do not agree with it, particles are assigned by radii and
+    masses.
 
     Examples
     --------
@@ -242,7 +243,7 @@ def _check_container(contents: Contents, scene: Scene, path: Path) -> None:
 def _order(contents: Contents, scene: Scene, path: Path) -> np.ndarray:
     """Return the particle (N,) of a file for each particle of the scene.
 
-    Particles are identified by the radii and masses that the file states.
+    Particles are identified by the radii and masses in the file.
     """
     pairs: list[tuple[str, np.ndarray, np.ndarray]] = []
     for name, stated in (("radius", contents.radii), ("mass", contents.masses)):

@@ -17,6 +17,8 @@ from gaspart.files import open_regular
 from gaspart.inspection.contents import Contents, Overrides
 
 _PAIR = re.compile(r"""([^\s="'{}\[\],]+)\s*=\s*("[^"]*"|'[^']*'|\{[^}]*\}|\[.*?\](?=\s|$)|\S+)""")
+_EXPONENT = re.compile(r"[eEdD]\S*")
+_NO_SIGNS = str.maketrans("", "", "+-.")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
 _NAMES = {
     "pos": ("pos", "positions"),
@@ -79,7 +81,7 @@ def read_xyz(path: Path, overrides: Overrides) -> Contents:
 
 
 def _drop_velocities(parts: list[dict]) -> str | None:
-    """Remove velocities that some frames only have; returns the reason if so."""
+    """Remove velocities that only some frames have; return the reason if they are removed."""
     for name in ("velo", "momenta"):
         stored = sum(name in part for part in parts)
         if 0 < stored < len(parts):
@@ -90,7 +92,7 @@ def _drop_velocities(parts: list[dict]) -> str | None:
 
 
 def _add_origins(parts: list[dict]) -> None:
-    """Set a missing corner of a container to 0 if other frames state it.
+    """Set a missing corner of a container to 0 if other frames have a corner.
 
     OVITO leaves out a corner of 0.
     """
@@ -147,8 +149,8 @@ def _read_frame(
 ) -> dict:
     """Return the fields of frame n, by the names of `_NAMES`, and of its comment.
 
-    Fields that the user has given are left out. `kinds` are the numbers of species, to which new ones are
-    added.
+    Fields that the user supplies are not read. `kinds` are the numbers of species; new species are added to
+    it.
     """
     pairs = {key.lower(): value.strip("\"'") for key, value in _PAIR.findall(comment)}
     named = _columns(pairs["properties"], path) if "properties" in pairs else _PLAIN
@@ -210,7 +212,7 @@ def _numbers(tokens: list[list[str]]) -> np.ndarray:
 def _of_comment(pairs: dict[str, str], dimension: int, overrides: Overrides, path: Path) -> dict:
     """Return container, boundary and time of a frame from its comment.
 
-    Fields that the user has given are left out. `dimension` is the number of columns of the positions.
+    Fields that the user supplies are not read. `dimension` is the number of columns of the positions.
     """
     fields: dict = {}
     if "lattice" in pairs and (overrides.lengths is None or len(_words(pairs["lattice"])) in (3, 4, 9)):
@@ -246,7 +248,7 @@ def _words(text: str) -> list[str]:
 def _vector(pairs: dict[str, str], key: str, sizes: tuple[int, ...], option: str, path: Path) -> np.ndarray:
     """Return the numbers of a value, of one of these counts.
 
-    The error message names an `option` that can be given instead.
+    The error message names an `option` that can be used instead.
     """
     tokens = _words(pairs[key])
     if len(tokens) not in sizes or not all(_NUMBER.fullmatch(token) for token in tokens):
@@ -258,17 +260,10 @@ def _vector(pairs: dict[str, str], key: str, sizes: tuple[int, ...], option: str
 
 def _most_digits(tokens: Iterable[str]) -> int:
     """Return the largest number of significant digits of some printed numbers."""
-    most = 0
-    for token in tokens:
-        if len(token) > most:  # else it cannot have more
-            most = max(most, _significant(token))
-    return most
-
-
-def _significant(token: str) -> int:
-    """Count the significant digits of a printed number."""
-    mantissa = re.split("[eEdD]", token)[0].lstrip("+-").replace(".", "")
-    return len(mantissa.lstrip("0"))
+    text = " ".join(tokens)
+    if _EXPONENT.search(text):
+        text = _EXPONENT.sub("", text)
+    return max((len(token.lstrip("0")) for token in text.translate(_NO_SIGNS).split(" ")), default=0)
 
 
 def _resolution(positions: np.ndarray, digits: int) -> float:

@@ -117,7 +117,10 @@ def new(*groups: Sequence[float]) -> tuple[Figure, list[Axes]]:
         panels = [figure.add_subplot(grid[row]) for row in range(len(heights))]
         axes += panels
         for group in column:
-            _share_x(panels[: len(group)])
+            *above, last = panels[: len(group)]
+            for panel in above:  # their x axis is labelled below the last
+                panel.sharex(last)
+                panel.tick_params(labelbottom=False)
             panels = panels[len(group) :]
     return figure, axes
 
@@ -204,13 +207,6 @@ def letters(*axes: Axes) -> None:
     """Write (a), (b) ... above these panels."""
     for axis, text in zip(axes, "abcdefgh", strict=False):
         letter(axis, f"({text})")
-
-
-def _share_x(panels: Sequence[Axes]) -> None:
-    """Make panels above each other share one x axis, labelled below the last."""
-    for panel in panels[:-1]:
-        panel.sharex(panels[-1])
-        panel.tick_params(labelbottom=False)
 
 
 def save(figure: Figure, path: str | Path) -> None:

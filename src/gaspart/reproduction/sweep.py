@@ -41,6 +41,7 @@ from gaspart.runs.ending import Accuracy
 from gaspart.scene.scene import Scene, require_scene
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.recipe import multiple
+from gaspart.trajectory.run_options import required_contents
 from gaspart.trajectory.until import Until
 from gaspart.workers import in_processes, require_processes
 from gaspart.yaml_text import dump_yaml
@@ -162,7 +163,7 @@ def sweep(
     point |= {**_settings(scene, axes, engine), **_contents(names, correlations, point)}
     point["replicas"] = POINT["replicas"].check("replicas", replicas)
     varied = {key if key in _point_keys(engine) else PREFIX + key: values for key, values in axes.items()}
-    config = {
+    config: dict[str, Any] = {
         "experiments": {EXPERIMENT: {"job": "simulate", "point": point, "grid": varied}},
         "points": _root(folder),
         "seed": count_of("seed", seed),
@@ -282,10 +283,9 @@ def _length(
 
 def _contents(names: list[str], correlations: Correlations | None, length: dict[str, Any]) -> dict[str, Any]:
     """Return the keys of the contents of a point's files, or raise SceneError."""
-    needs = {OBSERVABLES[name].needs for name in names}
-    stored: dict[str, Any] = {"displacements": "paths" in needs}
-    if "until" not in length:
-        stored["pairs"] = "pairs" in needs
+    stored: dict[str, Any] = required_contents({OBSERVABLES[name].needs for name in names})
+    if "until" in length:
+        del stored["pairs"]
     if correlations is None:
         return stored
     if "until" in length:
@@ -318,18 +318,20 @@ def _settings(scene: Scene, axes: Mapping[str, list], engine: Engine) -> dict[st
         settings["scene"] = scene.to_dict()
         return {key: value for key, value in settings.items() if key not in axes}
     rule = "varies one species alone in a container; of other scenes vary a value, such as species.0.count"
-    species, lengths = scene.species[0] if scene.species else scene, scene.container.lengths
-    parts = species, scene.container, scene
+    if len(scene.species) != 1:
+        raise SceneError(f"over.{varied}", axes[varied], rule)
+    (species,), lengths = scene.species, list(scene.container.lengths)
+    parts = scene, scene.container, species
     gas = {key: getattr(part, key) for key in GAS for part in parts if hasattr(part, key)}
-    extents = {key: getattr(part, key) for key in ("count", "radius") for part in (species,)}
-    explicit = {key: value for key, value in {**gas, **extents, "side": list(lengths)}.items() if value}
-    if len(scene.species) != 1 or Point(EXPERIMENT, "", "simulate", explicit, "", 0).scene != scene:
+    extents = {"count": species.count, "radius": species.radius, "side": lengths}
+    explicit = {key: value for key, value in (gas | extents).items() if value is not None}
+    if Point(EXPERIMENT, "", "simulate", explicit, "", 0).scene != scene:
         raise SceneError(f"over.{varied}", axes[varied], rule)
     order = _KEPT if species.alike else _KEPT_OF_SIZES
     kept = [key for key in order if key not in axes][: 3 - sum(key in axes for key in EXTENTS)]
     if "side" not in axes and "side" not in kept and len(set(lengths)) > 1:
         raise SceneError(f"over.{varied}", axes[varied], "needs a container with equal sides")
-    extents |= {"packing_fraction": scene.packing_fraction, "side": list(lengths)}
+    extents["packing_fraction"] = scene.packing_fraction
     settings |= gas | {key: extents[key] for key in kept}
     return {key: value for key, value in settings.items() if key not in axes}
 

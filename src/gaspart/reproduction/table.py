@@ -2,8 +2,8 @@
 
 Columns are numbers, words or estimates.
 
-`table` makes the data set of a measurement from the columns of each point, `Table` reads it, for claims and
-pictures, and `each` states one claim about every row.
+`table` makes the data set of a measurement from the columns of each point. `Table` reads it, for claims and
+pictures, and `each` makes one claim about every row.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Row(_Columns):
     """Row of a table.
 
     Its columns are single numbers or words, single estimates, or arrays over the inner dimensions, without
-    the replicas that only other rows have; `"{count:.0f} discs".format_map(row)` is a text about it.
+    entries for replicas that only other rows have; `"{count:.0f} discs".format_map(row)` is a text about it.
     """
 
     def __init__(self, dataset: xr.Dataset) -> None:
@@ -64,13 +64,13 @@ class Row(_Columns):
 
 
 class Table(_Columns):
-    """Rows of a data set along its dimension `over`; none if it has no such dimension.
+    """Rows of a data set along its dimension `over`; no rows without this dimension.
 
-    A column is an attribute: `table.Z` is an Estimate of all rows if there is a Z_error like it, else an
-    array (rows, ...); other variables are as in the data set, attributes too. `table[condition]` has the rows
-    for which the condition (rows,) holds, or the rows of a slice or of a list of numbers; `table[0]` is a
-    Row, and so is what it is iterated over. A table without rows is false. Raises AttributeError for what is
-    no column.
+    A column is an attribute: `table.Z` is an Estimate of all rows if there is a variable Z_error, otherwise
+    an array (rows, ...). Other variables and attributes are as in the data set. `table[condition]` contains
+    the rows for which the condition (rows,) is true, or the rows of a slice or of a list of numbers;
+    `table[0]` is a Row, and so is what it is iterated over. A table without rows is false. Raises
+    AttributeError for what is no column.
     """
 
     def __init__(self, dataset: xr.Dataset, over: str) -> None:
@@ -138,7 +138,7 @@ def table(
     and its error the first two.
 
     inner, units : see `from_rows`.
-    of : points of each row, where `points` do not tell.
+    of : points of each row, if `points` do not determine them.
 
     If rows are made of points of a grid, as by `made_of`, `over`_made_of has their experiments and names, a
     line for each.
@@ -166,8 +166,8 @@ def each(rows: Table, claim: str, form: Callable[..., Claim] = Claim, **stated: 
     form : function that makes it, such as `Claim.at_most`.
     stated : its arguments.
 
-    Texts may name columns, as "Z at {packing_fraction:.2g}". Lists, arrays and estimates of arrays have one
-    element for each row; ValueError if they do not.
+    Texts may name columns, as "Z at {packing_fraction:.2g}". Lists, arrays and estimates of arrays must have
+    one element for each row; ValueError if they do not.
     """
     claims = []
     for n, row in enumerate(rows):
@@ -220,8 +220,8 @@ def from_rows(
     units : by key, "1" for others; by default none are stated.
 
     Arrays that are shorter than the longest are filled up with NaN, and so are missing entries of a row. A
-    key with the suffix _error has the dimensions and the unit of the one without, one with _freedom the
-    dimensions.
+    key with the suffix _error has the dimensions and the unit of the key without the suffix; a key with
+    _freedom has its dimensions.
     """
     columns = {}
     for name in dict.fromkeys(name for row in rows for name in row):
@@ -256,7 +256,7 @@ def entries(numbers: Mapping[str, Estimate | tuple[Any, Any]], freedom: int | No
 def _stack(arrays: list[np.ndarray]) -> np.ndarray:
     """Join arrays of one number of dimensions along a new first one.
 
-    NaN alone stands for an empty array.
+    An empty array is replaced by a single NaN.
     """
     shape = max((array.shape for array in arrays), key=len)
     if all(array.shape == shape for array in arrays):

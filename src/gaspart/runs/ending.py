@@ -6,6 +6,7 @@ The rule by which it ends is in `gaspart.accuracy.reached`.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Self
 
 from gaspart.analysis.observables import (
@@ -22,7 +23,8 @@ from gaspart.errors import SceneError
 from gaspart.errors.guidance import with_guidance
 from gaspart.scene.scene import Scene
 from gaspart.trajectory.correlator import Correlations
-from gaspart.trajectory.until import Requirement
+from gaspart.trajectory.run_options import Contents, required_contents
+from gaspart.trajectory.until import Requirement, Until
 
 
 @with_guidance
@@ -111,37 +113,32 @@ class Accuracy(Requirement):
         return cls(observable.strip(), accuracy, start, face if colon else None)
 
 
-def require_measurable(
-    requirement: Requirement,
-    scene: Scene,
-    engine: Engine,
-    follow: int | None = None,
-    correlations: Correlations | None = None,
-) -> None:
+def contents_until(
+    until: Until, scene: Scene, engine: Engine, contents: Contents, from_state: bool
+) -> Contents:
+    """Return the contents of a file, with the displacements that requested accuracies need.
+
+    Raises SceneError for an accuracy that this run cannot measure, or that never ends it.
+
+    from_state : True if the run starts from a given state
+    """
+    for requirement in until.accuracies:
+        require_measurable(requirement, scene, engine, contents)
+        _require_end(requirement, scene, until.at_most, from_state)
+    needs = {OBSERVABLES[requirement.observable].needs for requirement in until.accuracies}
+    displacements = contents.displacements or required_contents(needs)["displacements"]
+    return replace(contents, displacements=displacements)
+
+
+def require_measurable(requirement: Requirement, scene: Scene, engine: Engine, contents: Contents) -> None:
     """Raise SceneError for an accuracy of an observable that this run cannot measure.
 
-    Parameters
-    ----------
-    requirement : Requirement
-        The requested accuracy.
-    scene : Scene
-        The scene, which may not have the observable, however long the run.
-    engine : Engine
-        The engine, whose runs may not determine the observable.
-    follow : int, optional
-        Number of particles that the run stores.
-    correlations : Correlations, optional
-        Correlations that the run accumulates.
-
-    Raises
-    ------
-    SceneError
-        If the run cannot measure the observable.
+    The scene may not have the observable, however long the run; runs of the engine may not determine it; or
+    the file lacks its data.
     """
     walls = walls_of(requirement.observable, scene)
-    kept = ("fluxes",) if correlations is not None and correlations.stress else ()
     try:
-        require_run(requirement.observable, scene, kept, follow)
+        require_run(requirement.observable, scene, contents.kept, contents.follow)
         require_steady_value(requirement.observable, scene)
         require_modelled(requirement.observable, scene, engine)
     except SceneError as error:
@@ -150,24 +147,10 @@ def require_measurable(
         raise SceneError("until", requirement.name, f"must be one of the walls, {', '.join(walls)}")
 
 
-def require_end(requirement: Requirement, scene: Scene, at_most: float | None, from_state: bool) -> None:
+def _require_end(requirement: Requirement, scene: Scene, at_most: float | None, from_state: bool) -> None:
     """Raise SceneError for a run that has no end.
 
-    Parameters
-    ----------
-    requirement : Requirement
-        The requested accuracy.
-    scene : Scene
-        The scene, in which nothing may ever happen, or which may have no steady state.
-    at_most : float, [time], optional
-        Maximum length of the run. Without it a steady state is required.
-    from_state : bool
-        True if the run starts from a given state.
-
-    Raises
-    ------
-    SceneError
-        If the run would not end.
+    Nothing may ever happen in the scene, or, without a maximum length, it may have no steady state.
     """
     kinds = [kind for kind in scene.kinds if kind.count]
     if not kinds:
@@ -191,7 +174,7 @@ def require_end(requirement: Requirement, scene: Scene, at_most: float | None, f
 def require_reachable(requirement: Requirement, scene: Scene, replicas: int) -> None:
     """Raise SceneError for an accuracy that the mean of replicas never reaches.
 
-    Each replica has its own seed, and the energies of their initial states scatter.
+    Each replica has its own seed, and so a different energy of its initial state.
 
     Parameters
     ----------
@@ -227,8 +210,9 @@ def require_reachable(requirement: Requirement, scene: Scene, replicas: int) -> 
 def default_sample_interval(scene: Scene, engine: Engine, correlations: Correlations | None) -> float:
     """Return the default time between frames, to two digits.
 
-    It is the mean time between two collisions of a particle, or, without collisions, the mean time to cross
-    the container, as a multiple of the engine's steps and of the samples of correlations.
+    The interval is the mean time between two collisions of a particle, or, without collisions, the mean time
+    to cross the container. It is rounded to a multiple of the engine's steps and of the samples of
+    correlations.
 
     Parameters
     ----------

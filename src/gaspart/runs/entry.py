@@ -5,25 +5,26 @@ They run scenes for a duration or until observables are accurate, also as replic
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 
 from gaspart.accuracy.reached import AccuracyStatus, Examiner
-from gaspart.analysis.observables import OBSERVABLES
 from gaspart.engines import Engine, resolve_engine
 from gaspart.errors import SceneError
 from gaspart.files import is_same_file, output_path
+from gaspart.keys.classes import field_values
 from gaspart.keys.values import count_of
 from gaspart.runs.ending import (
     Accuracy,
+    contents_until,
     default_sample_interval,
-    require_end,
-    require_measurable,
     require_reachable,
 )
 from gaspart.runs.replicas import record_together, resume_together
 from gaspart.scene.scene import Scene, require_scene
+from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
 from gaspart.trajectory import run as trajectory
 from gaspart.trajectory.checkpoint import checkpoint_path
@@ -34,7 +35,7 @@ from gaspart.trajectory.recipe import MOST_REPLICAS, Recipe
 from gaspart.trajectory.recording import Progress
 from gaspart.trajectory.replicas import find_run, in_replicas, replica_paths
 from gaspart.trajectory.run import WriteOptions
-from gaspart.trajectory.run_options import recipe_fields
+from gaspart.trajectory.run_options import Contents
 from gaspart.trajectory.until import Until
 
 
@@ -53,8 +54,7 @@ def run(
     keep: str | None = None,
     correlations: Correlations | None = None,
     pairs: bool = False,
-    impulses: str | None = None,
-    pair_impulses: str | None = None,
+    tallies: Iterable[OptionalTally] = (),
     initial: State | str | Path | None = None,
     checkpoint_seconds: float = 30.0,
     progress: Progress | None = None,
@@ -83,9 +83,8 @@ def run(
         collisions of a particle.
     path : str or Path
         The trajectory file (AMBER netCDF).
-    until : Accuracy or sequence of Accuracy, optional
-        Requested relative standard errors, standard error / |value|. They are tested at 64, 96, 128 ...
-        frames (see `reached_accuracy`).
+    until : Accuracy or sequence of Accuracy, optional Requested relative standard errors, standard error /
+        |value|. The accuracies are tested at 64, 96, 128 ... frames (see `reached_accuracy`).
     at_most : float, [time], optional
         Maximum length of a run with `until`. By default such a run ends if its first 16384 frames have no
         contact.
@@ -102,15 +101,12 @@ def run(
         with ``Correlations(stress=True)``, of the stress tensor and the heat flux.
     pairs : bool, default False
         Count the collisions of each pair of species in each frame.
-    impulses : str, optional
-        Axis and number of bins of a density profile from impulses, such as "z:200", which is more accurate
-        than counts. Event-driven engine only.
-    pair_impulses : str, optional
-        Distance, number of shells and fraction of contacts of a g(r) from impulses, such as "3:300:0.5",
-        which is more accurate than counts. Event-driven engine only.
+    tallies : iterable of OptionalTally, optional
+        Sums to store that not every run has: ``ImpulseTally("z", 200)`` for densities and pressures,
+        ``PairImpulseTally(3.0, 300, 0.5)`` for g(r), more accurate than by counts.
     initial : State, str or Path, optional
         Initial state: a state, the last state of a trajectory (`last_state`), or a GSD or XYZ file
-        (`read_state`). Its particles and the size of its container must be the same as in `scene`. Defaults
+        (`read_state`). The particles and the size of the container must be the same as in `scene`. Defaults
         of engines still follow from the scene's speeds or temperatures.
     checkpoint_seconds : float, default 30.0
         Wall-clock time between checkpoints, in seconds.
@@ -121,7 +117,7 @@ def run(
     overwrite : bool, default False
         Replace another trajectory at `path`. Files of other kinds are never replaced.
     keep_checkpoint : bool, default False
-        Keep the final state in ``<path>.checkpoint.npz``.
+        Store the final state in ``<path>.checkpoint.npz``.
     replicas : int, default 1
         Number of independent runs at the same time, one process each. Run k has the seed ``(seed, k)`` and,
         of ``run.nc``, the file ``run-k.nc`` (`replica_paths`). With `until` they end when their mean is
@@ -161,16 +157,18 @@ def run(
     """
     engine = _engine_of(scene, engine)
     request = _request(duration, sample_interval, until, at_most)
-    needs_paths = _needs_paths(request, scene, engine, follow, correlations, initial)
+    contents = Contents(
+        displacements=displacements, follow=follow, keep=keep, correlations=correlations, pairs=pairs,
+        tallies=tallies,  # type: ignore[arg-type]  # checked there, and made a tuple
+    )  # fmt: skip
+    if request is not None:
+        contents = contents_until(request, scene, engine, contents, from_state=initial is not None)
+        contents = _with_useful_tally(contents, request, scene, engine)
     if sample_interval is None:
         sample_interval = default_sample_interval(scene, engine, correlations)
-    if impulses is None and request is not None:
-        impulses = _useful_impulses(request, scene, engine)
-    tallies = {"impulses": impulses, "pair_impulses": pair_impulses}
     recipe = Recipe(
-        scene, engine, seed, duration, sample_interval, displacements or needs_paths,
-        correlations=correlations, until=request, initial=_start(initial, scene, path, replicas),
-        **recipe_fields({"follow": follow, "keep": keep, "pairs": pairs, **tallies}),
+        scene, engine, seed, duration, sample_interval, until=request,
+        initial=_start(initial, scene, path, replicas), **field_values(contents),
     )  # fmt: skip
     options = WriteOptions(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
     return _record(_in_replicas(recipe, replicas), _require_path(path), options, examined)
@@ -183,17 +181,6 @@ def _engine_of(scene: object, engine: Engine | str | None) -> Engine:
     """
     require_scene(scene)
     return resolve_engine(engine)
-
-
-def _useful_impulses(request: Until, scene: Scene, engine: Engine) -> str | None:
-    """Return the tally of impulses that makes requested accuracies cheaper; None without one."""
-    from gaspart.accuracy.target import Target  # loads the analysis, which few runs need
-
-    each = (
-        Target(scene, requirement.observable, requirement.face).tallies(engine)
-        for requirement in request.accuracies
-    )
-    return next((tally.to_text() for tallies in each for tally in tallies), None)
 
 
 def _in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
@@ -220,31 +207,24 @@ def _record(
     return trajectory.record(recipes[0], path, options)
 
 
-def _needs_paths(
-    request: Until | None,
-    scene: Scene,
-    engine: Engine,
-    follow: int | None,
-    correlations: Correlations | None,
-    initial: State | str | Path | None,
-) -> bool:
-    """Return True if a requested accuracy needs displacements.
+def _with_useful_tally(contents: Contents, request: Until, scene: Scene, engine: Engine) -> Contents:
+    """Add a tally, if there is one, that makes requested accuracies cheaper."""
+    from gaspart.accuracy.target import Target  # loads the analysis, which few runs need
 
-    Raises SceneError for an observable that cannot be measured, or never becomes accurate, also of a run from
-    a given state.
-    """
-    if request is None:
-        return False
-    for requirement in request.accuracies:
-        require_measurable(requirement, scene, engine, follow, correlations)
-        require_end(requirement, scene, request.at_most, initial is not None)
-    return any(OBSERVABLES[requirement.observable].needs == "paths" for requirement in request.accuracies)
+    useful = (
+        tally
+        for requirement in request.accuracies
+        for tally in Target(scene, requirement.observable, requirement.face).tallies(engine)
+    )
+    present = {tally.name for tally in contents.tallies}
+    first = next((tally for tally in useful if tally.name not in present), None)
+    return replace(contents, tallies=(*contents.tallies, first)) if first else contents
 
 
 def _start(
     initial: State | str | Path | None, scene: Scene, path: str | Path | None, replicas: int
 ) -> State | None:
-    """Return the initial state of a run; of a file, its last state.
+    """Return the initial state of a run. For a file, this is its last state.
 
     Raises SceneError if that file is one of the files at `path`, by any name: it would be lost.
     """
@@ -262,7 +242,7 @@ def _start(
 
 
 def _require_path(path: str | Path | None) -> str | Path:
-    """Return the path of a trajectory, which must be given."""
+    """Return the path of a trajectory; raise an error without one."""
     if path is None:
         raise SceneError("path", None, "must be given: the file of the trajectory")
     return path
@@ -309,7 +289,7 @@ def resume(
     Parameters
     ----------
     path : str or Path
-        The trajectory. If it is one of several replicas, all of them are finished together.
+        The trajectory. If the file is one of several replicas, all replicas are finished together.
     checkpoint_seconds : float, default 30.0
         Wall-clock time between checkpoints, in seconds.
     progress : callable, optional
@@ -319,7 +299,7 @@ def resume(
     duration : float, [time], optional
         New length of a complete run.
     keep_checkpoint : bool, default False
-        Keep the final state in ``<path>.checkpoint.npz``.
+        Store the final state in ``<path>.checkpoint.npz``.
 
     Returns
     -------
@@ -329,10 +309,9 @@ def resume(
     Raises
     ------
     SceneError
-        If there is nothing to resume or to extend, another version of the program began the run, the duration
-        is not longer, or the file at `path` is no complete trajectory of gaspart.
-    SimulationError
-        If an invariant is violated during the run.
+        If there is nothing to resume or to extend, if another version of the program began the run, if the
+        duration is not longer, or if the file at `path` is not a complete trajectory of gaspart.
+        SimulationError If an invariant is violated during the run.
 
     See Also
     --------
@@ -341,9 +320,9 @@ def resume(
     Notes
     -----
     The file of an extended run has the same bytes as the file of a single run of this duration. If the run
-    had `keep_checkpoint`, it continues from the state at its end, and the extended run has a checkpoint too.
-    Otherwise it is run again from its start. The file is replaced when the longer run is complete. An
-    extension that was interrupted is finished with or without `duration`.
+    was made with `keep_checkpoint`, the extension starts from the state at its end, and the extended run has
+    a checkpoint, too. Otherwise the whole run is repeated from its start. The file is replaced when the
+    longer run is complete. An extension that was interrupted is finished with or without `duration`.
 
     Examples
     --------

@@ -1,7 +1,7 @@
 """Replicas of a run, each in its own process.
 
-They read from their files (`gaspart.trajectory.replicas`) all that they must know of each other. This module
-starts the processes and collects their progress.
+The processes of the replicas exchange all information through their files (`gaspart.trajectory.replicas`).
+This module starts the processes and collects their progress.
 """
 
 from __future__ import annotations

@@ -1,1 +1,1 @@
-"""Simulated system: container, species, walls, faces, collision law; validated once, no numerics."""
+"""Simulated system: container, species, walls, faces and collision law; validated on creation."""

@@ -1,12 +1,12 @@
 """Accessible volume and areas: the points that centres of particles of a radius can reach.
 
-A centre can be at a point if a particle there overlaps no wall of the container, no interior wall and no
-fixed particle; other moving particles do not count, nor whether a path leads there. A body is a ball, a
-segment or a rectangle, grown by the radius of the particle: it is convex, and covers one interval of a line.
-On a face of a container of two dimensions the accessible length is the length of the line without these
-intervals, exactly. Otherwise it is exact where no body reaches, and where bodies overlap neither each other
-nor the border; elsewhere it is the mean over `SETS` sets of `LINES` parallel lines, shifted at random, whose
-error is the scatter of the sets.
+A point is accessible to a centre if a particle there overlaps no wall of the container, no interior wall and
+no fixed particle. Other moving particles are ignored, and the point need not be connected to the other
+accessible points. A body is a ball, a segment or a rectangle, grown by the radius of the particle: it is
+convex, and covers one interval of a line. On a face of a container of two dimensions the accessible length is
+the length of the line without these intervals, exactly. Otherwise the volume is exact in regions without
+bodies, and where bodies overlap neither each other nor the border. Elsewhere it is the mean over `SETS` sets
+of `LINES` parallel lines, which are shifted at random. The error is computed from the scatter of the sets.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ class Ball(NamedTuple):
 class Slab(NamedTuple):
     """Points within a distance of the inside of a segment or a rectangle.
 
-    It is given by `start` (d,) and its orthogonal `edges` (K, d). Its rim is not included.
+    It is given by `start` (d,) and its orthogonal `edges` (K, d). Points on its rim are outside.
     """
 
     start: np.ndarray
@@ -91,8 +91,8 @@ class Slab(NamedTuple):
     def interval(self, points: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
         """Return the ends of the covered intervals like `Ball.interval`.
 
-        A point p + t e is inside if its component along each edge is from 0 to 1 and its distance from the
-        span of the edges, a quadratic function of t, is small enough.
+        A point p + t e is inside if two conditions hold. Its component along each edge is between 0 and 1,
+        and its distance from the span of the edges, a quadratic function of t, is small enough.
         """
         from_start = np.array(points)
         from_start[:, axis] = 0.0
@@ -194,7 +194,7 @@ class Accessible:
     def areas(self, radii: np.ndarray) -> np.ndarray:
         """Return the areas (2D: lengths) of faces that centres of particles can reach.
 
-        radii : (K,); the result has the shape (K, 2d)
+        radii : Array of shape (K,); the result has the shape (K, 2d)
         """
         scene, faces = self._scene, range(2 * self._scene.dimension)
         if self._fixed or scene.walls:
@@ -293,7 +293,7 @@ def free_lengths(
 ) -> np.ndarray:
     """Return the free length of each line along an axis through points (M, d).
 
-    The lines are between ends (d,); the free length excludes the parts of bodies.
+    The lines connect the points ends (d,). The free length excludes the parts of lines inside bodies.
     """
     low, high = (float(end[axis]) for end in ends)
     lines, starts, stops = [], [], []

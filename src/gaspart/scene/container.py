@@ -32,7 +32,7 @@ class Container:
     Parameters
     ----------
     lengths : sequence of float, shape (d,), [length]
-        Side lengths; their number is the dimension, 2 or 3.
+        Side lengths. Their number, 2 or 3, is the dimension.
     boundary : {"wall", "periodic"} or sequence of these, shape (d,), default "wall"
         Boundary condition of all axes, or of each axis.
 

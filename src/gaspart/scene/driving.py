@@ -23,7 +23,7 @@ _ENERGY = "inelastic contacts, or faces or walls at a temperature"
 def check_driven(scene: Scene) -> None:
     """Raise SceneError for a force along a periodic axis without a sink.
 
-    Both the momentum and the energy of the force need a sink.
+    The scene must contain a sink for the momentum and a sink for the energy of the force.
     """
     for axis in scene.driven_axes:
         for has_sink, quantity, by in (
@@ -75,12 +75,12 @@ def _spans(wall: Wall | Plate, axis: int, length: float) -> bool:
 class Thermostat:
     """Random kicks of all particles at regular times.
 
-    A dissipative gas can reach a steady state with them [1]_.
+    With the kicks a dissipative gas can reach a steady state [1]_.
 
     Parameters
     ----------
     power : float, [energy/time]
-        Mean energy per time that a particle is given.
+        Mean energy per time that each particle receives.
     interval : float, [time]
         Time between kicks: short compared with the time between contacts.
 
@@ -91,9 +91,10 @@ class Thermostat:
 
     Notes
     -----
-    At each multiple of `interval` every velocity component of a particle of mass m is changed by a normal
-    random number of variance 2 power interval/(d m), and then all velocities by the same, so that the total
-    momentum is conserved. For short intervals this is white noise of strength xi_0^2 = 2 power/(d m).
+    At each multiple of `interval`, a normal random number is added to every velocity component of a particle
+    of mass m; its variance is 2 power interval/(d m). Then the same velocity is subtracted from all
+    particles, so that the total momentum is conserved. For short intervals this is white noise of strength
+    xi_0^2 = 2 power/(d m).
 
     References
     ----------

@@ -95,7 +95,7 @@ def _check_ramp(scene: Scene, name: str, surface: Thermal, axis: int) -> None:
 def _check_piston(scene: Scene, name: str, surface: Piston) -> None:
     """Raise SceneError for a second piston, and for a piston that its load moves too fast.
 
-    The same holds for a prescribed speed that is too high.
+    Raise it also if the prescribed speed is too high.
     """
     if len(scene.pistons) > 1:
         raise SceneError("faces", [FACES[n] for n, _ in scene.pistons], "must include at most one piston")
@@ -106,7 +106,7 @@ def _check_piston(scene: Scene, name: str, surface: Piston) -> None:
 def piston_end(scene: Scene, position: float | None = None) -> float:
     """Return the time at which a piston of prescribed speed compresses the particles to closest packing.
 
-    Without such a piston it is infinite.
+    Without such a piston the time is infinite.
 
     position : position along its axis at time 0, by default at its side
     """
@@ -161,7 +161,7 @@ def _is_upright(wall: Wall | Plate, axis: int) -> bool:
 
 
 def _check_room(scene: Scene) -> None:
-    """Raise SceneError where vibrating faces leave too little room."""
+    """Raise SceneError if vibrating faces leave too little space."""
     moving = {name: face for name, face in scene.faces.items() if isinstance(face, Vibrating)}
     low, high = scene.reach(scene.largest_radius)
     fraction = 1.0
@@ -189,7 +189,7 @@ _SIGMAS = 10.0  # standard deviations of the number of an ideal gas for which th
 def check_open_faces(scene: Scene) -> None:
     """Raise SceneError for a scene in which entering or leaving particles are not defined.
 
-    This concerns scenes with open faces.
+    Only scenes with open faces are checked.
     """
     for number, reservoir in scene.faces_of(Open):
         face = f"faces.{FACES[number]}"
@@ -222,7 +222,7 @@ def refuse_open(scene: Scene, rule: str) -> None:
 def number_density(scene: Scene, face: Open) -> float:
     """Return the number density of the ideal gas in equilibrium with a reservoir.
 
-    It is 0 for a vacuum.
+    The density is 0 for a vacuum.
     """
     return (face.activity or 0.0) / ball_volume(scene.dimension, scene.species[0].radius)
 
@@ -240,11 +240,11 @@ def attempt_rate(scene: Scene, number: int, face: Open) -> float:
 def capacity(scene: Scene) -> int:
     """Return the maximum number of particles.
 
-    It is the number at the start, and with open faces the number that may come in, 10 standard deviations
-    above the mean. Particles that repel one another are fewer than the particles of an ideal gas at the same
-    activity, whose number has the distribution of Poisson. The pressure inside is at most the pressure of the
-    strongest reservoir, and the gas is at least as hot as the coldest face or wall. The number is never
-    higher than the number that fits.
+    Without open faces this is the number at the start. With open faces it is the mean number in equilibrium
+    plus 10 standard deviations. Particles that repel one another are fewer than the particles of an ideal gas
+    at the same activity, whose number has the distribution of Poisson. The pressure inside is at most the
+    pressure of the strongest reservoir, and the gas is at least as hot as the coldest face or wall. The
+    number is never higher than the number that fits.
     """
     reservoirs = [face for _, face in scene.faces_of(Open) if face.temperature is not None]
     if not reservoirs:

@@ -48,7 +48,7 @@ FACE_KINDS: dict[str, type[Surface]] = {}
 
 @dataclass(frozen=True)
 class Surface:
-    """Kind of face; a class derived from it is registered by its `kind`.
+    """Kind of face. A derived class is registered by its `kind`.
 
     `moves` is True if the face moves by itself. Only the event-driven engine has such faces.
     """
@@ -113,11 +113,11 @@ class Thermal(Surface):
     ----------
     temperature : float or dict of str to float, [energy]
         Temperature k_B T of the wall. If it is given at two opposite faces, as {"y_low": 1.0, "y_high": 2.0},
-        it is linear between them.
+        the temperature is linear between them.
     components : {"all", "normal"}, default "all"
-        Velocity components that are drawn. "all": also the tangential components and, in a scene of rough
-        particles, the spins are Maxwellian (a diffuse wall with full accommodation). "normal": the tangential
-        components and the spins are unchanged [1]_.
+        Velocity components that are drawn at random. "all": the tangential components and, with rough
+        particles, the spins are Maxwellian, too (a diffuse wall with full accommodation). "normal": the
+        tangential components and the spins are unchanged [1]_.
     velocity : sequence of float, shape (d,), [length/time], optional
         Velocity of the wall along itself. The distribution is about this velocity. Default: at rest.
     accommodation : float, [1], optional
@@ -131,8 +131,8 @@ class Thermal(Surface):
 
     Notes
     -----
-    The normal velocity is drawn from the distribution weighted by the flux, v = sqrt(-2 kT/m ln U). Where the
-    temperature varies, it is the temperature at the point of the hit.
+    The normal velocity is drawn from the distribution weighted by the flux, v = sqrt(-2 kT/m ln U). If the
+    temperature varies along the face, the temperature at the point of the hit is used.
 
     References
     ----------
@@ -194,7 +194,7 @@ class Thermal(Surface):
     def rule(self) -> tuple[str, float]:
         """Name of the effect in the kernels, and the temperature.
 
-        If the temperature varies, it is the one at the low end.
+        If the temperature varies along the face, the temperature at the low end is used.
 
         Examples
         --------
@@ -339,7 +339,7 @@ class Sticky(Surface):
     -----
     The normal energy of a particle that stays becomes energy of a vibration, and the particle slides along
     the wall. If a contact with another particle gives it a normal velocity, that energy is added. Once the
-    sum reaches p^2 / 2m, the particle leaves the wall with all of it. No potential binds the particle, so
+    sum reaches p^2 / 2m, the particle leaves the wall with this energy. No potential binds the particle, so
     that particles that stick are not balanced by particles that leave: detailed balance is broken.
 
     Examples
@@ -387,9 +387,10 @@ class Vibrating(Surface):
 
     Notes
     -----
-    The wall is at the side of the container at time 0, and moves inwards from there by at most 2 A. The sine
-    is at A (1 - cos(2 pi t / period)). The sawtooth moves inwards at the speed 2 A / period and is back at
-    once at the end of each period. Contacts follow the collision law of the scene in the frame of the wall.
+    The wall is at the side of the container at time 0, and moves inwards from this side by at most 2 A. The
+    sine is at A (1 - cos(2 pi t / period)). The sawtooth moves inwards at the speed 2 A / period and is back
+    at once at the end of each period. Contacts follow the collision law of the scene in the frame of the
+    wall.
 
     Examples
     --------
@@ -481,16 +482,16 @@ class Piston(Surface):
     Raises
     ------
     SceneError
-        Unless either both mass and pressure or only the speed is given.
+        Unless exactly one of these is given: both mass and pressure, or the speed.
 
     Notes
     -----
-    The piston starts at the side of the container. With a mass and a pressure it starts at rest, and the side
-    is its outermost position: it bounces off there without loss. Its kinetic energy, `pressure` times the
-    volume and the energy of the particles have a conserved sum. A light piston samples the ensemble of
-    constant pressure and enthalpy [1]_, and a heavy one compresses a gas adiabatically. A piston with a
-    prescribed speed compresses a gas if it is slow and drives a shock if it is fast. The particles gain its
-    work.
+    The piston starts at the side of the container. With a mass and a pressure the piston starts at rest at
+    the side of the container. The side is its outermost position, where it bounces off without loss. The sum
+    of three energies is conserved: the kinetic energy of the piston, `pressure` times the volume, and the
+    energy of the particles. A light piston samples the ensemble of constant pressure and enthalpy [1]_, and a
+    heavy one compresses a gas adiabatically. A piston with a prescribed speed compresses a gas if it is slow
+    and drives a shock if it is fast. The particles gain its work.
 
     References
     ----------
@@ -528,7 +529,7 @@ class Piston(Surface):
             raise SceneError("speed", stated, "must be mass and pressure, or speed alone")
 
     def acceleration(self, scene: Scene, axis: int) -> float:
-        """Return the inward acceleration due to the load; 0 if the speed is prescribed.
+        """Return the inward acceleration due to the load, or 0 if the speed is prescribed.
 
         Parameters
         ----------
@@ -565,7 +566,7 @@ class Piston(Surface):
         Returns
         -------
         float
-            The velocity, in [length/time]; 0 without a prescribed speed.
+            The velocity, in [length/time], or 0 without a prescribed speed.
 
         Examples
         --------
@@ -581,9 +582,9 @@ class Piston(Surface):
 class Open(Surface):
     """An opening as wide as the face, through which particles leave, and enter from a reservoir.
 
-    A particle whose centre reaches the face leaves for good. With an `activity` and a `temperature`
-    particles of a reservoir enter there; otherwise there is a vacuum outside. It needs one species, and
-    `centres_to_walls`.
+    A particle whose centre reaches the face leaves for good. With an `activity` and a `temperature`,
+    particles from a reservoir enter through the face. Otherwise there is a vacuum outside. The scene must
+    have one species and `centres_to_walls`.
 
     Parameters
     ----------
@@ -596,7 +597,7 @@ class Open(Surface):
     Raises
     ------
     SceneError
-        If a value is invalid, or only one of the two is given.
+        If a value is invalid, or only one of `activity` and `temperature` is given.
 
     See Also
     --------
@@ -604,13 +605,13 @@ class Open(Surface):
 
     Notes
     -----
-    The reservoir is a gas at rest. In the dilute limit its activity is eta. A reservoir whose activity is
-    equivalent to the number density z sends z (k_B T / 2 pi m)^(1/2) particles per area and time, uniformly
-    over the face, with the velocities of particles that pass a plane in one direction. A particle that would
-    overlap a particle inside is rejected. In equilibrium the container with reservoirs of one kind is then
-    exactly the grand-canonical ensemble of centres between its faces: a step in is the reversal of a step
-    out, and both have the weight z^N exp(-E / k_B T). The density equals the reservoir's some diameters away
-    from a face, not close to it.
+    The reservoir is a gas at rest. In the dilute limit its activity is eta. Let z be the number density that
+    is equivalent to the activity. The reservoir sends z (k_B T / 2 pi m)^(1/2) particles per area and time,
+    uniformly over the face, with the velocities of particles that pass a plane in one direction. A particle
+    that would overlap a particle inside is rejected. With equal reservoirs the container in equilibrium is
+    then exactly a grand-canonical ensemble of centres between its faces. The reason is detailed balance: an
+    entry is the reversal of an exit, and the weight is z^N exp(-E / k_B T). The density equals the density of
+    the reservoir only at some diameters from a face.
 
     Examples
     --------
@@ -684,10 +685,10 @@ class LeesEdwards(Surface):
 
     Notes
     -----
-    The boundary condition is by Lees and Edwards [1]_. It is given for the face y_high of a container that is
-    periodic along all axes, and holds for y_low too. A particle that leaves at y_high enters at y_low,
-    displaced by -shear_rate L_y t along x, with v_x less by shear_rate L_y, and back. It acts at the start
-    too: drawn velocities are about this flow, without a mean. The faces do work, which heats an elastic gas.
+    The boundary condition is by Lees and Edwards [1]_. The face must be y_high of a container that is
+    periodic along all axes; the flow also applies at y_low. A particle that leaves at y_high enters at y_low,
+    displaced by -shear_rate L_y t along x, with v_x less by shear_rate L_y, and back. The initial velocities
+    are drawn about this flow, with mean 0. The faces do work, which heats an elastic gas.
 
     References
     ----------
@@ -764,7 +765,7 @@ def surface_to_dict(surface: Surface) -> dict:
 
 
 def key_of(face: Any) -> Any:
-    """Return the key of a face that is given by either of its names.
+    """Return the key of a face from either of its names.
 
     Other values are unchanged.
 
@@ -782,7 +783,7 @@ def key_of(face: Any) -> Any:
 
 
 def wall_of(face: Any) -> Any:
-    """Return the name of a face as a wall, `x low`; other values are unchanged.
+    """Return the name of a face as a wall, `x low`. Other values are returned unchanged.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Facts of a scene: properties that follow from the keys of a `Scene`.
 
-Each has one definition and is computed once. Observables, theory, tallies, rejections and advice use these
-properties by name and compute none of them. A `Scene` has them as its own attributes:
+Each has one definition and is computed once. Observables, theory, tallies, rejections and advice read these
+properties by name and do not compute them. A `Scene` has them as its own attributes:
 
 - faces: `numbered_faces`, `faces_of(kind)`, `pistons`, `sliding_faces`, `partial_faces`, `ramps`,
   `thermal_numbers`, `drawing_numbers`, `face_temperatures`;
@@ -88,9 +88,10 @@ class Facts:
 
     @cached_property
     def image_axes(self) -> tuple[bool, ...]:
-        """True for axes with images of the particles at the container's length, always; shape (d,).
+        """True for axes with fixed periodic images, shape (d,).
 
-        These are the periodic axes, without the gradient of a sheared gas, whose images slide.
+        Such images are displaced by exactly the length of the container. These are the periodic axes. In a
+        sheared gas, the axis of the gradient is excluded, because its images move.
         """
         sheared = self.shear_rate is not None
         return tuple(
@@ -138,7 +139,7 @@ class Facts:
 
     @cached_property
     def thermal_numbers(self) -> list[int]:
-        """Numbers of the faces at a temperature, those behind a well included."""
+        """Numbers of the faces at a temperature, including wells whose wall has a temperature."""
         return [n for n, face in self.numbered_faces if face.rule[0] in ("thermal", "thermal_normal")]
 
     @cached_property
@@ -235,8 +236,8 @@ class Facts:
     def gas(self: Scene) -> Gas | None:  # type: ignore[misc]
         """Plain gas that is equivalent to the scene, at the temperature of its initial velocities.
 
-        It is absent (None) if the scene is empty, has particles of several sizes or masses, or has any
-        feature but `centres_to_walls`.
+        The value is absent (None) if the scene is empty, has particles of several sizes or masses, or has any
+        feature except `centres_to_walls`.
         """
         kinds = [kind for kind in self.kinds if kind.count]
         if not kinds or not self.alike or self.features - {"centres_to_walls"}:
@@ -252,7 +253,7 @@ class Facts:
     def mixture(self: Scene) -> Mixture | None:  # type: ignore[misc]
         """Mixture of plain gases that is equivalent to the scene.
 
-        It is absent (None) if the scene is empty, or has any feature but `polydispersity` and
+        The value is absent (None) if the scene is empty, or has any feature except `polydispersity` and
         `centres_to_walls`.
         """
         if self.features - {"polydispersity", "centres_to_walls"}:
@@ -263,8 +264,8 @@ class Facts:
     def contact_duration(self) -> float:
         """Time after a contact of a particle within which its next contacts are elastic.
 
-        It is 0 if all contacts dissipate (`Restitution`). By default it is 0.01 sqrt(d/g), d the smallest
-        diameter, if there is gravity g.
+        It is 0 if all contacts dissipate energy (`Restitution`). Under gravity g the default is 0.01
+        sqrt(d/g), where d is the smallest diameter.
         """
         law = self.restitution
         if law is None or not law.dissipative:
@@ -320,7 +321,7 @@ class Facts:
 
     @cached_property
     def moving_axes(self) -> tuple[int, ...]:
-        """Axes along which a face or an interior wall moves, and the gas with it."""
+        """Axes along which a face or an interior wall moves and displaces the gas."""
         faces = {number // 2 for kind in (Piston, Vibrating) for number, _ in self.faces_of(kind)}
         return tuple(sorted(faces | ({self.moving_wall.axis} if self.moving_wall else set())))
 
@@ -339,8 +340,8 @@ class Facts:
     def drags_faces(self) -> bool:
         """True if the momentum along faces is tallied.
 
-        It is tallied for faces that draw velocities along themselves, if one of them slides, or a force
-        drives the gas along them.
+        The shear force is tallied for faces that draw tangential velocities, if one of them slides, or if a
+        force drives the gas along them.
         """
         rubs = any(not face.smooth for face in self.faces.values())
         return bool(self.sliding_faces) or (rubs and bool(self.driven_axes))
@@ -358,7 +359,7 @@ class Facts:
     def flow_changes(self) -> bool:
         """True if the flow of the gas changes with time.
 
-        It changes where faces or walls move along their normal, and between open faces.
+        The flow changes with time if faces or walls move along their normal, and between open faces.
         """
         return bool(self.moving_axes) or self.is_open
 
@@ -366,8 +367,8 @@ class Facts:
     def flow_axes(self) -> tuple[int, ...]:
         """Axes along which the velocity of the gas may vary.
 
-        If the gas moves only as a whole, no axis is listed. A wind, which no key states but a run has, is
-        added by `analysis.flow`.
+        If the gas moves only as a whole, no axis is listed. A mean velocity of the whole gas, which depends
+        on the run and not on a key of the scene, is added by `analysis.flow`.
         """
         if self.flow_changes:
             return self.moving_axes or self.open_axes
@@ -377,8 +378,8 @@ class Facts:
     def resolved_axes(self, across: tuple[int, ...] = ()) -> tuple[int, ...]:
         """Return the axes along which a steady flow may vary.
 
-        Around obstacles these are all axes; otherwise `across`, the axes of the faces that drive the flow, by
-        default all axes with walls, or the first axis without any.
+        Around obstacles these are all axes. Otherwise they are `across`, the axes of the faces that drive the
+        flow. The default is all axes with walls, or the first axis if there are no walls.
         """
         if self.has_obstacles:
             return tuple(range(self.dimension))
@@ -388,8 +389,9 @@ class Facts:
     def conserved_axes(self) -> tuple[bool, ...]:
         """True for axes along which the total momentum is conserved, shape (d,).
 
-        These are periodic axes, if no particle is fixed and the container has only smooth faces or a moving
-        wall, which act along their normals. In a sheared gas the momentum is relative to the flow.
+        These are periodic axes, if no particle is fixed and if the container has only smooth faces or a
+        moving wall. Such faces and walls act along their normals. In a sheared gas the momentum is relative
+        to the flow.
         """
         smooth = all(face.smooth for face in self.faces.values())
         rubbed = not self.is_periodic and (self.rough or not smooth)

@@ -55,7 +55,8 @@ class Mixture:
     ----------
     dimension : 2 or 3
     packing_fraction : volume (area) of the particles divided by the volume of the container
-    counts, diameters, masses : (S,), of S sizes; each particle of a polydisperse species is a size
+    counts, diameters, masses : Array of shape (S,), for S sizes; each particle of a polydisperse species is
+        one size
     temperature : k_B T of the initial velocities
     """
 
@@ -74,7 +75,7 @@ class Mixture:
     def thin(self, most: int) -> Mixture:
         """Return the mixture with every k-th size only, at most `most` sizes.
 
-        The limit holds for sizes of one species.
+        The limit is valid for sizes of one species.
         """
         step = -(-len(self.counts) // most)
         kept = slice(step // 2, None, step)

@@ -1,7 +1,7 @@
 """Limits of sizes and positions: particles that fit into a container and next to each other.
 
-The module has the size limits, the tolerance of given positions, the volume of a particle, the closest
-packing, and the search of particles near a position.
+The module contains the limits of sizes, the tolerance of prescribed positions, the volume of a particle, the
+closest packing, and the search of particles near a position.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _UNIT_BALL = {2: math.pi, 3: 4.0 / 3.0 * math.pi}
 def ball_volume(dimension: int, radius: float = 1.0) -> float:
     """Return the area of a disc or the volume of a sphere.
 
-    These are pi r^2 and 4 pi r^3 / 3.
+    The volumes are pi r^2 and 4 pi r^3 / 3.
     """
     return _UNIT_BALL[dimension] * radius**dimension
 
@@ -43,10 +43,10 @@ _SUM = 1e-12  # relative: rounding of the sum of all volumes
 
 
 def rounding(position: Iterable[float], *lengths: float) -> float:
-    """Return the tolerance of given positions.
+    """Return the tolerance of prescribed positions.
 
     Particles and walls that touch in decimals may overlap by this length in binary numbers. It is some units
-    in the last place of the largest of these numbers: 0.6 - 0.5 < 0.1.
+    in the last place of the largest of these numbers, because decimal numbers are rounded: 0.6 - 0.5 < 0.1.
     """
     return _UNITS * max(*map(abs, position), *lengths)
 
@@ -68,7 +68,7 @@ def check_packing(scene: Scene) -> None:
 def check_room(container: Container, centres_to_walls: bool, key: str, particle: Particle | Species) -> None:
     """Raise SceneError, with `key`, if a particle does not fit into the container.
 
-    The same holds for a particle that cannot move in it though it is not fixed, or that is so small that its
+    Raise it also for a particle that is not fixed but cannot move, and for a particle so small that its
     contacts are lost in rounding.
     """
     radius = particle.largest_radius

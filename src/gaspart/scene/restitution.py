@@ -23,8 +23,9 @@ class Restitution:
         Coefficient of tangential restitution: the tangential part is multiplied by minus this, from -1
         (perfectly smooth) to 1 (perfectly rough).
     contact_duration : float, [time], optional
-        A contact of a particle within this time after its last contact is elastic; 0: no contact is.
-        Default: under gravity 0.01 of the time scale of a fall through the smallest diameter, else 0.
+        Duration t_c of a contact. A contact of a particle within this time after its last contact is elastic;
+        with 0 no contact becomes elastic. Default: under gravity 0.01 of the time scale of a fall through the
+        smallest diameter, otherwise 0.
     reference_speed : float, [length/time], optional
         Particles are viscoelastic: `normal` is the restitution of two particles of the first species that
         approach each other at this normal speed. Slower contacts take less energy.
@@ -32,7 +33,7 @@ class Restitution:
     Raises
     ------
     SceneError
-        If a value is invalid, or a `reference_speed` is given with a `normal` of 0 or 1.
+        If a value is invalid, or if a `reference_speed` is given with a `normal` of 0 or 1.
 
     Examples
     --------
@@ -87,7 +88,7 @@ class Restitution:
 
     @property
     def smooth_and_elastic(self) -> bool:
-        """True if contacts are the same as in a scene without a Restitution.
+        """True if contacts are the same as in a scene without a `Restitution`.
 
         Examples
         --------

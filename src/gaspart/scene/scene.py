@@ -1,7 +1,7 @@
 """Simulated system: a container and its contents, without any computed result.
 
-A `Scene` is immutable and validated once, when it is created. Lengths and times are in the scene's own units;
-masses are relative to the reference species; k_B = 1.
+A `Scene` is immutable and validated once, when it is created. Units of length and time are free; masses are
+relative to the reference species; k_B = 1.
 """
 
 from __future__ import annotations
@@ -76,8 +76,8 @@ class Scene(Facts):
     walls : sequence of Wall (2D) or Plate (3D), optional
         Walls inside the container.
     faces : dict of str to face, optional
-        Kinds of faces of the container by name: "x_low", "x_high", "y_low" ... Default: hard or periodic, as
-        the `container` states.
+        Kinds of faces of the container by name: "x_low", "x_high", "y_low" ... Default: hard or periodic,
+        according to the `container`.
     thermostat : Thermostat, optional
         Random kicks of all particles. Default: none.
 
@@ -93,7 +93,7 @@ class Scene(Facts):
 
     Notes
     -----
-    Lengths and times are in the scene's own units; masses are relative to the reference species; k_B = 1.
+    Units of length and time are free; masses are relative to the reference species; k_B = 1.
 
     References
     ----------
@@ -452,7 +452,7 @@ class Scene(Facts):
         Raises
         ------
         SceneError
-            If the mapping describes no scene; the message names `file`.
+            If the mapping does not describe a scene; the message names `file`.
 
         Examples
         --------

@@ -1,7 +1,7 @@
 """Radii of a polydisperse species: equally probable quantiles of a distribution.
 
-They follow from the scene alone, without a seed, so that its packing fraction and its moments are exact and
-the same in every run. All is +, -, x, / and the square root, the same bits on every machine.
+Radii follow from the scene alone, without a seed. So the packing fraction and the moments of the radii are
+exact and equal in every run. All is +, -, x, / and the square root, the same bits on every machine.
 """
 
 from __future__ import annotations
@@ -88,8 +88,8 @@ def normal_quantile(p: np.ndarray) -> np.ndarray:
 def relative_radii(count: int, polydispersity: float, distribution: str) -> np.ndarray:
     """Return the radii (count,) divided by their mean, in falling order.
 
-    They are the quantiles at (k + 1/2) / count, k = 0, 1 ..., of a distribution of this standard deviation,
-    scaled so that their mean is 1.
+    The radii are the quantiles at (k + 1/2) / count, k = 0, 1 ..., of a distribution with this standard
+    deviation, scaled so that their mean is 1.
     """
     import numpy as np
 

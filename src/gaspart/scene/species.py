@@ -60,10 +60,10 @@ def _check_matter(particle: Species | Particle) -> None:
 @with_guidance
 @dataclass(frozen=True)
 class Species:
-    """Particles of one kind, which the program places; identical without a `polydispersity`.
+    """Particles of one kind, whose positions the program chooses.
 
-    Velocities have random directions. Their magnitudes are all equal to `speed`, or Maxwellian at
-    `temperature`; without either the particles start at rest.
+    Without a `polydispersity` the particles are identical. Velocities have random directions. Their speeds
+    are all equal to `speed`, or Maxwellian at `temperature`. Without both keys the particles start at rest.
 
     Parameters
     ----------
@@ -76,12 +76,12 @@ class Species:
     speed : float, [length/time], optional
         Initial speed of every particle. Cannot be combined with `temperature`.
     temperature : float, [energy], optional
-        Temperature k_B T of the initial velocities; for `fixed` particles, of their vibrations.
+        Temperature k_B T of the initial velocities. For `fixed` particles: temperature of their vibrations.
     exact_temperature : bool, default False
         Rescale the initial velocities to exactly `temperature`, after the mean velocity is subtracted along
         axes on which momentum is conserved. All species with an exact temperature are rescaled by one factor.
     arrangement : {"random", "lattice", "slab", "compressed"}, default "random"
-        Initial positions. "random": sequential insertion. "slab": a lattice whose vacancies all lie in one
+        Initial positions. "random": sequential insertion. "slab": a lattice whose vacancies are all in one
         half, so that this half melts. "compressed": growth to a density that insertion cannot reach (see
         `compress`).
     region : sequence of two vectors, shape (2, d), [length], optional
@@ -116,7 +116,7 @@ class Species:
     energy with the normal energy of the other particle.
 
     The N radii of a polydisperse species are the quantiles of the distribution at N equally spaced
-    probabilities, in descending order. They do not depend on the seed: every run has the same packing
+    probabilities, in descending order. The radii do not depend on the seed, so every run has the same packing
     fraction.
 
     Examples

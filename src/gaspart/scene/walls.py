@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class MovingWall(NamedTuple):
-    """Axis along which a wall moves, its position there at time 0, and its mass."""
+    """Axis of motion of a wall, its coordinate there at time 0, and its mass."""
 
     axis: int
     position: float
@@ -192,10 +192,10 @@ class Plate:
 
     Notes
     -----
-    A plate with a `mass` must reach across the whole container at right angles to an axis. It starts at rest.
-    Only particles move it, along that axis, and it exchanges momentum with each particle without loss [1]_.
-    It conducts no heat except by its own motion. There is no other interior wall then, and both of its sides
-    have particles, smooth and elastic.
+    A plate with a `mass` must reach across the whole container at right angles to an axis. The wall starts at
+    rest. Only particles move it, along that axis, and it exchanges momentum with each particle without loss
+    [1]_. The wall conducts no heat except by its own motion. There is no other interior wall then, and both
+    of its sides have particles, smooth and elastic.
 
     References
     ----------

@@ -1,8 +1,8 @@
 """Partition of space into equal boxes on a grid.
 
-Each axis is divided on its own, down to one box. Box coordinates are kept for three axes whatever the
-dimension; a missing axis has one box and no neighbours. A table for each axis states which boxes are
-neighbours, so that walls, periodic faces and axes of one or two boxes need no code of their own.
+Each axis is divided on its own, down to one box. Box coordinates are stored for three axes in two dimensions,
+too; the missing axis has one box and no neighbours. For each axis a table contains the neighbours of each
+box. So walls, periodic faces and axes of one or two boxes need no special code.
 """
 
 from __future__ import annotations
@@ -10,12 +10,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from itertools import chain, combinations_with_replacement
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.keys.values import partition
 from gaspart.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
 
 NOWHERE = -1
 
@@ -86,7 +90,7 @@ class Boxes:
         return replace(self, neighbour=neighbour)
 
     def index_of(self, position: np.ndarray) -> int:
-        """Return the linear index of the box that holds a position.
+        """Return the linear index of the box that contains a position.
 
         Parameters
         ----------
@@ -125,7 +129,7 @@ def sides_for(scene: Scene, narrowest: float | None = None, per_particle: float 
     scene : Scene
         Scene of the particles.
     narrowest : float, optional, [length]
-        Smallest side of a box, if larger particles are kept outside the boxes. Default: the largest diameter.
+        Smallest side of a box if larger particles are not put into boxes. Default: the largest diameter.
     per_particle : float, default 1.0
         Number of boxes per particle, which is reached approximately.
 
@@ -141,7 +145,7 @@ def sides_for(scene: Scene, narrowest: float | None = None, per_particle: float 
 
 
 def cube_side(lengths: tuple[float, ...], number: float) -> float:
-    """Return the side of cubes of which about `number` fill a container.
+    """Return the side of cubes, such that about `number` of them fill a container.
 
     Parameters
     ----------
@@ -176,10 +180,11 @@ def make_boxes(
     boxes_per_side : int or tuple of int, shape (d,)
         Boxes per side: one number, or one for each axis.
     images : bool
-        On a periodic axis of fewer than three boxes the same box is a neighbour on both sides. If True, the
-        table has both, each with its own shift; if False, it has each box once.
+        On a periodic axis of fewer than three boxes the same box is a neighbour on both sides. If both
+        neighbours of a box along an axis are the same box, True: the table has this box twice, each time with
+        its own shift; False: once.
     narrowest : float, optional, [length]
-        Smallest side of a box, if some particles are kept outside the boxes. Default: the largest diameter.
+        Smallest side of a box if some particles are not put into boxes. Default: the largest diameter.
 
     Returns
     -------
@@ -269,8 +274,8 @@ def largest_in_boxes(scene: Scene) -> float:
     Returns
     -------
     float, [length]
-        Of the radii that leave at most `MOST` particles outside the boxes, the radius with the least work of
-        a search. The largest radius of all, unless the other saves a quarter.
+        Among the radii that leave at most `MOST` particles outside the boxes, this radius requires the least
+        work of a search. The largest radius of all, unless the other saves a quarter.
     """
     radii, counts = sizes(scene)
     if len(radii) < 2 or scene.shear_rate is not None:
@@ -282,14 +287,14 @@ def largest_in_boxes(scene: Scene) -> float:
 
 
 def boxes_and_largest(scene: Scene, boxes_per_side: int | tuple[int, ...] | None) -> tuple[Boxes, float]:
-    """Return the partition and the largest radius of the particles in it.
+    """Return the partition into boxes and the largest radius of the particles in boxes.
 
     Parameters
     ----------
     scene : Scene
         Scene of the particles.
     boxes_per_side : int or tuple of int or None
-        Boxes per side. None: as `largest_in_boxes` chooses.
+        Boxes per side. None: the value of `largest_in_boxes`.
 
     Returns
     -------
@@ -322,8 +327,8 @@ def sizes(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     Parameters
     ----------
     scene : Scene
-        Scene of the particles. All particles of a polydisperse species count as its largest, because boxes
-        wide enough for it are faster than a long list.
+        Scene of the particles. All particles of a polydisperse species count as its largest particle. Boxes
+        wide enough for this particle are faster than a long list of oversized particles.
 
     Returns
     -------
@@ -377,6 +382,27 @@ def work(scene: Scene, largest: float) -> float:
 # Deepest overlap of particles of any sizes, in time and memory that grow as their number.
 
 
+_CROWD, _SAMPLE = 32.0, 256
+"""Mean number of neighbours of some particles from which on others are not only those that touch."""
+
+
+def _reach_of_deepest(tree: cKDTree, other: cKDTree, reach: float) -> float:
+    """Return the largest distance at which the deepest overlap of two classes of sizes can be.
+
+    It is `reach` for particles that touch. Where many lie on top of each other, their pairs within `reach`
+    are more than memory holds. Contact distances differ by less than a factor of two. So if the nearest pair
+    is at q, no deeper one is beyond 2 q. The distance is 0 if two centres coincide.
+    """
+    itself = tree is other
+    sample = tree.data[:: max(1, tree.n // _SAMPLE)]
+    if other.query_ball_point(sample, reach, return_length=True).mean() <= _CROWD:
+        return reach
+    if tree.count_neighbors(other, 0.0) > (tree.n if itself else 0):
+        return 0.0
+    distances, _ = other.query(tree.data, k=[2] if itself else [1])
+    return min(reach, 2.0 * float(distances.min()))
+
+
 def deepest_overlap(
     positions: np.ndarray, radii: np.ndarray, lengths: np.ndarray, periodic: tuple[bool, ...]
 ) -> float:
@@ -402,7 +428,7 @@ def deepest_overlap(
     Notes
     -----
     Particles are sorted into classes of sizes within a factor of two, with a tree for each class. So a search
-    reaches no farther than its pair of classes may touch.
+    covers only the distance at which particles of its two classes can touch.
     """
     from scipy.spatial import cKDTree  # few runs need it
 
@@ -416,6 +442,9 @@ def deepest_overlap(
     trees = [cKDTree(positions[indices], boxsize=sides) for indices in members]
     for a, b in combinations_with_replacement(range(len(members)), 2):
         reach = float(radii[members[a]].max() + radii[members[b]].max())
+        reach = _reach_of_deepest(trees[a], trees[b], reach)
+        if reach == 0.0:
+            return 1.0
         if a == b:
             pairs = trees[a].query_pairs(reach, output_type="ndarray")
         else:  # the larger ones ask: they are fewer where sizes differ much

@@ -1,10 +1,10 @@
 """Random packings denser than insertion can make, by growing particles.
 
 The particles move, collide and grow until they have their size or jam (Lubachevsky & Stillinger, J. Stat.
-Phys. 60, 561 (1990)). All particles grow in proportion, at a constant rate of their diameters. They move as
-particles of mass 1 whose temperature is brought back to 1 every few collisions. Their final density depends
-on how slowly they grow: fast, spheres jam at a packing fraction of about 0.64 and discs at 0.84; slowly, they
-crystallise.
+Phys. 60, 561 (1990)). All particles grow in proportion, at a constant rate of their diameters. During growth
+all particles have mass 1, and their temperature is reset to 1 every few collisions. The final density depends
+on the speed of growth. If it is fast, spheres jam at a packing fraction of about 0.64 and discs at 0.84. If
+it is slow, they crystallise.
 """
 
 from __future__ import annotations
@@ -72,13 +72,13 @@ def compress(
     Parameters
     ----------
     scene : Scene
-        Scene without particles or walls of its own and without fixed particles.
+        Scene without single particles, interior walls and fixed particles.
     seed : int or tuple of int, default 0
         Seed of the random start, from which the species grow.
     growth_rate : float, default 0.0625, [1]
         Growth rate of the diameter of the largest particles, divided by the thermal speed of a particle.
     until : float or "jammed", optional
-        Packing fraction at which growth ends; "jammed" for growth until the particles jam. Default: the
+        Packing fraction at which growth ends, or "jammed" for growth until the particles jam. Default: the
         packing fraction of the scene.
     jammed : float, default 1e6, [1]
         Reduced pressure that ends the growth in any case.
@@ -91,14 +91,14 @@ def compress(
     Raises
     ------
     SceneError
-        If the scene has particles or walls of its own or fixed particles, or if particles jam before they are
-        as dense as requested.
+        If the scene has single particles, interior walls or fixed particles, or if particles jam before they
+        reach the requested density.
 
     Notes
     -----
     The algorithm of Lubachevsky and Stillinger [1]_. The temperature is brought back to 1 every few
-    collisions. Fast, spheres jam at a packing fraction of about 0.64 and discs at 0.84; slowly, they
-    crystallise.
+    collisions. If growth is fast, spheres jam at a packing fraction of about 0.64 and discs at 0.84. If
+    growth is slow, they crystallise.
 
     References
     ----------

@@ -1,6 +1,7 @@
-"""Initial states that are given instead of drawn.
+"""Initial states that the caller supplies.
 
-They are the positions and motions of the particles, of the piston and of the sheared images of another run.
+Such a state contains the positions and motions of the particles, of the piston and of the sheared images of
+another run.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ def state_from_arrays(
     displaced: float | np.ndarray | None = None,
     vibrations: np.ndarray | None = None,
 ) -> State:
-    """Return the state at time 0 of a scene whose particles have these positions and velocities.
+    """Return the state at time 0 of a scene from positions and velocities of its particles.
 
     Parameters
     ----------
@@ -42,7 +43,7 @@ def state_from_arrays(
         Scene.
     positions : ndarray, shape (N, d), [length]
         Positions. Positions beyond a wall or the piston by no more than the rounding of single precision are
-        put at it.
+        moved to the wall or piston.
     velocities : ndarray, shape (N, d), [length/time]
         Velocities, in a sheared gas with the flow.
     spins : ndarray, shape (N,) in 2D or (N, 3) in 3D, optional, [1/time]
@@ -62,8 +63,8 @@ def state_from_arrays(
     Raises
     ------
     SceneError
-        If the scene remembers more than these values; if numbers are not finite or too few; if particles are
-        outside the container, beyond the piston or in an interior wall.
+        If the state of the scene contains more than these values; if numbers are not finite or too few; if
+        particles are outside the container, beyond the piston or in an interior wall.
     """
     if "sticky" in scene.features:
         rule = "excludes a given initial state, which does not say which particles stick"
@@ -99,7 +100,7 @@ def state_from_arrays(
 
 
 def state_at_time_zero(scene: Scene, other: State) -> State:
-    """Return the state at time 0 of a scene, with particles as in another state.
+    """Return the state at time 0 of a scene from the particles of another state.
 
     Parameters
     ----------
@@ -117,15 +118,15 @@ def state_at_time_zero(scene: Scene, other: State) -> State:
     Raises
     ------
     SceneError
-        As `state_from_arrays`; for other particles, another container, a piston that is another face, and
-        displaced images in a container that has none.
+        As for `state_from_arrays`. Also if particles or container differ, if the piston is another face, or
+        if the state has displaced images and the scene has none.
 
     Notes
     -----
-    A piston keeps its position and velocity, whatever its mass and load; without a piston in `other` it is at
-    rest at its side. Between sheared faces the images keep their displacement, and velocities are kept at the
-    same shear rate. From another rate, or none, the velocities about the flow and the mean are kept, and the
-    flow of the scene is added. Faces that vibrate begin anew.
+    Position and velocity of a piston are retained for any mass and load. If `other` has no piston, the piston
+    is at rest at its side. The displacement of sheared images is retained, and velocities are retained if
+    both shear rates are equal. If the shear rates differ, the flow of the state is subtracted from the
+    velocities, and the flow of the scene is added. The vibration of faces begins anew.
     """
     if not isinstance(other, State):
         raise SceneError("initial", type(other).__name__, "must be a State, as of Simulation.state")
@@ -154,7 +155,7 @@ def state_at_time_zero(scene: Scene, other: State) -> State:
 
 
 def _in_flow(scene: Scene, other: State) -> tuple[np.ndarray, np.ndarray]:
-    """Return (N, d) positions and velocities of a state, about the flow of the scene."""
+    """Return (N, d) positions and velocities of a state in the flow of the scene."""
     positions, height = np.array(other.positions, dtype=float), scene.container.lengths[GRADIENT]
     if scene.shear_rate is not None and other.shear_rate is None:  # whose faces are places as any other
         positions[:, GRADIENT] = _wrap_coordinates(positions[:, GRADIENT], height)
@@ -165,7 +166,7 @@ def _in_flow(scene: Scene, other: State) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _image_displacement(scene: Scene, other: State) -> float | None:
-    """Return the displacement of images; raise SceneError if the scene has none.
+    """Return the displacement of the images; raise SceneError if the scene has no sheared images.
 
     Complete lengths of the container are subtracted, which is exact.
     """
@@ -202,7 +203,7 @@ def _taken_piston(scene: Scene, other: State) -> np.ndarray | None:
 
 
 def _checked_piston(scene: Scene, piston: np.ndarray | None) -> np.ndarray | None:
-    """Return the given position and velocity of a piston; raise SceneError if they are invalid."""
+    """Return position and velocity of a piston; raise SceneError if they are invalid."""
     axes = [n // 2 for n, _ in scene.pistons]
     if wall := scene.moving_wall:
         axes = [wall.axis]
@@ -242,7 +243,7 @@ def check_apart(scene: Scene, state: State) -> None:
 def _with_images(state: State) -> tuple[np.ndarray, np.ndarray]:
     """Return positions (M, d) and radii (M,) of a sheared gas and its images.
 
-    These are the images below the gas that it may touch.
+    These are the images below the gas that particles of the gas may touch.
     """
     near = state.lengths[GRADIENT] - state.positions[:, GRADIENT] <= 2.0 * state.radii.max()
     images = state.positions[near]

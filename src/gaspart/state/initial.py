@@ -96,7 +96,7 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
     scene : Scene
         Scene.
     seed : int or tuple of int
-        Seed. Positions and velocities have streams of their own under the same seed.
+        Seed. Positions and velocities have separate random streams under the same seed.
 
     Returns
     -------
@@ -157,7 +157,7 @@ def masses_of(scene: Scene) -> np.ndarray:
 
 
 def assemble_state(scene: Scene, positions: np.ndarray, velocities: np.ndarray, spins: np.ndarray) -> State:
-    """Return the state at time 0 with these positions, velocities and spins.
+    """Return the state at time 0 from positions, velocities and spins.
 
     Parameters
     ----------
@@ -231,7 +231,7 @@ def _on_lattice(scene: Scene, rng: np.random.Generator, arrangement: str) -> np.
 def _instead_of_random(scene: Scene, seed: int | tuple[int, ...]) -> str:
     """Return advice for particles that do not fit by random insertion.
 
-    It names an arrangement only if the arrangement holds them.
+    The message names an arrangement only if the particles fit into the container with it.
     """
     try:
         arranged = replace(scene, species=[replace(kind, arrangement="lattice") for kind in scene.species])
@@ -244,7 +244,7 @@ def _instead_of_random(scene: Scene, seed: int | tuple[int, ...]) -> str:
 def _vibrations(scene: Scene, rng: np.random.Generator) -> np.ndarray:
     """Return the (N,) energies of the vibrations.
 
-    They are given, or drawn from exp(-E/kT)/kT; 0 without a vibration.
+    The energies are values of the scene, or drawn from exp(-E/kT)/kT; 0 without a vibration.
     """
     parts = [np.array([particle.vibration or 0.0 for particle in scene.particles])]
     for kind in scene.species:
@@ -256,7 +256,7 @@ def _vibrations(scene: Scene, rng: np.random.Generator) -> np.ndarray:
 
 
 def _velocities(scene: Scene, rng: np.random.Generator) -> np.ndarray:
-    """Return the (N, d) velocities: given, of equal speeds, Maxwellian, or 0."""
+    """Return the (N, d) velocities: values of the scene, equal speeds, Maxwellian, or 0."""
     parts = [
         np.array([particle.velocity for particle in scene.particles], dtype=float).reshape(
             -1, scene.dimension
@@ -312,8 +312,8 @@ def in_flow(scene: Scene, masses: np.ndarray, positions: np.ndarray, velocities:
 def _make_exact(scene: Scene, velocities: np.ndarray) -> None:
     """Rescale velocities so that the species of exact temperature, together, have that temperature.
 
-    They get no mean velocity along axes on which momentum is conserved, and the mean of m v^2 / kT per degree
-    of freedom is 1. The sums have the same rounding on every machine. Raises SceneError without a degree of
+    Their mean is 0 along axes on which momentum is conserved, and the mean of m v^2 / kT per degree of
+    freedom is 1. The sums have the same rounding on every machine. Raises SceneError without a degree of
     freedom.
     """
     first, parts = len(scene.particles), []
@@ -345,12 +345,12 @@ def lattice(scene: Scene, rng: np.random.Generator, slab: bool = False) -> np.nd
     ----------
     scene : Scene
         Scene, to whose container the lattice is stretched.
-    rng : numpy.random.Generator
-        Generator. If there are more sites than particles, the sites left empty are random, as is the order of
-        the species in a mixture.
+    rng : numpy.random.Generator Generator. If there are more sites than particles, the empty sites are
+        random; the order of species in a mixture is random, too.
     slab : bool, default False
-        Leave sites empty only in the upper half of the longest side, which melts where a complete crystal
-        would not: the start of a crystal that coexists with its fluid.
+        If True, sites are empty only in the upper half of the longest side. This half melts at densities at
+        which a complete crystal would not melt. The result is a start for a crystal that coexists with its
+        fluid.
 
     Returns
     -------
@@ -415,7 +415,7 @@ def _spacing(lengths: np.ndarray, cells: np.ndarray, walled: np.ndarray, basis: 
 def _cell_counts(
     lengths: np.ndarray, shape: np.ndarray, walled: np.ndarray, count: int, per_cell: int
 ) -> list[np.ndarray]:
-    """Return numbers of cells (d,) near the ideal shape that hold `count` sites."""
+    """Return numbers of cells (d,) close to the ideal shape, with at least `count` sites."""
     ideal = (lengths / shape) * (count / per_cell / np.prod(lengths / shape)) ** (1.0 / len(lengths))
     reach = np.stack(np.meshgrid(*([np.arange(-2, 4)] * len(lengths)), indexing="ij"), axis=-1)
     options = np.floor(ideal).astype(int) + reach.reshape(-1, len(lengths))

@@ -50,8 +50,8 @@ def range_of_centres(scene: Scene, kind: Species) -> tuple[tuple[float, ...], tu
     ----------
     scene : Scene
         Scene of the species.
-    kind : Species
-        Species, all particles of which keep the distance of the largest from walls.
+    kind : Species Species. The centres of all its particles are as far from walls as the centre of its
+        largest particle must be.
 
     Returns
     -------
@@ -77,7 +77,7 @@ def empty_arrays(scene: Scene, boxes: Boxes, radii: np.ndarray) -> tuple[Placed,
     boxes : Boxes
         Partition of the container.
     radii : ndarray, shape (N,), [length]
-        Radii of the particles, none of which is placed yet.
+        Radii of the particles; no particle is placed yet.
 
     Returns
     -------

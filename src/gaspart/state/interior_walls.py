@@ -98,7 +98,8 @@ def walls_near(rows: np.ndarray, boxes: Boxes, reach: float) -> tuple[np.ndarray
     first : ndarray of int, shape (boxes + 2,)
         Box b has the walls listed[first[b] : first[b + 1]].
     listed : ndarray of int
-        Rows of the walls. All of them follow the last box, for particles that reach further.
+        Rows of the walls. The list of the last box is followed by a list of all walls, for particles that
+        reach beyond the neighbouring boxes.
     """
     reach *= 1 + _SLACK
     numbers = rows.view(float).reshape(len(rows), rows.itemsize // 8)

@@ -1,7 +1,8 @@
 """Seed streams, and random directions and velocities that are the same bits on every machine.
 
-Uniform numbers come from numpy's PCG64; everything made of them here uses +, -, x, / and the square root
-only, which IEEE 754 fixes to the last bit (library logarithms differ between machines).
+Uniform numbers are from numpy's PCG64. All other random numbers are computed from these by +, -, x, / and the
+square root only. IEEE 754 defines these operations to the last bit, while logarithms of libraries differ
+between machines.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ def stream(seed: int | tuple[int, ...], *purpose: int) -> np.random.Generator:
     Raises
     ------
     SceneError
-        If the seed is neither a non-negative integer nor a sequence of them.
+        If the seed is neither a non-negative integer nor a sequence of non-negative integers.
     """
     return np.random.Generator(np.random.PCG64(_sequence(seed, purpose)))
 
@@ -53,7 +54,7 @@ def key_of(seed: int | tuple[int, ...], *purpose: int) -> np.ndarray:
     Raises
     ------
     SceneError
-        If the seed is neither a non-negative integer nor a sequence of them.
+        If the seed is neither a non-negative integer nor a sequence of non-negative integers.
     """
     return _sequence(seed, purpose).generate_state(2, np.uint64)
 
@@ -82,8 +83,8 @@ def natural_log(x: np.ndarray) -> np.ndarray:
 
     Notes
     -----
-    Only +, -, x and / are used: x = m 2^e with m in [1/sqrt 2, sqrt 2); ln m = 2 artanh((m - 1)/(m + 1)), by
-    its series.
+    Only +, -, x and / are used. With x = m 2^e and m in [1/sqrt 2, sqrt 2), ln m = 2 artanh((m - 1)/(m + 1))
+    is summed by its series.
     """
     mantissa, exponent = np.frexp(np.asarray(x, dtype=float))
     low = mantissa < 0.7071067811865476

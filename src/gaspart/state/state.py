@@ -18,7 +18,7 @@ from gaspart.scene.shear import flow
 class State:
     """All particles at one time: the input and the output of engines.
 
-    The mass and the moment of inertia of a fixed particle are infinite. They count in no sum.
+    The mass and the moment of inertia of a fixed particle are infinite. These particles count in no sum.
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ class State:
 
     @property
     def kinetic_energies(self) -> np.ndarray:
-        """Kinetic energies of flight and spin together, shape (N,), [energy]; 0 for a fixed particle.
+        """Sums of translational and rotational energy, shape (N,), [energy]; 0 for fixed particles.
 
         Examples
         --------
@@ -195,7 +195,7 @@ class State:
     def angular_momentum(self) -> np.ndarray | float:
         """Total angular momentum about the container's origin, spins included, [mass length^2/time].
 
-        It is a number in 2D and has the shape (3,) in 3D.
+        The result is a number in 2D and has the shape (3,) in 3D.
 
         Examples
         --------
@@ -245,7 +245,8 @@ class State:
     def temperature(self) -> float:
         """Temperature k_B T of a gas without walls, [energy].
 
-        It is 2 E / (d (N - 1)), with the energy E of flight about the centre of mass: per degree of freedom.
+        The temperature is 2 E / (d (N - 1)), where E is the energy of translation relative to the centre of
+        mass.
 
         Raises
         ------
@@ -335,7 +336,7 @@ class State:
         Returns
         -------
         State
-            Copy, to be changed and given to another simulation.
+            Copy, which may be changed and passed to another simulation.
 
         Examples
         --------
@@ -380,7 +381,7 @@ class State:
 
 
 def by_number(state: State, values: np.ndarray, capacity: int) -> np.ndarray:
-    """Return values of the particles of a state, each at its number in the run.
+    """Return values of the particles of a state, ordered by their numbers in the run.
 
     Parameters
     ----------
@@ -433,7 +434,7 @@ def drift_of(scene: Scene, state: State) -> np.ndarray:
     Returns
     -------
     ndarray, shape (d,), [length/time]
-        Velocity; 0 if it is only rounding.
+        Velocity, or 0 if it is only rounding.
     """
     velocities = state.velocities - flow(scene, state.positions)
     shares = (state.masses / state.masses.sum())[:, None] if state.count else np.zeros((0, 1))

@@ -1,39 +1,28 @@
-"""Counters and sums of an engine."""
+"""Counters and sums of an engine, and the optional tallies, each declared once.
+
+Planning imports this module, so numpy is imported inside functions.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, ClassVar
 
-import numpy as np
-
+from gaspart.errors import SceneError
 from gaspart.errors.guidance import with_guidance
+from gaspart.keys.values import count_of, number, one_of
+from gaspart.scene.features import FEATURES
+from gaspart.state.optional_tallies import OptionalTally
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from gaspart.scene.scene import Scene
 
 ENERGY, IMPULSE = "mass length^2/time^2", "mass length/time"
 ACTION, HEAT = "mass length^2/time", "mass length^3/time^2"
 SPEED, PRESSED, HEATED = "length/time", "mass length^(2-d)/time", "mass length^(3-d)/time^2"
 """Units of sums, and of the velocity that goes with them; of momentum and heat per area."""
-
-
-def tallied_fluxes(sums: np.ndarray, drift: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the fields of `Tally` for the fluxes of momentum and heat.
-
-    Parameters
-    ----------
-    sums : ndarray, shape (2 d^2 + d,)
-        Sums of the stress tensor and of its collisional part, each by rows, and of the heat flux.
-    drift : ndarray, shape (d,), [length/time]
-        Velocity about which the sums are.
-
-    Returns
-    -------
-    dict of str to ndarray
-        `stress_sum`, `collisional_stress_sum`, `heat_sum` and `flux_velocity`.
-    """
-    dimension = len(drift)
-    stress = sums[: 2 * dimension**2].reshape(2, dimension, dimension)
-    heat = sums[2 * dimension**2 :]
-    fluxes = {"stress_sum": stress[0], "collisional_stress_sum": stress[1], "heat_sum": heat}
-    return {**fluxes, "flux_velocity": drift.copy()}
 
 
 @with_guidance
@@ -50,14 +39,13 @@ class Tally:
     collisions : int
         Collisions of pairs.
     wall_hits : ndarray of int, shape (F,)
-        Particles that hit each face. If faces are open: particles that have left there.
+        Particles that hit each face. With open faces: number of particles that have left through each face.
     wall_impulse : ndarray, shape (F,), [mass length/time]
-        Momentum given to each face. If faces are open: the momentum along the normal that particles which
-        leave and enter carry through.
+        Momentum given to each face. With open faces: the normal momentum of particles that leave and enter.
     wall_energy : ndarray, shape (F,), [energy]
-        Heat given to each face by particles that it re-emitted thermally. It includes the work of the face if
-        there is a `wall_shear`. If faces are open: the energy of particles that have left less the energy of
-        particles that have entered.
+        Heat given to each face by particles that the face re-emitted thermally. If there is a `wall_shear`,
+        the heat includes the work of the face. If faces are open: the energy of particles that have left less
+        the energy of particles that have entered.
     virial_sum : float, [mass length^2/time]
         Sum of abs(dr.dp) over collisions.
     pair_tests : int
@@ -78,7 +66,7 @@ class Tally:
     retained_energy : float, default 0.0, [energy]
         Energy that these contacts would have dissipated.
     thermostat_energy : float, default 0.0, [energy]
-        Energy given by kicks.
+        Energy added by kicks.
     steps : int, default 0
         Steps of the engine, if it has time steps.
     overlaps_left : int, default 0
@@ -91,34 +79,35 @@ class Tally:
     rebuilds : int, default 0
         Rebuilds of the neighbour list of the time-stepped engine.
     wall_shear : ndarray, shape (F, d), optional, [mass length/time]
-        Momentum along each axis given to each thermal face by particles that leave it with all components
-        drawn. None unless a thermal face moves or a force drives the gas along it.
+        Momentum along each axis given to each thermal face by particles whose velocity components are all
+        drawn when they leave. None unless a thermal face moves, or a force drives the gas along a thermal
+        face.
     entries : ndarray of int, shape (F,), optional
         Particles that have entered through each face. None unless faces are open.
     momentum_per_area : ndarray, shape (F, d), optional, [mass length^(2-d)/time]
-        Momentum along each axis given to each face, outwards along its normal, with the momentum of each
-        particle divided by the area of the face that centres of its size can reach (`scene.accessible`), in
-        the container at the start. It is 0 for interior walls and for faces that an engine does not tally.
-        None unless particles of several sizes reach different areas of faces.
+        Momentum along each axis given to each face, positive along the outward normal. The momentum of each
+        particle is divided by the area of the face that centres of its size can reach (`scene.accessible`),
+        in the container at the start. The value is 0 for interior walls and for faces that an engine does not
+        tally. None unless particles of different sizes can reach different areas of faces.
     heat_per_area : ndarray, shape (F,), optional, [mass length^(3-d)/time^2]
         Energy of `wall_energy`, divided in the same way, and with the same zeros. Absent without
         `momentum_per_area`.
     stress_sum : ndarray, shape (d, d), optional, [mass length^2/time]
         Time integral of the stress tensor times the volume: of m v v and, at a collision, of r dp. Here r is
-        the vector from the second particle to the first, and dp the momentum that the first gains. None
-        unless requested.
+        the vector from the second particle to the first, and dp is the momentum that the first particle
+        gains. None unless requested.
     collisional_stress_sum : ndarray, shape (d, d), optional, [mass length^2/time]
         Collisional part of `stress_sum`.
     heat_sum : ndarray, shape (d,), optional, [mass length^3/time^2]
         Time integral of the heat flux times the volume: of E v and r dE [1]_.
     flux_velocity : ndarray, shape (d,), optional, [length/time]
-        Velocity of the centre of mass, about which all velocities of these fluxes are; for a sheared gas
-        about the flow, at time 0.
+        Velocity of the centre of mass; all velocities in the fluxes are relative to it. In a sheared gas they
+        are relative to the flow, and this is the velocity at time 0.
     momentum_flux_sum : ndarray, shape (species, bins), optional, [mass length/time]
-        Momentum of each species, and last of all single particles, along an axis that has flown through
-        planes across the axis with the particles themselves: m v^2 of particles that cross, times the time.
-        It is the mean over the planes of each bin. Under gravity the momentum that gravity has given to the
-        particles below is subtracted (`analysis.impulses`). None unless requested.
+        Momentum of each species (single particles last) along an axis, transported through planes across the
+        axis by the particles themselves: m v^2 of the particles that cross, times the time. Each value is the
+        mean over the planes in a bin. Under gravity, the momentum that gravity has given to the particles
+        below the plane is subtracted (`analysis.impulses`). None unless requested.
     contact_impulse_sum : ndarray, shape (shells,), optional, [mass length^2/time]
         Mean over each shell of k_B T g(r) times the time, from the pairs that collide
         (`analysis.pairs`). None unless requested.
@@ -219,4 +208,248 @@ def compressibility_factor(
     ndarray, [1]
         Z = 1 + sum abs(dr.dp) / (d N k_B T t).
     """
+    import numpy as np
+
     return np.asarray(1.0 + virial / (dimension * count * temperature * time))
+
+
+# Optional tallies that a run requests.
+
+
+_WITH_STRESS = frozenset(
+    ("restitution", "roughness", "viscoelasticity", "contact_duration", "polydispersity", "lees_edwards")
+)
+"""Features with which velocities still change at contacts only."""
+
+
+@with_guidance
+@dataclass(frozen=True)
+class StressTally(OptionalTally):
+    """Tally of the stress tensor and the heat flux, in a periodic container without gravity.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((9.0, 9.0), boundary="periodic")
+    >>> scene = gp.Scene(box, [gp.Species(20, 0.2, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1, tallies=[gp.StressTally()])
+    >>> simulation.advance(duration=2.0)
+    >>> simulation.tally.stress_sum.shape
+    (2, 2)
+    """
+
+    name: ClassVar[str] = "stress"
+
+    def _require(self, scene: Scene) -> None:
+        """Raise SceneError unless velocities change only at contacts, in a periodic container."""
+        if not scene.is_periodic:
+            rule = "the stress, viscosity and conductivity need a periodic container; set boundary: periodic"
+            raise SceneError("container.boundary", scene.container.boundary, rule)
+        for name in sorted(scene.features - _WITH_STRESS):
+            raise SceneError("stress", True, f"cannot be tallied in a scene with {FEATURES[name].meaning}")
+
+
+_DISTURBING = (
+    "fixed",
+    "thermostat",
+    "sticky",
+    "vibrating",
+    "piston",
+    "moving_wall",
+    "lees_edwards",
+    "sliding",
+    "open",
+)
+"""Features with which there is no equilibrium at one temperature, or fixed particles in the way."""
+_MOST = 100_000
+"""Largest number of bins or shells."""
+FURTHEST = 0.499
+"""Largest distance of a pair, divided by the shortest side of a periodic container."""
+
+
+@with_guidance
+@dataclass(frozen=True)
+class ImpulseTally(OptionalTally):
+    """Tally of the momentum that particles transport along an axis through planes across this axis.
+
+    The density along the axis is computed from this momentum (`analysis.impulses`).
+
+    Parameters
+    ----------
+    axis : {"x", "y", "z"}
+        Axis.
+    bins : int
+        Number of equal bins of the container, from 2 to 100000.
+
+    Raises
+    ------
+    SceneError
+        If the axis or the number of bins is invalid.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1, tallies=[gp.ImpulseTally("y", 30)])
+    >>> simulation.advance(duration=2.0)
+    >>> simulation.tally.momentum_flux_sum.shape
+    (1, 30)
+    """
+
+    axis: str
+    bins: int
+
+    name: ClassVar[str] = "impulses"
+    meaning: ClassVar[str] = (
+        "keep impulses along an axis in so many bins, such as `z:200`: in equilibrium `density` along the "
+        "axis and `pressure` across it are then several times as accurate"
+    )
+    form: ClassVar[str] = "AXIS:BINS"
+
+    def __post_init__(self) -> None:
+        one_of("impulses.axis", self.axis, ("x", "y", "z"))
+        count_of("impulses.bins", self.bins, least=2, most=_MOST)
+
+    def _require(self, scene: Scene) -> None:
+        """Raise SceneError unless the scene has the axis and is in equilibrium at one temperature."""
+        one_of("impulses.axis", self.axis, tuple("xyz"[: scene.dimension]))
+        _require_equilibrium(scene)
+
+
+def _require_equilibrium(scene: Scene) -> None:
+    """Raise SceneError, with the reason, if the impulses in a scene give no density.
+
+    Impulses give no density if velocities depend on positions. Velocities are independent of positions only
+    in equilibrium at one temperature.
+    """
+    if len({particle.mass for particle in scene.particles}) > 1:
+        rule = "must have one mass for an impulse tally, which sums over all single particles"
+        raise SceneError("particles.mass", len(scene.particles), rule)
+    if scene.restitution is not None and scene.restitution.dissipative:
+        rule = "excludes impulses, which require equilibrium; this gas loses energy"
+        raise SceneError("restitution", scene.restitution.normal, rule)
+    for name in _DISTURBING:
+        if FEATURES[name].value(scene) is not None:
+            rule = f"excludes impulses, which require equilibrium at rest, not {FEATURES[name].meaning}"
+            raise FEATURES[name].refuse(scene, rule)
+    if scene.driven_axes:
+        raise SceneError(
+            "gravity", scene.gravity, "excludes impulses, which require equilibrium; this gas flows"
+        )
+    temperatures = sorted(scene.face_temperatures)
+    if len(temperatures) > 1:
+        rule = "excludes impulses, which require equilibrium; heat flows between faces"
+        raise SceneError("faces.temperature", temperatures, rule)
+
+
+@with_guidance
+@dataclass(frozen=True)
+class PairImpulseTally(OptionalTally):
+    """Tally of the momentum that pairs gain along their separation, in shells of equal thickness.
+
+    The pair distribution g(r) is computed from this tally (`analysis.pairs`).
+
+    Parameters
+    ----------
+    furthest : float, [length]
+        Largest distance, above 0.
+    shells : int
+        Number of shells, from 2 to 100000.
+    share : float, default 1.0, [1]
+        Fraction of contacts at which the pairs with the other particles are searched for, in (0, 1].
+
+    Raises
+    ------
+    SceneError
+        If a value is out of range.
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> box = gp.Container((9.0, 9.0), boundary="periodic")
+    >>> scene = gp.Scene(box, [gp.Species(20, 0.2, temperature=1.0)])
+    >>> simulation = gp.Simulation(scene, seed=1, tallies=[gp.PairImpulseTally(3.0, 50, 0.5)])
+    >>> simulation.advance(duration=2.0)
+    >>> simulation.tally.contact_impulse_sum.shape
+    (50,)
+    """
+
+    furthest: float
+    shells: int
+    share: float = 1.0
+
+    name: ClassVar[str] = "pair_impulses"
+    meaning: ClassVar[str] = (
+        "keep impulses of pairs up to a distance in so many shells, at a fraction of contacts (default: 1), "
+        "such as `3:300:0.5`: in equilibrium `rdf` is then more accurate"
+    )
+    form: ClassVar[str] = "DISTANCE:SHELLS[:FRACTION]"
+
+    def __post_init__(self) -> None:
+        number("pair_impulses.furthest", self.furthest, "must be positive", above=0.0)
+        count_of("pair_impulses.shells", self.shells, least=2, most=_MOST)
+        number("pair_impulses.share", self.share, "must be above 0 and at most 1", above=0.0, most=1.0)
+
+    def _require(self, scene: Scene) -> None:
+        """Raise SceneError unless a scene is periodic, in equilibrium at one temperature, and long enough."""
+        if not scene.is_periodic:
+            rule = "needs a periodic container; set boundary: periodic"
+            raise SceneError("pair_impulses", self.furthest, rule)
+        diameter, half = 2.0 * scene.largest_radius, FURTHEST * min(scene.container.lengths)
+        if not diameter < self.furthest <= half:
+            rule = f"must be from the largest diameter, {diameter:g}, to half of the shortest side, "
+            rule += f"{half:.4g}"
+            raise SceneError("pair_impulses.furthest", self.furthest, rule)
+        if scene.count < 2:
+            raise SceneError("count", scene.count, "must be at least 2 for pair_impulses")
+        _require_equilibrium(scene)
+
+
+# Optional tallies of every run of some scenes, if the engine makes them.
+
+
+@dataclass(frozen=True)
+class WallShearTally(OptionalTally):
+    """Tangential momentum given to faces."""
+
+    name: ClassVar[str] = "wall_shear"
+    fact: ClassVar[str] = "drags_faces"
+
+
+@dataclass(frozen=True)
+class EntryTally(OptionalTally):
+    """Particles that have entered through open faces."""
+
+    name: ClassVar[str] = "entries"
+    fact: ClassVar[str] = "is_open"
+
+
+@dataclass(frozen=True)
+class FixedCollisionTally(OptionalTally):
+    """Collisions with fixed particles."""
+
+    name: ClassVar[str] = "fixed_collisions"
+    fact: ClassVar[str] = "has_fixed"
+
+
+@dataclass(frozen=True)
+class PerAreaTally(OptionalTally):
+    """Momentum and heat of faces per area that centres of each size can reach."""
+
+    name: ClassVar[str] = "per_area"
+    fact: ClassVar[str] = "has_unequal_areas"
+
+
+TALLIES: dict[str, type[OptionalTally]] = {
+    tally.name: tally
+    for tally in (
+        StressTally,
+        ImpulseTally,
+        PairImpulseTally,
+        WallShearTally,
+        EntryTally,
+        FixedCollisionTally,
+        PerAreaTally,
+    )
+}
+"""All optional tallies, by name."""

@@ -1,9 +1,9 @@
 """Theory of hard discs and spheres: formulas, provenance, range of validity.
 
-Independent of the engines; imports only numpy. Every docstring states the source of its formula: exact
-(closed form), literature (and what of it was derived again or tested here), computed (this project's own
-numerics). What was not verified is said to be so. Arguments that are out of range raise SceneError, which
-is a ValueError.
+The package is independent of the engines and imports only numpy. Every docstring names the source of its
+formula, which is exact (closed form), literature (with the parts that were derived again or tested here), or
+computed (numerical results of this project). Formulas that were not verified are marked. Arguments that are
+out of range raise SceneError, which is a ValueError.
 """
 
 from gaspart.public import attach as _attach

@@ -56,12 +56,6 @@ from gaspart.theory.granular import driven_temperature as driven_temperature
 from gaspart.theory.granular import finite_size_cumulant as finite_size_cumulant
 from gaspart.theory.granular import fourth_cumulant as fourth_cumulant
 from gaspart.theory.granular import haff_time as haff_time
-from gaspart.theory.granular import rough_cooling as rough_cooling
-from gaspart.theory.granular import rough_matrix as rough_matrix
-from gaspart.theory.granular import rough_ratio as rough_ratio
-from gaspart.theory.granular import rough_start_excess as rough_start_excess
-from gaspart.theory.granular import rough_temperatures as rough_temperatures
-from gaspart.theory.granular import rough_wall_difference as rough_wall_difference
 from gaspart.theory.gravity import hydrostatic_profiles as hydrostatic_profiles
 from gaspart.theory.gravity import ideal_energy_moments as ideal_energy_moments
 from gaspart.theory.gravity import ideal_heat_capacity as ideal_heat_capacity
@@ -106,6 +100,12 @@ from gaspart.theory.packing import failures_per_particle as failures_per_particl
 from gaspart.theory.packing import insertion_saturation as insertion_saturation
 from gaspart.theory.packing import insertion_saturation_uncertainty as insertion_saturation_uncertainty
 from gaspart.theory.packing import speedy_crystal as speedy_crystal
+from gaspart.theory.rough import rough_cooling as rough_cooling
+from gaspart.theory.rough import rough_matrix as rough_matrix
+from gaspart.theory.rough import rough_ratio as rough_ratio
+from gaspart.theory.rough import rough_start_excess as rough_start_excess
+from gaspart.theory.rough import rough_temperatures as rough_temperatures
+from gaspart.theory.rough import rough_wall_difference as rough_wall_difference
 from gaspart.theory.shear import VELOCITY_SLIP as VELOCITY_SLIP
 from gaspart.theory.shear import channel_velocity as channel_velocity
 from gaspart.theory.shear import free_flight_drift as free_flight_drift

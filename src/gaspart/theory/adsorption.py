@@ -1,6 +1,6 @@
 """Gases at walls that hold particles: step well, hard layer in it, flux from a wall.
 
-Energies are in k_B T unless a temperature is among the arguments. A well of width w holds a particle whose
+Energies are in k_B T unless a temperature is among the arguments. A particle is in a well of width w if its
 centre is within w of the lowest position that it can reach.
 """
 
@@ -199,7 +199,7 @@ def layer_diameter(width: Numbers) -> Values:
     Notes
     -----
     sqrt(1 - w^2 / 6). The heights of the centres are uniform and independent, so the mean square of their
-    difference is w^2 / 6 (to first order in w^2, where neighbours touch).
+    difference is w^2 / 6. This is true to first order in w^2, if neighbours touch.
     """
     return np.sqrt(1.0 - np.asarray(width, dtype=float) ** 2 / 6.0)
 
@@ -207,7 +207,8 @@ def layer_diameter(width: Numbers) -> Values:
 def excluded_in_front(packing_fraction: float, width: float) -> float:
     """Compute the volume in front of a layer that a sphere closes to the gas.
 
-    It is the volume that each further sphere of diameter 1 in the layer closes to the centres of the gas.
+    The result is the volume from which each further sphere of diameter 1 in the layer excludes the centres of
+    the gas.
 
     Parameters
     ----------
@@ -228,11 +229,11 @@ def excluded_in_front(packing_fraction: float, width: float) -> float:
 
     Notes
     -----
-    For a single sphere it is the part of its ball of radius 1 that lies in front of the layer, 2 pi / 3 if
-    the layer is thin. For more spheres it is less, since their balls overlap. At the height h above the
+    For a single sphere the volume is the part of its ball of radius 1 that is in front of the layer: 2 pi / 3
+    if the layer is thin. For more spheres it is less, since their balls overlap. At the height h above the
     layer's middle a sphere of the gas needs a circle of radius R = sqrt(1 - h^2) without discs. The
-    probability of such a circle is exact up to R = 1/2; beyond, it is scaled-particle theory's [1]_. The
-    volume is the derivative of the closed volume by the number of discs.
+    probability of such a circle is exact up to R = 1/2. For larger R it is from scaled-particle theory [1]_.
+    The volume is the derivative of the closed volume by the number of discs.
 
     References
     ----------
@@ -281,8 +282,8 @@ def layer_activity(activity: Numbers, packing_fraction: float, gas_density: floa
 
     Notes
     -----
-    `activity` is right for a single sphere in a thin well. The correction is of first order in the gas's
-    density: a sphere closes less of the space of the gas where other spheres close it already, see
+    `activity` is right for a single sphere in a thin well. The correction is of first order in the density of
+    the gas: a sphere excludes less additional volume where other spheres already exclude it, see
     `excluded_in_front`.
     """
     gained = 2.0 * np.pi / 3.0 - excluded_in_front(packing_fraction, width)
@@ -333,7 +334,7 @@ def langmuir_coverage(activity: Numbers) -> Values:
     Returns
     -------
     float or ndarray, same shape as `activity`, [1]
-        Fraction K / (1 + K) of the sites, which hold one particle each, that are occupied.
+        Fraction K / (1 + K) of occupied sites; each site can hold one particle.
 
     Raises
     ------

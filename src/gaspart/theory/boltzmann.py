@@ -1,10 +1,10 @@
 """Linearised Boltzmann operator of hard discs and spheres, in Sonine polynomials of velocity.
 
 Chapman and Cowling, The Mathematical Theory of Non-uniform Gases (1970). Velocities are in sqrt(k_B T / m),
-frequencies per n sigma^(d-1) of them unless stated. The collision integrals are exact quadratures, so the
-numbers of kinetic theory follow to as many digits as polynomials give. In the equation of Enskog a
-homogeneous gas relaxes by the same operator, times the contact value: rates in collisions of a particle do
-not depend on density.
+and frequencies in n sigma^(d-1) times this velocity unless noted. The collision integrals are exact
+quadratures, so results of kinetic theory are accurate to the order of the polynomials. In the Enskog equation
+a homogeneous gas relaxes by the same operator times the contact value. So rates per collision of a particle
+do not depend on density.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from functools import lru_cache
 import numpy as np
 
 from gaspart.theory.geometry import checked_dimension, unit_sphere_surface
-from gaspart.theory.granular import rough_ratio
+from gaspart.theory.rough import rough_ratio
 
 _FLUXES = {"viscosity": (2, 0), "conductivity": (1, 1)}
 """Rank of the harmonic tensor and order of the Sonine polynomial of the stress and of the heat flux."""
@@ -231,8 +231,8 @@ def homogeneous_gas(
 
     Notes
     -----
-    In each step all particles are paired at random, and a pair with the relative velocity g collides along a
-    random normal n with a probability proportional to max(g.n, 0): the rate of hard particles, in any
+    In each step all particles are paired at random. A pair with the relative velocity g collides along a
+    random normal n with a probability proportional to max(g.n, 0). This is the rate for hard particles in any
     dimension. Statistical errors decrease as 1 / sqrt(count).
     """
     rng, d = np.random.default_rng(seed), checked_dimension(dimension)
@@ -261,8 +261,8 @@ def relaxing_speeds(count: int, times: np.ndarray, hits: float, seed: int = 0) -
     times : ndarray, shape (T,), [time]
         Rising times.
     hits : float, [1/length]
-        n pi d^2, the number density times the cross-section of two spheres: a particle collides with
-        particles at rest relative to each other at this rate per unit of its speed.
+        n pi d^2, the number density times the cross-section of two spheres. A particle of speed v collides
+        with particles at rest at this rate times v.
     seed : int, default 0
         Seed of the random numbers.
 
@@ -317,8 +317,8 @@ def rough_discs(
 
     Notes
     -----
-    Velocities and spins start Maxwellian, at the ratio of `granular.rough_ratio`. They do not stay so: they
-    become correlated.
+    Velocities and spins start Maxwellian, at the ratio of `rough.rough_ratio`. They become correlated with
+    time.
     """
     rng = np.random.default_rng(seed)
     velocity, spin = rng.standard_normal((count, 2)), rng.standard_normal(count)  # spin: R omega
@@ -461,7 +461,8 @@ def dot(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
     Notes
     -----
-    Column by column, which is several times faster than numpy's sum over so short an axis, and rounds alike.
+    The sum is computed column by column. This is several times faster than numpy's sum over such a short
+    axis, with the same rounding.
     """
     products = first[:, 0] * second[:, 0]
     for axis in range(1, first.shape[1]):
@@ -552,7 +553,7 @@ def _advance(
     """Move all spheres for one interval, in place.
 
     Hits are drawn at a rate that no sphere exceeds at its present speed, and accepted in proportion to the
-    speed of approach. So there is no time step, and no error of a time step.
+    speed of approach. So there is no time step and no error of a time step.
     """
     fastest = float(gas.max())
     flying, moving, remaining = np.arange(len(position)), velocity.copy(), np.full(len(position), interval)

@@ -139,8 +139,8 @@ def langevin_msd(time: Numbers, diffusion: Numbers, rate: Numbers, dimension: in
 
     Notes
     -----
-    2 d D [t - (1 - exp(-g t)) / g], Ornstein and Fuerth's. It follows from an exponential velocity
-    autocorrelation of rate g: ballistic at short times, 2 d D t at long times.
+    2 d D [t - (1 - exp(-g t)) / g], Ornstein and Fuerth's. The result is for an exponential velocity
+    autocorrelation with the rate g: ballistic at short times, 2 d D t at long times.
 
     Examples
     --------
@@ -182,8 +182,8 @@ def langevin_msd_from_rest(time: Numbers, diffusion: Numbers, rate: Numbers, dim
 
     Notes
     -----
-    2 d D [t - 2 (1 - exp(-g t)) / g + (1 - exp(-2 g t)) / (2 g)], by the same equation as `langevin_msd`. It
-    begins as 2 d D g^2 t^3 / 3.
+    2 d D [t - 2 (1 - exp(-g t)) / g + (1 - exp(-2 g t)) / (2 g)], by the same equation as `langevin_msd`. At
+    short times the result is 2 d D g^2 t^3 / 3.
 
     Examples
     --------
@@ -274,8 +274,8 @@ def displaced_area(packing_fraction: Numbers, size_ratio: Numbers) -> Values:
     Notes
     -----
     s^2 + 2 s (1 - eta) / (1 + eta) + (1 - eta)^2 / (1 + eta), scaled-particle theory (see `insertion_work`).
-    In a dilute gas it is (s + 1)^2: centres are kept off the radius R + r. In a dense fluid it is less,
-    because the fluid is drawn to the disc's edge and fills a part of that margin again.
+    In a dilute gas the result is (s + 1)^2, because centres are excluded from the radius R + r. In a dense
+    fluid it is less, because the fluid is drawn to the disc's edge and fills a part of that margin again.
 
     Examples
     --------

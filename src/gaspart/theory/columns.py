@@ -1,7 +1,7 @@
 """Column of a gas in equilibrium under gravity: hydrostatics at the temperature of its energy.
 
-Heights are those that centres reach above the lowest one. Hard spheres and discs follow the reference
-equation of state; with `ideal` the gas follows the Boltzmann model, which has no virial.
+Heights are heights of centres above the lowest position of a centre. Hard spheres and discs follow the
+reference equation of state. With `ideal` the gas follows the Boltzmann model, whose virial is 0.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ class Column:
     def collisions(self) -> float:
         """Collisions per time, in units that do not depend on the state.
 
-        They serve to compare two columns of one scene.
+        These rates are for comparing two columns of one scene.
         """
         contact = 1.0 if self.ideal else contact_value(self.filled, self.dimension)
         speed = np.sqrt(1.0 / self.masses[:, None] + 1.0 / self.masses)
@@ -104,7 +104,7 @@ class GravityColumn:
     def column(self, temperature: float, ideal: bool) -> Column:
         """Compute the column at a temperature.
 
-        Raises ValueError if the fluid would be denser than its equation of state.
+        Raises ValueError if the fluid would be denser than the range of its equation of state.
         """
         d, weights = self.dimension, self.masses * self.pull / temperature
         top = min(self.height, self._reaches(temperature))
@@ -144,7 +144,7 @@ class GravityColumn:
         return self.column(high, ideal)
 
     def energy_of(self, state: State) -> float:
-        """Compute the energy of a state, kinetic and potential; the floor is at 0."""
+        """Compute the kinetic and potential energy of a state, with the floor at height 0."""
         position, length = state.positions[:, self.axis], float(state.lengths[self.axis])
         heights = (position if self.low else length - position) - 0.5 * (length - self.height)
         return float(state.translational_energy + self.pull * (state.masses @ heights))

@@ -194,9 +194,9 @@ def yeh_hummer(length: Numbers, viscosity: Numbers, temperature: float = 1.0) ->
 
     Notes
     -----
-    2.837297 k_B T / (6 pi viscosity L) [1]_. This is hydrodynamics: it holds if the mean free path is much
-    shorter than L. In a gas, modes of the velocity field decay with nu + D instead of nu. They are the modes
-    of a viscosity that is larger by rho D.
+    2.837297 k_B T / (6 pi viscosity L) [1]_. The correction is hydrodynamic: it is valid if the mean free
+    path is much shorter than L. In a gas, modes of the velocity field decay with nu + D instead of nu. They
+    are the modes for a viscosity that is larger by rho D.
 
     References
     ----------
@@ -254,7 +254,8 @@ def diffusion_in_cube(
     side, but at most by a half. The second term counts in containers that are not much longer than a mean
     free path. (Tested with 49 values of 1372 to 530604 spheres by another program.) In a short cube the
     images of a particle order the fluid about it. The relative change of D is twice `finite_size_remainder`.
-    (Tested with 44 rows of `small_systems` in longer cubes; D is about the centre of mass there.)
+    (Tested with 44 rows of `small_systems` in longer cubes; D is relative to the centre of mass in this
+    table.)
 
     Examples
     --------
@@ -306,8 +307,8 @@ def velocity_decay_rate(
     mass : float, default 1.0, [mass]
         Mass of a particle.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. If another equation of state holds, its
-        value; 1 in a gas of points.
+        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
+        state, or 1 in a gas of points.
 
     Returns
     -------
@@ -361,8 +362,8 @@ def enskog_mean_squared_displacement(
     mass : float, default 1.0, [mass]
         Mass of a particle.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. If another equation of state holds, its
-        value; 1 in a gas of points.
+        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
+        state, or 1 in a gas of points.
 
     Returns
     -------
@@ -378,8 +379,9 @@ def enskog_mean_squared_displacement(
     -----
     2 d int (t - s) C(s) ds with C(s) = (k_B T / m) sum w exp(-r s). The velocity autocorrelation C is the
     solution of the linear Boltzmann equation at Enskog's collision rate, with the rates r and weights w of
-    five Sonine polynomials. At long times, where the result is 2 d D t, this is accurate to 6e-5 of Enskog's
-    D (2D) or 1e-5 (3D); before that, to less. There are no correlated collisions and no long-time tail.
+    five Sonine polynomials. At long times, where the result is 2 d D t, the accuracy is 6e-5 of Enskog's D
+    (2D) or 1e-5 (3D). At short times the error is smaller. There are no correlated collisions and no
+    long-time tail.
 
     Examples
     --------
@@ -493,7 +495,7 @@ def logarithmic_slope(
     -----
     k_B T / (8 pi m rho (D + nu)), the integral of `velocity_autocorrelation_tail`, which has the range and
     the source. In 2D the tail falls as 1/t, so D(t) grows without limit and no diffusion coefficient exists.
-    At very long times D(t) changes the slope itself; a simulation does not reach these times.
+    At very long times D(t) changes the slope itself. Simulations do not reach these times.
 
     Examples
     --------

@@ -1,8 +1,9 @@
 """Effects of cells and time steps on a gas simulated by direct simulation Monte Carlo (DSMC).
 
-Widths are in mean free paths l = 1 / (sqrt 2 pi n sigma^2), steps in l / c with c = sqrt(2 k_B T / m). In a
-cell momentum and energy pass between particles wherever they are in it; in a step all particles fly before
-any collide. Both effects are exact in the first Sonine approximation, whose fluxes relax exponentially.
+Widths are in mean free paths l = 1 / (sqrt 2 pi n sigma^2), steps in l / c with c = sqrt(2 k_B T / m). Within
+a cell, momentum and energy are exchanged between particles at any distance. Within a step, all particles move
+before any collide. Both effects are exact in the first Sonine approximation, in which fluxes relax
+exponentially.
 """
 
 from __future__ import annotations
@@ -109,8 +110,8 @@ def diffusion_by_modes(
     -----
     (1 / d N) sum over k of (d - 1) / [(nu + D) k^2]: the integral of the shear modes in `modes`, which carry
     particles along [1]_. The wave vectors k are those that `cells` along each side resolve, up to half of
-    their number, and whose waves are longer than 2 pi mean free paths. With one cell no mode contributes:
-    partners are drawn wherever they are. This is hydrodynamics: an estimate, of which a half is uncertain.
+    their number, if the waves are longer than 2 pi mean free paths. With one cell no mode contributes:
+    partners are drawn wherever they are. This is a hydrodynamic estimate, with an uncertainty of a half.
 
     References
     ----------
@@ -315,7 +316,7 @@ def ideal_boxes_per_particle(test_cost: Numbers, box_cost: Numbers, dimension: i
 
     Notes
     -----
-    With M boxes and N particles, away from the walls, there are 3^d N / (2 M) tests per particle, while every
-    box must be emptied in every step. The sum of both is least at M / N = sqrt(3^d c_test / (2 c_box)).
+    With M boxes and N particles, far from walls, there are 3^d N / (2 M) tests per particle, and every box
+    must be emptied in every step. The sum of both is least at M / N = sqrt(3^d c_test / (2 c_box)).
     """
     return np.sqrt(0.5 * 3.0 ** checked_dimension(dimension) * np.asarray(test_cost) / box_cost)

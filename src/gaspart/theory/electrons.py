@@ -1,11 +1,12 @@
 """Boltzmann equation of electrons among scatterers with modes, between two walls, by direct simulation.
 
-Electrons in two dimensions do not collide with each other. An electron that hits a scatterer, along a normal
-n, gives its energy along n to the scatterer's mode, and takes the mode's energy; its velocity across n
-remains. Scatterers are met at random after a mean free path, the unit of length here. This is molecular
-chaos, which requires scatterers far from each other. Electrons that leave a wall have its temperature.
+Electrons in two dimensions do not collide with each other. An electron that hits a scatterer along a normal n
+gives its energy along n to the mode of the scatterer and receives the energy of the mode. Its velocity
+perpendicular to n does not change. Scatterers are met at random after a mean free path, the unit of length
+here. This is molecular chaos, which requires scatterers that are far from each other. Electrons that leave a
+wall have its temperature.
 
-This program computes `heat.METAL_BEND`, by which the electrons' temperature deviates from a straight line.
+This program computes `heat.METAL_BEND`, the deviation of the electrons' temperature from a straight line.
 Among scatterers that only deflect, n sqrt(T) is uniform, and T is linear where electrons have forgotten the
 walls. Here a fast electron loses its speed at a hit and not its direction alone; n T^0.65 is uniform (by
 correlations in equilibrium), so T^0.85 is linear, up to flights that are not short compared with the gap.

@@ -2,11 +2,10 @@
 
 All functions take `packing_fraction` (number or array), dimension 2 or 3, and the particles' diameter,
 temperature (k_B = 1) and mass; time is in units of diameter sqrt(mass / temperature). chi is `contact`, the
-pair distribution at contact, by default `state.contact_value`. If another equation of state holds, chi is the
-value of that equation; it is 1 in a gas of points.
-Literature: Chapman and Cowling (1970) for spheres; Gass, J. Chem. Phys. 54, 1898 (1971) for discs. The range
-is the range of the reference equation of state. The collision rate is exact; the transport coefficients
-neglect correlated collisions (see `diffusion`).
+pair distribution at contact, by default `state.contact_value`. Contact value of another equation of state, or
+1 in a gas of points. Literature: Chapman and Cowling (1970) for spheres; Gass, J. Chem. Phys. 54, 1898 (1971)
+for discs. The range is the range of the reference equation of state. The collision rate is exact; the
+transport coefficients neglect correlated collisions (see `diffusion`).
 """
 
 import math
@@ -62,8 +61,8 @@ def kinetic_viscosity(packing_fraction: Numbers, dimension: int, contact: Number
     dimension : {2, 3}
         Discs or spheres.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. If another equation of state holds, its
-        value; 1 in a gas of points.
+        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
+        state, or 1 in a gas of points.
 
     Returns
     -------
@@ -92,8 +91,8 @@ def kinetic_conductivity(packing_fraction: Numbers, dimension: int, contact: Num
     dimension : {2, 3}
         Discs or spheres.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. If another equation of state holds, its
-        value; 1 in a gas of points.
+        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
+        state, or 1 in a gas of points.
 
     Returns
     -------
@@ -136,8 +135,8 @@ def collision_rate(
     mass : float, default 1.0, [mass]
         Mass of a particle.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. If another equation of state holds, its
-        value; 1 in a gas of points.
+        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
+        state, or 1 in a gas of points.
 
     Returns
     -------
@@ -251,7 +250,7 @@ def mean_free_path(packing_fraction: Numbers, dimension: int, diameter: float = 
     Returns
     -------
     ndarray, same shape as `packing_fraction`, [length]
-        Mean free path; infinite at zero density.
+        Mean free path; it is infinite at zero density.
 
     Raises
     ------
@@ -297,8 +296,8 @@ def enskog_diffusion(
     mass : float, default 1.0, [mass]
         Mass of a particle.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. If another equation of state holds, its
-        value; 1 in a gas of points.
+        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
+        state, or 1 in a gas of points.
 
     Returns
     -------
@@ -354,8 +353,8 @@ def enskog_bulk_viscosity(
     mass : float, default 1.0, [mass]
         Mass of a particle.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. If another equation of state holds, its
-        value; 1 in a gas of points.
+        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
+        state, or 1 in a gas of points.
 
     Returns
     -------
@@ -409,8 +408,8 @@ def enskog_viscosity(
     mass : float, default 1.0, [mass]
         Mass of a particle.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. If another equation of state holds, its
-        value; 1 in a gas of points.
+        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
+        state, or 1 in a gas of points.
 
     Returns
     -------
@@ -426,8 +425,8 @@ def enskog_viscosity(
     -----
     (eta_0 / chi) [1 + 2 b chi / (d+2)]^2 + bulk viscosity d / (d+2), where b is 2^(d-1) times the packing
     fraction and eta_0 the dilute value, 0.17913 in 3D and 0.28829 in 2D, times sqrt(m k_B T) / sigma^(d-1).
-    3D: eta_0 [1/chi + 0.8 b + 0.7615 b^2 chi]; 2D: eta_0 [1/chi + b + 0.8729 b^2 chi] (Gass). It is good to a
-    few per cent up to a packing fraction of 0.3 (3D), and too low beyond.
+    3D: eta_0 [1/chi + 0.8 b + 0.7615 b^2 chi]; 2D: eta_0 [1/chi + b + 0.8729 b^2 chi] (Gass). The formula is
+    accurate to a few per cent up to a packing fraction of 0.3 (3D), and too low for denser gases.
 
     Examples
     --------
@@ -476,8 +475,8 @@ def enskog_longitudinal_viscosity(
 
     Notes
     -----
-    2 (d-1)/d shear viscosity + bulk viscosity. It acts on sound, and on a gas between a wall and a piston,
-    where it produces heat: longitudinal viscosity times (du/dx)^2 per volume and time.
+    2 (d-1)/d shear viscosity + bulk viscosity. The longitudinal viscosity damps sound. In a gas between a
+    wall and a piston it produces heat: longitudinal viscosity times (du/dx)^2 per volume and time.
 
     Examples
     --------
@@ -514,8 +513,8 @@ def enskog_conductivity(
     mass : float, default 1.0, [mass]
         Mass of a particle.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. If another equation of state holds, its
-        value; 1 in a gas of points.
+        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
+        state, or 1 in a gas of points.
 
     Returns
     -------
@@ -572,7 +571,7 @@ def transport_finite_size_factor(count: int, dimension: int, quantity: str) -> f
     -----
     With D = d (N - 1), the mean square of the stress is lower by (1 - 1/N) D / (D + 2), the mean square of
     the heat flux by (1 - 1/N)^3 D^2 / ((D + 2)(D + 4)) (moments of the uniform distribution on a sphere; to
-    O(1/N^2)). Both fluxes last longer by 1 / (1 - 1/N), since a particle has N - 1 partners.
+    O(1/N^2)). Both fluxes last longer by the factor 1 / (1 - 1/N), since a particle has N - 1 partners.
 
     Examples
     --------

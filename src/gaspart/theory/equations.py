@@ -1,7 +1,7 @@
 """Equations of state by name: Z = P / (rho k_B T) against packing fraction.
 
-Every function returns the compressibility factor Z with the shape of `packing_fraction`, dimensionless, and
-raises SceneError, a ValueError, outside the stated range. `state` defines the reference equation.
+Every function returns the dimensionless compressibility factor Z with the shape of `packing_fraction`, and
+raises SceneError, a ValueError, outside its range. `state` defines the reference equation.
 """
 
 import numpy as np
@@ -41,9 +41,9 @@ def van_der_waals(packing_fraction: Numbers, dimension: int) -> Values:
 
     Notes
     -----
-    Z = 1 / (1 - b_2 eta), the proposal P = N k_B T / (V - N b) of source A, with b = B2. It is exact to the
-    first order in eta only: its b_3 is b_2^2, 28 % too high in 2D and 60 % in 3D. It diverges far below close
-    packing. In one dimension it is exact.
+    Z = 1 / (1 - b_2 eta), the proposal P = N k_B T / (V - N b) of source A, with b = B2. The equation is
+    exact to the first order in eta only: its b_3 is b_2^2, 28 % too high in 2D and 60 % in 3D. The pressure
+    diverges far below close packing. In one dimension it is exact.
 
     Examples
     --------
@@ -75,8 +75,8 @@ def carnahan_starling(packing_fraction: Numbers) -> Values:
 
     Notes
     -----
-    Z = (1 + eta + eta^2 - eta^3) / (1 - eta)^3 [1]_. It is 0.13 % low at eta = 0.2 and 0.27 % low at 0.3 to
-    0.4: an equation to draw, not to test against at 0.1 %.
+    Z = (1 + eta + eta^2 - eta^3) / (1 - eta)^3 [1]_. The equation is 0.13 % low at eta = 0.2 and 0.27 % low
+    at 0.3 to 0.4. So it is accurate enough for a figure, but not for a test at 0.1 %.
 
     References
     ----------
@@ -112,8 +112,8 @@ def kolafa_1986(packing_fraction: Numbers) -> Values:
 
     Notes
     -----
-    Z = [1 + eta + eta^2 - 2 eta^3 (1 + eta) / 3] / (1 - eta)^3 [1]_. It is within 0.1 % of the reference
-    (tested): an equation to draw.
+    Z = [1 + eta + eta^2 - 2 eta^3 (1 + eta) / 3] / (1 - eta)^3 [1]_. The equation is within 0.1 % of the
+    reference (tested).
 
     References
     ----------
@@ -252,7 +252,7 @@ def scaled_particle(packing_fraction: Numbers) -> Values:
 
     Notes
     -----
-    Z = 1 / (1 - eta)^2 [1]_. It is right to 4 %.
+    Z = 1 / (1 - eta)^2 [1]_. The equation is accurate to 4 %.
 
     References
     ----------
@@ -325,7 +325,7 @@ def santos_haro_yuste(packing_fraction: Numbers) -> Values:
     Notes
     -----
     Z = 1 / [1 - 2 eta + (2 eta_c - 1) eta^2 / eta_c^2], with eta_c of close packing [1]_: the simplest
-    equation that has B2 and a pole at close packing. It is good to 1.6 % up to eta = 0.55.
+    equation that has B2 and a pole at close packing. The equation is accurate to 1.6 % up to eta = 0.55.
 
     References
     ----------

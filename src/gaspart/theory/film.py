@@ -67,8 +67,8 @@ def white_bear_slit(
     Notes
     -----
     White Bear functional [1]_, solved by damped iteration, near the solution with Anderson's mixing [2]_. Its
-    bulk is Carnahan and Starling's, 0.3 % low at eta = 0.35. It obeys the contact theorem exactly, so rho(0)
-    is its pressure on the walls.
+    bulk pressure is the value of Carnahan and Starling, 0.3 % low at eta = 0.35. The theory obeys the contact
+    theorem exactly, so rho(0) is its pressure on the walls.
 
     References
     ----------

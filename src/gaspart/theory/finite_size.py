@@ -3,7 +3,7 @@ r"""Pairs of few particles in a periodic container: closed form, table, expansio
 The container is a square or a cube.
 
 All quantities of N equal particles at fixed energy and zero total momentum that depend on pairs in contact
-follow from one number, the contact value g_N. It is the density of pairs at contact, averaged over all
+follow from one number, the contact value g_N. The value is the density of pairs at contact, averaged over all
 directions, divided by N (N - 1) / V^2. With k_B T = 2 E / (d (N - 1)), exactly,
 
 .. math:: Z_N = 1 + 2^{d-1} \eta \, \frac{N-1}{N} \, g_N, \qquad
@@ -12,9 +12,9 @@ directions, divided by N (N - 1) / V^2. With k_B T = 2 E / (d (N - 1)), exactly,
 where nu_1 is `collision_rate` for a contact value of 1, and f is `speeds.mean_speed_factor`. Z_N is the
 canonical compressibility factor, which `gaspart.analysis.compressibility_factor` measures.
 
-The expansion in 1/N (`state.finite_size_correction`) leaves out terms that fall exponentially with the side
-of the container: images of a particle order the fluid about it. These terms are the largest ones in dense or
-small systems. `finite_size_remainder` states their size as the table shows it.
+The expansion in 1/N (`state.finite_size_correction`) neglects terms that decrease exponentially with the side
+of the container: images of a particle order the fluid around the particle. These terms are the largest ones
+in dense or small systems. `finite_size_remainder` estimates their size from the table.
 """
 
 import math
@@ -185,7 +185,7 @@ def finite_contact_value(
     -----
     In a square or cube, two particles have a closed form (`pair_contact_value`), and the numbers in the table
     (`small_systems`) are interpolated in eta: linearly, as a factor of the expansion, uncertain by the
-    difference from a parabola. Otherwise, and if it is sharper, the expansion in 1/N holds
+    difference from a parabola. Otherwise, and if it has the smaller uncertainty, the expansion in 1/N is used
     (`finite_size_correction`). Its uncertainty is made up of the uncertainty of the equation of state,
     `finite_size_remainder`, and the square of the relative correction for the next order in 1/N.
 
@@ -246,9 +246,9 @@ def insertion_potential(
     -----
     `excess_chemical_potential` and `insertion_finite_size_correction`. With F_N the free energy of N
     particles, the difference F_(N+1) - F_N has the remainder R + (integral of R / eta over eta), where R is
-    the remainder of Z, `finite_size_remainder` times Z - 1. Both, the uncertainty of the equation of state
-    and the square of the relative correction make up the uncertainty. A particle alone excludes 2^d eta of
-    the container, exactly.
+    the remainder of Z, `finite_size_remainder` times Z - 1. The uncertainty combines both remainders, the
+    uncertainty of the equation of state, and the square of the relative correction. A particle alone excludes
+    2^d eta of the container, exactly.
 
     Examples
     --------

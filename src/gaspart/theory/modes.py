@@ -1,16 +1,16 @@
 r"""The long-time velocity autocorrelation in a periodic container: a sum over the hydrodynamic modes.
 
-A tagged particle's velocity spreads over the modes of the fluid, each of which decays while the particle
-diffuses away from where it started. With wave vectors k of the container's lattice, the total momentum of N
-particles being zero,
+The velocity of a tagged particle spreads over the modes of the fluid. Each mode decays while the particle
+diffuses away from its starting position. With wave vectors k of the container's lattice, the total momentum
+of N particles being zero,
 
 .. math:: C(t) = \frac{1}{d N} \sum_{k \ne 0} e^{-D k^2 t} [(d-1) e^{-\nu k^2 t}
           + e^{-\Gamma k^2 t / 2} \cos(c k t)] ,
 
-d - 1 shear modes with the kinematic viscosity nu, and sound with the speed c and the attenuation Gamma =
-[2 (d-1)/d eta + zeta] / rho + (gamma - 1) lambda / (rho c_p). Where momentum is free the term k = 0 is 1/N.
-In an infinite fluid the sum over shear modes is an integral, the known tail ((d-1) / (d rho)) [4 pi (D + nu)
-t]^(-d/2) (Ernst, Hauge and van Leeuwen, Phys. Rev. Lett. 25, 1254 (1970)); sound decays faster. Transport
+d - 1 shear modes with the kinematic viscosity nu, and sound with the speed c and the attenuation Gamma = [2
+(d-1)/d eta + zeta] / rho + (gamma - 1) lambda / (rho c_p). If the total momentum is free, the term k = 0 is
+1/N. In an infinite fluid the sum over shear modes is an integral, the known tail ((d-1) / (d rho)) [4 pi (D +
+nu) t]^(-d/2) (Ernst, Hauge and van Leeuwen, Phys. Rev. Lett. 25, 1254 (1970)); sound decays faster. Transport
 coefficients are Enskog's. Everything is in diameters, masses and k_B T.
 """
 
@@ -137,7 +137,7 @@ def velocity_autocorrelation_modes(
     Notes
     -----
     The sum over hydrodynamic modes of the module `modes`. It is valid after many collisions of a particle,
-    whatever the time that sound takes to cross the container.
+    for any time that sound takes to cross the container.
 
     References
     ----------

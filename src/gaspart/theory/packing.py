@@ -81,7 +81,7 @@ def insertion_saturation(
 
     Notes
     -----
-    - "periodic": the infinite value eta_s of `RSA_SATURATION` at every L; there are fluctuations only.
+    - "periodic": the infinite value eta_s of `RSA_SATURATION` at every L, with fluctuations only.
     - "centres_to_walls": source A's rule. Centres are in [0, L]^d and particles are counted completely, so
       the value is eta_s (1 + c sigma / L)^d. Computed: c = 0.64 in 3D for L / sigma >= 4, and c = 0.75 in 2D
       for L / sigma about 100.
@@ -169,10 +169,10 @@ def available_fraction(packing_fraction: Numbers, dimension: int) -> Values:
 
     Notes
     -----
-    1 - 2^d eta + c_2 eta^2, with c_2 = 6 sqrt 3 / pi (2D) or 17 (3D). It is exact to eta^2, where insertion
-    and equilibrium still agree [1]_ [2]_. So c_2 follows from B2 and B3 (tested). It holds for an infinite or
-    periodic container. The third order is neglected, which limits it to about 1 % at eta = 0.05 in 3D and 0.1
-    in 2D.
+    1 - 2^d eta + c_2 eta^2, with c_2 = 6 sqrt 3 / pi (2D) or 17 (3D). The fraction is exact to eta^2, where
+    insertion and equilibrium still agree [1]_ [2]_. So c_2 follows from B2 and B3 (tested). The value is for
+    an infinite or periodic container. The third order is neglected, which limits it to about 1 % at eta =
+    0.05 in 3D and 0.1 in 2D.
 
     References
     ----------
@@ -274,7 +274,7 @@ def coexistence_packing_fractions(dimension: int) -> np.ndarray:
 
     Notes
     -----
-    From `COEXISTENCE_DENSITY`, which states the sources.
+    The values are from `COEXISTENCE_DENSITY`, which has the sources.
 
     Examples
     --------
@@ -399,7 +399,7 @@ def alder_hoover_young_crystal(packing_fraction: Numbers, dimension: int) -> Val
     2/alpha + 1.90(1) + 0.67(7) alpha (by SklogWiki) + 1.5 alpha^2 (not verified; 0.4 % below
     `CRYSTAL_OF_1024_DISCS`, 1.2 % without this term). Spheres, face-centred cubic: 3/alpha + 2.566 + 0.55
     alpha (2.56 and 0.56 by SklogWiki) - 1.19 alpha^2 + 5.95 alpha^3 (not verified; within 0.15 % of Speedy's
-    fit). The free-volume term is exact at close packing; the fits are good to some 0.3 %. An equation to
+    fit). The free-volume term is exact at close packing. The fits are accurate to some 0.3 %. An equation to
     draw: no claim depends on it.
 
     References

@@ -200,10 +200,10 @@ def free_flight_drift(
 
     Notes
     -----
-    Exact (closed form). It is force / mass times the mean of the time since a particle was at a wall, `time`
-    at most. This mean is the integral over t of the fraction of particles that were at no wall for t: the
-    average of 1 - abs(v) t / length, if positive, over Maxwell's distribution. It grows with the logarithm of
-    time, without limit, because many particles cross slowly.
+    Exact (closed form). The drift is force / mass times the mean time since a particle was last at a wall,
+    limited to `time`. This mean is the integral over t of the fraction of particles that were at no wall for
+    t: the average of 1 - abs(v) t / length, if positive, over Maxwell's distribution. The drift grows with
+    the logarithm of time, without limit, because many particles cross slowly.
 
     Examples
     --------
@@ -250,8 +250,8 @@ def interpolated_stress(
     Notes
     -----
     1 / (1 / free + 1 / fluid), of the stress of free flight and the stress without slip, in the form of
-    Sherman [1]_. To the first order in `velocity` it is right in both limits and an approximation between
-    them: 2 % above the stress with slip at a Knudsen number of 0.1.
+    Sherman [1]_. To the first order in `velocity` the stress is correct in both limits. Between the limits it
+    is an approximation: 2 % above the stress with slip at a Knudsen number of 0.1.
 
     References
     ----------
@@ -292,8 +292,8 @@ def viscous_heating(packing_fraction: Numbers, dimension: int) -> Values:
     Notes
     -----
     Between two walls T + this ratio times u^2 is the same everywhere, with the velocity u relative to the
-    position where T is highest. It is exact where the ratio does not change: both coefficients grow with the
-    square root of T. The ratio is 2 / 15 in the first Sonine approximation of dilute spheres.
+    position where T is highest. The result is exact if the ratio of the two coefficients is constant; both
+    grow with the square root of T. The ratio is 2 / 15 in the first Sonine approximation of dilute spheres.
 
     Examples
     --------

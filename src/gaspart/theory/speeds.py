@@ -51,8 +51,9 @@ def mean_speed(
 
     Notes
     -----
-    sqrt(pi k_B T / 2m) in 2D, sqrt(8 k_B T / (pi m)) in 3D (exact). With `count` it is sqrt(n) Gamma(n) /
-    Gamma(n + 1/2) times this, n = d N / 2: the velocities are uniform on a sphere in d N dimensions (exact).
+    sqrt(pi k_B T / 2m) in 2D, sqrt(8 k_B T / (pi m)) in 3D (exact). With `count` the result is multiplied by
+    sqrt(n) Gamma(n) / Gamma(n + 1/2), n = d N / 2, because the velocities are uniform on a sphere in d N
+    dimensions (exact).
 
     Examples
     --------
@@ -166,8 +167,8 @@ def maxwell_cdf(
     -----
     The incomplete gamma function P(d/2, m v^2 / 2 k_B T) (exact). With `freedoms` the velocities are uniform
     on a sphere in D dimensions, d of which belong to one particle, and x = m v^2 / (D k_B T) has a beta
-    distribution: I_x(d/2, (D - d)/2) (exact). D is d N; or d (N - 1) for velocities about the centre of mass
-    times sqrt(N / (N - 1)).
+    distribution: I_x(d/2, (D - d)/2) (exact). D is d N, or d (N - 1) for velocities relative to the centre of
+    mass times sqrt(N / (N - 1)).
 
     Examples
     --------
@@ -235,7 +236,7 @@ def kurtosis(dimension: int, count: int | None = None, zero_momentum: bool = Fal
     count : int, optional
         Number N of particles at fixed energy. Default: an infinite number.
     zero_momentum : bool, default False
-        Hold the total momentum at zero. It has no effect without `count`.
+        Hold the total momentum at zero. Without `count` this argument has no effect.
 
     Returns
     -------
@@ -292,9 +293,9 @@ def kurtosis_scatter(dimension: int, count: int) -> tuple[float, float]:
     Notes
     -----
     Velocities are uniform on a sphere in D = d N dimensions (exact). The kurtosis is N sum(q) / (sum e)^2
-    with e = v^2 and q = e^2, which does not depend on sum(e) there. So its moment of order m is N^m
-    <sum(q)^m> / <(sum e)^2m> of independent normal velocities, whose <e^k> is d (d+2) ... (d+2k-2). A total
-    momentum held at zero changes it by the relative amount 1/N (neglected).
+    with e = v^2 and q = e^2. At constant energy it does not depend on sum(e). So its moment of order m is N^m
+    <sum(q)^m> / <(sum e)^2m> of independent normal velocities, whose <e^k> is d (d+2) ... (d+2k-2). If the
+    total momentum is fixed at zero, the scatter changes by the relative amount 1/N (neglected).
 
     Examples
     --------

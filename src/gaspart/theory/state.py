@@ -97,7 +97,7 @@ def compressibility_factor(packing_fraction: Numbers, dimension: int) -> Values:
 
     Notes
     -----
-    Discs: `virial_with_tail`. Spheres: `kolafa_labik_malijevsky`; they are metastable from 0.4915 on.
+    Discs: `virial_with_tail`. Spheres: `kolafa_labik_malijevsky`; states above 0.4915 are metastable.
 
     Examples
     --------
@@ -425,8 +425,8 @@ def constant_enthalpy_factor(packing_fraction: Numbers, dimension: int, count: N
 
         1 + (s / N) [y' / Z + (2 / d) y' - eta y'' Z / (d y')].
 
-    It is 1 + 1/N for an ideal gas, in which it is exact. To first order in 1/N. The temperature is 2 <E> / (d
-    N).
+    The factor is 1 + 1/N for an ideal gas, which is exact. To first order in 1/N. The temperature is 2 <E> /
+    (d N).
 
     References
     ----------

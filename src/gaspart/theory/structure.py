@@ -43,8 +43,9 @@ def percus_yevick_structure_factor(wave_number: Numbers, packing_fraction: float
     Notes
     -----
     The direct correlation function is -(a + b r + a eta r^3 / 2) inside of the diameter and 0 beyond, with a
-    = (1 + 2 eta)^2 / (1 - eta)^4, b = -6 eta (1 + eta / 2)^2 / (1 - eta)^4 [1]_ [2]_. Its integral is by
-    Gauss and Legendre, exact to rounding up to k = 100. S(0) belongs to `percus_yevick_compressibility`.
+    = (1 + 2 eta)^2 / (1 - eta)^4, b = -6 eta (1 + eta / 2)^2 / (1 - eta)^4 [1]_ [2]_. The integral is
+    computed by Gauss-Legendre quadrature, exact to rounding up to k = 100. S(0) belongs to
+    `percus_yevick_compressibility`.
 
     References
     ----------
@@ -95,8 +96,8 @@ def percus_yevick_rdf(distance: Numbers, packing_fraction: float) -> Values:
     -----
     r g(r) is the inverse of Wertheim's Laplace transform [1]_. With L = (1 + eta / 2) t + 1 + 2 eta and S =
     (1 - eta)^2 t^3 + 6 eta (1 - eta) t^2 + 18 eta^2 t - 12 eta (1 + 2 eta), it is the sum over n < r of the
-    residues of (-12 eta)^(n-1) t (L / S)^n e^{t (r - n)} at the three zeros of S. They are computed together,
-    as an integral over circles around all three.
+    residues of (-12 eta)^(n-1) t (L / S)^n e^{t (r - n)} at the three zeros of S. The residues are computed
+    together, as an integral over circles around all three zeros.
 
     References
     ----------
@@ -161,7 +162,7 @@ def _verlet_weis(eta: float) -> tuple[float, float, float, float]:
 def _overlapping(k: np.ndarray, eta: float, effective: float, diameter: float) -> np.ndarray:
     """Return the structure of pairs between the smaller diameter and 1.
 
-    This is 24 eta times the integral of r^2 g(r) sin(kr) / (kr).
+    The result is 24 eta times the integral of r^2 g(r) sin(kr) / (kr).
     """
     nodes, weights = np.polynomial.legendre.leggauss(12)
     r = 0.5 * (1.0 - diameter) * (nodes + 1.0) + diameter

@@ -132,11 +132,11 @@ def small_systems(quantity: str, dimension: int) -> np.recarray:
     -----
     Diameter = mass = k_B T = 1, with k_B T = 2 E / (d (N - 1)). "contact_value": density of pairs at contact
     divided by N (N - 1) / V^2. "Z" and "collision_rate" follow from it exactly (`finite_contact_value`): Z is
-    the canonical one, which `gaspart.analysis.compressibility_factor` measures, the rate is 2 N_coll / (N t).
-    "diffusion": slope of the mean-squared displacement about the centre of mass divided by 2 d. Errors are
-    standard deviations by independent runs. Six rows of dense spheres have several states, between which no
-    run passes: their errors, 4 to 86 %, are standard deviations of single runs. Recipe and seeds are in
-    `data/README.md`.
+    the canonical value, which `gaspart.analysis.compressibility_factor` measures; the rate is 2 N_coll / (N
+    t). "diffusion": slope of the mean-squared displacement relative to the centre of mass, divided by 2 d.
+    Errors are standard deviations by independent runs. Six rows of dense spheres have several states, and no
+    run changes from one state to another. Their errors, 4 to 86 %, are standard deviations of single runs.
+    Recipe and seeds are in `data/README.md`.
 
     Examples
     --------
@@ -360,7 +360,7 @@ def insertion_finite_size_correction(packing_fraction: Numbers, dimension: int, 
 
         (1 / 2N) [1 / S - 1 + eta S' / S],    S = `reduced_compressibility`, S' its derivative by eta
 
-    [1]_. It is zero in the first order in the density, as is exact.
+    [1]_. The correction is zero in the first order in the density, which is exact.
 
     References
     ----------

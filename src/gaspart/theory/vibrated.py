@@ -24,7 +24,7 @@ def bed_loss(layers: Numbers, restitution: Numbers, packing_fraction: Numbers = 
     Parameters
     ----------
     layers : array_like, [1]
-        Number of layers N d / width, or (N - 1) d / width for a finite bed; not negative.
+        Number of layers N d / width, or (N - 1) d / width for a finite bed; must not be negative.
     restitution : array_like, [1]
         Coefficient of restitution e, from 0 to 1.
     packing_fraction : array_like, default 0.0, [1]
@@ -97,7 +97,7 @@ def sawtooth_temperature(layers: Numbers, restitution: Numbers, packing_fraction
     Parameters
     ----------
     layers : array_like, [1]
-        Number of layers N d / width, or (N - 1) d / width for a finite bed; not negative.
+        Number of layers N d / width, or (N - 1) d / width for a finite bed; must not be negative.
     restitution : array_like, [1]
         Coefficient of restitution, from 0 to 1.
     packing_fraction : array_like, default 0.0, [1]
@@ -133,7 +133,7 @@ def sine_temperature(layers: Numbers, restitution: Numbers, packing_fraction: Nu
     Parameters
     ----------
     layers : array_like, [1]
-        Number of layers N d / width, or (N - 1) d / width for a finite bed; not negative.
+        Number of layers N d / width, or (N - 1) d / width for a finite bed; must not be negative.
     restitution : array_like, [1]
         Coefficient of restitution e, from 0 to 1.
     packing_fraction : array_like, default 0.0, [1]

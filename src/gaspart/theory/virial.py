@@ -122,7 +122,7 @@ def partial_sum(packing_fraction: Numbers, order: int, dimension: int) -> Values
 
     Notes
     -----
-    Sum of b_n eta^(n-1), n = 1 to `order`. It approximates Z only as far as the first term left out is small.
+    Sum of b_n eta^(n-1), n = 1 to `order`. The sum approximates Z only if the first neglected term is small.
 
     Examples
     --------

@@ -14,10 +14,10 @@ wall:
 .. math:: N / V = \rho + \Gamma s_1 + \Gamma_\tau s_2 + \Gamma_\kappa s_3, \qquad
           F / A = P - 2 (w-1) \gamma / l - 2 (w-1)(w-2) \tau / l^2 ,
 
-the latter for equal lengths. Gamma = - rho (d gamma / d rho) / (dP / d rho), the others follow by the same
+the force for equal lengths. Gamma = - rho (d gamma / d rho) / (dP / d rho), the others follow by the same
 rule, and rho is the density of a bulk fluid of the same chemical potential. Between two walls (w = 1) there
-are no edges and the walls feel just P. gamma, tau and kappa are exact to fifth order in the density, by
-cluster integrals (`clusters`). Everything here is in diameters and k_B T.
+are no edges, and the pressure on the walls is P. gamma, tau and kappa are exact to fifth order in the
+density, by cluster integrals (`clusters`). Everything here is in diameters and k_B T.
 """
 
 import math
@@ -270,7 +270,7 @@ class _Container:
     def rise(self, eta: float) -> float:
         """Return d eta / d mu times the volume of a particle.
 
-        It is rho / (dP / d rho), in bulk.
+        The rise is rho / (dP / d rho), in the bulk fluid.
         """
         slope = _slope(lambda x: x * compressibility_factor(x, self.dimension), eta)
         return float(number_density(eta, self.dimension)) / slope

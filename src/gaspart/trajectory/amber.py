@@ -1,7 +1,8 @@
 """File format of trajectories: AMBER NetCDF, https://ambermd.org/netcdf/nctraj.xhtml, version 1.0.
 
 A netCDF-3 file is a header, which the netCDF library makes, and then `frames` of equal size. A checksum
-(CRC-32) in the header, of the header without the number of frames, detects damage; other readers ignore it.
+(CRC-32) in the header detects damage; other readers ignore it. It is computed for the header without the
+number of frames.
 """
 
 from __future__ import annotations
@@ -17,11 +18,11 @@ from typing import TYPE_CHECKING, BinaryIO
 import numpy as np
 
 from gaspart.engines import ENGINES, Engine
-from gaspart.state.optional_tallies import OptionalTally, tallied_fields
+from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.tally import Tally
 from gaspart.system import read_at, write_at
 from gaspart.trajectory.correlator import meaning_of
-from gaspart.trajectory.run_options import KEPT
+from gaspart.trajectory.run_options import KEPT, tallied_fields
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -177,7 +178,7 @@ class Layout:
         """Return a file without frames, whose first attributes are `BOOKKEEPING`.
 
         particles : radius, mass and type of each particle
-        initial : given properties of the particles at time 0, in double precision
+        initial : properties of the particles at time 0 if the user supplied them, in double precision
         """
         bookkeeping = dict(
             zip(BOOKKEEPING, (np.int32(0), np.int32(0), np.float64(self.frame.itemsize)), strict=True)
@@ -229,7 +230,7 @@ def _initial_axes(name: str, values: np.ndarray) -> tuple[str, ...]:
 def _frames_begin(header: bytes) -> int:
     """Return the offset of the first variable of a frame, time.
 
-    It is the last value before the name of the next variable.
+    The position is the last value before the name of the next variable.
     """
     after = b"cell_lengths"
     (begin,) = struct.unpack_from(">Q", header, header.index(struct.pack(">I", len(after)) + after) - 8)
@@ -309,7 +310,7 @@ _CHUNK = 1 << 24  # bytes that are read at once
 
 
 def frame_count(file: BinaryIO) -> int:
-    """Return the number of complete frames that a file's header states."""
+    """Return the number of complete frames from the header of a file."""
     file.seek(FRAME_COUNT_AT)
     return struct.unpack(">I", file.read(WORD))[0]
 
@@ -321,9 +322,9 @@ def _frame_checksum(frame: bytes | memoryview, number: int, header_checksum: int
 
 
 def damaged_frame(file: int, header: bytes, numbers: range, checksum: int | None = None) -> int | None:
-    """Return the first frame that is damaged or cut short; None if all are correct.
+    """Return the first frame that is damaged or truncated; None if all are correct.
 
-    The frames are read: a CRC-32 takes about as long as copying them from memory.
+    All frames are read. The CRC-32 takes about as long as copying them from memory.
 
     file : descriptor
     numbers : frames to test
@@ -370,9 +371,9 @@ class CheckedFrames:
 
 
 class Frames:
-    """Frames of an unbuffered open file; frames after the first `kept` are removed.
+    """Frames of an unbuffered open file. Frames after the first `kept` ones are removed.
 
-    With `kept` = 0 the header is written too. Every method may raise OSError.
+    If `kept` is 0, the header is written too. Every method may raise OSError.
     """
 
     def __init__(self, file: BinaryIO, layout: Layout, header: bytes, kept: int = 0) -> None:

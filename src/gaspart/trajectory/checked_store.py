@@ -40,10 +40,10 @@ class Trajectory(xr.Dataset):
 
 
 class CheckedStore(NetCDF4DataStore):
-    """Variables of a trajectory; variables of frames are read through the frames' checksums.
+    """Variables of a trajectory. Variables of frames are read through the checksums of frames.
 
-    The times are read at once, and only times that are not multiples of `interval` through the checksums:
-    otherwise opening a file would read all of it.
+    Times are read when the file is opened. Only times that are not multiples of `interval` are read through
+    the checksums; otherwise opening a file would read the whole file.
     """
 
     def __init__(self, file: netCDF4.Dataset, path: Path, frames: CheckedFrames, interval: float) -> None:
@@ -71,7 +71,7 @@ class CheckedStore(NetCDF4DataStore):
 
 
 class _CheckedArray(BackendArray):
-    """Variable of frames, of which any part can be read."""
+    """Variable of frames. Any part of it can be read."""
 
     def __init__(self, variable: netCDF4.Variable, store: CheckedStore) -> None:
         self._variable, self._store = variable, store

@@ -63,15 +63,16 @@ def _digest(header: bytes) -> str:
 
 
 def remove_checkpoint(path: Path) -> None:
-    """Remove a needless checkpoint, and the rest of an unfinished one; no other file."""
+    """Remove a checkpoint that is not needed, or an incomplete one; no other file."""
     remove_own(path, CHECKPOINT)
 
 
 def write_checkpoint(path: Path, header: bytes, frames: int, arrays: dict[str, Any]) -> None:
     """Write the checkpoint of a run, identified by the header of its trajectory.
 
-    It is a zip file of arrays (.npz) whose comment, at the end, is a checksum of all bytes before it. May
-    raise OSError, and SceneError for a file at `path` that is no checkpoint, which is never replaced.
+    The file is a zip file of arrays (.npz). Its comment, at the end, is a checksum of all bytes before the
+    comment. May raise OSError, and SceneError for a file at `path` that is no checkpoint, which is never
+    replaced.
     """
     with scratch_beside(path) as new:
         with new.open("r+b") as file:
@@ -94,7 +95,7 @@ def read_checkpoint(path: Path, header: bytes) -> Checkpoint | None:
 
 
 def kept_beside(path: Path, header: bytes, otherwise: str) -> Checkpoint | None:
-    """Return the checkpoint kept with a trajectory of this header, or None.
+    """Return the checkpoint that was stored with a trajectory of this header, or None.
 
     Raises SceneError for a checkpoint that cannot be used: it must not be replaced silently by less exact
     data.
@@ -110,7 +111,7 @@ def kept_beside(path: Path, header: bytes, otherwise: str) -> Checkpoint | None:
 def _checkpoint(path: Path, header: bytes) -> Checkpoint | None:
     """Read a checkpoint like `read_checkpoint`, but raise SceneError for an unusable one.
 
-    It is unusable if it is damaged, of another run, or another file.
+    The checkpoint is unusable if it is damaged, belongs to another run, or is another kind of file.
     """
     try:
         with open_regular(path) as file:

@@ -1,7 +1,7 @@
 """Time correlations, accumulated during a run, which need no stored frames.
 
-They are exact: every pair of samples up to a largest lag counts, in double precision. For the largest lag L
-of K velocity components the memory holds L + 1 samples, and a sample costs about L K additions.
+The functions are exact: all pairs of samples up to a largest lag are included, in double precision. For the
+largest lag L and K velocity components, the memory has L + 1 samples, and a sample costs about L K additions.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from gaspart.errors.guidance import with_guidance
 from gaspart.keys.values import count_of, number
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
-from gaspart.state.optional_tallies import OptionalTally, StressTally
-from gaspart.state.tally import ACTION, HEAT
+from gaspart.state.optional_tallies import OptionalTally
+from gaspart.state.tally import ACTION, HEAT, StressTally
 
 SUMS = {
     "velocity_product_sum": "v(0).v(t)",
@@ -239,7 +239,7 @@ class _Correlator:
         return self._first + self._samples
 
     def _add(self, now: np.ndarray, add_products: Callable[..., None], terms: float | np.ndarray) -> None:
-        """Add the next sample: its products with the earlier ones, divided by the number of terms."""
+        """Add the next sample: its products with the earlier samples, divided by the number of terms."""
         slots = self._earlier.shape[-1]
         slot, used = self._samples % slots, min(self._samples + 1, slots)
         self._earlier[..., slot] = now
@@ -264,11 +264,11 @@ class _Correlator:
 class Correlator(_Correlator):
     """Correlations of the motion of the particles.
 
-    Velocities and positions of the moving particles count, relative to the centre of mass along axes where
-    its velocity is conserved (`Scene.conserved_axes`), and to the mean velocity of faces that slide. This
-    lowers the mean square of a particle of mass m by the factor 1 - m / M, M the mass of all. If masses
-    differ, or if not all axes are conserved, components are multiplied so that the sums are lower by 1 - 1 /
-    N.
+    Velocities and positions of all moving particles are used. They are relative to the centre of mass
+    along axes where its velocity is conserved (`Scene.conserved_axes`), and to the mean velocity of faces
+    that slide. The subtraction lowers the mean square for a particle of mass m by the factor 1 - m / M, where
+    M is the mass of all particles. If masses differ, or if not all axes are conserved, components are
+    multiplied so that the sums are lower by 1 - 1 / N.
 
     Parameters
     ----------

@@ -109,8 +109,8 @@ def export(trajectory: str | Path, path: str | Path, frame: int | str = -1, over
     path : str or Path
         The file to write, with the suffix .gsd, .xyz or .data.
     frame : int or "all", default -1
-        Number of the frame, counted from 0, or from the end if negative. "all" writes all frames into .gsd or
-        .xyz, where each frame has its own number of particles and container.
+        Number of the frame, counted from 0, or from the end if negative. "all" writes all frames into a .gsd
+        or .xyz file, in which each frame has its own number of particles and container.
     overwrite : bool, default False
         Replace a file of the same kind at `path`. Files of other kinds are never replaced.
 
@@ -196,8 +196,8 @@ def _read(path: Path, numbers: range) -> Iterator[Snapshot]:
 def _write_gsd(path: Path, snapshots: Iterator[Snapshot]) -> None:
     """Write frames of HOOMD's schema.
 
-    `log/time` has the time, `log/cell_origin` the lower corner of the box in the scene's coordinates (a
-    piston moves it), and the step is the number of the frame.
+    `log/time` is the time. `log/cell_origin` is the lower corner of the box in the scene's coordinates, which
+    a piston moves. The step is the number of the frame.
     """
     hoomd = optional("gsd.hoomd", "gsd", "GSD files")
     with path.open("rb") as scratch, hoomd.open(descriptor_path(scratch), "w") as file:

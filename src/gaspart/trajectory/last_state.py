@@ -1,4 +1,4 @@
-"""State at the end of a trajectory: exact from a kept checkpoint, or the last frame."""
+"""State at the end of a trajectory: from a stored checkpoint, or the last frame."""
 
 from __future__ import annotations
 
@@ -34,20 +34,20 @@ def last_state(path: str | Path) -> State:
     Returns
     -------
     State
-        The state, to look at or to start another run from.
+        The state. Another run can start from it.
 
     Raises
     ------
     SceneError
-        If `open_trajectory` rejects the file, or a kept checkpoint is damaged or of another run. Without a
-        checkpoint: if the last frame lacks particles (`follow`), has only a part of their properties
-        (`keep`), or does not determine the state (a scene with sticky faces).
+        If `open_trajectory` rejects the file, or if a stored checkpoint is damaged or belongs to another run.
+        Without a checkpoint: if the last frame lacks particles (`follow`) or properties of particles
+        (`keep`), or if it does not determine the state (a scene with sticky faces).
 
     Notes
     -----
-    The state is exact if the run had `keep_checkpoint`. Otherwise positions, velocities and spins are those
-    of the last frame, in single precision; the motion of a piston and the displacement of sheared images are
-    exact.
+    The state is exact if the run was made with `keep_checkpoint`. Otherwise positions, velocities and spins
+    are from the last frame, in single precision. The motion of a piston and the displacement of sheared
+    images are exact.
 
     Examples
     --------

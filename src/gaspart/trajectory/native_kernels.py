@@ -1,9 +1,10 @@
 """Kernels compiled for this processor, in place of the kernels that came with the package.
 
-The kernels of a wheel run on every processor of the level x86-64-v3. On a processor with AVX-512 kernels
-compiled there are faster, to the same bits. A run that took so long that another one of its kind would gain
-more than the compilation costs compiles them after its end. They are stored in the kernel cache, where
-kernels of this user come before the package's own, so that the next process uses them.
+The kernels of a wheel run on every processor of the level x86-64-v3. On a processor with AVX-512, kernels
+compiled for this processor are faster and give the same bits. A run that took so long that another one of its
+kind would gain more than the compilation costs compiles them after its end. The kernels are stored in the
+kernel cache. Kernels of this user in the cache have precedence over kernels of the package, so the next
+process uses them.
 """
 
 from __future__ import annotations
@@ -70,7 +71,7 @@ def replace_shipped_kernels(seconds: float) -> bool:
 
 
 def _features() -> dict[str, bool]:
-    """Return the features of this processor; none if numba's settings name a processor."""
+    """Return the features of this processor, or no features if numba's settings name a processor."""
     config = cache.load_numba().config
     if config.CPU_NAME is not None or config.CPU_FEATURES is not None:
         return {}
@@ -100,7 +101,7 @@ def _dispatchers() -> list[Any]:
 
 
 def _stamp(kernels: list[Kernel]) -> Path | None:
-    """Return the path of the mark of stored native kernels; None without a cache."""
+    """Return the path of the file that marks stored native kernels; None without a cache."""
     folders = (function.stats.cache_path for function in _dispatchers())
     folder = next(filter(None, folders), None)
     if folder is None or not kernels:
@@ -109,7 +110,7 @@ def _stamp(kernels: list[Kernel]) -> Path | None:
 
 
 def compile_kernels(send: Callable[[Any], None], kernels: list[Kernel]) -> int:
-    """Compile kernels for this processor, in a process of its own; return their number.
+    """Compile kernels for this processor in a separate process; return their number.
 
     Kernels that are in the cache are not compiled again.
     """

@@ -63,9 +63,9 @@ def writing(path: Path) -> Iterator[None]:
 def open_locked(partial: Path) -> Iterator[BinaryIO]:
     """Open the partial file to read and write, without a buffer, locked by this process.
 
-    It may be closed within the block, as before it is renamed; the lock stays. Raises SceneError for a file
-    that gaspart did not write, for a link, and for a file with a second name: writing to it would change the
-    user's file of that name.
+    The file may be closed within the block, for example before it is renamed; the lock remains. Raises
+    SceneError for a file that gaspart did not write, for a link, and for a file with a second name, because a
+    change would appear under the second name, too.
     """
     with suppress(FileNotFoundError):  # another process has finished it just now
         may_replace(partial, UNFINISHED, overwrite=True)
@@ -85,7 +85,7 @@ def open_locked(partial: Path) -> Iterator[BinaryIO]:
 
 @contextmanager
 def _alone(partial: Path) -> Iterator[None]:
-    """Hold the lock of a partial file. Raises SceneError if another process holds it."""
+    """Hold the lock of a partial file. Raises SceneError if another process has locked it."""
     try:
         with only_process(partial):
             yield
@@ -128,21 +128,21 @@ def not_a_trajectory(value: object) -> SceneError:
 def open_verified(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
     """Open a trajectory: the file, its header and its number of frames.
 
-    These are checked against the file. Raises SceneError for a file of another kind, truncated, or damaged in
-    its header.
+    Header and frames are compared with the file. Raises SceneError for a file of another kind, truncated, or
+    damaged in its header.
     """
     try:
         with open_regular(path) as file:
-            status = os.fstat(file.fileno())
             if path.suffix == PARTIAL and amber.is_blank(file):
                 raise ValueError("nothing was written to it yet; start the run again with `gaspart run`")
             header, frames = amber.stored_header(file), frame_count(file)
             expected = len(header) + frames * amber.frame_bytes(header)
-            if status.st_size < expected:
-                rule = f"is truncated: {status.st_size} bytes, where {frames} frames need {expected}"
+            size = os.fstat(file.fileno()).st_size  # last: another replica may append frames meanwhile
+            if size < expected:
+                rule = f"is truncated: {size} bytes, where {frames} frames need {expected}"
                 raise ValueError(rule)
-            if status.st_size > expected and path.suffix != PARTIAL:  # a partial file may end within a frame
-                rule = f"is damaged: {status.st_size} bytes, where {frames} frames need {expected}"
+            if size > expected and path.suffix != PARTIAL:  # a partial file may end within a frame
+                rule = f"is damaged: {size} bytes, where {frames} frames need {expected}"
                 raise ValueError(rule)
             yield file, header, frames
     except OSError as error:

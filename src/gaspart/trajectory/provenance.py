@@ -18,10 +18,10 @@ _PACKAGES = ("numpy", "numba", "netCDF4")
 def _git(*arguments: str) -> str | None:
     """Return the output of git about the folder of this package, or None.
 
-    None means that git is missing or fails. Git takes no optional locks: a killed git would leave
-    `.git/index.lock`, which blocks later commits. For `git describe --dirty` a lock is not optional. Raises
-    OSError if git could not be started for lack of file descriptors or memory: the contents of a trajectory
-    must not depend on that.
+    If git is missing or fails, the result is absent (None). Git takes no optional locks: a killed git would
+    leave `.git/index.lock`, which blocks later commits. For `git describe --dirty` a lock is not optional.
+    Raises OSError if git could not be started for lack of file descriptors or memory: the contents of a
+    trajectory must not depend on that.
     """
     command = ["git", "-C", str(Path(__file__).parent), *arguments]
     environment = {**os.environ, "LC_ALL": "C", "GIT_OPTIONAL_LOCKS": "0"}
@@ -39,10 +39,10 @@ def _git(*arguments: str) -> str | None:
 
 @cache
 def git_revision() -> str:
-    """Return the commit of the checkout that the package runs from; "" outside of one.
+    """Return the commit of the checkout from which the package runs; "" outside of a checkout.
 
-    `-modified` is appended if files were edited since. A package that is installed inside a repository but
-    not tracked by it has no commit.
+    `-modified` is appended if files were edited since. A package that is installed inside a repository, but
+    is not tracked by it, has no commit.
     """
     if _git("ls-files", "--error-unmatch", Path(__file__).with_name("__init__.py").name) is None:
         return ""

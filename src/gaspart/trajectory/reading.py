@@ -56,10 +56,10 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     Returns
     -------
     Dataset
-        Dimensions frame, atom, spatial (d) and face (2d), and lag for a run with correlations. Coordinates:
-        time (frame), radius, mass and type (atom); plots over frames have the time as their axis. Lengths and
-        times are in the scene's units, counters are cumulative since time 0. Spins of discs are (frame,
-        atom), of spheres (frame, atom, spatial).
+        Dimensions frame, atom, spatial (d) and face (2d), and lag for a run with correlations. The
+        coordinates are: time (frame), and radius, mass and type (atom). Plots over frames have the time as
+        their axis. Lengths and times are in the scene's units, counters are cumulative since time 0. Spins of
+        discs are (frame, atom), of spheres (frame, atom, spatial).
 
     Raises
     ------
@@ -69,9 +69,9 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
 
     Notes
     -----
-    Attributes state the scene (YAML), engine and seed (JSON), and what follows from the scene: dimension and,
-    unless faces are open, count, packing_fraction and number_density. The attribute given_start is 1 if the
-    run starts from a given state.
+    Attributes contain the scene (YAML), the engine and the seed (JSON), and properties of the scene:
+    dimension and, unless faces are open, count, packing_fraction and number_density. The attribute
+    given_start is 1 if the run starts from a state that the user supplied.
 
     With open faces the atoms are numbers of particles. Coordinates and velocities of a number that no
     particle has in a frame are NaN.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,39 +13,25 @@ from gaspart.engines import Engine, engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
 from gaspart.keys.values import number
-from gaspart.scene.face_checks import check_piston_end, refuse_open
+from gaspart.scene.face_checks import check_piston_end
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import refuse_sheared
 from gaspart.state.given import state_at_time_zero, state_from_arrays
 from gaspart.state.insertion import per_particle
-from gaspart.state.optional_tallies import (
-    OptionalTally,
-    tallies_from_json,
-    tallies_of,
-    tallies_to_json,
-)
+from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.random import stream
 from gaspart.state.state import State
 from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.correlator import Correlations, sum_names
 from gaspart.trajectory.opening import open_netcdf_file
 from gaspart.trajectory.pairs import pair_names, pairs_of
-from gaspart.trajectory.run_options import OPTIONS
+from gaspart.trajectory.run_options import Contents, scene_tallies, stored_contents, tally_axes
 from gaspart.trajectory.until import Until
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
 if TYPE_CHECKING:
     import netCDF4
 
-_FORMS: dict[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
-    "displacements": (np.int32, bool),
-    "follow": (np.int32, int),
-    "keep": (str, str),
-    "correlations": (Correlations.to_json, Correlations.from_json),
-    "pairs": (np.int32, bool),
-    "tallies": (tallies_to_json, tallies_from_json),
-}
-"""Fields of a recipe that the file states unless they are at their default: to the attribute, and back."""
 MOST_REPLICAS = 10_000
 ROUNDING = 1e-9
 """Relative deviation from an integer multiple that is attributed to rounding."""
@@ -64,23 +49,18 @@ def multiple(key: str, value: float, unit_key: str, unit: float) -> int:
 
 
 @dataclass(frozen=True)
-class Recipe:
+class Recipe(Contents):
     """Everything that determines a trajectory; making it raises SceneError for invalid settings.
+
+    It is the scene, the engine, the length of the run and the `Contents` of its file.
 
     Attributes
     ----------
     duration, sample_interval : in the scene's time; duration is an integer multiple of sample_interval, which
         for the time-stepped engine is an integer multiple of time_step
-    displacements : whether frames have displacements
-    follow : number of particles, from the first on, in the file; None for all
-    correlations : sample_interval is an integer multiple of their interval
     until : criterion that ends the run in place of a duration, which is then None
-    pairs : whether to count the collisions of each pair of species
     initial : state at time 0, if it does not follow from scene and seed; the file holds it
-    tallies : optional tallies of the frames, in addition to the tallies that the correlations need
     replica : its number, from 1, and the number of all replicas of the run, if there are several
-    keep : only property of each particle in the frames in addition to displacements, "positions" or
-        "velocities"; None for both, and spins
     """
 
     scene: Scene
@@ -88,15 +68,9 @@ class Recipe:
     seed: int | tuple[int, ...]
     duration: float | None
     sample_interval: float
-    displacements: bool = False
-    follow: int | None = None
-    correlations: Correlations | None = None
     until: Until | None = None
-    pairs: bool = False
     initial: State | None = field(default=None, compare=False, repr=False)
-    tallies: tuple[OptionalTally, ...] = ()
     replica: tuple[int, int] | None = None
-    keep: str | None = None
 
     def __post_init__(self) -> None:
         stream(self.seed)  # raises SceneError for an invalid seed
@@ -107,18 +81,8 @@ class Recipe:
             raise SceneError("replica", self.replica, "must be one of several, with its number in its seed")
         if self.scene.count == 0:
             raise SceneError("scene", "no particles", "a run needs at least one particle")
-        for key, kind in OPTIONS.items():
-            if (value := getattr(self, key, None)) is not None:
-                object.__setattr__(self, key, kind.check(key, value))
-        if self.follow is not None and self.follow > self.scene.count:
-            raise SceneError(
-                "follow", self.follow, f"must be at most {self.scene.count}, the number of particles"
-            )
-        if self.keep and self.until:
-            raise SceneError("keep", self.keep, "has no meaning with until, which measures what is there")
-        for key in ("follow", "correlations", "displacements", "pairs"):
-            if getattr(self, key):
-                refuse_open(self.scene, f"excludes {key}: the particles change")
+        super().__post_init__()
+        self.check_scene(self.scene, self.until is not None)
         finest = self.correlations.interval if self.correlations else self.sample_interval
         object.__setattr__(self, "engine", self.engine.for_scene(self.scene, finest))
         if self.engine.quantum:
@@ -194,8 +158,8 @@ class Recipe:
     @property
     def tallied(self) -> tuple[OptionalTally, ...]:
         """All optional tallies of its frames, including the tallies of its scene."""
-        scene_tallies = (tally for tally in tallies_of(self.scene) if tally.name in self.engine.tallies)
-        return (*scene_tallies, *self.asked)
+        able = (tally for tally in scene_tallies(self.scene) if tally.name in self.engine.tallies)
+        return (*able, *self.asked)
 
     @property
     def layout(self) -> amber.Layout:
@@ -212,7 +176,7 @@ class Recipe:
         sums: list[str] = []
         axes: dict[str, int] = {}
         for tally in self.tallied:
-            axes |= tally.axes(scene)
+            axes |= tally_axes(tally, scene)
         if self.correlations:
             sums = sum_names(self.correlations, self.displacements)
             axes["lag"] = self.correlations.lags + 1
@@ -227,7 +191,7 @@ class Recipe:
         if self.keep is not None:
             raise SceneError("keep", self.keep, f"{path} holds nothing else of its particles")
 
-    def attributes(self) -> dict:
+    def attributes(self) -> dict[str, Any]:
         """Return the recipe as attributes of the file, from which `read_recipe` restores it."""
         seed = [int(part) for part in self.seed] if isinstance(self.seed, (tuple, list)) else int(self.seed)
         return {
@@ -238,7 +202,7 @@ class Recipe:
             **self._length(),
             "sample_interval": self.sample_interval,
             "displacements": np.int32(self.displacements),  # also if False
-            **{name: store(value) for name, (store, _) in _FORMS.items() if (value := getattr(self, name))},
+            **super().attributes(),
             **dict(zip(("replica", "replicas"), map(np.int32, self.replica or ()), strict=False)),
         }
 
@@ -319,7 +283,7 @@ def stored_recipe(file: netCDF4.Dataset, path: Path) -> Recipe:
             until=Until.from_json(stored["until"], stored.get("at_most")) if "until" in stored else None,
             initial=_stored_initial(file, scene),
             replica=(int(stored["replica"]), int(stored["replicas"])) if "replica" in stored else None,
-            **{name: restore(stored[name]) for name, (_, restore) in _FORMS.items() if name in stored},
+            **stored_contents(stored),
         )
     except SceneError:
         raise

@@ -80,9 +80,9 @@ class Recording:
             self._note()
 
     def finish(self, keep: bool = False) -> None:
-        """Write all missing frames, and then, with `keep`, a checkpoint.
+        """Write all missing frames and then, with `keep`, a checkpoint.
 
-        Raises SimulationError if an invariant is violated, and OSError. In the first case the state is kept
+        Raises SimulationError if an invariant is violated, and OSError. In the first case the state is stored
         next to the trajectory, in `.failed.npz`. A signal takes effect after a checkpoint was written.
         """
         try:
@@ -98,9 +98,9 @@ class Recording:
         set_note("")
 
     def _keep_failed(self) -> str:
-        """Store the state of a failed run, unless another file is at its path.
+        """Store the state of a failed run, unless another file has its path.
 
-        Returns the message about it.
+        Returns the message about the stored state.
         """
         failed = self._path.with_name(self._path.name + ".failed.npz")
         try:

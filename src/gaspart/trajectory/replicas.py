@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 def in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
-    """Return the recipes of the replicas of a run; of 1 replica, the recipe itself.
+    """Return the recipes of the replicas of a run; for 1 replica, the recipe itself.
 
     Parameters
     ----------
@@ -48,8 +48,8 @@ def in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
     Raises
     ------
     SceneError
-        If the number is invalid, or the replicas would be one run, bit for bit: from one state, if nothing is
-        drawn after that.
+        If the number is invalid, or if all replicas would be identical: they start from one state, and no
+        random numbers follow.
     """
     if count_of("replicas", replicas, least=1, most=MOST_REPLICAS) == 1:
         return [recipe]
@@ -62,7 +62,7 @@ def in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
 def differ(scene: Scene, engine: Engine, has_initial: bool = False) -> bool:
     """Return True if runs with other seeds are other runs.
 
-    Random numbers are then drawn for the first state, unless it is given, or later.
+    Replicas differ if random numbers are drawn for the first state, or later.
     """
     drawn = not has_initial and (scene.vibrates or any(kind.count for kind in scene.species))
     return drawn or engine.draws(scene)
@@ -167,7 +167,7 @@ def beside(path: Path, recipe: Recipe) -> list[tuple[Path, Recipe]]:
 def find_run(path: str | Path) -> tuple[Path, Recipe]:
     """Return a file of the run at a path, finished or not, and its recipe.
 
-    It is the file at the path itself, or, of several replicas, the first.
+    The result is the file at the path itself, or the first of several replicas.
 
     Parameters
     ----------
@@ -203,7 +203,7 @@ def files_of(path: str | Path) -> list[Path]:
     Returns
     -------
     list of Path
-        One file, or the files of all replicas.
+        The result is one file, or the files of all replicas.
 
     Raises
     ------
@@ -245,7 +245,7 @@ def find_replicas(files: Sequence[tuple[Path, Recipe]], frames: int) -> list[Pat
     Returns
     -------
     list of Path or None
-        The files, finished or not; None if a replica has fewer frames, or was not begun with its recipe. A
+        The files, finished or not; None if a replica has fewer frames, or was begun with another recipe. A
         single run is at its path.
     """
     if len(files) == 1:

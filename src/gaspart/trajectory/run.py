@@ -1,8 +1,9 @@
 """Trajectories: written during the run, continued after a kill, readable by common tools.
 
 A run writes `path.partial`, and regularly `path.checkpoint.npz`, from which it can continue to the same bits.
-When it is complete, the file is renamed to `path`. Its content does not depend on when or where it was made.
-If the checkpoint is kept, it is then the state at the end, from which a longer run continues (`extend`).
+When it is complete, the file is renamed to `path`. The content of the file does not depend on when or where
+it was made. If the checkpoint is stored with the file, it is then the state at the end, from which a longer
+run continues (`extend`).
 """
 
 from __future__ import annotations
@@ -63,8 +64,8 @@ if TYPE_CHECKING:
 def longer(path: Path, duration: float) -> Recipe:
     """Return the recipe of a trajectory with a longer duration.
 
-    Raises SceneError for a file that is no undamaged trajectory of this version of the program, and for a
-    duration that is not longer, or that the recipe rejects.
+    Raises SceneError for a file that is not an undamaged trajectory of this version of the program, and for a
+    duration that is not longer or that the recipe rejects.
     """
     recipe = read_recipe(path)
     if not begun_as(path, recipe):
@@ -99,9 +100,9 @@ def is_beginning(path: Path, recipe: Recipe) -> bool:
 def take_over(path: Path, recipe: Recipe, frames: Frames) -> Checkpoint | None:
     """Copy the frames and the last state of a shorter run to the longer one.
 
-    The shorter run is at `path`, the longer one is begun in `frames`. Returns None, with nothing changed, if
-    there is no such run, or its last state was not kept. The checkpoint of the shorter run is replaced last:
-    after a kill before that, the copy is repeated. Raises SceneError for a damaged file, and OSError.
+    The shorter run is at `path`, the longer one is begun in `frames`. Returns None, and changes nothing, if
+    there is no such run, or if its last state was not stored. The checkpoint of the shorter run is replaced
+    last, so after an earlier kill the copy is repeated. Raises SceneError for a damaged file, and OSError.
     """
     if not (path.exists() and is_beginning(path, recipe)):
         return None
@@ -280,7 +281,7 @@ class WriteOptions:
     progress : callback about the progress of the run
     overwrite : whether another run's file may be replaced
     examiner : for a recipe that ends when it is accurate
-    keep_checkpoint : whether the last checkpoint is kept with the file
+    keep_checkpoint : True if the last checkpoint is stored with the file
     """
 
     checkpoint_seconds: float = 30.0
@@ -305,10 +306,10 @@ def record(recipe: Recipe, path: str | Path, options: WriteOptions) -> Path:
 
 
 def resume(path: str | Path, options: WriteOptions) -> Path:
-    """Finish the run that left `path.partial`, from its files only; return `path`.
+    """Finish the run that left `path.partial`, only from its files; return `path`.
 
-    Raises SceneError if there is nothing to resume, if another version of the program began it, and for a
-    file at `path` that is no complete trajectory of gaspart.
+    Raises SceneError if there is nothing to resume, if another version of the program began the run, and for
+    a file at `path` that is not a complete trajectory of gaspart.
     """
     path = run_path(path)
     partial = partial_path(path)
@@ -346,11 +347,11 @@ def begun(partial: Path) -> Recipe:
 def extend(path: str | Path, duration: float, options: WriteOptions) -> Path:
     """Continue the complete run at `path` to a longer duration; return `path`.
 
-    The file then has the bytes of an uninterrupted run of that duration. Without the checkpoint of its end,
-    which `keep_checkpoint` stores with it, it is run again from its start; a run that had a checkpoint keeps
-    the next one. An extension that was cut short is continued, by this or by `resume`. Raises SceneError like
-    `longer`, for another run that is unfinished at the path, and for a checkpoint that is damaged or of
-    another run.
+    The file then has the bytes of an uninterrupted run of that duration. The run continues from the
+    checkpoint of its end, which `keep_checkpoint` stores. Without this checkpoint it is repeated from its
+    start. A run with a checkpoint also stores the next one. An extension that was cut short is continued, by
+    this or by `resume`. Raises SceneError like `longer`, for another run that is unfinished at the path, and
+    for a checkpoint that is damaged or of another run.
     """
     path = Path(path)
     partial, checkpoint = partial_path(path), checkpoint_path(path)
@@ -378,7 +379,7 @@ def simulation_of(recipe: Recipe) -> Simulation:
 
 
 def _carry_out(recipe: Recipe, path: Path, options: WriteOptions) -> Path:
-    """Finish a trajectory from its present state, and store native kernels if this pays."""
+    """Finish a trajectory from its present state, and store native kernels if this saves time."""
     start = time.thread_time()
     _finish(recipe, path, options)
     replace_shipped_kernels(time.thread_time() - start)

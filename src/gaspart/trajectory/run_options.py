@@ -1,87 +1,289 @@
 """Options of a run that determine what its file holds, each declared once.
 
-The keys of a config, the options of `gaspart run` and of the command that a file states, and the checks of
-`Recipe` follow from the declarations. A tally that a run can request declares itself
-(`state.optional_tallies`).
+A field of `Contents` states type, meaning, default, attribute in the file, and what excludes it. The checks
+and attributes of a `Recipe`, the keys of a config, the options of `gaspart run` and of the command that a
+file states, and their reference follow. A tally that a run can request declares itself (`state.tally`): a run
+has it as an object, the command line and configs as the text of its settings.
+
+Planning imports this module, so slow imports are made inside functions.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+import json
+from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import asdict, dataclass, field, fields
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from gaspart.keys import TEXT, Kind, choice, count, describe, flag
-from gaspart.state.optional_tallies import REQUESTED
+from gaspart.errors import SceneError
+from gaspart.keys import TEXT, Kind, choice, count, declare, describe, flag
+from gaspart.scene.face_checks import refuse_open
+from gaspart.scene.features import row_count
+from gaspart.state.optional_tallies import OptionalTally
+from gaspart.state.tally import TALLIES, Tally
 
 if TYPE_CHECKING:
-    from gaspart.trajectory.recipe import Recipe
+    from gaspart.scene.scene import Scene
+    from gaspart.trajectory.correlator import Correlations
+
+AnyTally = TypeVar("AnyTally", bound=OptionalTally)
 
 KEPT = {"positions": "coordinates", "velocities": "velocities"}
 """Choices of `keep`, and the variable of a frame that each is."""
 
+REQUESTED = {name: tally for name, tally in TALLIES.items() if tally.form}
+"""Tallies that an option requests by its text, by name."""
+
+
+# Values of the options, and their attributes in a file.
+
+
+def _to_int32(value: int) -> Any:
+    """Return an attribute that is a 32-bit integer."""
+    import numpy as np
+
+    return np.int32(value)
+
+
+def _read_correlations(value: str | Mapping[str, Any]) -> Correlations:
+    """Make the correlations that an attribute of a file, or the argument of a job, states."""
+    from gaspart.trajectory.correlator import Correlations
+
+    return Correlations.from_json(value) if isinstance(value, str) else Correlations(**value)
+
+
+def _check_correlations(key: str, value: Any) -> Correlations:
+    """Return correlations, or raise SceneError for another value."""
+    from gaspart.trajectory.correlator import Correlations
+
+    if not isinstance(value, Correlations):
+        raise SceneError(key, value, "must be a gaspart.Correlations")
+    return value
+
+
+def _check_tallies(key: str, value: Any) -> tuple[OptionalTally, ...]:
+    """Return requested tallies in the order of their declarations, or raise SceneError."""
+    tallies = value if isinstance(value, Iterable) and not isinstance(value, str) else (value,)
+    requested: dict[str, OptionalTally] = {}
+    for tally in tallies:
+        if not isinstance(tally, OptionalTally) or tally.fact:
+            able = ", ".join(f"gaspart.{kind.__name__}" for kind in TALLIES.values() if not kind.fact)
+            raise SceneError(key, tally, f"must be of {able}")
+        if requested.setdefault(tally.name, tally) != tally:
+            raise SceneError(tally.name, tally.to_text(), "must be requested only once")
+    return tuple(requested[name] for name in TALLIES if name in requested)
+
+
+def tallies_to_json(tallies: Iterable[OptionalTally]) -> str:
+    """Return the attribute `tallies` of a trajectory: names and settings as JSON."""
+    return json.dumps([{"name": tally.name, **asdict(tally)} for tally in tallies])
+
+
+def tallies_from_json(text: str) -> tuple[OptionalTally, ...]:
+    """Return the tallies that an attribute `tallies` states, the inverse of `tallies_to_json`.
+
+    Raises SceneError for an unknown name, and TypeError for an unknown setting.
+    """
+    tallies = []
+    for settings in json.loads(text):
+        name = settings.pop("name", None)
+        if name not in TALLIES or TALLIES[name].fact:
+            able = (key for key, tally in TALLIES.items() if not tally.fact)
+            raise SceneError("tallies", name, f"must be one of {', '.join(able)}")
+        tallies.append(TALLIES[name](**settings))
+    return tuple(tallies)
+
+
+def stored_tally(attributes: Mapping[str, Any], kind: type[AnyTally]) -> AnyTally | None:
+    """Return the tally of a class that the attributes of a trajectory state, or None.
+
+    Raises SceneError and TypeError as `tallies_from_json`.
+    """
+    tallies = tallies_from_json(attributes.get("tallies", "[]"))
+    return next((tally for tally in tallies if isinstance(tally, kind)), None)
+
+
+# Declarations.
+
+
+def _declare(
+    kind: Kind,
+    store: Callable[[Any], Any],
+    restore: Callable[[Any], Any],
+    closed: bool = False,
+    until: str = "",
+) -> dict[str, Any]:
+    """Return the metadata of the field of an option.
+
+    kind : kind and, for an option of the command line and a key of a config, meaning and default
+    store, restore : conversions to the attribute of a file, and back
+    closed : True if open faces exclude it, because particles change
+    until : rule by which accuracies that end the run exclude it
+    """
+    return {**declare(kind), "store": store, "restore": restore, "closed": closed, "until": until}
+
+
+_DISPLACEMENTS = "also keep unwrapped displacements since time 0, in float64, for mean-squared displacements"
+_FOLLOW = (
+    "keep only the first so many particles (single `particles` come first, then `species`); counters and "
+    "energies are those of all"
+)
+_KEEP = (
+    "what frames hold of each particle (by default positions, velocities and spins; without positions "
+    "no other program reads the file, and chemfiles finds 0)"
+)
+_PAIRS = "count the collisions of each pair of species, with which `contact_values` are measured"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Contents:
+    """Contents of the file of a run. An invalid value raises SceneError.
+
+    Attributes
+    ----------
+    correlations : time correlations that the frames accumulate
+    tallies : requested tallies of the frames, in addition to the tallies that the correlations need
+    """
+
+    displacements: bool = field(
+        default=False,
+        metadata=_declare(flag(_DISPLACEMENTS, default=False), _to_int32, bool, closed=True),
+    )
+    follow: int | None = field(
+        default=None, metadata=_declare(count(_FOLLOW, default=None), _to_int32, int, closed=True)
+    )
+    keep: str | None = field(
+        default=None,
+        metadata=_declare(
+            choice(_KEEP, *KEPT, default=None),
+            str,
+            str,
+            until="has no meaning with until, which measures what is there",
+        ),
+    )
+    correlations: Correlations | None = field(
+        default=None,
+        metadata=_declare(
+            Kind({}, _check_correlations),
+            lambda correlations: correlations.to_json(),
+            _read_correlations,
+            closed=True,
+        ),
+    )
+    pairs: bool = field(
+        default=False, metadata=_declare(flag(_PAIRS, default=False), _to_int32, bool, closed=True)
+    )
+    tallies: tuple[OptionalTally, ...] = field(
+        default=(), metadata=_declare(Kind({}, _check_tallies), tallies_to_json, tallies_from_json)
+    )
+
+    def __post_init__(self) -> None:
+        for item in fields(Contents):
+            value = getattr(self, item.name)
+            if value is not None or item.default is not None:
+                object.__setattr__(self, item.name, item.metadata["kind"].check(item.name, value))
+
+    def check_scene(self, scene: Scene, until: bool) -> None:
+        """Raise SceneError for an option that a scene, or an end `until` accuracies, excludes."""
+        if self.follow is not None and self.follow > scene.count:
+            rule = f"must be at most {scene.count}, the number of particles"
+            raise SceneError("follow", self.follow, rule)
+        for item in fields(Contents):
+            if value := getattr(self, item.name):
+                if until and item.metadata["until"]:
+                    raise SceneError(item.name, value, item.metadata["until"])
+                if item.metadata["closed"]:
+                    refuse_open(scene, f"excludes {item.name}: the particles change")
+
+    @property
+    def kept(self) -> tuple[str, ...]:
+        """Data that only such a file has, as `needs` of observables name them."""
+        fluxes = self.correlations is not None and self.correlations.stress
+        return ("fluxes",) * fluxes + ("pairs",) * self.pairs
+
+    def attributes(self) -> dict[str, Any]:
+        """Return the attributes of the file for all options that are not at their default."""
+        values = {item: getattr(self, item.name) for item in fields(Contents)}
+        return {item.name: item.metadata["store"](value) for item, value in values.items() if value}
+
+
 OPTIONS: dict[str, Kind] = {
-    "displacements": flag(
-        "also keep unwrapped displacements since time 0, in float64, for mean-squared displacements",
-        default=False,
-    ),
-    "follow": count(
-        "keep only the first so many particles (single `particles` come first, then `species`); counters and "
-        "energies are those of all",
-        default=None,
-    ),
-    "keep": choice(
-        "what frames hold of each particle (by default positions, velocities and spins; without positions "
-        "no other program reads the file, and chemfiles finds 0)",
-        *KEPT,
-        default=None,
-    ),
-    "pairs": flag(
-        "count the collisions of each pair of species, with which `contact_values` are measured",
-        default=False,
-    ),
+    **{item.name: kind for item in fields(Contents) if "description" in (kind := item.metadata["kind"])},
     **{
         tally.name: describe(TEXT, tally.meaning, title=tally.form, default=None)
         for tally in REQUESTED.values()
     },
 }
-"""Kind, meaning and default of each option, by its name, in the order of help and reference."""
+"""Kind, meaning and default of each option of the command line, by its name, in the order of the help."""
+
+
+def required_contents(needs: Collection[str]) -> dict[str, bool]:
+    """Return the fields of `Contents` that observables with these `needs` require."""
+    return {"displacements": "paths" in needs, "pairs": "pairs" in needs}
+
+
+def stored_contents(attributes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the fields of `Contents` that the attributes of a file state.
+
+    Raises SceneError, TypeError or ValueError for an attribute that cannot be used.
+    """
+    return {
+        item.name: item.metadata["restore"](attributes[item.name])
+        for item in fields(Contents)
+        if item.name in attributes
+    }
 
 
 def recipe_fields(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the fields of a recipe that settings of a run determine.
+    """Return the fields of a recipe for settings in plain values.
 
-    Parameters
-    ----------
-    settings : mapping of str to object
-        Fields of `Recipe`, and texts of tallies by their names.
+    Objects take the place of texts and mappings. Raises SceneError for the text of a tally, or correlations,
+    that are invalid.
 
-    Returns
-    -------
-    dict of str to object
-        Fields, with the requested `tallies` in place of their texts.
-
-    Raises
-    ------
-    SceneError
-        If the text of a tally is invalid.
+    settings : fields of `Recipe`, with correlations as a mapping, and texts of tallies by their names
     """
-    fields = {name: value for name, value in settings.items() if name not in REQUESTED}
+    result = {name: value for name, value in settings.items() if name not in REQUESTED}
+    if result.get("correlations") is not None:
+        result["correlations"] = _read_correlations(result["correlations"])
     texts = {name: settings[name] for name in REQUESTED if settings.get(name) is not None}
-    return {**fields, "tallies": tuple(REQUESTED[name].from_text(text) for name, text in texts.items())}
+    return {**result, "tallies": tuple(REQUESTED[name].from_text(text) for name, text in texts.items())}
 
 
-def stated_options(recipe: Recipe) -> dict[str, Any]:
-    """Return the options that determine what the file of a recipe holds, the inverse of `recipe_fields`.
+def contents_of(settings: Mapping[str, Any]) -> Contents:
+    """Return the contents of the file of a run with settings in plain values, as `recipe_fields`."""
+    names = {item.name for item in fields(Contents)}
+    values = recipe_fields(
+        {name: value for name, value in settings.items() if name in names | REQUESTED.keys()}
+    )
+    return Contents(**values)
 
-    Parameters
-    ----------
-    recipe : Recipe
-        Recipe.
 
-    Returns
-    -------
-    dict of str to object
-        Values by the name of the option, tallies as texts.
+def stated_options(contents: Contents) -> dict[str, Any]:
+    """Return the values of `OPTIONS`, with tallies as texts; the inverse of `recipe_fields`."""
+    texts = {tally.name: tally.to_text() for tally in contents.tallies}
+    return {name: texts.get(name, getattr(contents, name, None)) for name in OPTIONS}
+
+
+# Variables of the optional tallies of a run.
+
+
+def scene_tallies(scene: Scene) -> tuple[OptionalTally, ...]:
+    """Return the tallies that every run of a scene has, if its engine makes them."""
+    return tuple(tally() for tally in TALLIES.values() if tally.fact and getattr(scene, tally.fact))
+
+
+def tallied_fields(tallies: Iterable[OptionalTally]) -> list[str]:
+    """Return the names of the fields of `Tally` that a run with some optional tallies has."""
+    present = {None, *(tally.name for tally in tallies)}
+    return [item.name for item in fields(Tally) if item.metadata.get("only") in present]
+
+
+def tally_axes(tally: OptionalTally, scene: Scene) -> dict[str, int]:
+    """Return the lengths of the axes of the fields of a tally, by name, without `face`.
+
+    A setting of the tally states the length of the axis with its name in the singular.
     """
-    texts = {tally.name: tally.to_text() for tally in recipe.tallies}
-    return {name: texts.get(name, getattr(recipe, name, None)) for name in OPTIONS}
+    lengths = {key.removesuffix("s"): length for key, length in asdict(tally).items()}
+    lengths |= {"axis": scene.dimension, "direction": scene.dimension, "species": row_count(scene)}
+    own = (item.metadata for item in fields(Tally) if item.metadata.get("only") == tally.name)
+    return {axis: lengths[axis] for data in own for axis in data.get("along", ()) if axis != "face"}

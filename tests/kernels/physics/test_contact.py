@@ -1,16 +1,23 @@
 """One contact: its time, and the momentum that passes."""
 
+from __future__ import annotations
+
 import math
+from fractions import Fraction
 
 import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
 
+from gaspart.kernels.physics.ballistic import time_against, time_along, time_to_contact_pulled
 from gaspart.kernels.physics.contact import (
     contact_root,
     exchange,
     exchange_equal,
+    fifth_root,
+    restitution_of,
     time_to_contact,
 )
 
@@ -83,3 +90,131 @@ def test_float32_stays_float32():
     rr, rv, m = np.float32(2.0), np.float32(-3.0), np.float32(1.5)
     assert exchange.py_func(rr, rv, m, m)[0].dtype == np.float32
     assert contact_root.py_func(np.float32(0.9), rv, m, np.float32(1.0)).dtype == np.float32
+
+
+# The restitution of viscoelastic particles, against the integrated equation of a contact.
+
+
+def integrated(damping):
+    """Minus the speed at which x'' + b sqrt(x) x' + x^(3/2) = 0 from x = 0, x' = 1 ends: without a force."""
+
+    def rate(_, y):
+        return y[1], -math.sqrt(max(y[0], 0.0)) * (y[0] + damping * y[1])
+
+    def force(time, y):
+        return y[0] + damping * y[1] if time > 1e-4 else 1.0
+
+    force.terminal, force.direction = True, -1
+    ended = solve_ivp(rate, (0.0, 1e3), (1e-9, 1.0), "DOP853", events=force, rtol=1e-10, atol=1e-13)
+    assert ended.status == 1
+    return -ended.y[1, -1]
+
+
+@given(st.floats(1e-300, 1e300))
+def test_the_fifth_root_is_correct_to_rounding(value):
+    assert float(Fraction(fifth_root(value)) ** 5 / Fraction(value)) == pytest.approx(1.0, rel=2e-15)
+
+
+def test_the_fifth_root_at_its_ends():
+    assert fifth_root(0.0) == 0.0
+    assert fifth_root(32.0) == 2.0
+    assert float(Fraction(fifth_root(5e-324)) ** 5 / Fraction(5e-324)) == pytest.approx(1.0, rel=2e-15)
+
+
+@pytest.mark.parametrize("damping", [1e-3, 0.01, 0.1, 0.5, 1.0, 3.0, 10.0, 30.0])
+def test_the_restitution_is_that_of_the_integrated_contact(damping):
+    assert restitution_of(damping) == pytest.approx(integrated(damping), abs=0.009)
+
+
+def test_slow_contacts_follow_the_first_terms_of_the_series():
+    """1 - C b + 3 C^2 b^2 / 5, C = 1.15345 (Ramirez, Poeschel, Brilliantov and Schwager 1999)."""
+    for damping in (1e-4, 1e-3, 1e-2):
+        series = 1.0 - 1.15345 * damping + 0.6 * (1.15345 * damping) ** 2
+        assert restitution_of(damping) == pytest.approx(series, abs=2.0 * damping**2.5)
+        assert integrated(damping) == pytest.approx(series, abs=2.0 * damping**2.5 + 1e-8)
+
+
+@given(st.floats(0.0, 1e6), st.floats(1.001, 10.0))
+def test_it_falls_from_one_to_zero(damping, factor):
+    assert 0.0 <= restitution_of(factor * damping) <= restitution_of(damping) <= 1.0
+
+
+# Roots of flights under a pull: against a fine search, and where the textbook formula fails.
+
+
+ballistic_vectors = st.lists(st.floats(-5, 5), min_size=2, max_size=2).map(np.array)
+
+
+@given(st.floats(1e-3, 10), st.floats(0, 10), st.floats(1e-6, 10))
+def test_against_and_along_a_pull(gap, speed, pull):
+    rise = time_against(gap, speed, pull)
+    if math.isfinite(rise):
+        assert speed * rise - pull * rise**2 / 2 == pytest.approx(gap, rel=1e-10)
+        assert speed - pull * rise >= -1e-6 * speed  # on the way up
+    else:
+        assert speed**2 / (2 * pull) < gap * (1 + 1e-12)
+    for begun in (speed, -speed):
+        fall = time_along(gap, begun, pull)
+        assert begun * fall + pull * fall**2 / 2 == pytest.approx(gap, abs=1e-12 * (gap + speed * fall))
+        assert begun + pull * fall >= 0  # on the way down
+
+
+def test_the_roots_survive_where_they_cancel():
+    # a gap of 1e-14 crossed at speed 1: (-v + sqrt(v^2 + 2 g h)) / g would be 0, or 10 % off
+    assert time_along(1e-14, 1.0, 1.0) == pytest.approx(1e-14, rel=1e-12)
+    assert time_against(1e-14, 1.0, 1.0) == pytest.approx(1e-14, rel=1e-12)
+    for pull in (1e-300, 1e-30, 1e-12):  # gravity that is hardly there: the straight flight
+        assert time_along(3.0, 2.0, pull) == pytest.approx(1.5, rel=1e-11)
+        assert time_against(3.0, 2.0, pull) == pytest.approx(1.5, rel=1e-11)
+    assert time_along(0.5, 0.0, 1e12) == pytest.approx(1e-6, rel=1e-14)
+    assert time_against(1.0, 0.0, 1.0) == math.inf
+
+
+def test_a_particle_that_left_a_floor_comes_back_even_if_rounding_put_it_below():
+    assert time_along(0.0, -1.0, 2.0) == 1.0
+    assert time_along(-1e-16, -1.0, 2.0) == pytest.approx(1.0, rel=1e-15)
+    assert time_along(-1e-16, -1e-9, 2.0) == 5e-10  # it never comes clear: it turns back at the apex
+    assert time_along(-1e-16, 1e-9, 2.0) == 0.0
+
+
+def separation(r, v, a, t):
+    at = r + np.multiply.outer(t, v) + 0.5 * np.multiply.outer(t * t, a)
+    return (at**2).sum(axis=-1)
+
+
+@given(ballistic_vectors, ballistic_vectors, ballistic_vectors, st.floats(0.2, 2.0))
+def test_a_pulled_contact_is_the_first(r, v, a, sigma):
+    assume(r @ r > 1.01 * sigma**2 and a @ a > 1e-3)
+    time = time_to_contact_pulled(r @ r - sigma**2, r @ v, v @ v, r @ a, v @ a, a @ a)
+    end = min(time, 30.0)
+    before = separation(r, v, a, np.linspace(0, end, 3001))[:-1]
+    assert before.min() > sigma**2 * (1 - 1e-9)
+    if math.isfinite(time):
+        assert separation(r, v, a, np.float64(time)) == pytest.approx(sigma**2, rel=1e-8)
+        assert (r + v * time + a * time**2 / 2) @ (v + a * time) < 1e-6
+
+
+def test_a_pulled_contact_from_rest_and_thrown_up():
+    # a ball of contact distance 1 let go at height 3 above a fixed one: it falls by 2
+    drop = time_to_contact_pulled(8.0, 0.0, 0.0, -3.0, 0.0, 1.0)
+    assert drop == pytest.approx(2.0, rel=1e-15)
+    # touching, thrown up at speed 2 under a pull of 1: back after 4
+    back = time_to_contact_pulled(0.0, 2.0, 4.0, -1.0, -2.0, 1.0)
+    assert back == pytest.approx(4.0, rel=1e-14)
+    assert time_to_contact_pulled(-1e-16, 2.0, 4.0, -1.0, -2.0, 1.0) == pytest.approx(4.0, rel=1e-14)
+    assert time_to_contact_pulled(0.0, -2.0, 4.0, -1.0, 2.0, 1.0) == 0.0
+    assert time_to_contact_pulled(1.0, 0.0, 0.0, 1.5, 0.0, 1.0) == math.inf
+
+
+@given(ballistic_vectors, ballistic_vectors)
+def test_a_vanishing_pull_changes_nothing(r, v):
+    assume(r @ r > 1.01 and v @ v > 1e-2)
+    straight = time_to_contact(r @ r, r @ v, v @ v, 1.0)
+    closest = r - v * min((r @ v) / (v @ v), 0)
+    assume(abs(closest @ closest - 1.0) > 1e-6)
+    a = np.array([0.0, 1e-40])
+    pulled = time_to_contact_pulled(r @ r - 1.0, r @ v, v @ v, r @ a, v @ a, a @ a)
+    if math.isfinite(straight):
+        assert pulled == pytest.approx(straight, rel=1e-6)
+    else:
+        assert pulled > 1e20

@@ -1,5 +1,7 @@
 """Random numbers inside kernels: the generator's bits, the logarithm's bits, the distributions."""
 
+from __future__ import annotations
+
 import math
 
 import numpy as np
@@ -8,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gaspart.kernels.physics.rng import flux_speed, log_of, normal_pair, random_words, uniform
+from gaspart.kernels.physics.sine import sine_cosine
 from gaspart.state.random import key_of, natural_log
 
 WORDS = st.integers(0, 2**63 - 1)
@@ -52,3 +55,19 @@ def test_speeds_at_a_wall_are_weighted_by_the_flux_and_normal_numbers_are_normal
 def test_keys_differ_by_seed_and_purpose():
     keys = {tuple(key_of(*arguments)) for arguments in ((1,), (2,), (1, 1), ((1, 2),), ((1, 2), 3))}
     assert len(keys) == 5
+
+
+# The sine that is the same bits on every machine.
+
+
+@given(st.floats(0.0, 1.0))
+def test_sine_and_cosine_are_those_of_the_library(turns):
+    sine, cosine = sine_cosine(turns)
+    assert sine == pytest.approx(math.sin(2.0 * math.pi * turns), abs=1e-15)
+    assert cosine == pytest.approx(math.cos(2.0 * math.pi * turns), abs=1e-15)
+    assert sine * sine + cosine * cosine == pytest.approx(1.0, abs=1e-15)
+
+
+def test_quarters_of_a_turn_are_exact():
+    found = [sine_cosine(n / 4.0) for n in range(9)]
+    assert np.array_equal(found, [(0, 1), (1, 0), (0, -1), (-1, 0), (0, 1), (1, 0), (0, -1), (-1, 0), (0, 1)])

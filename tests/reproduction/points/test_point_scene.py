@@ -106,7 +106,7 @@ def test_collisions_per_particle_are_for_one_species_and_nothing_else(tmp_path):
         ({"scene.species.0.mass": -1}, "experiments.gas[single].species[0].mass", "must be positive"),
         ({"scene.gravitas": 1}, "experiments.gas[single].gravitas", "unknown key; "),
         ({"scene.gravity.1": float("nan")}, "experiments.gas.point.scene.gravity.1", "must be a finite"),
-        ({"follow": 71}, "experiments.gas.follow", "there are 70 particles"),
+        ({"follow": 71}, "experiments.gas.follow", "must be at most 70, the number of particles"),
         ({"duration": None}, "experiments.gas", "exactly one of"),
     ],
 )

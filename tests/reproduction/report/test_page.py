@@ -1,19 +1,36 @@
 """What the page is filled with."""
 
+from __future__ import annotations
+
+import json
+import math
+import re
+from pathlib import Path
+
 import numpy as np
+import pytest
+import xarray as xr
 from PIL import Image
 
 from gaspart.reproduction.families.registry import chapter, families, titles
+from gaspart.reproduction.families.tradeoff.choices import ENGINES, PARTS
+from gaspart.reproduction.families.tradeoff.figure import NAMES
+from gaspart.reproduction.report.explore import engines, series
 from gaspart.reproduction.report.page import (
     CHAPTERS,
+    LIMIT,
     Section,
     address,
     by_chapter,
+    deviation,
+    dots,
     films,
     findings,
     headline,
     picture,
+    split_caption,
 )
+from gaspart.theory.state import compressibility_factor
 
 ROW = {"figure": "cooling", "claim": "rate of cooling, discs", "measured": 0.93, "uncertainty": 0.02}
 
@@ -43,8 +60,15 @@ def test_findings_state_the_measured_number_of_their_figure():
 def test_the_first_screen_counts_kinds_apart_and_names_what_disagrees():
     rows = [claim("test", "agrees"), claim("test", "disagrees"), claim("family", "disagrees")]
     found = headline(rows)
-    assert found["kinds"] == {"test": {"agrees": 1, "disagrees": 1}}
+    assert found["kinds"] == {"test": {"agrees": 1, "disagrees": 1}, "family": {"disagrees": 1}}
+    assert sum(sum(verdicts.values()) for verdicts in found["kinds"].values()) == len(rows)
     assert found["disagree"] == rows[1:]
+
+
+def test_the_template_identifies_sources_before_it_cites_them():
+    text = (Path(__file__).parents[3] / "workflow/report/report.html.j2").read_text(encoding="utf-8")
+    assert 'selectattr("is_source")' in text
+    assert text.index('id="sources"') < text.index('id="findings"') < text.index("| cite }}")
 
 
 def test_pictures_lie_beside_the_page_or_are_in_it(tmp_path):
@@ -65,3 +89,116 @@ def test_pictures_lie_beside_the_page_or_are_in_it(tmp_path):
     paths = [tmp_path / "film.mp4", tmp_path / "other.mp4"]
     assert list(films(paths, False)) == ["film", "other"]
     assert films(paths, True) == {"film": "data:video/mp4;base64,ZmlsbQ=="}
+
+
+# The parts of a caption, and that each caption of the project has them.
+
+
+REPORT = Path(__file__).parents[3] / "workflow/report"
+MOST_WORDS = 120
+LONG = """**Discs freeze.** (a) Pressure of
+discs.
+
+*Theory.* That they do.
+
+*Panels.* (b) *g*\\ (*r*).
+"""
+
+
+def test_a_caption_is_divided():
+    parts = split_caption(LONG)
+    assert (parts.finding, parts.plain) == ("Discs freeze", "Discs freeze")
+    assert "Pressure of\ndiscs" in parts.reading and "<em>g</em>" in parts.reading
+    assert "Panels" not in parts.reading and "Theory" in parts.details
+
+
+def test_a_caption_begins_with_its_finding():
+    with pytest.raises(ValueError, match="begins with its finding"):
+        split_caption("Discs freeze.")
+
+
+@pytest.mark.parametrize("figure", families())
+def test_how_to_read_a_figure_takes_few_words(figure, capsys):
+    text = (REPORT / f"{figure}.rst").read_text(encoding="utf-8")
+    parts = split_caption(re.sub(r"\{\{.*?\}\}", "0.123(4)", text, flags=re.DOTALL))
+    assert capsys.readouterr().err == ""  # docutils has nothing to complain about
+    words = re.sub(r"<math.*?</math>", "formula", parts.reading, flags=re.DOTALL)
+    assert len(re.sub(r"<[^>]+>", "", words).split()) <= MOST_WORDS
+
+
+# Claims on the axis of deviations.
+
+
+def row(sigma=math.nan, low=math.nan, high=math.nan, measured=1.0):
+    return {"deviation_sigma": sigma, "lowest": low, "highest": high, "measured": measured}
+
+
+@pytest.mark.parametrize(
+    ("claim", "place"),
+    [
+        (row(-1.5), -1.5),
+        (row(0.0, 0.8, 1.2, 1.1), 1.5),
+        (row(2.0, -math.inf, 1.2, 1.3), 2.0),
+        (row(0.0, 0.8, 1.2, math.nan), 0.0),
+        (row(), 0.0),
+    ],
+)
+def test_a_value_is_at_its_deviation_and_a_bounded_number_at_its_place(claim, place):
+    assert deviation(claim) == pytest.approx(place)
+
+
+def test_dots_do_not_hide_one_another_and_stay_on_the_axis():
+    found = dots([row(0.1), row(0.0), row(0.05), row(99.0), row(-math.inf)])
+    assert [dot.position for dot in found] == pytest.approx([0.0, 50.0, 50.5, 51.0, 100.0])
+    assert [dot.level for dot in found] == [0, 0, 1, 2, 0]
+    assert max(dot.level for dot in dots([row(0.0)] * 20)) == 3
+    assert LIMIT > 3.0
+
+
+# The data of what a reader may choose on the page.
+
+
+def test_the_series_reach_the_equation_of_state_where_it_is_dilute():
+    at = xr.Dataset(
+        {"Z": ("packing_fraction", [1.5]), "Z_error": ("packing_fraction", [np.nan])},
+        coords={"packing_fraction": [0.1]},
+    )
+    found = series({"first": at, "second": at}, {"first": (2, 0.65), "second": (3, 0.49)})
+    assert [one["name"] for one in found] == ["discs", "spheres"]
+    for dimension, one in zip((2, 3), found, strict=True):
+        n = np.argmin(np.abs(np.array(one["packing_fraction"]) - 0.1))
+        z = float(compressibility_factor(one["packing_fraction"][n], dimension))
+        assert one["sums"][0] == [1.0] * 101
+        assert one["sums"][9][n] == pytest.approx(z, rel=1e-5) == one["reference"][n]
+        assert one["measured"] == [[0.1], [1.5], [None]]
+        assert "NaN" not in json.dumps(one)
+
+
+def test_costs_and_errors_of_all_engines_are_those_of_the_map():
+    """Two observables, of which one was measured at one of two packing fractions."""
+    shape = (2, 2, 3, len(ENGINES))
+    cost = np.arange(1.0, 1.0 + np.prod(shape)).reshape(shape)
+    cost[1, 0] = np.nan  # nothing was run
+    cost[0, 0, 0, 1], cost[0, 0, 0, 2] = np.inf, np.nan  # out of reach; not run
+    error = np.full((*shape, len(PARTS)), 0.00123456)
+    error[0, 0, 0, 2] = np.nan
+    dims = ("quantity", "fraction", "accuracy", "solver")
+    dataset = xr.Dataset(
+        {"cost": (dims, cost), "error": ((*dims, "part"), error)},
+        coords={
+            "quantity": ["Z", "D"],
+            "fraction": [0.01, 0.3],
+            "accuracy": [0.1, 0.01, 0.001],
+            "solver": list(ENGINES),
+            "part": list(PARTS),
+            "count": [1000, 10000],
+        },
+    )
+    found = engines(dataset)
+    assert found["count"] == 1000 and found["accuracies"] == [0.1, 0.01, 0.001]
+    assert [one["name"] for one in found["engines"]] == [NAMES[engine] for engine in ENGINES]
+    z, d = found["observables"]
+    assert (z["name"], z["fractions"], d["fractions"]) == ("compressibility factor Z", [0.01, 0.3], [0.3])
+    assert z["cost"][0][0] == [1.0, -1.0, None, 4.0] and d["cost"] == [cost[1, 1].tolist()]
+    assert z["error"][0][0][0] == [0.00123] * len(PARTS) and z["error"][0][0][2] == [None] * len(PARTS)
+    assert "NaN" not in json.dumps(found) and "Infinity" not in json.dumps(found)

@@ -55,8 +55,8 @@ class CorrelatedMean:
     """Mean of a correlated series, with errors from blocks.
 
     `errors[k]` is the standard error from blocks of `lengths[k]` samples. `flat` is True if the error from
-    blocks no longer grows with their length beyond its own uncertainty, so that the series is long enough; it
-    does so from blocks of `block_length` on, of which there are `blocks`.
+    blocks no longer grows with the length of blocks beyond its own uncertainty, so that the series is long
+    enough. This is so from blocks of `block_length` on; their number is `blocks`.
     """
 
     estimate: Estimate
@@ -70,20 +70,20 @@ class CorrelatedMean:
 def correlated_mean(series: ArrayLike, minimum_blocks: int = 16) -> CorrelatedMean:
     """Compute the mean and standard error of a stationary correlated series.
 
-    The squared error is the spectrum at frequency 0 over the length, for an autoregressive process fitted to
-    the series, whose order grows as the cube root of the length (Berk, Ann. Stat. 2, 489 (1974)). It is right
-    for independent, correlated and anticorrelated series alike, and its own uncertainty, from the fitted
-    coefficients, is stated as degrees of freedom: 13 for 200 independent samples. These are no more than the
-    changes from one sample to the next: a series that has been the same so far says nothing of its error, 0
-    with a single degree of freedom.
+    The squared error is the spectrum at frequency 0 divided by the length. It is computed from an
+    autoregressive process that is fitted to the series, and whose order grows as the cube root of the length
+    (Berk, Ann. Stat. 2, 489 (1974)). The error is correct for independent, correlated and anticorrelated
+    series. Its own uncertainty, from the fitted coefficients, is expressed as degrees of freedom: 13 for 200
+    independent samples. The degrees of freedom are at most the number of changes from one sample to the next.
+    A constant series gives no information on its error: the error is 0 with a single degree of freedom.
 
-    Whether the series is long enough is decided by blocks (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461
-    (1989)): the error from blocks of 1, 2, 4 ... samples grows until they are independent; the error from n
-    of them is uncertain by the part 1 / sqrt(2 (n-1)). It is flat from the shortest length on that no longer
-    length exceeds by more than the uncertainty of the longer one. The error at that length is not taken: the
-    first one that is not clearly too small is too small on average, by 5 to 40 % with 16 to 300
-    autocorrelation times. Needs minimum_blocks (>= 4) samples; a remainder at the start that fills no block
-    is left out of the blocks.
+    Blocks show whether the series is long enough (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461 (1989)). The
+    error from blocks of 1, 2, 4 ... samples grows until the blocks are independent. The error from n blocks
+    has the relative uncertainty 1 / sqrt(2 (n-1)). The error is flat from the shortest length that no longer
+    length exceeds by more than the uncertainty of the longer one. The error at that length is not used as the
+    result. The first error that is not clearly too small is too small on average, by 5 to 40 % with 16 to 300
+    autocorrelation times. At least minimum_blocks (>= 4) samples are needed. A remainder at the start that
+    does not fill a block is excluded from the blocks.
     """
     if minimum_blocks < 4:
         raise ValueError(f"minimum_blocks: {minimum_blocks} (must be at least 4)")
@@ -119,26 +119,27 @@ def correlated_mean(series: ArrayLike, minimum_blocks: int = 16) -> CorrelatedMe
 def slow_mean(series: ArrayLike, minimum_blocks: int = 16) -> Estimate:
     """Return the mean and its error of a series whose correlations may fall as 1/t.
 
-    Particles of all speeds cross a container, and slow ones stay for long: without collisions the number of
-    those inside is correlated over a time t as L / t, whose sum grows as the logarithm of the length of the
-    run. No fit of a finite order sees that. So the squared error of the mean of blocks, times their length,
-    is taken as linear in the logarithm of this, from the blocks of a quarter of the longest length to those,
-    and continued to the length of the series. The larger error counts, that one or `correlated_mean`'s.
+    Particles of all speeds cross a container, and slow particles remain for long. So without collisions the
+    number of particles inside has correlations L / t over a time t, whose sum grows as the logarithm of the
+    length of the run. No fit of a finite order sees that. Therefore the squared error of the mean of blocks,
+    times the length of blocks, is fitted as linear in the logarithm of this length, for blocks between a
+    quarter of the longest length and the longest length. The fit is extrapolated to the length of the series.
+    The larger error counts, that one or `correlated_mean`'s.
 
     Parameters
     ----------
     series : array_like, shape (n,)
-        Samples, at least 4 times `minimum_blocks`; of fewer ones, the result is `correlated_mean`'s.
+        Samples, at least 4 times `minimum_blocks`. For fewer samples the function returns `correlated_mean`.
     minimum_blocks : int
         Number of the longest blocks, at least.
 
     Returns
     -------
     Estimate
-        It has at most the degrees of freedom of this number of blocks. Of free particles, deviations over
-        errors are then 1.01 to 1.13 times as wide as Student's in runs of 100 times the crossing and more,
-        1.2 times in runs of 8 times the crossing (`tests/analysis/test_statistics.py`);
-        by `correlated_mean` 1.2 to 1.65 times.
+        The degrees of freedom are at most this number of blocks. For free particles, deviations divided by
+        errors are then 1.01 to 1.13 times as wide as Student's distribution in runs of at least 100 crossing
+        times, and 1.2 times in runs of 8 crossing times (`tests/analysis/test_statistics.py`). With
+        `correlated_mean` the factors are 1.2 to 1.65.
     """
     plain = correlated_mean(series, minimum_blocks)
     squares, own = plain.errors**2, plain.estimate
@@ -155,10 +156,10 @@ def slow_mean(series: ArrayLike, minimum_blocks: int = 16) -> Estimate:
 def autocorrelation_time(series: ArrayLike) -> float:
     """Compute the integrated autocorrelation time 1/2 + sum of rho(k), in samples.
 
-    It is 1/2 for independent samples, less for anticorrelated ones.
+    The time is 1/2 for independent samples, and less for anticorrelated samples.
 
-    A series of n samples holds n / (2 time) independent ones: the squared error of its mean, by
-    `correlated_mean`, is 2 time / n times its variance. A constant series has none of its own: 1/2.
+    A series of n samples contains n / (2 time) independent samples: the squared error of its mean, by
+    `correlated_mean`, is 2 time / n times its variance. For a constant series the result is 1/2.
     """
     series = series_of("series", series, 4)
     spectrum = _spectrum(series)[0]
@@ -173,13 +174,13 @@ def count_changes(series: np.ndarray) -> int:
 def common_freedom(series: np.ndarray) -> float:
     """Compute the degrees of freedom of the errors of several series with similar correlations.
 
-    A series whose correlation time comes out too small by chance states too many degrees of freedom with an
-    error that is too small. The mean autocorrelation of all series states how many there are. Of 40 cells of
-    a dense fluid over 13 correlation times, 1.8 % deviate by more than three standard deviations with the
-    degrees of freedom of their own fits, .7 % with at most the common ones
+    If the correlation time of a series is too small by chance, its error is too small and its degrees of
+    freedom are too many. The mean autocorrelation of all series gives a common number of degrees of freedom.
+    For 40 cells of a dense fluid over 13 correlation times, 1.8 % deviate by more than three standard
+    deviations with the degrees of freedom of their own fits, and .7 % with at most the common number
     (`tests/analysis/test_small_numbers.py`).
 
-    series : (n, m); series that do not change do not count. Infinite if none changes.
+    series : (n, m); series that do not change are ignored. Infinite if none changes.
     """
     number = len(series)
     centred = series - series.mean(axis=0)
@@ -204,8 +205,8 @@ def _spectrum(series: np.ndarray) -> tuple[float, float]:
 
     The degrees of freedom of this estimate are returned too.
 
-    The autocovariances about a measured mean are too small by the sum itself over n: they are shifted by a
-    first estimate of it, and the fit is repeated.
+    Autocovariances about a measured mean are too small by their sum divided by n. So they are shifted by a
+    first estimate of the sum, and the fit is repeated.
     """
     number = series.size
     order = _order(number)
@@ -256,7 +257,7 @@ class Histogram:
 
 
 def histogram_chi_square(samples: ArrayLike, cdf: Callable[[np.ndarray], Any], bins: int) -> Histogram:
-    """Compute chi-square of independent samples against a distribution given by its `cdf`.
+    """Compute chi-square of independent samples against a distribution with the function `cdf`.
 
     No parameter is fitted.
 

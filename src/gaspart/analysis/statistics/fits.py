@@ -80,11 +80,12 @@ def fit_linear(
 
     The design has the shape (points, parameters).
 
-    With errors: covariance from them, and a chi-square test of the model. Without: all points count alike,
-    and the covariance is scaled by the residuals' scatter (so there is no test). `freedoms` are the degrees
-    of freedom of the errors, one for all points or one for each, if they come from the scatter of a few
-    samples; see `_of_estimated_errors`. An Estimate as y brings both. Raises ValueError if there are fewer
-    points than parameters (or as many, without errors), or the columns are dependent.
+    With errors: covariance from them, and a chi-square test of the model. Without errors, all points have
+    equal weight, and the covariance is scaled by the scatter of the residuals (so there is no test).
+    `freedoms` are the degrees of freedom of the errors, one number for all points or one per point, if the
+    errors are computed from the scatter of a few samples; see `_of_estimated_errors`. An Estimate as y brings
+    both. Raises ValueError if there are fewer points than parameters (or equally many, without errors), or if
+    the columns are dependent.
     """
     y, errors, freedoms = _with_errors(y, errors, freedoms)
     y = series_of("y", y, 1)
@@ -183,8 +184,8 @@ def fit_power_law(
 ) -> PowerLaw:
     """Fit y = amplitude x^exponent as a line of ln y against ln x; see `fit_linear`.
 
-    x and y are positive, `errors` are errors of y. They become errors / y of the logarithm, good while they
-    are below some 20 %.
+    x and y are positive, `errors` are errors of y. The errors become errors / y of the logarithm, which is
+    accurate if they are below some 20 %.
     """
     x = series_of("x", x, 2)
     y, errors, freedoms = _with_errors(y, errors, freedoms)
@@ -290,8 +291,8 @@ def means_of(samples: ArrayLike, sizes: ArrayLike | None = None) -> tuple[np.nda
 def histogram_means(samples: ArrayLike, sizes: ArrayLike | None = None) -> tuple[np.ndarray, np.ndarray]:
     """Compute means of N histograms (N, bins), with NaN for errors that are not known.
 
-    A bin with the same value in all samples, such as an empty bin, has no scatter. This states nothing about
-    its error, unless no bin has any scatter: then nothing changes, and all errors are 0.
+    A bin with the same value in all samples, such as an empty bin, has no scatter. A bin without scatter
+    gives no information on its error. If no bin has any scatter, nothing changes, and all errors are 0.
     """
     means, errors = means_of(samples, sizes)
     if errors.any():
@@ -304,9 +305,9 @@ def steady_mean(series: ArrayLike, *changes: ArrayLike) -> Estimate:
 
     Each of `changes` (K,) is the change of a bounded quantity, such as the energy stored, during each block.
     Energy that a block stores, another one gives back: blocks anticorrelate, and their scatter exceeds the
-    scatter of the long-time mean. So the blocks are regressed on the changes (least squares), which leaves
-    the current of blocks without a change; it differs from the plain mean by a bounded amount over the length
-    of the run. The degrees of freedom are K - 1 - len(changes). Raises ValueError as `fit_linear`.
+    scatter of the long-time mean. So the blocks are regressed on the changes (least squares), and the result
+    is the current of blocks without a change. It differs from the plain mean by a bounded amount divided by
+    the length of the run. The degrees of freedom are K - 1 - len(changes). Raises ValueError as `fit_linear`.
     """
     series = series_of("series", series, 2)
     design = [np.ones(series.size)]
@@ -319,7 +320,7 @@ def steady_mean(series: ArrayLike, *changes: ArrayLike) -> Estimate:
 
 
 def combine(values: Values, errors: ArrayLike | None = None, freedoms: ArrayLike = math.inf) -> Combination:
-    """Compute the mean weighted by 1 / error^2, with chi-square about it; see `fit_linear`."""
+    """Compute the mean weighted by 1 / error^2, with chi-square about the mean; see `fit_linear`."""
     number = len(values) if isinstance(values, Estimate) else np.size(values)
     fit = fit_linear(np.ones((number, 1)), values, errors, freedoms)
     mean = fit.estimate(0)
@@ -349,8 +350,8 @@ def bootstrap(function: Callable[..., float], samples: ArrayLike, repeats: int =
     Data are resampled with replacement, along axis 0.
 
     The same samples give the same error. `function` returns one number. Resampled means of n samples scatter
-    by the fraction sqrt(1 - 1/n) of the standard error, which is divided by it; the error has n - 1 degrees
-    of freedom (Efron and Tibshirani, An introduction to the bootstrap (1993), section 5.3).
+    by the fraction sqrt(1 - 1/n) of the standard error, so the scatter is divided by this fraction. The error
+    has n - 1 degrees of freedom (Efron and Tibshirani, An introduction to the bootstrap (1993), section 5.3).
     """
     samples = np.asarray(samples)
     if samples.shape[0] < 2:

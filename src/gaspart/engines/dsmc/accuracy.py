@@ -1,9 +1,9 @@
 """Bounds on the errors of the DSMC engine in a steady scene, from its local conditions.
 
 The Boltzmann model lacks the excluded volume: in the contact value, in the virial, and in collisions, which
-have no extent. The Enskog model has the contact value of the local density; it lacks the memory of
-collisions, the contact value of a finite number of particles, and the layers of particles at a wall. Cells
-average over variations within them.
+have no extent. The Enskog model uses the contact value of the local density. It neglects the memory of
+collisions, the effect of a finite number of particles on the contact value, and the layers of particles at a
+wall. Cells average over variations within them.
 """
 
 from __future__ import annotations
@@ -97,9 +97,9 @@ def enskog_error(request: AccuracyRequest, cells: tuple[int, ...] | None = None)
 def cell_error(engine: DSMC, request: AccuracyRequest) -> float:
     """Bound the relative error due to cells and steps.
 
-    The error is in the viscosity, and in observables that depend on it, by the shortest free path; in a rate
-    by the mean over a cell, of a density that changes by e over the scale; in the Enskog model by the
-    collisions that are lost among few particles in a cell.
+    The error of the viscosity, and of observables that depend on it, is computed with the shortest free path.
+    The error of a rate is the mean over a cell of a density that changes by a factor e over the scale. In the
+    Enskog model the collisions that are lost among few particles in a cell are added.
     """
     conditions, error = request.conditions, 0.0
     if request.transported:
@@ -115,8 +115,8 @@ def cell_error(engine: DSMC, request: AccuracyRequest) -> float:
 def require_resolved(engine: DSMC, conditions: Layers) -> None:
     """Raise SceneError for cells or steps that do not resolve an inhomogeneous gas.
 
-    They must not be longer than the length or time over which the gas changes, nor than its shortest free
-    path or time. The state of a homogeneous gas does not depend on them.
+    Cells and steps must not exceed the length or time over which the gas changes, nor its shortest free path
+    or time. In a homogeneous gas the state does not depend on cells and steps.
     """
     if conditions.axis is None:
         return

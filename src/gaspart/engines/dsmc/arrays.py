@@ -63,8 +63,8 @@ def grid_for(scene: Scene, state: State, cells: tuple[int, ...], threads: int) -
 def kinds_of(state: State) -> tuple[np.ndarray, np.ndarray]:
     """Return the kinds of particles, and the kind (N,) of each particle.
 
-    A kind has radius, mass and moment of inertia (K, 3). The kinds of the particles are (0,) if all particles
-    are alike.
+    A kind has radius, mass and moment of inertia (K, 3). If all particles are alike, the array of kinds has
+    the shape (0,).
     """
     properties = np.stack([state.radii, state.masses, state.moments_of_inertia], axis=1)
     if not len(properties) or (properties == properties[0]).all():
@@ -126,7 +126,7 @@ def faces_for(scene: Scene, threads: int) -> Faces | None:
 
 
 def law_for(law: ContactLaw | None) -> Law | None:
-    """Convert the collision law for this engine's kernels; None if collisions are elastic and smooth."""
+    """Convert the collision law for the kernels; None if collisions are elastic and smooth."""
     return None if law is None else Law(law.normal, law.tangential, law.spins, law.viscous)
 
 
@@ -176,7 +176,7 @@ def slabs_of(per_side: np.ndarray, reach: np.ndarray) -> tuple[int, np.ndarray]:
 
 
 def dense_for(scene: Scene, state: State, grid: Grid, kinds: int) -> Dense:
-    """Return the arrays of a state, for a number of kinds of particles.
+    """Return the arrays of the Enskog model for a state with several kinds of particles.
 
     Raises SceneError for a scene for which the model is not made.
     """

@@ -80,7 +80,8 @@ def rates(scene: Scene, dense: bool, instead: Kinds | None = None) -> Rates:
     The temperature of the faces is used instead of the particles' if it is higher.
 
     dense : True for the contact values of a dense gas
-    instead : fewer kinds of particles that represent the kinds of the scene; each pair of them is evaluated
+    instead : fewer kinds of particles that represent the kinds of the scene; each pair of these kinds is
+        evaluated
     """
     d, kinds = scene.dimension, scene.moving_kinds if instead is None else instead
     heat = max(scene.face_temperatures, default=0.0)
@@ -94,7 +95,8 @@ def rates(scene: Scene, dense: bool, instead: Kinds | None = None) -> Rates:
 def highest_speed(scene: Scene) -> float:
     """Return the highest mean speed that particles can reach with the energy of the start.
 
-    It is reached if the energy is divided so that each particle has the same momentum.
+    A particle reaches this speed if the energy is divided so that all particles have momenta of equal
+    magnitude.
     """
     kinds = scene.moving_kinds
     energy = sum(
@@ -252,9 +254,10 @@ def may_speed_up(scene: Scene) -> bool:
 
 
 def is_hotter(state: State, gas_rates: Rates) -> bool:
-    """Return True if a given state is so fast that steps must follow its speeds.
+    """Return True if the initial state is so fast that steps must adapt.
 
-    Its speeds relative to its mean velocity are compared with the speeds of the scene's own state.
+    The speeds of the state relative to its mean velocity are compared with the speeds of the initial state of
+    the scene.
     """
     velocities = state.velocities[np.isfinite(state.masses)]
     if not len(velocities):
@@ -293,8 +296,8 @@ _TOO_LONG = f"lets particles fly more than {MOST:g} mean free paths, or {MOST:g}
 def check_step(reach: Reach, step: float, gas_rates: Rates) -> None:
     """Raise SceneError for a step in which particles fly too far.
 
-    This is so if they would collide with more than `MOST` others, or cross the container between walls more
-    often.
+    A step is rejected if particles would collide with more than `MOST` others in it, or cross the container
+    between walls more often.
     """
     if reach.way(gas_rates.speed, step) > reach.most:
         fit = reach.longest(gas_rates.speed, reach.most)
@@ -337,7 +340,7 @@ a cell lose 3 % at a packing fraction of 0.1, 6 % at 0.4).
 
 
 def cells_for(engine: DSMC, scene: Scene, gas_rates: Rates, crowding: float = 1.0) -> tuple[int, ...]:
-    """Return the number of cells along each axis (d,): the engine's, or the recommended ones.
+    """Return the number of cells along each axis (d,): the prescribed or the recommended number.
 
     crowding : ratio of the density around the particles to the mean density
     """
@@ -353,7 +356,7 @@ def cells_for(engine: DSMC, scene: Scene, gas_rates: Rates, crowding: float = 1.
 def recommended_cells(model: str, scene: Scene, gas_rates: Rates, number: float) -> tuple[int, ...]:
     """Return the recommended number of cells along each axis (d,), for a number of particles.
 
-    Where particles fall there are `LAYERS` cells along the fall, if there are enough particles; the remaining
+    Along the direction of gravity there are `LAYERS` cells, if there are enough particles. The remaining
     cells are divided among the other axes.
     """
     lower, upper = accessible(scene)
@@ -402,8 +405,8 @@ def widths_of(cells: tuple[int, ...], scene: Scene) -> np.ndarray:
 def predicted_error(cells: tuple[int, ...], step: float, scene: Scene, gas_rates: Rates) -> float:
     """Return the relative error of the shear viscosity due to cells and step.
 
-    The viscosity is too high. For spheres the error is 16/(45 pi) (w/l)^2 + 16/(75 pi) (c dt/l)^2, with w the
-    side of a cell, l the mean free path and c = sqrt(2 kT/m): Alexander, Garcia & Alder, Phys. Fluids 10,
+    The viscosity is too high. For spheres the error is 16/(45 pi) (w/l)^2 + 16/(75 pi) (c dt/l)^2, where w is
+    the side of a cell, l the mean free path and c = sqrt(2 kT/m): Alexander, Garcia & Alder, Phys. Fluids 10,
     1540 (1998); Hadjiconstantinou, Phys. Fluids 12, 2634 (2000); Garcia & Wagner, Phys. Fluids 12, 2621
     (2000). For discs the first term is pi/24 (w/l)^2, by the same argument, and the second equals the term
     for spheres, an estimate. An axis with one cell between periodic faces has no profile to distort.
@@ -420,10 +423,10 @@ def predicted_error(cells: tuple[int, ...], step: float, scene: Scene, gas_rates
 
 
 def diffusion_error(step: float, scene: Scene, gas_rates: Rates) -> float:
-    """Return the relative error of the diffusion coefficient due to a step; it is too high.
+    """Return the relative error of the diffusion coefficient due to a step, which is positive.
 
-    For spheres it is 4/(27 pi) (c dt/l)^2, see `predicted_error`; for discs the same, an estimate. Cells have
-    no effect.
+    For spheres the error is 4/(27 pi) (c dt/l)^2, see `predicted_error`. The same value is an estimate for
+    discs. Cells have no effect.
     """
     return (
         _DIFFUSION_IN_TIME * _thermal_step(step, scene.dimension, gas_rates) ** 2
@@ -433,7 +436,7 @@ def diffusion_error(step: float, scene: Scene, gas_rates: Rates) -> float:
 
 
 def lost_collisions(engine: DSMC, cells: tuple[int, ...], scene: Scene) -> float:
-    """Bound the fraction of its collisions that the Enskog model loses; 0 in a single cell."""
+    """Bound the fraction of collisions that the Enskog model loses; 0 in a single cell."""
     number = math.prod(cells)
     return CELL_LOSS * number / scene.count if engine.model == "enskog" and number > 1 else 0.0
 

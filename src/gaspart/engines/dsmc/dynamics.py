@@ -14,7 +14,7 @@ from gaspart.engines.dsmc.resolution import EPOCH, HIGHEST, Resolution
 from gaspart.engines.dynamics import check_parts
 from gaspart.engines.features.law import LawPart, contact_law
 from gaspart.engines.features.part import Part, TallyPart, step_kicks
-from gaspart.engines.features.tallies import ThreadedPerAreaPart
+from gaspart.engines.features.tallies import ThreadedPerAreaPart, tallied_fluxes
 from gaspart.engines.step.limits import oversized_particles
 from gaspart.engines.stepped import SteppedDynamics
 from gaspart.errors import SceneError, SimulationError
@@ -27,7 +27,6 @@ from gaspart.kernels.physics.exact_sum import WIDTH, exact_parts, sum_over_threa
 from gaspart.scene.scene import Scene
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State, drift_of
-from gaspart.state.tally import tallied_fluxes
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.settings import DSMC
@@ -44,7 +43,7 @@ _OVERSIZED = (
 
 
 def check_scene(scene: Scene, state: State) -> None:
-    """Raise SceneError for particles that this engine does not model, or too many of them."""
+    """Raise SceneError for features that this engine does not model, or for too many particles."""
     if oversized_particles(state).any():
         raise SceneError("radius", scene.largest_radius, _OVERSIZED)
     if state.count > MOST_PARTICLES:
@@ -95,7 +94,7 @@ class StressPart(TallyPart):
 
 
 class WallShearPart(Part):
-    """Momentum that faces were given along themselves.
+    """Tangential momentum given to faces.
 
     shear : (threads, 2d, d, WIDTH)
     """
@@ -127,7 +126,7 @@ _WHOLE = 2**FINEST
 
 
 class DsmcDynamics(SteppedDynamics):
-    """Dynamics of a scene; its time is a whole number of steps.
+    """Dynamics of a scene. Its time is a whole number of steps.
 
     A step may be made in parts, and cells may become narrower: see `defaults` and `resolution`.
 
@@ -233,7 +232,7 @@ class DsmcDynamics(SteppedDynamics):
             check_made(self._workspace.counts, self.time)
 
     def _run(self, level: int, number: int) -> int:
-        """Run the kernel for a number of parts of a step; return the number made.
+        """Run the kernel for some parts of a step; return the number of completed parts.
 
         level : level of the parts
         """
@@ -246,7 +245,7 @@ class DsmcDynamics(SteppedDynamics):
         return loop.run_steps(self._particles, now.grid, context, number, self._threads, options)
 
     def reset_tally(self) -> None:
-        """Begin to count anew."""
+        """Reset all counters."""
         super().reset_tally()
         self._clock_since = int(self._workspace.clock[0])
 

@@ -59,7 +59,7 @@ def may_crowd(scene: Scene) -> bool:
 def crowding(positions: np.ndarray, cells: tuple[int, ...], scene: Scene) -> float:
     """Return the relative density around particles at these positions (N, d).
 
-    It follows from the pairs in each of some cells, and is 1 in a uniform gas.
+    The value is computed from the pairs in each of some cells, and is 1 in a uniform gas.
     """
     lower, upper = accessible(scene)
     coordinates = (positions - lower) / (upper - lower) * cells
@@ -138,7 +138,7 @@ class Resolution:
     def level(self, particles: Particles, position: int, time: float) -> int:
         """Return the level of the next part of a step.
 
-        It is the level that fits the particles, or a higher one, so that the parts made so far are a whole
+        The result is the level for the particles, or a higher level if the completed parts are not a whole
         number of its parts. Raises SimulationError if no level fits.
 
         position : position in the step, in parts of the finest level

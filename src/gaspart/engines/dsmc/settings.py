@@ -42,7 +42,7 @@ class DSMC(Engine):
         and collide more often the denser the gas.
     adapt : {"nothing", "steps", "cells", "both"}, optional
         Settings that adapt to the gas where speeds or densities change: steps, which are divided, or cells.
-        Default: every setting that is not given.
+        Default: all settings that are not prescribed.
     threads : int, default 1
         Number of threads that share the work.
 
@@ -220,7 +220,7 @@ class DSMC(Engine):
     def _with(self, adapts: tuple[bool, bool], **settings: Any) -> DSMC:
         """Return a copy with these settings.
 
-        adapts : whether steps and cells adapt; `adapt` is set only if this does not follow from the settings
+        adapts : True if steps and cells adapt; `adapt` is set only if this does not follow from the settings
         """
         plain = replace(self, **settings, adapt=None)
         if adapts == (plain.adapts_steps, plain.adapts_cells):
@@ -291,8 +291,8 @@ class DSMC(Engine):
         scene : Scene
             The scene.
         kind : {"rates", "paths", "fluxes"}
-            What the quantity depends on: rates of collisions, paths of particles, or fluxes of momentum and
-            heat.
+            Quantities on which the observable depends: rates of collisions, paths of particles, or fluxes of
+            momentum and heat.
 
         Returns
         -------
@@ -413,7 +413,7 @@ class DSMC(Engine):
         step : float, [1]
             Time step divided by the default step of the engine.
         precision : str
-            Not used: the state is always in float64.
+            Not used, because the state is always in float64.
 
         Returns
         -------
@@ -478,8 +478,8 @@ class DSMC(Engine):
         Returns
         -------
         dict of str to str
-            Remarks by title: the search for pairs, and the effect of steps longer than the default, of which
-            the run warns.
+            Remarks by title: the search for pairs, and the effect of steps longer than the default, for which
+            the run prints a warning.
 
         Examples
         --------
@@ -551,7 +551,7 @@ class DSMC(Engine):
         seed: int | tuple[int, ...] = 0,
         tallies: Sequence[OptionalTally] = (),
     ) -> DsmcDynamics:
-        """Set the engine up for a scene in a given state.
+        """Prepare the engine for a scene in an initial state.
 
         Parameters
         ----------

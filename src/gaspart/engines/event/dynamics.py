@@ -146,7 +146,7 @@ def event_parts(
 def wrap(positions: np.ndarray, images: np.ndarray, space: Space) -> None:
     """Move particles back that rounding shows beyond a periodic face.
 
-    They reach this face just now.
+    They reach this face at the present time.
     """
     lengths = np.array(space.lengths)
     outside = ((positions < 0.0) | (positions >= lengths)) & space.periodic
@@ -221,7 +221,7 @@ class EventDynamics(Dynamics):
         self._begin(anew=True)
 
     def _begin(self, anew: bool) -> None:
-        """Make the queue, with all events predicted `anew` or as they are."""
+        """Make the queue; predict all events if `anew` is True, otherwise keep the predictions."""
         if self._queue:
             free = self._model._replace(masses=None, law=None)  # contacts do not matter here
             scene = self._particles, self._queue, self._boxes, free, self._tally.arrays
@@ -242,11 +242,12 @@ class EventDynamics(Dynamics):
         """Process events up to time `until`, at most `max_events` of them.
 
         Events are collisions, wall hits, and attempts to enter through open faces. Raises SimulationError,
-        with the state kept, if particles collapse: they would collide for ever in no time; and, in a run that
-        only events end, if nothing happens in a thousand flights through the container.
+        with the state saved, in two cases: if particles collapse, that is, would collide infinitely often in
+        no time; and, in a run that only events end, if nothing happens in a thousand flights through the
+        container.
 
-        max_work : number of events, crossings and predictions of a new epoch after which to return as well,
-            to within a factor of 2, at the time reached
+        max_work : number of events, crossings and predictions of a new epoch after which the call returns,
+            too, at the time reached then; exact within a factor of 2
         """
         remaining, work = (
             np.iinfo(np.int64).max if number is None else number for number in (max_events, max_work)
@@ -310,14 +311,14 @@ class EventDynamics(Dynamics):
     def _run(self, record: Record | None, limits: tuple[float, int, int]) -> tuple[int, int, int, float]:
         """Run the kernel; return its reason to stop, its numbers and the last time.
 
-        The numbers count the processed events and crossings; the time is the time of the last of them.
+        The numbers are the counts of processed events and crossings. The time is the time of the last event.
         """
         monitors = Monitors(record, self._collapse.watch)
         scene = self._particles, self._queue, self._boxes, self._model, self._tally.arrays
         return loop.run(*scene, monitors, limits, () if self._queue is None else None)
 
     def _next_epoch(self, endless: bool) -> float:
-        """Restart the clocks from zero, and predict all events anew.
+        """Restart the clocks from zero and predict all events again.
 
         Returns the length of the epoch that has ended.
 
@@ -433,8 +434,8 @@ class EventDynamics(Dynamics):
     def _checkpoint_data(self) -> dict[str, Any]:
         """Return particles at their own clocks, predictions, counts, and their search.
 
-        Of neighbour lists only the `room` is stored: if it does not suffice all lists are made anew, which
-        work counters show.
+        Of neighbour lists only their size, `room`, is stored. If it does not suffice, all lists are made
+        again, which counters of work show.
         """
         lists = self._boxes.lists
         room = {"room": (lists.room, lists.per_cell)} if lists else {}
@@ -461,7 +462,7 @@ class EventDynamics(Dynamics):
         return {key: array for key, array in self.checkpoint().items() if key not in spared}
 
     def _go_on(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Begin the epoch again; after another search, predict everything anew."""
+        """Begin the epoch again. If the search has changed, predict all events again."""
         self._begin_epoch(self._epoch)
         if not self._is_of_this_search(checkpoint):
             self._particles.predictions["box"] = self._grid.coordinates(self._present()["position"])

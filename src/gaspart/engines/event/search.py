@@ -65,8 +65,8 @@ def obstacle_to_lists(scene: Scene) -> str | None:
 def chosen_search(scene: Scene, search: str, boxes_given: bool) -> str:
     """Return the search for a scene: "boxes" or "lists" if the engine chooses.
 
-    Raises SceneError if lists are requested, but the scene has a feature that they do not support; and if the
-    particles are more than a search can number.
+    Raises SceneError if lists are requested but the scene has a feature that they do not support, and if
+    there are more particles than a search can number.
     """
     if scene.capacity > 1 << NUMBER_BITS:
         raise SceneError(
@@ -104,7 +104,7 @@ def neighbour_lists(scene: Scene, room: int = 0, per_cell: int = 1) -> Neighbour
 
 
 def make_lists(lists: NeighbourLists, scene: Scene) -> NeighbourLists:
-    """Make the neighbour lists of a scene from their centres; return them or larger ones."""
+    """Make the neighbour lists of a scene; return them, or larger lists if needed."""
     from gaspart.kernels.event import neighbour_lists as kernels
 
     kernels.make_lists(lists, scene.container.lengths)

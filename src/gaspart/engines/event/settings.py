@@ -11,7 +11,7 @@ from gaspart.errors import SceneError
 from gaspart.errors.guidance import with_guidance
 from gaspart.keys import choice, declare, per_side
 from gaspart.scene.features import FEATURES
-from gaspart.state.optional_tallies import TALLIES
+from gaspart.state.tally import TALLIES
 
 if TYPE_CHECKING:
     from gaspart.engines.event.dynamics import EventDynamics
@@ -33,9 +33,9 @@ class EventDriven(Engine):
     Parameters
     ----------
     search : {"automatic", "boxes", "lists", "direct", "pairs"}, default "automatic"
-        Search for the next event: "boxes", with one next event per particle in a queue; "lists", the same
-        with neighbour lists; "automatic", the faster of these two at the density of the scene; "direct", with
-        a single box, each search over all particles; "pairs", all pairs before every event ([1]_, section
+        Search for the next event. "boxes": one next event per particle in a queue. "lists": the same with
+        neighbour lists. "automatic": the faster of these two at the density of the scene. "direct": a single
+        box, so that each search tests all particles. "pairs": all pairs before every event ([1]_, section
         3.1), as a reference.
     boxes_per_side : int or (d,) sequence of int, optional
         Number of boxes along each axis. Default: 0.5 to 1.5 boxes per particle.
@@ -43,7 +43,7 @@ class EventDriven(Engine):
     Raises
     ------
     SceneError
-        If a setting is invalid, or boxes are given for a search without them.
+        If a setting is invalid, or if boxes are given for a search without boxes.
 
     See Also
     --------
@@ -52,10 +52,10 @@ class EventDriven(Engine):
 
     Notes
     -----
-    No box is narrower than the diameters of the particles in it. A few oversized particles can be left out of
-    the boxes; every small particle near them tests each of them. By default these are the largest particles
-    of all, if this saves a quarter of the particles that a search examines (`state.boxes`); with
-    `boxes_per_side`, the particles wider than a box, which must be fewer than the others.
+    No box is narrower than the diameter of the largest particle in the boxes. A few oversized particles can
+    be excluded from the boxes. Then every small particle near them tests each of them. By default the largest
+    particles are excluded if this saves a quarter of the particles that a search examines (`state.boxes`).
+    With `boxes_per_side`, the particles wider than a box are excluded; they must be fewer than the others.
 
     References
     ----------
@@ -80,7 +80,7 @@ class EventDriven(Engine):
     name: ClassVar[str] = "event"
     title: ClassVar[str] = "event-driven"
     records_events: ClassVar[bool] = True
-    tallies: ClassVar[frozenset[str]] = frozenset(tally.name for tally in TALLIES)
+    tallies: ClassVar[frozenset[str]] = frozenset(TALLIES)
     models: ClassVar[frozenset[str]] = frozenset(FEATURES)
     neutral_settings: ClassVar[tuple[str, ...]] = ("search", "boxes_per_side")
     first_segment: ClassVar[int] = 256  # events with crossings and predictions
@@ -149,7 +149,7 @@ class EventDriven(Engine):
         Returns
         -------
         str
-            The search; "boxes" for "direct", which has one box.
+            Name of the search. It is "boxes" for "direct", too, which has one box.
 
         Examples
         --------
@@ -191,7 +191,7 @@ class EventDriven(Engine):
         seed: int | tuple[int, ...] = 0,
         tallies: Sequence[OptionalTally] = (),
     ) -> EventDynamics:
-        """Set the engine up for a scene in a given state.
+        """Prepare the engine for a scene in an initial state.
 
         Parameters
         ----------

@@ -108,7 +108,7 @@ class EventTally:
 
     @property
     def _given(self) -> float:
-        """Energy given by scheduled events since the last reset."""
+        """Energy added by scheduled events since the last reset."""
         return sum(part.given for part in self._parts)
 
 
@@ -160,7 +160,7 @@ class Epochs:
     def base(self, velocities: np.ndarray, stored: float, present: float = 0.0) -> float:
         """Return the length of an epoch for velocities (N, d) and a `stored` energy.
 
-        The stored energy is added to the energy of flight. A `present` length is kept as in `length`.
+        The stored energy is added to the energy of flight. A length `present` is retained as in `length`.
         """
         length = self.length(self.speed(velocities), present)
         return min(length, self.length(self._equipartition_speed(velocities, stored), length))
@@ -177,9 +177,9 @@ class Epochs:
     def length(self, speed: float, present: float = 0.0) -> float:
         """Return the time after which clocks restart from zero.
 
-        It is a power of two, so that it scales with the units. A `present` length is kept until speeds have
-        changed by a factor of 2^10: a cooling gas needs longer epochs, since the work of an epoch does not
-        depend on its length.
+        The length is a power of two, so that it scales with the units. A length `present` is retained until
+        speeds have changed by a factor of 2^10. A cooling gas needs longer epochs, since the work of an epoch
+        does not depend on its length.
         """
         length = _power_of_two(self._diameter / speed, _LENGTH) if speed > 0.0 else _AT_REST
         return present if present / _OTHER < length < present * _OTHER else length
@@ -187,8 +187,8 @@ class Epochs:
     def quiet(self, speed: float, length: float, number: int) -> float:
         """Return the length of an epoch after a `number` of epochs without an event.
 
-        It is twice the last one, until it equals a time of flight through the container. The clocks are then
-        as precise as the positions.
+        The time is twice the last one, up to a time of flight through the container. The clocks are then as
+        precise as the positions.
         """
         most = _power_of_two(self._across / speed, 0) if speed > 0.0 else length
         doublings = min(max(number - QUIET, 0), max(0, math.frexp(most)[1] - math.frexp(length)[1]))
@@ -196,7 +196,7 @@ class Epochs:
 
 
 def _power_of_two(time: float, more: int) -> float:
-    """Return the next power of two above a time, times 2^more; at most `_AT_REST`."""
+    """Return the next power of two above a time, times 2^more, but at most `_AT_REST`."""
     _, exponent = math.frexp(time)
     return min(math.ldexp(1.0, exponent + more), _AT_REST) if time < _AT_REST else _AT_REST
 
@@ -225,7 +225,7 @@ _COLLAPSE = "an inelastic collapse, or a stack at rest, which a contact_duration
 def check_progress(time: float, spent: float, epoch: float) -> None:
     """Raise SimulationError if `MANY` events took less time than the clocks can resolve.
 
-    Their order would be rounding only.
+    The order of such events would depend on rounding only.
 
     time : present time
     spent : time of these events

@@ -32,10 +32,10 @@ _ARRAYS = "positions", "velocities", "images", "radii", "masses", "species", "sp
 
 
 def with_room(scene: Scene, state: State) -> State:
-    """Return a state with all numbers that particles may have.
+    """Return a state with entries for all numbers that particles may have.
 
-    Numbers without a particle have no position (NaN) and are at rest. Without open faces the state itself is
-    returned.
+    Numbers without a particle have no position (NaN) and are at rest. Without open faces the state is
+    returned unchanged.
     """
     free = scene.capacity - state.count
     if free == 0:
@@ -49,7 +49,7 @@ def with_room(scene: Scene, state: State) -> State:
 
 
 def open_of(scene: Scene, state: State) -> kernels.Open | None:
-    """Return the kernels' `Open` of a state with all numbers; None without open faces."""
+    """Return the `Open` of the kernels for a state with all numbers; None without open faces."""
     if not scene.is_open:
         return None
     present = np.isfinite(state.positions[:, 0]).astype(np.uint8)
@@ -84,8 +84,8 @@ def crowded_error(time: float, most: int) -> SimulationError:
 class OpenPart(Part):
     """Open faces of a scene.
 
-    The arrays are the particles inside, the number that have entered since the tally began, and the number
-    and the time, on the clocks of the epoch, of the next attempt to enter.
+    The arrays are: the particles inside, the number of entries since the tally began, and the number and the
+    time of the next attempt to enter. The time is on the clocks of the epoch.
     """
 
     def __init__(self, scene: Scene, inside: kernels.Open, reservoirs: kernels.Reservoirs | None) -> None:
@@ -144,7 +144,8 @@ def piston_of(scene: Scene, state: State, unit_mass: float) -> kernels.Piston | 
 class PistonPart(Part):
     """Piston of a scene.
 
-    It can give a particle twice its own speed, which is prescribed or due to its load.
+    The piston can accelerate a particle to twice the speed of the piston, which is prescribed or due to its
+    load.
     """
 
     def __init__(self, piston: kernels.Piston, scene: Scene) -> None:
@@ -209,7 +210,10 @@ def motion_of(scene: Scene) -> Motion | None:
 
 
 class VibratingPart(Part):
-    """Faces that vibrate as prescribed; particles leave them at up to twice their speed."""
+    """Faces with a prescribed vibration.
+
+    Particles leave such a face with at most twice its speed.
+    """
 
     def __init__(self, scene: Scene, motion: Motion) -> None:
         super().__init__({})
@@ -252,7 +256,7 @@ def kinds_and_levels(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 def sliding_velocities(scene: Scene) -> np.ndarray | None:
     """Return the velocities (2d, d) of the container's faces, or None.
 
-    None means that the scene drags no faces.
+    Scenes that drag no faces give None.
     """
     if not scene.drags_faces:
         return None
@@ -317,7 +321,7 @@ def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_
 def face_energy(scene: Scene) -> float:
     """Return an upper estimate of the energy that a face or wall gives a particle.
 
-    The energy is given by a thermal face or wall or a well to a particle of any speed.
+    This is the largest energy that a thermal face or wall or a well can give to a particle.
     """
     hottest = max(scene.face_temperatures, default=0.0)
     deepest = max((getattr(face, "depth", 0.0) for face in scene.faces.values()), default=0.0)
@@ -329,8 +333,8 @@ def face_energy(scene: Scene) -> float:
 class FacesPart(Part):
     """Faces with a kind, in units of `unit_mass`.
 
-    The arrays are the particles in a well or stuck, their energies, the numbers of draws of random numbers,
-    and the momentum that faces were given along themselves.
+    The arrays are: the particles in a well or stuck at a face, their energies, the numbers of random draws,
+    and the tangential momentum given to faces.
 
     lightest : least mass of a particle
     """
@@ -359,7 +363,7 @@ class FacesPart(Part):
             self._shear[...] = 0.0
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the momentum that faces were given along themselves, by the field of `Tally`."""
+        """Return the tangential momentum given to faces, by the field of `Tally`."""
         if self._shear is None:
             return {}
         shear = values(self._shear).reshape(-1, self._scene.dimension) * self._unit_mass

@@ -47,7 +47,8 @@ def contact_law(scene: Scene, state: State) -> ContactLaw | None:
 def _viscous(scene: Scene) -> float | None:
     """Return the constant of viscoelastic particles, or None for a constant restitution.
 
-    It follows from the restitution of two particles of the first species, or like the first particle.
+    The coefficient is computed from the restitution of two particles of the first species (without species,
+    like the first particle).
     """
     rule = scene.restitution
     if rule is None or rule.reference_speed is None:
@@ -95,7 +96,7 @@ class LawPart(Part):
 
 
 def scaled_masses(masses: np.ndarray) -> tuple[float, np.ndarray | None]:
-    """Return the unit of mass, and the masses in it, or None if equal.
+    """Return the unit of mass, and the masses in this unit (None if all are equal).
 
     Equal masses are not part of the kernel's model, and their sums are multiplied by the unit.
     """
@@ -139,7 +140,7 @@ _PLANES = 24  # maximum number of planes of a particle; further planes are ignor
 
 
 def slowest_that_moves(scene: Scene) -> float:
-    """Return the speed that frees a particle from a jam; infinite without gravity."""
+    """Return the speed that frees a particle from a jam; it is infinite without gravity."""
     gravity = math.hypot(*(scene.gravity or ()))
     if gravity == 0.0:
         return math.inf
@@ -149,7 +150,7 @@ def slowest_that_moves(scene: Scene) -> float:
 def _tilt(gravity: tuple[float, ...]) -> np.ndarray:
     """Return the accelerations (2, 3) or (4, 3) of gravity tilted to all sides.
 
-    A support against all of them is a support against gravity.
+    A particle that is supported against all these directions is supported against gravity.
     """
     acceleration = np.zeros(3)
     acceleration[: len(gravity)] = gravity
@@ -190,7 +191,7 @@ class Jams:
     ) -> bool:
         """Hold the particles at positions (N, d) that belong to a jam at this time.
 
-        Returns whether events must be predicted anew.
+        Returns True if events must be predicted again.
 
         stays : (N,), whether a particle has not left its position
         """
@@ -259,7 +260,7 @@ def contact_duration(scene: Scene, law: ContactLaw) -> ContactDuration | None:
 class DurationPart(Part):
     """Contacts that last, and islands and jams under gravity.
 
-    Islands are at rest, and gravity does not move them; contacts do not move jams either.
+    Groups of particles at rest (islands) are not moved by gravity, and jams are not moved by contacts either.
     """
 
     def __init__(self, law: ContactLaw, duration: ContactDuration, gravity: Gravity | None) -> None:
@@ -322,7 +323,7 @@ class RestWatch(Part):
     def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
         """Find the particles that rest, and stop them.
 
-        Returns whether events must be predicted anew; this is not so if all particles rest.
+        Returns True if events must be predicted again, and False if all particles rest.
         """
         from gaspart.kernels.event.jams import MOVES, RESTS, find_resting, stop_all
 
@@ -338,7 +339,7 @@ class RestWatch(Part):
         return self._jams.hold(particles, positions, ~marks[MOVES], model, tally, time) or any_new
 
     def _hold(self, particles: Particles, marks: np.ndarray, model: Model, tally: Tally, time: float) -> bool:
-        """Hold islands; return whether there are any new ones."""
+        """Fix islands; return True if there are new islands."""
         from gaspart.kernels.event.jams import RESTS, TOUCHES, hold, join
         from gaspart.kernels.model import NONE
 

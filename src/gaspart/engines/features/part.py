@@ -1,7 +1,8 @@
 """Part of a run that belongs to one feature of its scene.
 
-A module of this package has all that the engines need of a feature: its form in the kernels' model, None if
-it is absent, and a `Part`. An engine iterates over the parts of a scene and does not name them.
+A module of this package contains all that the engines need for a feature: the form of the feature in the
+kernels' model, None without the feature, and a `Part`. An engine iterates over the parts of a scene
+and does not name them.
 """
 
 from __future__ import annotations
@@ -24,12 +25,13 @@ if TYPE_CHECKING:
 
 
 class Part:
-    """Feature in a run; by default its methods do nothing.
+    """Feature in a run. By default its methods do nothing.
 
     Attributes
     ----------
     arrays : arrays that a run changes, by their names in a checkpoint
-    sums : arrays (threads, ...) to which several threads add, by name; a checkpoint has their sum
+    sums : arrays (threads, ...) to which several threads add, by name; a checkpoint contains their sum over
+        threads
     times : the `arrays` that are times on the clocks of the epoch
     scheduled : (1,), time of the next event that the part has scheduled
     gained : square of the largest speed that the part can give a particle
@@ -64,14 +66,14 @@ class Part:
 
     @property
     def given(self) -> float:
-        """Energy that the part has given by scheduled events since the last `reset`."""
+        """Energy that scheduled events of the part have added since the last `reset`."""
         return 0.0
 
     def set_clock(self, clock: float) -> None:
         """Begin at this time on the clocks of the epoch."""
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
-        """Set all data that depend on an epoch of the clocks; return the model for it.
+        """Set all data that depend on an epoch of the clocks; return its model.
 
         length : length of the epoch
         start : time at which it starts
@@ -87,8 +89,8 @@ class Part:
     def end_epoch(self, length: float, start: float) -> None:
         """Shift the times of the part to a new start of the clocks.
 
-        The clocks restart from zero after an epoch of this `length`, at the time `start`; or, within an
-        epoch, from a start that is so much later.
+        The clocks restart from zero at the time `start`, after an epoch of this `length`. Within an epoch,
+        the origin of the clocks moves to `start`.
         """
         for times in self._times:
             times -= length
@@ -96,7 +98,7 @@ class Part:
     def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
         """Perform the event that is scheduled for the time `next`.
 
-        Returns whether all events must be predicted anew.
+        Returns True if all events must be predicted again.
 
         start : start of the epoch
         """
@@ -115,17 +117,17 @@ class Part:
         return {}
 
     def write(self, state: State, clock: float) -> None:
-        """Write the properties of particles and scene due to this feature into a state.
+        """Write the properties of particles and scene that are due to this feature into a state.
 
         clock : present time on the clocks of the epoch
         """
 
 
 class TallyPart(Part):
-    """Optional tally in a run (`state.optional_tallies`).
+    """Optional tally in a run (`state.tally`).
 
     name : name of the tally
-    kernel : data to which the kernels add, in the entry of their own tally that has this name
+    kernel : data for the kernels, which add to the entry of this name in their own tally
     """
 
     def __init__(
@@ -157,7 +159,7 @@ def sums_of(parts: Iterable[Part]) -> dict[str, np.ndarray]:
 
 
 def write_parts(parts: Iterable[Part], state: State, clock: float = 0.0) -> None:
-    """Write the properties of several parts into a state; energies of vibrations add up."""
+    """Write the properties of several parts into a state. Energies of vibrations are added."""
     if state.vibrations is not None:
         state.vibrations = np.zeros(state.count)
     for part in parts:
@@ -210,8 +212,8 @@ def shear_of(scene: Scene) -> Shear | None:
 class ShearPart(Part):
     """Displacement of the periodic images of a sheared scene.
 
-    It follows from the time and the start, a state at time 0, so that no checkpoint has it. At each crossing
-    a particle may gain the velocity of the images.
+    The displacement is computed from the time and the state at time 0, so no checkpoint contains it. At each
+    crossing a particle may gain the velocity of the images.
     """
 
     def __init__(self, scene: Scene, state: State, shear: Shear) -> None:
@@ -260,8 +262,8 @@ def _width(thermostat: Thermostat, dimension: int, unit_mass: float) -> float:
 class Kicks(Part):
     """Thermostat of a scene under the event-driven engine.
 
-    The arrays are the time of the next kick on the clocks of the epoch, the number of kicks, and the energy
-    given since the tally began.
+    The arrays are: the time of the next kick on the clocks of the epoch, the number of kicks, and the energy
+    added since the tally began.
     """
 
     def __init__(
@@ -278,7 +280,7 @@ class Kicks(Part):
 
     @property
     def given(self) -> float:
-        """Energy given by kicks since the tally began."""
+        """Energy added by kicks since the tally began."""
         from gaspart.kernels.physics import running_sum  # numba takes 0.4 s
 
         return running_sum.net(self._given) * self._unit_mass
@@ -286,7 +288,7 @@ class Kicks(Part):
     def end_epoch(self, length: float, start: float) -> None:
         """Set the time of the next kick to a multiple of the interval, rounded once.
 
-        A sum of intervals would drift away from it. The subtraction is exact.
+        A sum of intervals would deviate from this time by rounding. The subtraction is exact.
         """
         self._next[0] = (int(self._number[0]) + 1) * self._interval - start
 
@@ -295,7 +297,7 @@ class Kicks(Part):
         self._given[:] = 0.0
 
     def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
-        """Kick all particles; return True, since their flights have changed."""
+        """Kick all particles; return True, since their velocities have changed."""
         from gaspart.kernels.event.pair_contact import kick_all
 
         counter = self._key, int(self._number[0])
@@ -315,9 +317,9 @@ def kicks(scene: Scene, seed: int | tuple[int, ...], unit_mass: float) -> Kicks 
 class StepKicks(Part):
     """Thermostat of a scene in steps.
 
-    A step in which several kicks are due ends with one kick as strong as all of them.
+    If several kicks are due in a step, one kick with the same total strength is applied at its end.
 
-    given_terms : (1, 2), energy given since the tally began, see `physics.running_sum.add`
+    given_terms : (1, 2), energy added since the tally began, see `physics.running_sum.add`
     """
 
     def __init__(
@@ -340,7 +342,7 @@ class StepKicks(Part):
     def until(self, steps: float, part: float) -> int:
         """Return the number of parts of a step up to the next kick.
 
-        The kick comes at the end of the last of them.
+        The kick is at the end of the last of these steps.
 
         part : length of a part
         """

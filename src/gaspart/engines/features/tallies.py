@@ -23,9 +23,31 @@ from gaspart.scene.faces import FLOW, GRADIENT
 from gaspart.scene.features import row_count
 from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
-from gaspart.state.optional_tallies import ImpulseTally, OptionalTally, PairImpulseTally, PerAreaTally
+from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State, drift_of
-from gaspart.state.tally import tallied_fluxes
+from gaspart.state.tally import ImpulseTally, PairImpulseTally, PerAreaTally
+
+
+def tallied_fluxes(sums: np.ndarray, drift: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the fields of `Tally` for the fluxes of momentum and heat.
+
+    Parameters
+    ----------
+    sums : ndarray, shape (2 d^2 + d,)
+        Sums of the stress tensor and of its collisional part, each by rows, and of the heat flux.
+    drift : ndarray, shape (d,), [length/time]
+        Velocity about which the sums are.
+
+    Returns
+    -------
+    dict of str to ndarray
+        `stress_sum`, `collisional_stress_sum`, `heat_sum` and `flux_velocity`.
+    """
+    dimension = len(drift)
+    stress = sums[: 2 * dimension**2].reshape(2, dimension, dimension)
+    heat = sums[2 * dimension**2 :]
+    fluxes = {"stress_sum": stress[0], "collisional_stress_sum": stress[1], "heat_sum": heat}
+    return {**fluxes, "flux_velocity": drift.copy()}
 
 
 class StressPart(TallyPart):
@@ -77,7 +99,8 @@ class ShearedStressPart(StressPart):
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
         """Set the velocity of the centre of mass relative to the flow.
 
-        Its component across the flow is constant, so its component along the flow decreases steadily.
+        The velocity component across the flow is constant, so the component along the flow decreases
+        steadily.
         """
         assert model.shear is not None  # or there were no such part
         across = self._drift[GRADIENT]
@@ -89,7 +112,7 @@ class ShearedStressPart(StressPart):
         add_sheared_flights(self._flights, length, 1.0, self._model, self.kernel)
 
     def end_epoch(self, length: float, start: float) -> None:
-        """Do nothing: the flights begin anew."""
+        """Do nothing: the motion of the epoch begins again."""
 
     def reset(self, clock: float) -> None:
         """Begin to count from zero."""
@@ -161,7 +184,7 @@ class ImpulsesPart(TallyPart):
         self._add_momenta(clock, 1.0, self.kernel.sums)
 
     def read(self, clock: float) -> np.ndarray:
-        """Return the momentum (species, bins) carried until this time on the epoch's clocks."""
+        """Return the momentum (species, bins) transported until this time on the clocks of the epoch."""
         sums = self.kernel.sums.copy()
         self._add_momenta(clock, -1.0, sums)
         return np.asarray(self._unit_mass * np.cumsum(sums, axis=1)[:, :-1])

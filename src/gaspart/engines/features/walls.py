@@ -25,7 +25,7 @@ def interior_walls(
 ) -> InteriorWalls:
     """Return the interior walls, with the walls near each box.
 
-    They are found for radii up to `largest_radius`. A moving wall is near no box.
+    The list is for radii up to `largest_radius`. A moving wall is near no box.
     """
     rows, wall = wall_rows(scene)
     if moving:
@@ -59,7 +59,7 @@ class WarmWallsPart(Part):
 def moving_wall_of(scene: Scene, state: State, unit_mass: float) -> kernels.MovingWall | None:
     """Return the moving wall in its state, in units of `unit_mass`, or None.
 
-    Raises SceneError without particles on both its sides, which keep it inside the container.
+    Raises SceneError unless there are particles on both sides, which keep the wall inside the container.
     """
     wall = scene.moving_wall
     if wall is None or state.piston is None:

@@ -22,8 +22,9 @@ from gaspart.scene.features import row_count
 from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
 from gaspart.state.boxes import cube_side, make_boxes
-from gaspart.state.optional_tallies import ImpulseTally, OptionalTally
+from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
+from gaspart.state.tally import ImpulseTally
 
 if TYPE_CHECKING:
     from gaspart.engines.step.settings import TimeStepped
@@ -51,7 +52,7 @@ def empty_particles(engine: TimeStepped, scene: Scene, state: State, ordinary: i
 
 
 def masses_of(scene: Scene, state: State) -> tuple[float, np.ndarray]:
-    """Return the unit of mass, and the masses (N,) in it."""
+    """Return the unit of mass, and the masses (N,) in this unit."""
     if needs_rules(scene):
         return 1.0, state.masses
     unit, masses = scaled_masses(state.masses)
@@ -156,7 +157,7 @@ def rules_for(
 
 
 def parts_for(scene: Scene, rules: Rules | None) -> list[Part]:
-    """Return the parts of a run of a scene with such rules; no parts without rules."""
+    """Return the parts of a run for such rules; no parts without rules."""
     if rules is None:
         return []
     law, faces = rules.model.law, rules.model.faces
@@ -174,10 +175,11 @@ def needs_rules(scene: Scene) -> bool:
 
 
 class ImpulsesPart(TallyPart):
-    """Momentum that particles carry through planes across an axis.
+    """Momentum that particles transport through planes across an axis.
 
-    It is the momentum below each plane at the last reset, `momenta`, and all impulses since then, minus the
-    present momentum below the plane. The kernel is the entries of a `StepTally`, by name.
+    The transported momentum is the momentum below each plane at the last reset, `momenta`, plus all impulses
+    since then, minus the present momentum below the plane. The kernel is the entries of a `StepTally`, by
+    name.
 
     particles : particles of the kernels
     units : unit of their masses, and the bound of a momentum in this unit
@@ -215,7 +217,8 @@ class ImpulsesPart(TallyPart):
     def _momenta(self) -> np.ndarray:
         """Return the present momenta (rows, bins + 1) of all particles, binned like impulses.
 
-        They are added in the particles' own order, on which alone rounding may depend.
+        They are added in the order of the particles' numbers, so that rounding does not depend on the order
+        in memory.
         """
         particles = self._particles
         order = np.argsort(particles.index)
@@ -234,7 +237,7 @@ class ImpulsesPart(TallyPart):
         self.arrays["momenta"][...] = self._momenta()
 
     def read(self, clock: float) -> np.ndarray:
-        """Return the momentum (species, bins) carried until now."""
+        """Return the momentum (species, bins) transported until now."""
         impulses = whole_parts(self.sums["impulses"].sum(axis=0), self._largest).sum(axis=-1)
         below = np.cumsum(impulses + (self.arrays["momenta"] - self._momenta()), axis=1)
         return np.asarray(self._unit_mass * below[:, :-1])

@@ -43,7 +43,7 @@ _OF_ALL = ("counts", "sums", "extremes")
 
 
 class StepDynamics(SteppedDynamics):
-    """Dynamics of a scene; its time is a whole number of steps."""
+    """Dynamics of a scene. Its time is a whole number of steps."""
 
     def __init__(
         self,
@@ -129,7 +129,7 @@ class StepDynamics(SteppedDynamics):
         check_late(self._engine, self.time, *numbers)
 
     def _run(self, steps: int) -> None:
-        """Run the kernel for a number of steps; for 0 steps, make only a list."""
+        """Run the kernel for a number of steps; with 0 steps, only make a list."""
         settings = self._real(self.time_step), self._engine.rewind, self._engine.passes
         pairs = loop.run_steps(
             self._particles, self._search, self._model, settings, steps, self._tally, self._threads
@@ -137,7 +137,7 @@ class StepDynamics(SteppedDynamics):
         self._search = self._search._replace(pairs=pairs)
 
     def _sums(self) -> dict[str, np.ndarray]:
-        """Return the arrays with counts; arrays common to all threads get one row."""
+        """Return the arrays with counts. Arrays that all threads share get one row."""
         common = {key: getattr(self._tally, key)[np.newaxis] for key in _OF_ALL}
         return common | {key: getattr(self._tally, key) for key in _BY_THREAD}
 

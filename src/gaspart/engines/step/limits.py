@@ -48,7 +48,7 @@ FEW are allowed in any case. In gases, up to a step of which the engine warns, t
 def oversized_particles(state: State) -> np.ndarray:
     """Mark the particles (N,) that are too large for boxes and cells.
 
-    They are few, and much larger than all the others.
+    Such particles are few and much larger than all others.
     """
     order = np.argsort(state.radii, kind="stable")
     sizes = state.radii[order]
@@ -77,9 +77,9 @@ def check_scene(scene: Scene, state: State, oversized: np.ndarray) -> None:
 def check_precision(engine: TimeStepped, scene: Scene, state: State) -> None:
     """Raise SceneError for steps or sizes that the precision does not resolve.
 
-    These are steps in which particles move by less than the rounding of their positions, or so far that the
-    rounding is as large as the container; and, in float32, lengths and speeds whose squares it cannot hold,
-    and particles so small in their container that it cannot resolve their contacts.
+    A step is rejected if particles move by less than the rounding of their positions, or so far that the
+    rounding is as large as the container. In float32, lengths and speeds are rejected if their squares are
+    out of range, and particles if their contacts cannot be resolved in the container.
     """
     longest, speeds = max(scene.container.lengths), np.sqrt((state.velocities**2).sum(axis=1))
     typical, fastest = math.sqrt(float((speeds**2).mean())) if state.count else 0.0, speeds.max(initial=0.0)
@@ -105,10 +105,11 @@ def check_precision(engine: TimeStepped, scene: Scene, state: State) -> None:
 def missed_contacts(time_step: float, several: bool, state: State) -> float:
     """Return the fraction of contacts that a step misses: pairs that touch and separate within it.
 
-    For a dilute gas of spheres it is (2/3) (v_th dt / sigma)^2, with 1/4 instead of 2/3 for discs and v_th =
-    sqrt(kT/m); four times this value if only growing overlaps are resolved (with one pass, not `several`). It
-    follows from the flux of pairs through chords that they cross within a step. v_th is the present value of
-    each species; the result is the mean over the pairs that collide.
+    For a dilute gas of spheres the fraction is (2/3) (v_th dt / sigma)^2, for discs (1/4) (v_th dt /
+    sigma)^2, with v_th = sqrt(kT/m). It is four times as large with one pass (not `several`), which resolves
+    only overlaps that grow. The fraction is computed from the flux of pairs through chords that they cross
+    within a step. v_th is the present value of each species; the result is the mean over the pairs that
+    collide.
     """
     square, radius, number = [], [], []
     for kind in np.unique(state.species):
@@ -129,7 +130,7 @@ def missed_contacts(time_step: float, several: bool, state: State) -> float:
 
 
 def check_step(engine: TimeStepped, state: State) -> None:
-    """Raise SceneError for a step with large errors; warn of errors of percents.
+    """Raise SceneError for a step with large errors, and warn of errors of some percent.
 
     The message names a sufficient step.
     """
@@ -154,7 +155,7 @@ def check_step(engine: TimeStepped, state: State) -> None:
 def check_late(engine: TimeStepped, time: float, met: int, late: int, passed: int) -> None:
     """Raise SimulationError if too many contacts are found a step too late.
 
-    The same holds for particles that pass through each other. Speeds have become so high, or gaps are so
+    Raise it also for particles that pass through each other. Speeds have become so high, or gaps are so
     narrow, that the step is too long.
     """
     most = [max(FEW, part * met) for part in (LATE_MOST, PASSED_MOST)]
@@ -168,8 +169,8 @@ def check_late(engine: TimeStepped, time: float, met: int, late: int, passed: in
 def contacts_per_step(time_step: float, state: State) -> float:
     """Return the number of collisions of a particle in a step.
 
-    It is Enskog's rate for equal particles of the same packing fraction, with the contact value of Carnahan &
-    Starling (1969), of Henderson (1975) for discs.
+    The number is Enskog's rate for equal particles of the same packing fraction. The contact value is by
+    Carnahan & Starling (1969), for discs by Henderson (1975).
     """
     spheres = state.dimension == 3
     ball = ball_volume(state.dimension) * float((state.radii**state.dimension).mean())
@@ -210,7 +211,7 @@ def candidate(engine: TimeStepped, request: AccuracyRequest) -> Candidate:
 
 
 def _as_hot(state: State, temperature: float) -> State:
-    """Return a state whose particles have the mean squares of velocities at a temperature."""
+    """Return a state whose particles have the mean squared velocities of a temperature."""
     moving = np.isfinite(state.masses)
     mean = np.where(moving, np.sqrt(temperature / np.where(moving, state.masses, 1.0)), 0.0)
     return replace(state, velocities=np.repeat(mean[:, None], state.dimension, axis=1))

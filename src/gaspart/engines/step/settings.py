@@ -27,10 +27,10 @@ PRECISIONS = ("float64", "float32")
 @register
 @dataclass(frozen=True)
 class TimeStepped(Engine):
-    """Time-stepped engine: overlapping pairs collide in their state at contact.
+    """Time-stepped engine. Overlapping pairs are moved back to their contact and collide there.
 
-    After each step, overlapping pairs are moved back to their contact, collide there, and move for the rest
-    of the step. The result has the same bits for any `boxes_per_side`, `near_boxes`, `skin` and `threads`.
+    After the collision the pair moves for the rest of the step. The result has the same bits for any
+    `boxes_per_side`, `near_boxes`, `skin` and `threads`.
 
     Parameters
     ----------
@@ -42,18 +42,19 @@ class TimeStepped(Engine):
     precision : {"float64", "float32"}, default "float64"
         Floating-point type of the state.
     rewind : bool, default True
-        Collide pairs in their state at contact. If False, they collide where they lie after the step, which
-        measures the effect of rewinding.
+        Move pairs back to their contact before they collide; False: they collide where they overlap. If
+        False, they collide where they lie after the step, which measures the effect of rewinding.
     passes : int, default 4
-        Maximum number of searches for overlaps in a step; the first search without overlaps ends the step.
-        With more than one, overlaps that grew and shrank within the step count too; one is the rule of [1]_.
+        Maximum number of searches for overlaps in a step. The step ends after the first search without
+        overlaps. With more than one search, overlaps that grew and shrank within the step are also resolved.
+        One search is the rule of [1]_.
     skin : float, [length], optional
         Distance beyond a contact up to which the neighbour list reaches. Default: chosen by the engine.
     near_boxes : bool, default False
         Search only boxes within reach of a contact.
     threads : int, default 1
-        Number of threads that share the work of a list; not worth it below some 5e4 particles
-        (docs/performance.md).
+        Number of threads that share the work of a list. More than one thread is faster only above some 5e4
+        particles (docs/performance.md).
 
     Raises
     ------
@@ -132,7 +133,7 @@ class TimeStepped(Engine):
 
     @property
     def quantum(self) -> float:
-        """Length of a step, of which all times are multiples.
+        """Length of a step; all times are multiples of it.
 
         Examples
         --------
@@ -170,7 +171,7 @@ class TimeStepped(Engine):
         Returns
         -------
         tuple of TimeStepped
-            One engine, whose step is still to be chosen.
+            The engine itself, with a step that is still to be chosen.
 
         Examples
         --------
@@ -380,7 +381,7 @@ class TimeStepped(Engine):
         seed: int | tuple[int, ...] = 0,
         tallies: Sequence[OptionalTally] = (),
     ) -> StepDynamics:
-        """Set the engine up for a scene in a given state.
+        """Prepare the engine for a scene in an initial state.
 
         Parameters
         ----------

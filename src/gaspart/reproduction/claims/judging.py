@@ -124,8 +124,9 @@ class Claim:
     ) -> Claim:
         """Return a claim on chi-square per degree of freedom of many deviations, expected to be 1.
 
-        The deviation is the Gaussian one of the same two-sided probability (a chi-square far too small is a
-        fault as well: error bars too large); the uncertainty sqrt(2 / dof) is the statistic's own scatter.
+        The deviation is the Gaussian deviation with the same two-sided probability, because a chi-square that
+        is far too small is also an error (too large error bars). The uncertainty sqrt(2 / dof) is the scatter
+        of the statistic itself.
 
         error_freedom : degrees of freedom of the uncertainty if all deviations have one in common, from the
             scatter of a few samples; the statistic per degree of freedom then follows Fisher's distribution.
@@ -164,10 +165,11 @@ class Claim:
 
     @property
     def deviation_sigma(self) -> float:
-        """Signed distance from what was stated, in standard deviations; 0 inside stated bounds.
+        """Signed distance from the claimed value, in standard deviations; 0 inside of bounds.
 
-        (measured - expected) / sqrt(sum of the squares of both uncertainties); for bounds, expected is the
-        nearer bound. See `Estimate.deviation` for uncertainties that come from a few samples.
+        (measured - expected) / sqrt(sum of the squares of both uncertainties); for bounds, the nearer bound
+        is used as the expected value. See `Estimate.deviation` for uncertainties that come from a few
+        samples.
         """
         if self.exact_deviation is not None:
             return self.exact_deviation
@@ -189,7 +191,7 @@ class Claim:
 
     @property
     def has_power(self) -> bool:
-        """True if the combined uncertainty would distinguish the alternative, if there is one."""
+        """True if the combined uncertainty distinguishes the alternative, if one exists."""
         if self.alternative is None:
             return True
         spread = math.hypot(self.measured.error, self.expected.error)
@@ -207,8 +209,8 @@ class Claim:
     def is_scattered(self) -> bool:
         """True if the deviation of a true claim is an independent standard Gaussian one.
 
-        This holds for a test of a value, with a verdict, whose allowance is negligible relative to the
-        measurement's uncertainty.
+        This is so for a test of a value, with a verdict, whose allowance is negligible relative to the
+        uncertainty of the measurement.
         """
         return (
             not self.follows
@@ -233,7 +235,7 @@ def holm(p_values: Sequence[float], level: float = FAMILY_LEVEL) -> list[bool]:
     """Return the rejected hypotheses of a family, as a list of bool, by Holm's step-down procedure.
 
     The smallest of m probabilities is compared with level / m, the next with level / (m-1) ... until one is
-    above. The chance of any wrong rejection is at most `level`, whatever the dependences (Holm, Scand. J.
+    above. The probability of any wrong rejection is at most `level`, for any dependences (Holm, Scand. J.
     Stat. 6, 65 (1979)).
     """
     rejected = [False] * len(p_values)
@@ -248,10 +250,10 @@ def holm(p_values: Sequence[float], level: float = FAMILY_LEVEL) -> list[bool]:
 def family_test(claims: Sequence[Claim]) -> list[Claim]:
     """Return the joint test of a figure's claims, [one claim], or [].
 
-    It is [] if fewer than two claims state a value that is not counted exactly, or if no such value scatters:
-    with an allowance that is not negligible, a deviation is no standard Gaussian number. Holm's correction
-    notices one deviation that is too large; this chi-square, two-sided, notices many that are a little too
-    large, and uncertainties that are too large.
+    The result is [] if fewer than two claims have a value that is not counted exactly, or if no such value
+    scatters. With an allowance that is not negligible, a deviation is not a standard Gaussian number. Holm's
+    correction detects one deviation that is too large. This two-sided chi-square detects many deviations that
+    are a little too large, and uncertainties that are too large.
     """
     tested = [claim for claim in claims if claim.form == "value" and claim.kind == "test"]
     if sum(claim.measured.error != 0.0 for claim in tested) < 2:
@@ -269,10 +271,11 @@ def family_test(claims: Sequence[Claim]) -> list[Claim]:
 def judge(claims: Sequence[Claim]) -> list[str]:
     """Return verdicts of one figure's claims, in their order.
 
-    A deviation is significant by Holm's correction for the family of all tests and reproductions with finite
-    numbers; identities do not depend on chance, and the joint test stands for all: they are judged by 3 sigma
-    each. What does not deviate significantly is inconclusive if its uncertainty is above the required one, if
-    it does not exclude the alternative, or if it lies outside stated bounds.
+    Holm's correction determines which deviations are significant, for the family of all tests and
+    reproductions with finite numbers. Identities do not depend on chance, and the joint test represents all
+    claims, so each of these is tested at 3 sigma. A claim that does not deviate significantly is inconclusive
+    if its uncertainty is larger than required, if it does not exclude the alternative, or if it is outside of
+    its bounds.
     """
     family = [
         claim
@@ -303,8 +306,8 @@ def _verdict(claim: Claim, is_significant: bool) -> str:
 def reason(claim: Claim, verdict: str) -> str:
     """Return the reason of a verdict that is inconclusive or missing, or of a source's error.
 
-    An inconclusive one has the multiple of the measurement that would decide it. The reason is empty for
-    other verdicts.
+    For an inconclusive claim it contains the multiple of the measurement that would make it conclusive. The
+    reason is empty for other verdicts.
     """
     if verdict == "no verdict":
         return claim.no_verdict

@@ -58,8 +58,8 @@ COUNTED = {"agrees": "agree", "disagrees": "disagree"}
 def write(path: str | Path, figure: str, claims: Sequence[Claim]) -> None:
     """Judge the claims of `figure` and write them as CSV with COLUMNS, atomically.
 
-    Their joint test is written too. Raises ValueError if two claims have the same text: their rows could not
-    be distinguished.
+    The joint test of the claims is written too. Raises ValueError if two claims have the same text: their
+    rows could not be distinguished.
     """
     claims = [*claims, *family_test(claims)]
     texts = [claim.claim for claim in claims]
@@ -75,7 +75,7 @@ def write(path: str | Path, figure: str, claims: Sequence[Claim]) -> None:
 
 
 def _row(claim: Claim, verdict: str) -> dict[str, str]:
-    """Return a judged claim by column."""
+    """Return a judged claim as a row, by column."""
     lowest, highest = claim.bounds or (math.nan, math.nan)
     return {
         "claim": claim.claim,
@@ -135,7 +135,8 @@ def collect(paths: Iterable[str | Path]) -> pandas.DataFrame:
 def counts(rows: Iterable[dict[str, Any]]) -> dict[str, dict[str, int]]:
     """Count the claims of each kind by verdict: {kind: {verdict: number}}.
 
-    Kinds and verdicts are in the order of CLAIM_KINDS and VERDICTS; absent ones are left out.
+    Kinds and verdicts are in the order of CLAIM_KINDS and VERDICTS; kinds and verdicts without claims are
+    omitted.
     """
     pairs = [(row["kind"], row["verdict"]) for row in rows]
     return {
@@ -148,8 +149,8 @@ def counts(rows: Iterable[dict[str, Any]]) -> dict[str, dict[str, int]]:
 def summary(path: str | Path) -> str:
     """Summarise a claims table in lines.
 
-    They state the number of claims, a line for each kind, "tests: 205 agree, 3 disagree", and a line for each
-    claim that disagrees. Raises ValueError as `read` does.
+    The first line has the number of claims. Then follow a line for each kind, "tests: 205 agree, 3 disagree",
+    and a line for each claim that disagrees. Raises ValueError as `read` does.
     """
     rows = read(path)
     lines = [f"{len(rows)} claims"]
@@ -175,8 +176,8 @@ NOT_MEASURED = "(not measured in this run)"
 def fill_caption(caption: str, rows: Iterable[dict[str, Any]], absent: str = NOT_MEASURED) -> str:
     """Fill in the measured values of claims, as 0.930(16), at the places of a caption.
 
-    The values are from rows of its figure's claims table, or `absent` without such a claim. Raises ValueError
-    if a place names several claims.
+    The values are from the rows of its figure in the claims table, or `absent` if there is no such claim.
+    Raises ValueError if a place names several claims.
     """
     entries = list(rows)
 
@@ -222,10 +223,10 @@ def concise(value: float, error: float) -> str:
 
 
 def literal_copies(caption: str, rows: Iterable[dict[str, Any]]) -> list[str]:
-    """Return numbers that a caption states itself although they are measured, "1.34: claim".
+    """Return numbers that a caption contains literally although they are measured, "1.34: claim".
 
-    A number with a decimal point that is the measured value of a claim, but not its expected one, both
-    rounded to as many digits. By chance a few are found that have another origin.
+    Such a number has a decimal point, and equals the measured value of a claim, but not its expected value,
+    both rounded to the same number of digits. By chance a few are found that have another origin.
     """
     copies = []
     for text in _NUMBER.findall(_PLACE.sub("", caption)):

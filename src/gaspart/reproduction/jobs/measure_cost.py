@@ -25,6 +25,7 @@ from gaspart.engines import engine_to_dict, reference_engine
 from gaspart.errors import SimulationError
 from gaspart.keys import COUNT, POSITIVE, TEXT, Kind, count, describe, flag, list_of
 from gaspart.reproduction.jobs.data import EQUILIBRATION_KEY, SCAN_TIME_STEPS, SLACK, PointData, intervals
+from gaspart.state.tally import StressTally
 
 if TYPE_CHECKING:
     import numpy as np
@@ -84,8 +85,6 @@ def arguments(point: Point) -> dict:
     if extras.get("copies", 1) > 1 and point.settings.get("threads", 1) > 1:
         raise point.make_error("copies", "are of runs with one thread each")
     if "stress" in extras:
-        from gaspart.state.optional_tallies import StressTally  # which loads numpy
-
         point.engine.check_tally(StressTally(), point.scene)
     return {
         "scene": point.scene,
@@ -244,7 +243,6 @@ def _start(scene: Scene, engine: Engine, seed: tuple[int, ...], equilibration: f
 def _time(run: _Run, interval: float) -> tuple[tuple[float, float], dict]:
     """Measure CPU time and wall-clock time of one interval, in s, and its counts."""
     from gaspart.engines.dynamics import EventLog
-    from gaspart.state.optional_tallies import StressTally
 
     scene, engine = run.scene, run.engine
     step = engine.quantum or 0.0

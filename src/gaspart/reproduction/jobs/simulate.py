@@ -10,10 +10,11 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gaspart.errors import SceneError
 from gaspart.keys import Kind, count, describe, flag, positive
 from gaspart.reproduction.jobs.data import EQUILIBRATION_KEY
 from gaspart.reproduction.jobs.replicas import write_replicas
-from gaspart.trajectory.run_options import OPTIONS, recipe_fields
+from gaspart.trajectory.run_options import OPTIONS, contents_of, recipe_fields
 
 if TYPE_CHECKING:
     from gaspart.engines import Engine
@@ -55,7 +56,7 @@ KEYS: dict[str, Kind] = {
     ),
     **OPTIONS,
 }
-_NOT_WITH_UNTIL = ("lags", "frames", "stress", *(name for name in OPTIONS if name != "displacements"))
+_NOT_WITH_UNTIL = ("lags", "frames", "stress")
 EXAMINER = "gaspart.accuracy.reached"
 """The module that examines a run with `until`."""
 
@@ -77,14 +78,16 @@ def arguments(point: Point) -> dict:
     """Return the arguments of `simulate`; raise SceneError."""
     times, settings = point.schedule, point.settings
     common = {"scene": point.scene, "engine": point.engine, "seeds": point.seeds}
+    options = {key: settings[key] for key in OPTIONS if settings.get(key)}
+    try:
+        contents_of(options).check_scene(point.scene, "until" in settings)
+    except SceneError as error:
+        raise error.inside(f"experiments.{point.experiment}") from None
     if "until" in settings:
         for key in _NOT_WITH_UNTIL:
             if settings.get(key):
                 raise point.make_error(key, "has no meaning with until")
-        return {**common, **point.ending}
-    follow = settings.get("follow")
-    if follow is not None and follow > point.extents.particles:
-        raise point.make_error("follow", f"there are {point.extents.particles} particles")
+        return {**common, **options, **point.ending}
     correlations = None
     if "lags" in settings:
         lags = min(settings["lags"], (times.samples + 1) // 2)
@@ -97,7 +100,7 @@ def arguments(point: Point) -> dict:
         "displacements": False,
         "follow": None,
         "correlations": correlations,
-        **{key: settings[key] for key in OPTIONS if settings.get(key)},
+        **options,
     }
 
 
@@ -128,15 +131,11 @@ def record(recipe: Recipe, path: Path, overwrite: bool) -> None:
     trajectory.record(recipe, path, trajectory.WriteOptions(overwrite=overwrite, examiner=examiner))
 
 
-def recipes(
-    seeds: Sequence[tuple[int, ...]], correlations: dict | None = None, **settings: Any
-) -> list[Recipe]:
+def recipes(seeds: Sequence[tuple[int, ...]], **settings: Any) -> list[Recipe]:
     """Return the recipe of each replica.
 
     The settings are arguments of `recipe_fields`. Raises SceneError for settings that cannot be run.
     """
-    from gaspart.trajectory.correlator import Correlations
     from gaspart.trajectory.recipe import Recipe
 
-    stated = None if correlations is None else Correlations(**correlations)
-    return [Recipe(seed=seed, correlations=stated, **recipe_fields(settings)) for seed in seeds]
+    return [Recipe(seed=seed, **recipe_fields(settings)) for seed in seeds]

@@ -21,14 +21,14 @@ if TYPE_CHECKING:
 
 
 def engine(point: Point) -> Engine:
-    """Return the engine that the settings describe; raise SceneError."""
+    """Return the engine with the settings of a point; raise SceneError."""
     return _made(point, point.settings)
 
 
 def scan_engines(point: Point) -> list[Engine]:
     """Return the engine of a point, or an engine for each value of its scan.
 
-    Scans are of time steps or partitions; equal partitions are taken once. Parts of a step refer to the step
+    Scans are over time steps or partitions; equal partitions are used once. Parts of a step refer to the step
     that the engine has in the scene. Raises SceneError.
     """
     settings = point.settings
@@ -102,10 +102,10 @@ def _check(point: Point, name: str, settings: dict) -> None:
 
 
 def chosen(settings: dict, scene: Scene, where: str) -> dict:
-    """Return the settings of a point with `engine: auto`, with those for the chosen engine.
+    """Return the settings of a point with `engine: auto` for the selected engine.
 
     The choice is made for the table's machine, so that a config means the same everywhere. A length is set
-    only if none is given. Raises SceneError.
+    only if the point has none. Raises SceneError.
     """
     from gaspart.accuracy.plan import plan_from_table
     from gaspart.accuracy.table import EQUILIBRATION
@@ -159,8 +159,9 @@ class Schedule:
 def schedule(point: Point) -> Schedule:
     """Return duration and sampling of a point's runs, in the scene's time.
 
-    The length is divided into ``samples`` intervals (whole time steps with the step engine); the
-    equilibration, rounded up to complete intervals, precedes it, with ``frames`` to those between frames.
+    The length is divided into ``samples`` intervals (whole time steps with the step engine). The
+    equilibration, rounded up to complete intervals, precedes it. With ``frames``, intervals are those between
+    frames.
     """
     settings = point.settings
     lengths = [key for key in LENGTHS if key in settings]
@@ -218,7 +219,7 @@ def _unit_of_time(point: Point, unit: str) -> float:
 
 
 def _mean_rate(mixture: Mixture) -> float:
-    """Compute the mean collision rate of its particles; of many sizes by a part of them."""
+    """Compute the mean collision rate of the particles (of some, for many sizes)."""
     from gaspart import theory
 
     few = mixture.thin(_SIZES)

@@ -6,7 +6,7 @@ A job runs again when its module, or its arguments in plain values, change.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from gaspart.reproduction.jobs import (
     compare,
@@ -19,24 +19,7 @@ from gaspart.reproduction.jobs import (
 )
 
 if TYPE_CHECKING:
-    from gaspart.engines import Engine
-    from gaspart.keys import Kind
-    from gaspart.reproduction.points.point import Point
-
-
-class Job(Protocol):
-    """Declarations of a job for planning, in addition to the function that does its work."""
-
-    RESULT: str
-    """Result of the job, in words."""
-    KEYS: dict[str, Kind]
-    """Keys that have a meaning for the job, in addition to the scene, the engine and the length."""
-
-    def engines(self, point: Point) -> list[Engine]:
-        """Return the engines whose kernels it compiles, if particles are not only placed."""
-
-    def arguments(self, point: Point) -> dict:
-        """Return the arguments of its function; raise SceneError."""
+    from gaspart.reproduction.points.point import Job, Point
 
 
 JOBS: Mapping[str, Job] = {

@@ -1,10 +1,11 @@
 """Modules of each stage of the workflow, found from their imports.
 
 A digest of these modules is a parameter of the stage's rules: editing one reruns the stages that use it, and
-no others. As inputs they would be half a million files for ten thousand points. Imports are found by a search
-of the text, since parsing the whole package would take most of the time of a plan; a test compares the result
-with a parser's. A name that a package loads when it is used stands for the module that defines it, and such a
-package, where it is imported as a whole, stands for all of these modules (see `gaspart.public`).
+no others. As inputs of rules they would be half a million files for ten thousand points. Imports are found by
+a search of the text, since parsing the whole package would take most of the time of planning. A test compares
+the result with the result of a parser. If a package loads a name when it is used (`gaspart.public`), the name
+stands for the module that defines it. If such a package is imported as a whole, it stands for all of these
+modules.
 """
 
 from __future__ import annotations
@@ -27,8 +28,8 @@ _PLAIN = re.compile(r"^[ \t]*import (gaspart[\w.]*)", re.MULTILINE)
 def closure(*roots: str | Path) -> frozenset[Path]:
     """Return the files of the package that modules or scripts need, directly or not.
 
-    Modules are given by dotted names, scripts by paths. With a module that reads tables, the tables in the
-    folder `data` next to it are included.
+    Modules are given by dotted names, and scripts by paths. Tables in a folder `data` next to a module are
+    included.
     """
     files: set[Path] = set()
     queue = [root if isinstance(root, Path) else _file(root) for root in roots]
@@ -49,7 +50,7 @@ def _tables(folder: Path) -> frozenset[Path]:
 
 @cache
 def find_imports(path: Path) -> frozenset[Path]:
-    """Return files of the package that a file imports itself, and the packages that hold them."""
+    """Return the files that a file of the package imports directly, and their packages."""
     text = _TYPES.sub("", path.read_text(encoding="utf-8"))
     names = set(_PLAIN.findall(text))
     for base, items in _FROM.findall(text):
@@ -86,7 +87,7 @@ def _file(module: str) -> Path | None:
 def digest(*roots: str | Path, others: tuple[Path, ...] = ()) -> str:
     """Return a short digest of the files of a closure, and of other files.
 
-    The latter belong to another installed package. Docstrings and comments do not change the digest.
+    These files belong to another installed package. Docstrings and comments do not change the digest.
     """
     return _digest_of([*_in_order(closure(*roots)), *others])
 

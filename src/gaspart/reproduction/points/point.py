@@ -13,7 +13,7 @@ from dataclasses import asdict, dataclass
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from gaspart.engines import engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError, SimulationError
@@ -23,8 +23,8 @@ from gaspart.scene.species import LATTICES
 
 if TYPE_CHECKING:
     from gaspart.engines import Engine
+    from gaspart.keys import Kind
     from gaspart.reproduction.points.engine import Schedule
-    from gaspart.reproduction.points.jobs import Job
     from gaspart.reproduction.points.point_scene import Extents
     from gaspart.scene.scene import Scene
 
@@ -33,6 +33,21 @@ TRAJECTORIES = "simulate"
 """The job whose result is a folder of trajectories, one for each replica."""
 _JOBS = "gaspart.reproduction.jobs"
 _LONGEST_NAME = 200  # of the 255 bytes of a file name, with which suffixes and names of logs are made
+
+
+class Job(Protocol):
+    """Declarations of a job for planning, in addition to the function that does its work."""
+
+    RESULT: str
+    """Result of the job, in words."""
+    KEYS: dict[str, Kind]
+    """Keys that have a meaning for the job, in addition to the scene, the engine and the length."""
+
+    def engines(self, point: Point) -> list[Engine]:
+        """Return the engines whose kernels it compiles, if particles are not only placed."""
+
+    def arguments(self, point: Point) -> dict:
+        """Return the arguments of the point's function; raise SceneError."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +87,7 @@ class Point:
     def seed(self, replica: int = 0) -> tuple[int, ...]:
         """Return four 32-bit words that depend on the names alone.
 
-        They do not depend on the position of the point in its grid.
+        The seeds do not depend on the position of the point in its grid.
         """
         text = f"{self.config_seed}/{self.experiment}/{self.name}/{replica}"
         digest = hashlib.sha256(text.encode()).digest()
@@ -112,8 +127,8 @@ class Point:
     def kind_of_job(self) -> Job:
         """Module of the job.
 
-        Here and below modules are imported by their names: measurements, which read points too, so depend on
-        no job.
+        In this module jobs are imported by their names, so measurements, which read points too, do not depend
+        on any job.
         """
         return import_module(f"{_JOBS}.{self.job}")
 
@@ -130,20 +145,20 @@ class Point:
 
     @cached_property
     def arguments(self) -> dict:
-        """Arguments of the job's function: exactly those on which its result depends."""
+        """Arguments of the job's function: exactly the values on which its result depends."""
         return self.kind_of_job.arguments(self)
 
     @property
     def parameters(self) -> dict:
         """The arguments of the job in plain values."""
-        return import_module(f"{_JOBS}.arguments").to_plain(self.arguments)
+        return import_module(f"{_JOBS}.data").to_plain(self.arguments)
 
     def make_error(self, key: str, rule: str) -> SceneError:
         """Return the error that a setting breaks a rule."""
         return SceneError(f"experiments.{self.experiment}.{key}", self.settings.get(key), rule)
 
     def to_dict(self) -> dict:
-        """Return plain values without `root`, which depends on where a workflow keeps its files."""
+        """Return plain values without `root`, which depends on the folder of the files of a workflow."""
         return {key: value for key, value in asdict(self).items() if key != "root"}
 
     @classmethod
@@ -155,8 +170,8 @@ class Point:
 def name_of(varying: dict, where: str) -> str:
     """Return the name of a point for a file system: its varying keys and their values.
 
-    Raises SceneError, naming the key below ``where``, for a value that no file name can hold, and a name that
-    is too long.
+    Raises SceneError, naming the key below ``where``, for a value that a file name cannot contain, and for a
+    name that is too long.
     """
     parts = [f"{_text(key, where)}={_text(value, f'{where}.{key}')}" for key, value in varying.items()]
     name = ",".join(parts) or "single"
@@ -206,7 +221,7 @@ def variant(point: Point) -> str:
 def compiled_features(scene: Scene) -> set[str]:
     """Return the names of features that change the kernels of a scene.
 
-    They include those which every engine models but compiles only for scenes that have them.
+    They include features that every engine models but compiles only for scenes with these features.
     """
     names = scene.features - _NUMBERS - {"contact_duration"}
     if names & _LAW:
@@ -233,8 +248,8 @@ def _has_oversized(scene: Scene) -> bool:
 def compile_task(point: Point) -> str:
     """Return the task of `compile_kernels` for a point, as JSON.
 
-    It has its engine, its scene, with only a few particles if these have all of its features, and states if
-    it tallies the stress, and if it records events.
+    The task consists of the engine, the scene, and two flags: whether stress is tallied, and whether events
+    are recorded. The scene has only a few particles if these have all of its features.
     """
     from gaspart.scene.scene import Scene
 

@@ -2,7 +2,7 @@
 
 Each has its kind, default and meaning.
 
-The keys of a job are declared in its module in `reproduction.jobs`; `config_keys` has the keys of a whole
+The keys of a job are defined in its module in `reproduction.jobs`; `config_keys` has the keys of a whole
 config.
 """
 
@@ -107,7 +107,7 @@ _BOXES_PER_PARTICLE = positive(
 
 
 def _settings(engine: Any) -> dict[str, Kind]:
-    """Return the keys of an engine, as its fields declare them.
+    """Return the keys of an engine from its fields.
 
     A point with another engine does not require them.
     """
@@ -156,23 +156,21 @@ def ending(point: Point) -> dict[str, Any]:
 
     Raises SceneError for accuracies that no run can reach.
     """
-    from gaspart.analysis.observables import OBSERVABLES
-    from gaspart.runs.ending import Accuracy, default_sample_interval, require_end, require_measurable
+    from gaspart.runs.ending import Accuracy, contents_until, default_sample_interval
+    from gaspart.trajectory.run_options import contents_of
     from gaspart.trajectory.until import Until
 
     settings, times = point.settings, point.schedule
     start = times.equilibration if "equilibration" in settings else None
     accuracies = tuple(Accuracy.from_name(name, value, start) for name, value in settings["until"].items())
-    for accuracy in accuracies:
-        require_measurable(accuracy, point.scene, point.engine)
-        require_end(accuracy, point.scene, times.duration, from_state=False)
+    until = Until(accuracies, times.duration)
+    contents = contents_until(until, point.scene, point.engine, contents_of(settings), from_state=False)
     interval = times.sample_interval
     if "samples" not in settings:
         interval = default_sample_interval(point.scene, point.engine, None)
-    paths = any(OBSERVABLES[accuracy.observable].needs == "paths" for accuracy in accuracies)
     return {
         "duration": None,
         "sample_interval": interval,
-        "until": Until(accuracies, times.duration),
-        "displacements": paths or settings.get("displacements", False),
+        "until": until,
+        "displacements": contents.displacements,
     }

@@ -1,6 +1,6 @@
 """Scene of a point, made of its settings, or read from a scene file.
 
-In the latter some values are replaced.
+In a scene file, some values are replaced.
 
 Planning a workflow makes the scene of every point, so slow imports are made inside functions.
 """
@@ -42,9 +42,9 @@ def scene(point: Point) -> Scene:
 def extents(point: Point) -> Extents:
     """Return the extents of a point; raise SceneError.
 
-    Three of count, radius, packing fraction and side are given and the fourth follows: a count that follows
-    is rounded to a whole number; a side that follows is the same on every axis. A scene file states all of
-    them.
+    Three of count, radius, packing fraction and side are given, and the fourth is computed. A computed count
+    is rounded to a whole number. A computed side is the same on every axis. With a scene file, all of them
+    are known from the file.
     """
     settings = point.settings
     if "scene" in settings:
@@ -197,7 +197,7 @@ def _file(path: str, changed: int) -> tuple[Any, Scene]:
 
 
 def _replace(content: dict, key: str, point: Point) -> None:
-    """Replace the value at a dotted key; add it if a mapping lacks it.
+    """Replace the value at a dotted key; add the key if a mapping lacks it.
 
     The key is `scene.` and then names in mappings and numbers in lists.
     """
@@ -214,7 +214,7 @@ def _replace(content: dict, key: str, point: Point) -> None:
 def _place(block: object, part: str, key: str, point: Point) -> str | int:
     """Return the key or index to which `part` of a dotted key leads.
 
-    It leads into a mapping or a list.
+    The `block` is a mapping or a list.
     """
     if isinstance(block, dict):
         block.setdefault(part, None)

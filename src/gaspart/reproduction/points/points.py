@@ -1,8 +1,9 @@
 """Points of the grids of a config.
 
-An *experiment* of the config holds ``point`` (defaults) and ``grid`` (a mapping from a key to the list of its
-values, whose product is taken, or a list of such mappings, which are concatenated). A key that is null counts
-as absent, so that a config merged over another can remove a key.
+An *experiment* of the config has ``point`` (defaults) and ``grid``. The grid is a mapping from each key to
+the list of its values; the points are the product of the lists. It may also be a list of such mappings, whose
+points are concatenated. A key that is null counts as absent, so that a config merged over another can remove
+a key.
 
 Measurements do not import this module, so that none depends on the trade-off's table.
 """
@@ -45,10 +46,10 @@ _OF_SEEDS = ("echo", "fill", "pack")
 
 
 def scale_length(job: str, settings: Mapping[str, Any], multiple: float) -> dict[str, Any]:
-    """Return the settings with `multiple` times as many replicas, and for the rest with longer runs.
+    """Return the settings with `multiple` times as many replicas, and then longer runs.
 
-    Runs keep the interval between samples as long as there are enough of these. The length of a run that does
-    not begin with an equilibration is not changed: it describes how something proceeds.
+    The interval between samples is retained as long as there are enough samples. The length of a run that
+    does not begin with an equilibration is not changed: it describes how something proceeds.
     """
     result = dict(settings)
     replicas = result.get("replicas", 1)
@@ -104,7 +105,7 @@ _TAKEN = (
 def _of_any_engine() -> dict[str, Kind]:
     """Return the keys of all engines.
 
-    The meaning of a key is stated for each engine that has another meaning of it.
+    If an engine gives another meaning to a key, the description lists the meaning for each engine.
     """
     merged: dict[str, Kind] = {}
     for engine, keys in ENGINE_KEYS.items():
@@ -183,7 +184,7 @@ MULTIPLE: Kind = positive("", maximum=100)
 
 
 def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
-    """Return the top level of a config, given the entries of its figures by name.
+    """Return the top level of a config from the entries of its figures by name.
 
     Figures with other names have the entry `own`.
     """
@@ -306,7 +307,7 @@ def figure_points(config: dict, figure: str, planned: Mapping[str, Mapping[str, 
 
 
 def _combinations(grid: Any, where: str) -> list[dict]:
-    """Return the product of a mapping's lists; of a list of mappings, one after the other."""
+    """Return the product of a mapping's lists; for several mappings, one after the other."""
     if isinstance(grid, list):
         if not grid:
             raise SceneError(where, grid, "must not be empty")

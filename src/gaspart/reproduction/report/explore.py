@@ -1,7 +1,7 @@
 """Choices of a reader on the page, from data that the figures have measured.
 
-They are the packing fraction of a virial series, and the observable, the packing fraction and the accuracy
-for which an engine is wanted.
+The user selects the packing fraction of a virial series; or the observable, the packing fraction and the
+accuracy for which an engine is wanted.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _STEPS = 100
 
 
 def states(paths: Mapping[str, str]) -> list[dict[str, Any]]:
-    """Return `series` of the measurements of figures, {figure: path}, that are equations of state."""
+    """Return `series` of all measured equations of state among {figure: path}."""
     import xarray as xr
 
     stated = {figure: declaration for figure, declaration in registry.series().items() if figure in paths}
@@ -52,9 +52,9 @@ def series(
 ) -> list[dict[str, Any]]:
     """Return the data of each figure of an equation of state.
 
-    They are the packing fractions to choose from, the partial sums of the virial series to each order, Z of
-    the best equation of state, and the measured Z with its standard error. `states` has the dimension of each
-    figure, and the largest packing fraction to choose.
+    The data are the packing fractions to choose from, the partial sums of the virial series to each order, Z
+    of the best equation of state, and the measured Z with its standard error. `states` contains the dimension
+    of each figure and the largest packing fraction that can be chosen.
     """
     rows = []
     for figure, (dimension, largest) in states.items():
@@ -79,10 +79,10 @@ def series(
 def engines(dataset: xr.Dataset) -> dict[str, Any]:
     """Return the costs and errors of all engines, from a dataset of `families.tradeoff.maps`.
 
-    `count` of particles; `accuracies`; `engines`: name and colour of each; `parts`: what makes errors;
-    `observables`: of each its name, its packing fractions and over packing fraction, accuracy and engine
-    `cost` in s (None if the engine was not run, -1 where none of its settings is so accurate) and, over part
-    too, `error`, relative (None where it is not known).
+    `count` of particles; `accuracies`; `engines`: name and colour of each; `parts`: causes of errors;
+    `observables`: for each its name, its packing fractions and two arrays. Over packing fraction, accuracy
+    and engine: `cost` in s (None if the engine was not run, -1 if no setting is so accurate). Over part too:
+    `error`, relative (None if unknown).
     """
     from matplotlib.colors import to_hex
 

@@ -49,8 +49,8 @@ class Dot:
 def deviation(row: dict[str, Any]) -> float:
     """Return the position of a claim in standard deviations.
 
-    It is the deviation of a value; a measured number within two bounds has a position between them, which are
-    at -3 and 3; 0 without a deviation.
+    The position is the deviation of a value. A measured number between two bounds has its relative position
+    between them, where the bounds are at -3 and 3. Without a deviation the position is 0.
     """
     low, high, measured = row["lowest"], row["highest"], row["measured"]
     if math.isfinite(low) and math.isfinite(high) and math.isfinite(measured) and high > low:
@@ -99,7 +99,7 @@ class Caption:
 
     finding : inline HTML.
     plain : the finding without marks, where only text is possible.
-    reading, details : HTML, the latter perhaps empty.
+    reading, details : HTML; `details` may be empty.
     """
 
     finding: str
@@ -152,7 +152,7 @@ def html_of(text: str) -> str:
 
 
 def _fault(tree: nodes.document) -> str:
-    """Return the fault of a text that was read; "" without a fault."""
+    """Return the error of a parsed text; "" without an error."""
     from docutils import nodes
 
     said = [*tree.findall(nodes.system_message), *tree.parse_messages, *tree.transform_messages]
@@ -189,8 +189,6 @@ CHAPTERS = (
 """In the order of the page."""
 _THUMBNAIL, _SHARPNESS = 360, 1.6
 """Width of a thumbnail, and pixels of a picture for each of the page, in a page that holds its pictures."""
-HEADLINE = ("test", "identity", "reproduction")
-"""The kinds of claims that are counted on the first screen, apart from one another."""
 
 
 @dataclass(frozen=True)
@@ -224,7 +222,7 @@ class Section:
 
     @property
     def family(self) -> dict[str, Any] | None:
-        """The joint test of its claims, if there are enough of them."""
+        """The joint test of the claims of the figure, if there are enough claims."""
         return next((row for row in self.claims if row["kind"] == "family"), None)
 
 
@@ -255,10 +253,12 @@ def findings(chosen: Iterable[Mapping[str, str]], rows: list[dict[str, Any]]) ->
 
 
 def headline(rows: list[dict[str, Any]]) -> dict[str, Any]:
-    """Return the claims on the first screen: counts by kind and verdict, and disagreements."""
-    numbers = counts(rows)
+    """Return the claims on the first screen: counts by kind and verdict, and disagreements.
+
+    Families are counted too, so that the numbers of all kinds add up to the number of claims.
+    """
     return {
-        "kinds": {kind: numbers[kind] for kind in HEADLINE if kind in numbers},
+        "kinds": counts(rows),
         "disagree": [row for row in rows if row["verdict"] == "disagrees"],
     }
 
@@ -285,8 +285,8 @@ class Picture:
 def picture(path: Path, one_file: bool) -> Picture:
     """Return the picture of a figure whose PNG is `path`.
 
-    The SVG lies in the same folder, and the picture in one column below in journal/. If `one_file`, the page
-    is to hold its pictures; they are then WebP, a third of their size.
+    The SVG lies in the same folder, and the picture in one column below in journal/. If `one_file`, pictures
+    are stored in the page, as WebP, which is a third of their size.
     """
     column = path.parent / "journal" / path.name
     size, narrow = _size(path), _size(column)
@@ -310,7 +310,7 @@ def _size(path: Path) -> tuple[int, int]:
 def address(path: Path, one_file: bool = False) -> str:
     """Return the address of a file of results/, relative to the page.
 
-    If `one_file`, the address holds the file.
+    If `one_file`, the address contains the file.
     """
     if one_file:
         return _data(mimetypes.guess_type(path.name)[0] or "", path.read_bytes())
@@ -320,7 +320,8 @@ def address(path: Path, one_file: bool = False) -> str:
 def films(paths: list[Path], one_file: bool) -> dict[str, str]:
     """Return name and address of each film that the page shows.
 
-    A page that holds its films has the first one only: all films together are larger than everything else.
+    A page in one file contains only the first film, because all films together are larger than everything
+    else.
     """
     return {path.stem: address(path, one_file) for path in (paths[:1] if one_file else paths)}
 
@@ -330,7 +331,7 @@ def _data(kind: str, content: bytes) -> str:
 
 
 def _webp(path: Path, width: int) -> str:
-    """Return the address that holds a picture of this width in pixels at most."""
+    """Return the address that contains a picture, at most this many pixels wide."""
     from PIL import Image
 
     content = BytesIO()

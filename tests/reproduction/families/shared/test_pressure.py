@@ -5,14 +5,14 @@ import pytest
 
 from gaspart import run, theory
 from gaspart.errors import SceneError
-from gaspart.reproduction.families.shared.pressure import (
+from gaspart.reproduction.families.shared.runs import (
     COUNTED,
     Series,
     combine,
     pressure,
+    runs,
     series_of,
 )
-from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.points.point import Point
 
 

@@ -17,8 +17,8 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.analysis.correlations import Curves, correlate
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.motion import Curves, correlate
 from gaspart.analysis.statistics import bootstrap, means_of
 from gaspart.errors import SceneError
 from gaspart.reproduction.families.shared.runs import runs

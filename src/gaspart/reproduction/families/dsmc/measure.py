@@ -21,9 +21,9 @@ from gaspart.analysis.motion import average_correlations
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import fit_linear, mean_of
 from gaspart.analysis.transport import green_kubo
-from gaspart.reproduction.families.displacement.measure import spheres
 from gaspart.reproduction.families.heat.gap import Gap, averages
-from gaspart.reproduction.families.shared.pressure import series_of
+from gaspart.reproduction.families.motion.measure import spheres
+from gaspart.reproduction.families.shared.runs import series_of
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, entries, table
 from gaspart.scene.gas import plain_gas

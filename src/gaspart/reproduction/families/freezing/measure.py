@@ -16,8 +16,7 @@ from gaspart.analysis.pairs import radial_distribution
 from gaspart.analysis.run import Run
 from gaspart.analysis.series import plateau
 from gaspart.analysis.statistics import average, correlated_mean, mean_of
-from gaspart.reproduction.families.shared.pressure import series_of
-from gaspart.reproduction.families.shared.runs import runs
+from gaspart.reproduction.families.shared.runs import runs, series_of
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
 

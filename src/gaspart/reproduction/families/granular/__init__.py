@@ -1,10 +1,10 @@
-"""Rough and inelastic particles."""
+"""Granular gases."""
 
 from gaspart.keys import count, names, positive
 
-TITLE = "Rough and inelastic particles"
+TITLE = "Granular gases"
 CHAPTER = "Granular matter"
-FIGURES = {
+FIGURES: dict[str, dict] = {
     "equipartition": {
         "steady_from": positive(
             "collisions per particle after which the ratio of temperatures of a cooling gas is steady"
@@ -14,4 +14,5 @@ FIGURES = {
         "clustering": names("the experiments of dense and large gases, which leave Haff's law"),
         "cells_per_side": count("cells per side in which their particles are counted"),
     },
+    "driven_gas": {},
 }

@@ -4,7 +4,7 @@ from gaspart.keys import count, list_of, names, positive
 
 TITLE = "Random insertion"
 CHAPTER = "Equation of state and structure"
-FIGURES = {
+FIGURES: dict[str, dict] = {
     "fill_failures": {
         "saturated": names("the experiments that are filled until nothing more fits"),
         "bins": count("bins of the packing fraction up to the densest fill"),
@@ -15,5 +15,6 @@ FIGURES = {
         "dilute": positive(
             "packing fraction up to which failures are compared with the low-density expansion", maximum=0.1
         ),
-    }
+    },
+    "densest_fill": {},
 }

@@ -1,4 +1,4 @@
-"""Random insertion: failed attempts per particle, and saturation."""
+"""Figures of random insertion and the densest packings."""
 
 from __future__ import annotations
 
@@ -9,6 +9,9 @@ from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.rendering import style
+from gaspart.rendering.particles import DrawnParticles, colours_of
+from gaspart.rendering.pictures import picture
+from gaspart.reproduction.claims.table import concise
 from gaspart.reproduction.table import Row, Table
 
 SERIES = {
@@ -90,3 +93,36 @@ def _saturation(axis: Axes, fill: Row, kind: int) -> None:
     axis.plot(x, line, color=colour, linewidth=0.8)
     expected = theory.insertion_saturation(fill.dimension, fill.side_over_diameter, fill.rule)
     axis.plot([0.0], [expected], marker="_", markersize=12, color="black", clip_on=False, zorder=5)
+
+
+DOTS = 300
+"""Pixels per inch of the pictures, equal to those in a saved figure."""
+NAMES = {
+    "centres_to_walls": "inserted,\ncentres up to the walls",
+    "wall": "inserted,\ncompletely inside",
+    "periodic": "inserted,\nperiodic",
+    "compressed": "grown until jammed,\nperiodic",
+}
+
+
+def densest_fill(ds: xr.Dataset) -> Figure:
+    """Draw the source's fill (first packing) and the compressed one (last), with densities."""
+    figure, axes = style.new((3.4,), (3.4,))
+    packings = Table(ds, "packing")
+    for letter, axis, packing in zip("ab", axes, (packings[0], packings[-1]), strict=True):
+        positions = packing.position[np.isfinite(packing.position).all(axis=1)]
+        count = len(positions)
+        particles = DrawnParticles(
+            positions=positions,
+            radii=np.full(count, packing.radius),
+            species=np.zeros(count, dtype=int),
+            speeds=np.zeros(count),
+            lengths=packing.length,
+            walls=np.zeros((0, 2, 2)),
+        )
+        side = round(DOTS * style.PAGE / 3)
+        axis.imshow(picture(particles, (side, side), colours_of(particles, "species")))
+        axis.set_axis_off()
+        style.letter(axis, f"({letter})")
+        axis.set_title(f"{NAMES[packing.rule]}\nη = {concise(packing.packing_fraction, packing.error)}")
+    return figure

@@ -1,4 +1,4 @@
-"""Figures that a config states by itself: an observable against what varies in a grid."""
+"""Figures that a config defines without code: an observable against a key of a grid."""
 
 from __future__ import annotations
 

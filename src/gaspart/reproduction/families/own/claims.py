@@ -1,4 +1,4 @@
-"""Claims that a config states of an observable."""
+"""Claims of a config about an observable."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def _claim(point: Row, stated: dict) -> Claim | None:
 def _theory(point: Row, stated: dict, common: dict[str, Any]) -> Claim | None:
     """Return the claim of agreement with theory.
 
-    It is within a fraction of theory, where its uncertainty is not known.
+    If the uncertainty of theory is unknown, it is a fraction of the theoretical value.
     """
     theory = point.theory
     if math.isnan(theory.value):
@@ -82,7 +82,7 @@ def _theory(point: Row, stated: dict, common: dict[str, Any]) -> Claim | None:
 def _exponent(points: Table, stated: dict) -> Claim:
     """Return the claim on the exponent of a power law through the points of a series.
 
-    It is not a number without a fit.
+    Without a fit the exponent is not a number.
     """
     x, y, series = points.against, points.value, points.series[0]
     measured = Estimate(math.nan, math.nan)

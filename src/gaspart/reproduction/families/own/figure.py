@@ -51,7 +51,7 @@ def _numbers(axis: Axes, points: Table, theory: bool) -> None:
 def _curves(axis: Axes, points: Table, theory: bool) -> None:
     """Draw one curve for each point, with a band of one standard error, and theory's curve.
 
-    The latter has the same colour.
+    The theory of a curve has the colour of the curve.
     """
     look: dict[str, Any] = {"linestyle": "--", "zorder": 4}
     if (~np.isnan(points.theory.value)).sum(axis=1).max() < _FEW:  # as at contact

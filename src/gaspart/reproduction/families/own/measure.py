@@ -24,13 +24,13 @@ _PARTS = {"value": "", "value_error": "_error", "theory": "_theory", "theory_err
 def observable(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure an observable of each point, the mean of its replicas.
 
-    The settings are `observable`; `against`, the key of the points that is the horizontal axis; `place`, of a
-    curve the place whose value is taken; see `families.own`. The dimension is point, in the order of series
-    and against. There are `against`; `series`, the other varying settings, as text; value, theory (NaN
-    without one), each with its `_error`, in the units of the observable, and value_freedom, the degrees of
-    freedom of the error. An observable with a number for each of some names, such as faces, has a series for
-    each. Of a curve all these also have the dimension `along`, and `along_places` are its places. Raises
-    SceneError for what can not be measured.
+    The settings are `observable`; `against`, the key of the points on the horizontal axis; `place`, for a
+    curve, the position at which its value is taken; see `families.own`. The dimension is point, in the order
+    of series and against. There are `against`; `series`, the other varying settings, as text; value, theory
+    (NaN without theory), each with its `_error`, in the units of the observable, and value_freedom, the
+    degrees of freedom of the error. An observable with a number for each of some names, such as faces, has a
+    series for each. For a curve, all these variables also have the dimension `along`, and `along_places`
+    contains the positions. Raises SceneError for what can not be measured.
     """
     name = settings["observable"]
     rows, source = [], ""
@@ -73,7 +73,7 @@ def _by_name(replicas: list[Observable]) -> dict[str, list[Observable]]:
 def _other(point: Point, points: list[Point], against: str) -> str:
     """Return the distinction of a point from others at the same value of `against`.
 
-    It is the experiment, if there are several, and the other values of its grid.
+    The text contains the experiment, if there are several, and the other values of its grid.
     """
     several = len({other.experiment for other in points}) > 1
     varied = [part for part in point.name.split(",") if not part.startswith(f"{against}=")]
@@ -129,7 +129,7 @@ def mean_of(replicas: list[Observable], part: str) -> np.ndarray | None:
 
     The part is its standard uncertainty (_error), theory (_theory) or the uncertainty of theory
     (_theory_error), None without a theory. Runs that end when they are accurate may have curves of different
-    lengths, of which the common part is taken.
+    lengths. Then only the common part is used.
     """
     quantity = replicas[0].attrs["quantity"]
     if part.startswith("_theory") and any(replica.theory is None for replica in replicas):

@@ -32,7 +32,7 @@ _UNUSED = {
 def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) -> None:
     """Raise SceneError for points or claims that do not fit a figure.
 
-    These are experiments without trajectories, points that have no number to be drawn against, and claims
+    It rejects experiments without trajectories, points without a number for the horizontal axis, and claims
     whose keys do not belong together.
     """
     where = f"figures.{figure}"

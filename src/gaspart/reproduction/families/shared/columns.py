@@ -69,7 +69,7 @@ class Stretch:
     """Consecutive frames of one run; T frames, N particles.
 
     positions : (T, N, 2), the second one is the height.
-    energies : (T, N), kinetic ones, without the centre of mass's motion along a periodic axis.
+    energies : (T, N), kinetic temperatures, without the motion of the centre of mass along a periodic axis.
     floor, ceiling : mean forces on them.
     gain : mean rate at which the particles' upward momentum grew.
     temperature : twice the mean kinetic energy per degree of freedom (one is lost with a conserved momentum).
@@ -119,8 +119,7 @@ class Profile:
 
     density : (S, B), of each species.
     temperature : (B,), NaN in empty bins.
-    pressure : (B,), force per length that carries the gas above, the sum of the force on the ceiling and the
-        weight.
+    pressure : (B,), force per length that supports the gas above: the force on the ceiling plus the weight.
     """
 
     density: np.ndarray

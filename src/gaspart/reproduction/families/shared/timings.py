@@ -1,8 +1,8 @@
 """Costs per particle and per event, and their minimum, from repeated timings of `measure_cost`.
 
-*Work* is counted, the same on every machine: pairs tested, boxes searched, and boxes emptied (the
-time-stepped engine sorts all particles anew in every step, so all its boxes are emptied once a step). *Time*
-is CPU time: the median of the repeats, with that median's standard error.
+*Work* is counted and is equal on every machine: pairs tested, boxes searched, and boxes emptied. The
+time-stepped engine sorts all particles in every step, so all its boxes are emptied once per step. *Time* is
+CPU time: the median of the repeats, with that median's standard error.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
@@ -28,8 +29,8 @@ SYSTEMATIC = 0.02
 def median(seconds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Compute the median over the last axis, and its standard error.
 
-    The error of a median is sqrt(pi/2) standard errors of the mean; the spread is 1.4826 times the median
-    deviation, so that one disturbed repeat in five changes neither.
+    The error of a median is sqrt(pi/2) standard errors of the mean. The spread is 1.4826 times the median
+    deviation. So one disturbed repeat in five changes neither of them.
     """
     middle = np.median(seconds, axis=-1)
     spread = 1.4826 * np.median(np.abs(seconds - middle[..., None]), axis=-1)
@@ -89,8 +90,9 @@ def _dataset(columns: dict, **units: str) -> xr.Dataset:
 def weights(seconds: Estimate, *work: float | np.ndarray) -> statistics.Fit:
     """Fit the cost of each kind of work: seconds = sum of weight x work.
 
-    The fit is by relative least squares; seconds and every work are (points,). The covariance is scaled up by
-    the scatter if that is larger than the errors (and `SYSTEMATIC`) explain.
+    The fit is a relative least-squares fit; the arrays of seconds and of each kind of work have the shape
+    (points,). The covariance is scaled up by the scatter if that is larger than the errors (and `SYSTEMATIC`)
+    explain.
     """
     times, errors = seconds.value, _spread(seconds)
     fit = statistics.fit_linear(np.stack(np.broadcast_arrays(*work), axis=1), times, errors)
@@ -109,10 +111,10 @@ def ideal(costs: xr.Dataset, dimension: int) -> dict[str, Any]:
 
     Each number has its 95 % interval.
 
-    By time: the minimum of a + b / boxes + c boxes (``ideal``, ``ideal_low``, ``ideal_high``,
-    ``ideal_interior``), and the boxes from ``flat_low`` to ``flat_high`` that cost at most 5 % more. By work:
-    with seconds = a + b tests + c boxes, all per particle, fitted to the same partitions, the minimum is at
-    sqrt(3^d b / 2 c) (``model``, ``model_low``, ``model_high``; NaN if a weight is not positive), with
+    From times: the minimum of a + b / boxes + c boxes (``ideal``, ``ideal_low``, ``ideal_high``,
+    ``ideal_interior``), and the range ``flat_low`` to ``flat_high`` of boxes that cost at most 5 % more. From
+    work, seconds = a + b tests + c boxes, all per particle, is fitted to the same partitions; the minimum is
+    at sqrt(3^d b / 2 c) (``model``, ``model_low``, ``model_high``; NaN if a weight is not positive), with
     ``particle_seconds`` a (moving, sorting, and looking into boxes, whose number hardly changes),
     ``test_seconds`` b, ``box_seconds`` c, and their ``_error``.
     """
@@ -148,10 +150,10 @@ def ideal(costs: xr.Dataset, dimension: int) -> dict[str, Any]:
 def penalty(costs: xr.Dataset, boxes_per_particle: float) -> tuple[float, float]:
     """Compute the time at a number of boxes per particle over the least time.
 
-    The standard error is returned too; NaN beyond the partitions timed.
+    The standard error is also returned; NaN beyond the partitions timed.
 
-    Both by a + b / boxes + c boxes, fitted to the times near the least one, so that no single disturbed
-    timing decides; none of the three is negative, as no work costs less than nothing.
+    Both are computed by a + b / boxes + c boxes, fitted to the times near the minimum, so that a single
+    disturbed timing has little effect. No coefficient is negative, since no work costs less than nothing.
     """
     from scipy.optimize import nnls
 
@@ -179,7 +181,7 @@ def _near(seconds: np.ndarray) -> np.ndarray:
 def log_ratios(run: xr.Dataset, work: np.ndarray) -> np.ndarray:
     """Compute ln of the time per unit of work (partitions,) relative to its rival.
 
-    The rivals are timed alternately and lack the keys `without` (the second half); the median is over
+    The compared engines are timed in turns and lack the keys `without` (the second half); the median is over
     repeats.
     """
     own, beside = np.split(np.log(run.seconds.values / work[:, None]), 2)
@@ -227,9 +229,9 @@ def one_box(runs: list[xr.Dataset]) -> xr.Dataset:
 def list_costs(runs: list[xr.Dataset], gases: xr.Dataset) -> xr.Dataset:
     """Return the costs per particle of neighbour lists, over ``listed``.
 
-    They are ``list_seconds`` ... as in `per_particle`; ``list_count``, ``list_radius``; and ``list_share``,
-    the time divided by the time of the gas of the same count and radius among `gases` (NaN without such a
-    gas), with error.
+    The results are ``list_seconds`` ... as in `per_particle`; ``list_count``, ``list_radius``; and
+    ``list_share``, the time divided by the time of the gas of the same count and radius among `gases` (NaN
+    without such a gas), with error.
     """
     costs = xr.concat(
         [per_particle(run).isel(partition=0) for run in runs], "listed", join="outer", compat="equals"
@@ -257,3 +259,27 @@ def extrapolate(naive: xr.Dataset, count: float) -> Estimate:
     fit = weights(gases.seconds, gases.count.astype(float), gases.pair_tests)
     work = np.array([count, 0.5 * count * (count - 1.0)])
     return Estimate(work @ fit.values, math.sqrt(work @ fit.covariance @ work))
+
+
+# The speed on several cores by Amdahl's law, with threads that take time to begin.
+
+
+SLABS = {"DSMC, Enskog": 8**3 * 64}
+"""The engine of which threads share collisions by slabs of cells, and the number of particles from which on
+two threads have one each at a time (docs/dsmc.md). Fewer do not share them, and more threads share them
+unevenly, which Amdahl's law does not know."""
+
+
+def speed_up(cores: ArrayLike, count: ArrayLike, serial: float, overhead: float) -> np.ndarray:
+    """Compute the speed-up of p cores for N particles by Amdahl's law.
+
+    It is 1 / (s + (1 - s) / p + N_0 / N).
+
+    The law is from (AFIPS Conf. Proc. 30, 483 (1967)).
+
+    serial : fraction s of the work that one core does alone.
+    overhead : N_0, number of particles whose work on one core takes the time in which threads are begun and
+        awaited.
+    """
+    shared, waited = (1.0 - serial) / np.asarray(cores), overhead / np.asarray(count)
+    return np.asarray(1.0 / (serial + shared + waited))

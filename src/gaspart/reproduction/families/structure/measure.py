@@ -24,8 +24,7 @@ from gaspart.analysis.run import Run
 from gaspart.analysis.series import Blocks
 from gaspart.analysis.statistics import fit_polynomial, jackknife, means_of
 from gaspart.analysis.structure_factors import factors, in_shells, shells_of, wave_vectors
-from gaspart.reproduction.families.shared.pressure import series_of
-from gaspart.reproduction.families.shared.runs import runs
+from gaspart.reproduction.families.shared.runs import runs, series_of
 from gaspart.reproduction.families.structure.potential import (
     MeasuredState,
     chemical_potential,

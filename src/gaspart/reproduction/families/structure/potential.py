@@ -19,8 +19,7 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.insertion import Insertions, insertions
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import Fit, average, correlated_mean, fit_polynomial
-from gaspart.reproduction.families.shared.pressure import pressure
-from gaspart.reproduction.families.shared.runs import runs
+from gaspart.reproduction.families.shared.runs import pressure, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, table
 from gaspart.scene.gas import plain_gas

@@ -19,7 +19,7 @@ from gaspart.accuracy.tabulated import model_error
 from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction import table as tables
-from gaspart.reproduction.families.shared.pressure import pressure
+from gaspart.reproduction.families.shared.runs import pressure
 from gaspart.reproduction.families.tradeoff.choices import required_length
 from gaspart.reproduction.families.tradeoff.maps import maps
 from gaspart.reproduction.families.tradeoff.uniform import (

@@ -22,8 +22,7 @@ from gaspart.accuracy.tabulated import model_error, step_error
 from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import mean_of
-from gaspart.reproduction.families.shared.pressure import series_of
-from gaspart.reproduction.families.shared.runs import runs
+from gaspart.reproduction.families.shared.runs import runs, series_of
 from gaspart.reproduction.families.shared.timings import median
 from gaspart.reproduction.families.tradeoff.choices import Choice
 from gaspart.reproduction.points.point import Point

@@ -1,5 +1,0 @@
-"""Several cores."""
-
-TITLE = "Several cores"
-CHAPTER = "Speed and accuracy"
-FIGURES: dict[str, dict] = {"cores": {}}

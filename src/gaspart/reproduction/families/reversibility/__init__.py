@@ -1,5 +1,0 @@
-"""Speed against accuracy."""
-
-TITLE = "Speed against accuracy"
-CHAPTER = "Speed and accuracy"
-FIGURES: dict[str, dict] = {"reversibility": {}}

@@ -1,0 +1,281 @@
+"""Rough particles: energies of rotation and translation, from their start to the steady ratio.
+
+Time is counted in collisions per particle, s = 2 N_coll / N. Gases are homogeneous, velocities nearly
+Maxwellian and particles uncorrelated: dilute gases before clustering.
+"""
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from gaspart.theory.geometry import Numbers, Values, check_ranges
+from gaspart.theory.granular import checked_restitution
+
+
+def rough_matrix(inertia: float, tangential: float, normal: float = 1.0) -> np.ndarray:
+    """Compute the matrix of the exchange of energy between translation and rotation of rough discs.
+
+    Parameters
+    ----------
+    inertia : float, [1]
+        Reduced moment of inertia q = I / (m R^2), positive.
+    tangential : float, [1]
+        Coefficient of tangential restitution, from -1 (smooth) to 1 (perfectly rough).
+    normal : float, default 1.0, [1]
+        Coefficient of normal restitution, from 0 to 1.
+
+    Returns
+    -------
+    ndarray, shape (2, 2), [1]
+        M of d(T_tr, T_rot)/ds = M (T_tr, T_rot), with s collisions of a particle.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range.
+
+    Notes
+    -----
+    M = [[-2A, 2B], [4B, -4C]] with A = (1 - normal^2)/4 + h (1 - h)/2, B = h^2 / 2q, C = h (1 - h/q) / 2q and
+    h = q (1 + tangential) / (2q + 2) [1]_ [2]_ (exact averages over Maxwellian velocities and spins, tested).
+    T_tr = m <v^2> / 2, T_rot = I <w^2>. In a perfectly rough gas T_tr - T_rot decays at the rate 3q /
+    (1+q)^2.
+
+    References
+    ----------
+    .. [1] M. Huthmann and A. Zippelius, Phys. Rev. E 56, R6275 (1997).
+    .. [2] S. Luding and others, Phys. Rev. E 58, 3416 (1998).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.rough_matrix(inertia=0.5, tangential=1.0).round(4)
+    array([[-0.2222,  0.2222],
+           [ 0.4444, -0.4444]])
+    """
+    q = float(inertia)
+    if not q > 0.0:
+        raise ValueError(f"inertia: {inertia} (must be positive)")
+    if not -1.0 <= tangential <= 1.0:
+        raise ValueError(f"tangential: {tangential} (must be from -1 to 1)")
+    e = float(checked_restitution(normal))
+    h = q * (1.0 + tangential) / (2.0 * q + 2.0)
+    a = 0.25 * (1.0 - e**2) + 0.5 * h * (1.0 - h)
+    b = 0.5 * h**2 / q
+    c = 0.5 * h / q * (1.0 - h / q)
+    return np.array([[-2.0 * a, 2.0 * b], [4.0 * b, -4.0 * c]])
+
+
+@check_ranges
+def rough_temperatures(
+    collisions: Numbers,
+    inertia: float,
+    tangential: float,
+    normal: float = 1.0,
+    start: tuple[float, float] = (1.0, 0.0),
+) -> np.ndarray:
+    """Compute the temperatures of translation and rotation of rough discs after some collisions.
+
+    Parameters
+    ----------
+    collisions : array_like, [1]
+        Number s of collisions of a particle.
+    inertia : float, [1]
+        Reduced moment of inertia q = I / (m R^2), positive.
+    tangential : float, [1]
+        Coefficient of tangential restitution, from -1 (smooth) to 1 (perfectly rough).
+    normal : float, default 1.0, [1]
+        Coefficient of normal restitution, from 0 to 1.
+    start : tuple of float, default (1.0, 0.0), [energy]
+        T_tr and T_rot at s = 0.
+
+    Returns
+    -------
+    ndarray, shape (2, ...), [energy]
+        T_tr and T_rot, each of the shape of `collisions`.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range.
+
+    Notes
+    -----
+    `rough_matrix` integrated.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.rough_temperatures([0.0, 1.0, 10.0], inertia=0.5, tangential=1.0).round(4)
+    array([[1.    , 0.8378, 0.6671],
+           [0.    , 0.3244, 0.6658]])
+    """
+    values, vectors = np.linalg.eig(rough_matrix(inertia, tangential, normal))
+    weights = np.linalg.solve(vectors, np.asarray(start, dtype=float))
+    s = np.asarray(collisions, dtype=float)
+    return np.tensordot(vectors, weights.reshape(2, *[1] * s.ndim) * np.exp(np.multiply.outer(values, s)), 1)
+
+
+def rough_ratio(inertia: float, tangential: float, normal: float = 1.0) -> float:
+    """Compute the ratio of the temperatures of rotation and translation that rough discs approach.
+
+    Parameters
+    ----------
+    inertia : float, [1]
+        Reduced moment of inertia q = I / (m R^2), positive.
+    tangential : float, [1]
+        Coefficient of tangential restitution, above -1 and at most 1 (perfectly rough).
+    normal : float, default 1.0, [1]
+        Coefficient of normal restitution, from 0 to 1.
+
+    Returns
+    -------
+    float, [1]
+        T_rot / T_tr, cooling or not; 1 if the discs are elastic and perfectly rough.
+
+    Raises
+    ------
+    ValueError
+        If the discs are smooth, so that their spins never change, or if an argument is out of range.
+
+    Notes
+    -----
+    The slower eigenvector of `rough_matrix`. For rough discs that cool it is right to 5 % only;
+    `rough_cooling` has values of direct simulation.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> round(theory.rough_ratio(inertia=0.5, tangential=0.5, normal=0.9), 4)
+    0.7904
+    """
+    if tangential == -1.0:
+        raise ValueError("tangential: -1 (smooth discs do not exchange energy with their spins)")
+    values, vectors = np.linalg.eig(rough_matrix(inertia, tangential, normal))
+    slower = vectors[:, np.argmax(values)]
+    return float(slower[1] / slower[0])
+
+
+@cache
+def rough_cooling() -> np.ndarray:
+    """Return the ratio of the temperatures of rough discs that cool, by direct simulation.
+
+    Returns
+    -------
+    ndarray, shape (n, 5), [1]
+        In each row inertia, tangential and normal restitution, T_rot / T_tr, and its standard uncertainty.
+
+    Notes
+    -----
+    `rough_ratio` gives this ratio to 5 % only. Velocities and spins are not Maxwellian there, and not
+    independent. Computed by direct simulation of the homogeneous Boltzmann equation
+    (`boltzmann.rough_discs`).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.rough_cooling().shape[1]
+    5
+    """
+    return np.loadtxt(Path(__file__).parent / "data" / "rough_cooling.csv", delimiter=",", skiprows=1)
+
+
+ROUGH_START_UNCERTAINTY = 0.002
+"""Standard uncertainty of `rough_start_excess` (statistical, from two gases of 100 000 discs)."""
+
+
+@check_ranges
+def rough_start_excess(inertia: float, collisions: Numbers) -> Values:
+    """Return the deviation of rough discs from Maxwellian exchange of energy, after a start without spin.
+
+    Parameters
+    ----------
+    inertia : float, [1]
+        Reduced moment of inertia q = I / (m R^2).
+    collisions : array_like, [1]
+        Number s of collisions of a particle.
+
+    Returns
+    -------
+    ndarray, same shape as `collisions`, [1]
+        T_tr - T_rot of perfectly rough discs divided by the initial temperature, minus exp(-3 q s / (1 +
+        q)^2); NaN where it was not computed.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+
+    Notes
+    -----
+    The exponential is the result of Maxwellian velocities [1]_. Computed by direct simulation of the
+    homogeneous Boltzmann equation (`boltzmann.rough_start`). The standard uncertainty is
+    `ROUGH_START_UNCERTAINTY`.
+
+    References
+    ----------
+    .. [1] M. Huthmann and A. Zippelius, Phys. Rev. E 56, R6275 (1997).
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> abs(float(theory.rough_start_excess(0.5, collisions=2.0))) < 0.05
+    True
+    """
+    table = np.loadtxt(Path(__file__).parent / "data" / "rough_start.csv", delimiter=",", skiprows=1)
+    s, excess = table[np.isclose(table[:, 0], inertia), 1:].T
+    if not s.size:
+        return np.full_like(np.asarray(collisions, dtype=float), np.nan)
+    return np.interp(collisions, s, excess, right=np.nan)
+
+
+@check_ranges
+def rough_wall_difference(time: Numbers, inertia: float) -> Values:
+    """Compute the difference of temperatures of rough particles that collide with two rough walls only.
+
+    Parameters
+    ----------
+    time : array_like, [1]
+        Reduced time t sqrt(k_B T / m) / h, with h the distance between the walls for centres.
+    inertia : float, [1]
+        Reduced moment of inertia q = I / (m R^2), positive.
+
+    Returns
+    -------
+    ndarray, same shape as `time`, [1]
+        (T_par - T_rot) / T_par(0).
+
+    Raises
+    ------
+    SceneError
+        If a time is out of range.
+    ValueError
+        If the inertia is not positive.
+
+    Notes
+    -----
+    The particles are perfectly rough and have no spin at first; the walls are parallel. A wall hit turns the
+    pair (v, sqrt(q) R w) of a tangential velocity and its spin, seen from the wall, by the angle a, cos a =
+    (1 - q)/(1 + q) [1]_. After K hits v is v(0) cos(K a), and the difference is the mean of cos(2 K a). For
+    uniform positions its mean at a given normal speed is linear between the times of integer K. As a Fourier
+    series, and averaged over Maxwellian normal velocities, it is the sum over integers j of (sin a / (a + pi
+    j))^2 exp(-2 (a + pi j)^2 time^2). Exact; the sum ends at j = 1000, which matters (2e-4) only for times
+    below 0.002.
+
+    References
+    ----------
+    .. [1] Spencer 2022, Eq. 40.
+
+    Examples
+    --------
+    >>> from gaspart import theory
+    >>> theory.rough_wall_difference([0.1, 1.0], inertia=0.5).round(4)
+    array([0.8582, 0.0285])
+    """
+    q = float(inertia)
+    if not q > 0.0:
+        raise ValueError(f"inertia: {inertia} (must be positive)")
+    angle = np.arccos((1.0 - q) / (1.0 + q)) + np.pi * np.arange(-1000.0, 1001.0)
+    decay = np.exp(-2.0 * np.multiply.outer(np.asarray(time, dtype=float), angle) ** 2)
+    return decay @ (np.sin(angle) / angle) ** 2

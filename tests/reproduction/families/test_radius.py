@@ -1,0 +1,126 @@
+""""""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from reproduction.families.drawn import Points, column, draw, shows, varied
+
+from gaspart import run, theory
+from gaspart.reproduction.claims import judge
+from gaspart.reproduction.families.equation_of_state.claims import radius_grid as claims
+from gaspart.reproduction.families.equation_of_state.figure import radius_grid as draw_radius_grid
+from gaspart.reproduction.families.equation_of_state.measure import (
+    crossings_per_collision,
+    expected_pair_tests,
+)
+from gaspart.reproduction.families.equation_of_state.measure import radius_grid as measure_radius_grid
+from gaspart.reproduction.points.point import Point
+
+
+def test_pair_tests_of_one_box_are_all_pairs():
+    for per_side in (1, 2, 3):
+        assert expected_pair_tests(100, per_side, 0.2, 3) == pytest.approx(49.5)
+
+
+def test_pair_tests_of_an_ideal_gas():
+    assert expected_pair_tests(8000, 20, 1e-9, 3) == pytest.approx(0.5 * 27 * (1 - 1 / 8000), rel=1e-3)
+
+
+def test_crossings_fall_with_the_box_and_with_density():
+    one = crossings_per_collision(0.1, 2.0, 1000, 3)
+    assert crossings_per_collision(0.1, 4.0, 1000, 3) == pytest.approx(one / 2)
+    # mean free path / (sqrt 2) ... : 2 d <|v_x|> / (w nu) with <|v_x|> = <v> / 2 in 3D
+    assert one == pytest.approx(3.0 * float(theory.mean_free_path(0.1, 3)) / 2.0, rel=2e-3)
+
+
+@pytest.fixture(scope="module")
+def dataset(tmp_path_factory):
+    root = tmp_path_factory.mktemp("points")
+    common = {"dimension": 3, "side": 10, "boundary": "periodic", "temperature": 1.0, "boxes_per_particle": 1}
+    event = {"engine": "event", "collisions_per_particle": 60, "equilibration": 10, "samples": 20}
+    step = {"engine": "step", "time_step": 0.02, "passes": 1, "steps": 200, "equilibration": 100}
+    step |= {"samples": 4}
+    experiments = {
+        "fraction": [event | {"packing_fraction": 0.1, "count": n} for n in (64, 125, 216)],
+        "count": [event | {"count": 125, "radius": r} for r in (0.4, 0.5, 0.6)],
+        "fraction_steps": [step | {"packing_fraction": 0.1, "count": n} for n in (125, 216)],
+        "count_steps": [step | {"count": 125, "radius": r} for r in (0.4, 0.6)],
+    }
+    points = []
+    for name, settings in experiments.items():
+        for k, varying in enumerate(settings):
+            point = Point(name, str(k), "simulate", common | varying, str(root), 3)
+            schedule = point.schedule
+            Path(point.path).mkdir(parents=True)
+            times = schedule.duration, schedule.sample_interval
+            run(point.scene, point.engine, point.seed(), *times, point.replica_path(0))
+            points.append(point)
+    return measure_radius_grid(points, {})
+
+
+def test_series_are_recognised(dataset):
+    fixed = (dataset["series"] == "packing fraction").values
+    assert fixed.tolist() == [True] * 3 + [False] * 3 + [True] * 2 + [False] * 2
+    assert dataset["engine"].values.tolist() == ["event"] * 6 + ["step"] * 4
+
+
+def test_counts_are_as_predicted(dataset):
+    event, step = dataset.isel(point=slice(0, 6)), dataset.isel(point=slice(6, 10))
+    assert np.all(np.abs(event["crossings"] - 1.0) < 4.0 * event["crossings_error"])
+    assert event["crossings_counted"].values == pytest.approx(event["crossings_expected"].values, rel=0.1)
+    assert step["pair_tests"].values == pytest.approx(step["pair_tests_expected"].values, rel=0.03)
+
+
+def test_z_is_that_of_the_packing_fraction(dataset):
+    event = dataset.isel(point=slice(0, 6))
+    assert np.all(np.abs(event["Z"] - event["reference"]) < 4.0 * event["Z_error"])
+
+
+def verdicts(dataset):
+    return dict(zip([claim.claim[:20] for claim in claims(dataset)], judge(claims(dataset)), strict=True))
+
+
+def test_claims_can_fail(dataset):
+    right = verdicts(dataset)
+    assert "disagrees" not in right.values()
+    wrong = dataset.copy(deep=True)
+    wrong["Z"] = wrong["Z"] * np.linspace(1.0, 1.4, wrong.sizes["point"])
+    wrong["crossings"] = wrong["crossings"] * 1.2
+    wrong["pair_tests"] = wrong["pair_tests"] * wrong["radius"] ** 2
+    changed = verdicts(wrong)
+    assert set(changed.values()) == {"disagrees"} or list(changed.values()).count("disagrees") >= 4
+
+
+def gases():
+    """What `measure.radius_grid` gives: two series of three gases by each engine."""
+    names = ["pair_tests", "pair_tests_expected", "crossings_counted", "crossings_expected"]
+    names += ["Z", "Z_error", "reference", "reference_error"]
+    ds = varied(xr.Dataset({name: ("point", np.ones(12)) for name in names}))
+    ds["radius"] = ("point", np.tile([0.4, 0.5, 0.6], 4))
+    ds["series"] = ("point", np.tile(np.repeat(["packing fraction", "count"], 3), 2))
+    ds["engine"] = ("point", np.repeat(["event", "step"], 6))
+    ds["packing_fraction"] = ("point", np.tile([0.1, 0.1, 0.1, 0.05, 0.1, 0.17], 2))
+    ds["count"] = ("point", np.tile([200, 100, 60, 125, 125, 125], 2))
+    return ds
+
+
+def test_z_its_deviation_and_the_counted_work_are_drawn_against_the_radius():
+    ds = gases()
+    z, deviation, work = draw(draw_radius_grid, ds).axes
+    event = [ds.isel(point=slice(0, 3)), ds.isel(point=slice(3, 6))]
+    step = [ds.isel(point=slice(6, 9)), ds.isel(point=slice(9, 12))]
+    shows(z, column(event[0], "radius", "Z"), column(event[1], "radius", "Z"))
+    sigmas = []
+    for one in event:
+        sigma = np.hypot(one["Z_error"], one["reference_error"])
+        sigmas.append(Points(one["radius"], (one["Z"] - one["reference"]) / sigma, np.ones(3)))
+    shows(deviation, *sigmas)
+    counted = []
+    for events, steps in zip(event, step, strict=True):
+        columns = events["pair_tests"], events["crossings_counted"], steps["pair_tests"]
+        counted += [Points(events["radius"], column) for column in columns]
+    shows(work, *counted)
