@@ -43,8 +43,8 @@ WHOLE = ("buoyancy", "chemical_potential")
 """Figures whose runs keep their length.
 
 In a trial with 0.45 of the length the squared deviations of the claims of `buoyancy`, in standard errors, had
-a mean of 2.63(37): its discs wander so slowly that shorter runs state too small uncertainties. In shorter runs
-of `chemical_potential` too few frames have an insertion for a verdict.
+a mean of 2.63(37): its discs wander so slowly that shorter runs state too small uncertainties. In shorter
+runs of `chemical_potential` too few frames have an insertion for a verdict.
 """
 _ENLARGED = 2.0
 """Factor by which variances are enlarged, to find their parts."""

@@ -173,7 +173,7 @@ def _edge(o, d, edges, thickness):
 
 @inner_kernel
 def _visible(o, d, scene, grid, thickness):
-    """Return the distance of the visible object on a ray, its code without shadow, and the sphere's index."""
+    """Return distance and code, without shadow, of the visible object on a ray."""
     spheres, _, edges, lengths = scene
     t, i = _nearest(o, d, spheres, grid, False)
     code = SPHERE + 2 * i if i >= 0 else NOTHING
@@ -190,12 +190,14 @@ def _visible(o, d, scene, grid, thickness):
 
 
 @inner_kernel
-def _shade(o, d, t, code, view, scales, scene, grid, lit, free):
-    """Return red, green and blue of an object on a ray, 1 if it is in the shadow, and its free sky.
+def _shade(ray, t, code, view, scales, scene, grid, light_around):
+    """Return an object's colour on a ray, 1 in the shadow, and its free sky.
 
-    lit : 1 if the lamp reaches the point, 0 if not, -1 to find out.
-    free : fraction of the sky that is free above the point; -1 to find out.
+    ray : its origin and its direction.
+    light_around : 1 if the lamp reaches the point, 0 if not, -1 to find out; and the fraction of the sky that
+    is free above the point, -1 to find out.
     """
+    (o, d), (lit, free) = ray, light_around
     if code == NOTHING:
         return 1.0, 1.0, 1.0, 0, 1.0
     depth = t * (d[0] * view[1, 0] + d[1] * view[1, 1] + d[2] * view[1, 2])
@@ -250,20 +252,26 @@ def _direction(column, row, image, view, scales):
 
 @kernel
 def render_once(image, codes, skies, view, scales, scene, grid):
-    """Trace one ray through the middle of every pixel; `skies` (H, W) is the free sky of what it hits."""
+    """Trace one ray through the middle of every pixel.
+
+    `skies` (H, W) is set to the free sky of the objects.
+    """
     o, thickness = (view[0, 0], view[0, 1], view[0, 2]), 2.0 * _EDGE_PIXELS * scales[0] / image.shape[1]
     for row in range(codes.shape[0]):
         for column in range(codes.shape[1]):
             d = _direction(column + 0.5, row + 0.5, image, view, scales)
             t, code = _visible(o, d, scene, grid, thickness)
-            red, green, blue, shadow, free = _shade(o, d, t, code, view, scales, scene, grid, -1, -1.0)
+            red, green, blue, shadow, free = _shade((o, d), t, code, view, scales, scene, grid, (-1, -1.0))
             image[row, column, 0], image[row, column, 1], image[row, column, 2] = red, green, blue
             codes[row, column], skies[row, column] = code + shadow, free
 
 
 @inner_helper
-def _known(code, row, column, codes, skies):
-    """Return the light and the sky of an object in the pixels around: 1, 0 or -1 (unknown), sky or -1."""
+def _light_around(code, row, column, codes, skies):
+    """Return light and free sky of an object in the pixels around.
+
+    The light is 1, 0 or -1, if it differs or the object is not there; the sky is -1 then.
+    """
     lit, free = -2, -1.0
     for y in range(max(row - 1, 0), min(row + 2, codes.shape[0])):
         for x in range(max(column - 1, 0), min(column + 2, codes.shape[1])):
@@ -289,7 +297,7 @@ def _shows(code, row, column, codes):
 def refine(image, codes, skies, pixels, view, scales, scene, grid):
     """Trace SUBRAYS x SUBRAYS rays through the `pixels` (M, 2), given by row and column.
 
-    The light of an object and its free sky are those of the pixels around where these agree. Where the first
+    The light and the free sky of an object are taken from the pixels around where these agree. If the first
     four rays, near the corners, see what the middle of the pixel shows, there are no more.
     """
     o, thickness = (view[0, 0], view[0, 1], view[0, 2]), 2.0 * _EDGE_PIXELS * scales[0] / image.shape[1]
@@ -297,7 +305,7 @@ def refine(image, codes, skies, pixels, view, scales, scene, grid):
         row, column = pixels[n, 0], pixels[n, 1]
         thick = thickness if _shows(EDGE, row, column, codes) else 0.0
         red, green, blue, traced = 0.0, 0.0, 0.0, 0
-        last, lit, free, alike = -1, -1, -1.0, True
+        last, around, alike = -1, (-1, -1.0), True
         for k in range(SUBRAYS * SUBRAYS):
             m = _ORDER[k]
             x, y = column + (m % SUBRAYS + 0.5) / SUBRAYS, row + (m // SUBRAYS + 0.5) / SUBRAYS
@@ -305,8 +313,8 @@ def refine(image, codes, skies, pixels, view, scales, scene, grid):
             t, code = _visible(o, d, scene, grid, thick)
             if code != last:
                 last = code
-                lit, free = _known(code, row, column, codes, skies)
-            seen = _shade(o, d, t, code, view, scales, scene, grid, lit, free)
+                around = _light_around(code, row, column, codes, skies)
+            seen = _shade((o, d), t, code, view, scales, scene, grid, around)
             red, green, blue = red + min(seen[0], 1.0), green + min(seen[1], 1.0), blue + min(seen[2], 1.0)
             traced += 1
             alike = alike and code + seen[3] == codes[row, column]
