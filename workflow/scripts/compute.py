@@ -9,7 +9,7 @@ with job(snakemake):
     from gaspart.files import whole_file
 
     # By its name: a job depends on what its arguments are, not on how they are written down.
-    from_plain = function("gaspart.reproduction.jobs.data", "from_plain")
+    from_plain = function("gaspart.reproduction.jobs.arguments", "from_plain")
     compute = function(f"gaspart.reproduction.jobs.{snakemake.params.job}", snakemake.params.job)
     data = compute(**from_plain(snakemake.params.parameters))
     with whole_file(snakemake.output[0]) as partial:

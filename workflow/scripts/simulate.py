@@ -9,6 +9,6 @@ with job(snakemake):
 
     load_numba(ours=True)
     # By its name: a simulation depends on what its arguments are, not on how they are written down.
-    from_plain = function("gaspart.reproduction.jobs.data", "from_plain")
+    from_plain = function("gaspart.reproduction.jobs.arguments", "from_plain")
     simulate = function(f"gaspart.reproduction.jobs.{snakemake.params.job}", snakemake.params.job)
     simulate(Path(snakemake.output[0]), **from_plain(snakemake.params.parameters))

@@ -39,7 +39,7 @@ _PRELOADED = (
     *("gaspart.simulation", "gaspart.trajectory.run", "gaspart.trajectory.provenance", "gaspart.files"),
     *("gaspart.reproduction.claims", "gaspart.reproduction.job_time", "gaspart.reproduction.points.point"),
     *("gaspart.reproduction.points.point", "gaspart.reproduction.points.jobs"),
-    *("gaspart.reproduction.jobs.data", "gaspart.state.initial"),
+    *("gaspart.reproduction.jobs.arguments", "gaspart.state.initial"),
 )
 _PARTS = ("measure", "claims", "figure")
 _WITH_PARENT = 1

@@ -13,8 +13,9 @@ import xarray as xr
 import gaspart as gp
 from gaspart.engines import EventDriven, TimeStepped
 from gaspart.reproduction.config import checked_points
+from gaspart.reproduction.jobs.arguments import from_plain
 from gaspart.reproduction.jobs.compare import compare
-from gaspart.reproduction.jobs.data import PointData, from_plain
+from gaspart.reproduction.jobs.data import PointData
 from gaspart.reproduction.jobs.echo import DISPLACEMENT, echo
 from gaspart.reproduction.jobs.fill import fill
 from gaspart.reproduction.jobs.simulate import simulate

@@ -151,7 +151,7 @@ class Point:
     @property
     def parameters(self) -> dict:
         """The arguments of the job in plain values."""
-        return import_module(f"{_JOBS}.data").to_plain(self.arguments)
+        return import_module(f"{_JOBS}.arguments").to_plain(self.arguments)
 
     def make_error(self, key: str, rule: str) -> SceneError:
         """Return the error that a setting breaks a rule."""
