@@ -141,7 +141,7 @@ def table(rows: list[xr.Dataset], names: Sequence[str], axes: Mapping[str, list]
                 failure = "; ".join(filter(None, [row.failure.item(), reason]))
                 own = [key for key in row if key == name or str(key).startswith(f"{name}_")]
                 rows[n] = row.drop_vars(own).assign(failure=failure)
-    data = xr.concat(rows, "point", data_vars="all", join="outer", combine_attrs="override")
+    data = xr.concat(rows, "point", data_vars="all", join="outer", compat="equals", combine_attrs="override")
     shape = [len(values) for values in axes.values()]
     columns: dict[str, Any] = {}
     for name in names:
