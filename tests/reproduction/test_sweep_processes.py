@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -55,7 +56,7 @@ def made(folder):
 
 
 def until(condition):
-    for _ in range(1200):
+    for _ in range(6000):
         if condition():
             return True
         time.sleep(0.05)
@@ -79,7 +80,8 @@ def test_no_process_outlives_the_caller_and_no_bit_changes(tmp_path, whole, numb
     first.send_signal(number)
     output, errors = first.communicate()
     assert first.returncode == -number and output == ""
-    assert errors == ""
+    # On a busy machine a point may be done before the other one is under way.
+    assert re.fullmatch(r"(\d of 3 points: .*\n)*", errors)
     assert until(lambda: not processes_of(folder))
     saved = len(list(folder.rglob("*.checkpoint.npz")))
     assert saved == 2 or number == signal.SIGKILL
