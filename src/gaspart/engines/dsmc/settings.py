@@ -105,7 +105,7 @@ class DSMC(Engine):
     title: ClassVar[str] = "DSMC"
     neutral_settings: ClassVar[tuple[str, ...]] = ("threads",)
     forbids_overlap: ClassVar[bool] = False
-    tallies: ClassVar[frozenset[str]] = frozenset(("stress", "wall_shear", "per_area"))
+    tallies: ClassVar[frozenset[str]] = frozenset(("stress", "wall_shear", "per_area", "entries"))
     models: ClassVar[frozenset[str]] = frozenset(
         ("gravity", "restitution", "roughness", "viscoelasticity", "thermostat")
     ) | {"centres_to_walls", "thermal", "sliding", "accommodation", "ramp", "open"}
