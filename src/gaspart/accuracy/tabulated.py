@@ -1,7 +1,7 @@
-"""Options from the table, for fluids and observables whose errors, noise and times were measured.
+"""Options from the table, for fluids and observables with measured errors, noise and CPU times.
 
-A row of the table is a stored pilot: its noise is given per contact instead of per time, and its CPU time is
-for the machine of the table. Nothing is run or compiled for a look-up.
+A row of the table replaces a pilot run. Its noise is per contact instead of per time, and its CPU time is for
+the machine of the table. Looking up a row runs and compiles nothing.
 """
 
 from __future__ import annotations
@@ -21,16 +21,17 @@ from gaspart.errors import SceneError
 from gaspart.scene.gas import Gas, plain_gas
 from gaspart.scene.scene import Scene
 
-# Errors of equations and of steps in a gas in equilibrium, by theory.
+# Errors of a gas in equilibrium due to the kinetic equation and the time step, from theory.
 
 
 def model_error(packing_fraction: float, dimension: int, equation: str, observable: str) -> float:
-    """Return the |error| of an observable due to the equation that an engine solves.
+    """Return the absolute error of an observable due to the kinetic equation that an engine solves.
 
-    The equation is `Engine.equation`. The error is relative to hard spheres or discs. It is inf if one of the
-    two has no value, like D of discs. The Boltzmann equation has a contact value of 1, and no virial. The
-    Enskog model uses the contact value of Carnahan and Starling, in two dimensions the value of Henderson. In
-    neither does D have the memory of correlated collisions [Erpenbeck 1991], whose uncertainty is added.
+    `equation` is `Engine.equation`. The error is relative to hard spheres or discs. It is inf if the
+    observable is undefined in either case, such as D of discs. The Boltzmann equation has a contact value of
+    1 and no virial pressure. The Enskog model uses the contact value of Carnahan and Starling for spheres and
+    of Henderson for discs. Neither equation includes the effect of correlated collisions on D [Erpenbeck
+    1991]; the uncertainty of this effect is added.
     """
     if equation == bulk.EXACT:
         return 0.0
@@ -44,16 +45,16 @@ def model_error(packing_fraction: float, dimension: int, equation: str, observab
 
 
 FEWEST = 64
-"""Minimum number of particles of a gas to which the table applies, to 1 % of Z - 1.
+"""Minimum number of particles of a gas for which the table applies, with an error of at most 1 % of Z - 1.
 
-Smaller gases have pilots of their own.
+For smaller gases pilot runs are made.
 """
 
 
 def fluid_of(scene: Scene) -> Gas:
-    """Return the gas of a scene, a fluid in a periodic container.
+    """Return the gas of a scene: a fluid in a periodic container.
 
-    Raises SceneError for a scene whose errors were not measured.
+    Raises SceneError if the errors of the scene were not measured.
     """
     if not scene.count:
         raise SceneError("count", 0, "advice is for a gas: the scene is empty")
@@ -81,7 +82,7 @@ def fluid_of(scene: Scene) -> Gas:
 def tabulated_target(scene: Scene, observable: str) -> tuple[Gas, Target]:
     """Return the gas of a scene, and the target to measure.
 
-    Raises SceneError for a scene, and an observable, that the table does not cover.
+    Raises SceneError if the table does not cover the scene or the observable.
     """
     if observable not in observables_with(tabulated=True):
         raise SceneError(
@@ -100,7 +101,7 @@ def is_tabulated(scene: Scene, observable: str) -> bool:
 
 
 def options_of(target: Target, engines: list[Engine], accuracy: float, budget: float | None) -> list[Option]:
-    """Return the cheapest option of each engine, of all settings that were measured, the best first."""
+    """Return the cheapest option of each engine over all measured settings, the best first."""
     options = [
         _option(target, engine.at_step(target.scene, step, precision), accuracy, budget, step)
         for engine in engines
@@ -117,7 +118,7 @@ def options_of(target: Target, engines: list[Engine], accuracy: float, budget: f
 def _option(target: Target, engine: Engine, accuracy: float, budget: float | None, step: float) -> Option:
     """Return the option of an engine with the settings of a row of the table.
 
-    `step` is in the unit of the table.
+    `step` has the unit of the table.
     """
     gas = fluid_of(target.scene)
     each = table.seconds(gas.dimension, gas.packing_fraction, engine.timed_as, engine.precision, step)
@@ -128,10 +129,10 @@ def _option(target: Target, engine: Engine, accuracy: float, budget: float | Non
 
 
 def _with_bounds(target: Target, engine: Engine, gas: Gas, step: float) -> Candidate:
-    """Return the engine with bounds of its errors, measured or by theory.
+    """Return the engine with bounds on its errors, from measurements or from theory.
 
-    From theory these are the errors of its equation, and the errors of its cells and steps as computed by the
-    engine.
+    In theory these are the errors of the kinetic equation, and the errors of cells and time steps that the
+    engine computes.
     """
     observable, row = target.observable, (gas.dimension, gas.packing_fraction)
     if table.has_biases(engine.timed_as):
@@ -143,5 +144,5 @@ def _with_bounds(target: Target, engine: Engine, gas: Gas, step: float) -> Candi
 
 
 def value_of(gas: Gas, observable: str) -> float:
-    """Compute an observable by theory."""
+    """Compute the value of an observable from theory."""
     return float(getattr(bulk, OBSERVABLES[observable].bulk)(gas, bulk.EXACT))
