@@ -11,14 +11,18 @@ import math
 import os
 from dataclasses import dataclass
 
+from gaspart import theory
 from gaspart.accuracy.conditions import Conditions
 from gaspart.accuracy.estimates import Component
+from gaspart.accuracy.table import EQUILIBRATION as EQUILIBRATED
+from gaspart.accuracy.table import LEAST
 from gaspart.accuracy.target import Target
 from gaspart.analysis.observables import OBSERVABLES, require_modelled
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine, candidate_engines
 from gaspart.engines.engine import AccuracyRequest, Candidate
 from gaspart.errors import SceneError
+from gaspart.scene.gas import Gas
 from gaspart.scene.scene import Scene
 from gaspart.trajectory.recipe import MOST_REPLICAS
 
@@ -39,6 +43,7 @@ class Option:
     accuracy : requested accuracy.
     least, most : durations of the shortest run, and of the longest run that is useful and within the budget.
     settling : minimum time before the measurement begins.
+    discarded : minimum fraction of a run before the measurement begins.
     """
 
     candidate: Candidate
@@ -49,6 +54,7 @@ class Option:
     least: float = 0.0
     most: float = math.inf
     settling: float = 0.0
+    discarded: float = EQUILIBRATION
 
     @property
     def engine(self) -> Engine:
@@ -85,15 +91,40 @@ class Option:
 
         By default a quarter of the run is discarded, and at least the time `settling`.
         """
-        return max(measured + self.settling, measured / (1.0 - EQUILIBRATION))
+        return max(measured + self.settling, measured / (1.0 - self.discarded))
 
     def part(self, duration: float) -> float:
         """Compute the duration of the measured part of a run, the inverse of `whole`."""
-        return min(duration - self.settling, (1.0 - EQUILIBRATION) * duration)
+        return min(duration - self.settling, (1.0 - self.discarded) * duration)
 
     def _length(self, accuracy: float) -> float:
         """Compute the measured time for an accuracy, at least the shortest allowed time."""
         return max(self.noise.length(accuracy - self.bias), self.part(self.least))
+
+
+def fluid_option(
+    gas: Gas,
+    candidate: Candidate,
+    each: float,
+    noise: float,
+    accuracy: float,
+    value: float = 1.0,
+    discarded: float = EQUILIBRATION,
+) -> Option:
+    """Return the option of an engine for a fluid, by the cost of a contact.
+
+    each : CPU time per contact.
+    noise : relative variance of the observable times the number of contacts.
+    value : value of the observable.
+    discarded : minimum fraction of a run before the measurement begins.
+    """
+    frequency = float(theory.collision_rate(**gas.parameters))
+    contacts = 0.5 * gas.count * frequency  # per time
+    spectrum = noise / contacts * value**2
+    component = Component(value, value, LEAST / frequency, spectrum, freedom=math.inf)
+    settling = EQUILIBRATED / frequency
+    limits = settling + LEAST / frequency, math.inf, settling, discarded
+    return Option(candidate, candidate.bias, component, each * contacts, accuracy, *limits)
 
 
 def sort_by_cost(options: list[Option]) -> list[Option]:

@@ -7,12 +7,11 @@ the machine of the table. Looking up a row runs and compiles nothing.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from gaspart import theory
 from gaspart.accuracy import table
-from gaspart.accuracy.estimates import Component
-from gaspart.accuracy.option import Option, sort_by_cost
-from gaspart.accuracy.table import EQUILIBRATION, LEAST
+from gaspart.accuracy.option import Option, fluid_option, sort_by_cost
 from gaspart.accuracy.target import Target
 from gaspart.analysis import bulk
 from gaspart.analysis.observables import OBSERVABLES, observables_with
@@ -21,7 +20,6 @@ from gaspart.engines.engine import Candidate
 from gaspart.errors import SceneError
 from gaspart.scene.gas import Gas, plain_gas
 from gaspart.scene.scene import Scene
-from gaspart.theory.dsmc import step_factor
 
 # Errors of a gas in equilibrium due to the kinetic equation and the time step, from theory.
 
@@ -44,17 +42,6 @@ def model_error(packing_fraction: float, dimension: int, equation: str, observab
         return math.inf
     remembers = OBSERVABLES[observable].memory and packing_fraction > 0.01
     return abs(own / exact - 1.0) + (theory.ERPENBECK_WOOD_UNCERTAINTY if remembers else 0.0)
-
-
-def step_error(packing_fraction: float, step: float) -> float:
-    """Compute the relative excess of D of spheres due to the time step.
-
-    The time step is in diameters divided by the thermal speed. The formula is for a dilute gas. In a dense
-    gas the collision rate is larger by the contact value, which is equivalent to a mean free path that is
-    shorter by this factor.
-    """
-    path = float(theory.mean_free_path(packing_fraction, 3))
-    return float(step_factor("diffusion", step * math.sqrt(2.0) / path)) - 1.0
 
 
 FEWEST = 64
@@ -134,21 +121,11 @@ def _option(target: Target, engine: Engine, accuracy: float, budget: float | Non
     `step` has the unit of the table.
     """
     gas = fluid_of(target.scene)
-    frequency = float(theory.collision_rate(**gas.parameters))
-    row = gas.dimension, gas.packing_fraction, engine.timed_as, engine.precision, step
-    each = table.seconds(*row)
-    candidate = _with_bounds(target, engine, gas, step)
-    each_time = 0.5 * gas.count * frequency  # number of contacts
+    each = table.seconds(gas.dimension, gas.packing_fraction, engine.timed_as, engine.precision, step)
+    noise = table.noise(gas.dimension, gas.packing_fraction, target.observable)
     value = value_of(gas, target.observable)
-    variance = table.noise(gas.dimension, gas.packing_fraction, target.observable) / each_time
-    noise = Component(value, value, LEAST / frequency, variance * value**2, freedom=math.inf)
-    cost = each * each_time
-    return Option(
-        candidate, candidate.bias, noise, cost, accuracy,
-        (EQUILIBRATION + LEAST) / frequency,
-        math.inf if budget is None else budget / cost,
-        EQUILIBRATION / frequency,
-    )  # fmt: skip
+    option = fluid_option(gas, _with_bounds(target, engine, gas, step), each, noise, accuracy, value)
+    return option if budget is None else replace(option, most=budget / option.speed)
 
 
 def _with_bounds(target: Target, engine: Engine, gas: Gas, step: float) -> Candidate:

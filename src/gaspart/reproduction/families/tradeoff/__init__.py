@@ -5,6 +5,12 @@ from gaspart.keys import COUNT, POSITIVE, count, list_of, names, positive
 TITLE = "Speed against accuracy"
 CHAPTER = "Speed and accuracy"
 COSTS = ["time_to_accuracy"]
+ENGINES = ("event", "step", "boltzmann", "enskog")
+"""The engines that are compared; the last two are the models of the DSMC engine."""
+PARTS = ("model", "discretisation", "noise", "equilibration", "finite_size")
+"""Parts of an error, in the order of the stack: first those that add up to the accuracy."""
+FREE_TIMES = 2.5
+"""Mean free times over which the relaxation of speeds is integrated."""
 _ACCURACIES = list_of(POSITIVE, "relative accuracies of the cheapest settings")
 FIGURES = {
     "speed_accuracy": {
