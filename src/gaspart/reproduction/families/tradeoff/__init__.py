@@ -1,4 +1,4 @@
-"""Speed against accuracy."""
+"""Figures on speed against accuracy."""
 
 from gaspart.keys import COUNT, POSITIVE, count, list_of, names, positive
 

@@ -1,4 +1,4 @@
-"""Choice of engine and settings: parts of its error, and cost of an accuracy."""
+"""Choice of engine and settings: parts of the error, and cost of an accuracy."""
 
 from __future__ import annotations
 
@@ -11,27 +11,28 @@ import numpy as np
 from gaspart import theory
 
 QUANTILE = 1.96
-"""Half of a 95 % interval, in standard errors: figures compare engines at an accuracy of 95 % of all runs."""
+"""Half width of a 95 % interval, in standard errors. Figures compare engines at an accuracy that 95 % of all
+runs have."""
 ENGINES = ("event", "step", "boltzmann", "enskog")
-"""The engines that are compared; the last two are the models of the DSMC engine."""
+"""Engines that are compared; the last two are the models of the DSMC engine."""
 PARTS = ("model", "discretisation", "noise", "equilibration", "finite_size")
-"""Parts of an error, in the order of the stack: first those that add up to the accuracy."""
+"""Parts of an error, from the bottom of a stacked bar; the parts that add up to the accuracy come first."""
 
 
 @dataclass(frozen=True)
 class Choice:
     """Engine with its settings, for one observable of one gas.
 
-    model : relative error of the equation that it solves.
-    discretisation : relative error of time steps and cells; both are bounds without sign.
-    finite_size : error left by theory's correction for the number of particles, which every engine has in
-        common and no cost removes.
-    unit : CPU time in s for a relative variance of 1, in proportion to its inverse.
+    model : bound on the relative error of the equation that the engine solves.
+    discretisation : bound on the relative error of time steps and cells.
+    finite_size : error that remains after theory's correction for the number of particles. It is the same for
+        every engine and run length.
+    unit : CPU time in s for a relative variance of 1; the time is inversely proportional to the variance.
     least : CPU time of the shortest run that averages over time.
-    equilibration : CPU time before anything is measured.
-    decay : CPU time in which the slowest trace of the initial state falls to 1/e (0: it is itself what is
-        measured).
-    trace : maximum relative change of the observable by that trace at first.
+    equilibration : CPU time before the measurement.
+    decay : CPU time in which the slowest trace of the initial state falls to 1/e; 0 if this decay itself is
+        measured.
+    trace : maximum relative change of the observable by this trace, initially.
     uncertainty : relative uncertainty of all these times, from the timings.
     """
 
@@ -48,28 +49,27 @@ class Choice:
 
     @property
     def bias(self) -> float:
-        """The systematic error that a longer run does not reduce."""
+        """Systematic error, which a longer run does not reduce."""
         return self.model + self.discretisation
 
     def measuring_time(self, accuracy: float) -> float:
         """Compute the CPU time in s of the measurement alone, for an accuracy.
 
-        95 % of all runs have the accuracy. The time is infinite if the systematic error leaves nothing for
-        noise.
+        95 % of all runs have the accuracy. The time is infinite if the systematic error exceeds the accuracy.
         """
         return required_length(self.unit, accuracy, self.bias, self.least)
 
     def cost(self, accuracy: float) -> float:
-        """Compute the CPU time in s, with the equilibration."""
+        """Compute the CPU time in s for an accuracy, including the equilibration."""
         return self.measuring_time(accuracy) + self.equilibration
 
     def parts(self, accuracy: float) -> dict[str, float]:
         """Compute the relative error by `PARTS` of a run for an accuracy.
 
-        The run is endless if the accuracy is out of reach.
+        If the accuracy is out of reach, the run is infinitely long.
 
-        The mean of the initial state's trace over the measurement is the part of the decay in that, times the
-        remainder after equilibration.
+        The trace of the initial state decays during the measurement. Its mean is the decay time divided by
+        the time of the measurement, times the trace that remains after equilibration.
         """
         length = self.measuring_time(accuracy)
         remainder = 0.0
@@ -84,19 +84,22 @@ class Choice:
 def required_length(variance: float, accuracy: float, bias: float, least: float = 0.0) -> float:
     """Return the length of the measurement for an accuracy that 95 % of all runs have.
 
-    It is at least `least`. The unit is that in which a measurement has this relative variance; inf if the
-    bias leaves no noise.
+    It is at least `least`. A measurement of unit length has the given relative variance. The length is inf if
+    the bias exceeds the accuracy.
     """
     margin = (accuracy - bias) / QUANTILE
     return max(variance / margin**2, least) if margin > 0.0 else math.inf
 
 
 def cheapest(choices: Sequence[Choice], accuracy: float) -> Choice:
-    """Return the choice that costs least, or the least biased one where none reaches the accuracy."""
+    """Return the cheapest choice for an accuracy.
+
+    If no choice reaches the accuracy, the least biased choice is returned.
+    """
     return min(choices, key=lambda choice: (choice.cost(accuracy), choice.bias))
 
 
-# The time in which speeds that are equal at first become Maxwell's, by theory.
+# Theoretical time in which equal speeds relax to Maxwell's distribution.
 
 
 FREE_TIMES = 2.5
@@ -104,9 +107,9 @@ FREE_TIMES = 2.5
 
 
 def relaxation_time(slower: float) -> float:
-    """Compute the relaxation time of a gas with collisions rarer by a factor.
+    """Compute the relaxation time of a gas whose collisions are rarer by a factor.
 
-    Its speeds follow the homogeneous Boltzmann equation.
+    The speeds follow the homogeneous Boltzmann equation.
     """
     times = np.linspace(0.0, FREE_TIMES / slower, 251)
     curve = theory.relaxation(3)

@@ -1,9 +1,9 @@
-"""Choices for a gas in equilibrium: its collision rate, its compressibility factor Z and its D.
+"""Choices for a gas in equilibrium: its collision rate, compressibility factor Z, and D.
 
-The event-driven engine has no error but noise. Errors of time steps are measured, see
-`errors`. Errors of the DSMC engine follow from theory: its model lacks the contact value, the virial
-or the memory of collisions, and its steps change D by a law that `dsmc_convergence` confirms; only the effect
-of the few particles of a cell on the collisions of the Enskog model is measured.
+The event-driven engine has only a statistical error. Errors of time steps are measured; see `errors`. Errors
+of the DSMC engine follow from theory. Its model lacks the contact value, the virial or the memory of
+collisions. Its steps change D by a law that `dsmc_convergence` confirms. Only one of its errors is measured:
+the effect of the few particles per cell on the collisions of the Enskog model.
 """
 
 from __future__ import annotations
@@ -32,13 +32,13 @@ from gaspart.theory.enskog import approach_factor
 
 
 def setting_name(rewind: bool, passes: int, precision: str) -> str:
-    """Return the name of a setting of the time-stepped engine in figures and claims."""
+    """Return the name of a time-stepped setting in figures and claims."""
     name = f"{passes} passes" if passes > 1 else "1 pass"
     return name + ("" if rewind else ", no rewinding") + (", float32" if precision == "float32" else "")
 
 
 def errors(point: Point) -> dict:
-    """Return the errors over the accepted time steps of a `compare` point, the longest first."""
+    """Return the errors of the accepted time steps of a `compare` point, the longest first."""
     run = xr.load_dataset(point.path)
     run = run.isel(setting=np.flatnonzero(run.refused == 0)).sortby("time_step", ascending=False)
     contacts = run.exact_collisions.sum("snapshot").values
@@ -75,9 +75,9 @@ def errors(point: Point) -> dict:
 
 
 def _difference(run: xr.Dataset, name: str, least: np.ndarray) -> np.ndarray:
-    """Compute the relative difference from the exact runs' sum, and its error.
+    """Compute the relative difference from the sum of the exact runs, and its error.
 
-    The shape is (2, setting); the error is from the snapshots.
+    The shape is (2, setting). The error is computed from the snapshots.
     """
     exact = run[f"exact_{name}"].values
     apart = run[name].values - exact
@@ -86,10 +86,10 @@ def _difference(run: xr.Dataset, name: str, least: np.ndarray) -> np.ndarray:
 
 
 def costs(point: Point) -> dict:
-    """Return the costs of a `measure_cost` point, per time simulated.
+    """Return the costs of a `measure_cost` point, per simulated time.
 
-    setting : "event", the name of the time-stepped engine's, or the model of the DSMC engine.
-    step_parts : steps of the latter, in its own.
+    setting : "event", the name of a time-stepped setting, or the model of the DSMC engine.
+    step_parts : steps of the DSMC engine divided by its default step.
     """
     run = xr.load_dataset(point.path)
     seconds, error = median(run.seconds.values)
@@ -112,9 +112,9 @@ def costs(point: Point) -> dict:
 
 
 def add_costs(row: dict, timed: list[dict]) -> None:
-    """Add the costs of a row's steps, where they were timed, and of the event-driven engine.
+    """Add the costs of a row's steps, if they were timed, and of the event-driven engine.
 
-    The latter are in the same gas.
+    All are for the same gas.
     """
     same = [timing for timing in timed if timing["gas"] == (row["dimension"], row["packing_fraction"])]
     event = next(timing for timing in same if timing["setting"] == "event")
@@ -137,23 +137,26 @@ def add_costs(row: dict, timed: list[dict]) -> None:
 
 OBSERVABLES = ("collision_rate", "Z", "D")
 BOUND = 2.0
-"""Standard errors that are added to a measured error, so that it is a bound."""
+"""Number of standard errors that are added to a measured error, so that it becomes a bound."""
 _VISCOSITY_UNCERTAINTY = 0.05
-"""Uncertainty of Enskog's viscosity, with which D is corrected for the size of the container [Yeh 2004]."""
+"""Relative uncertainty of Enskog's viscosity, used to correct D for the size of the container [Yeh 2004]."""
 
 
 @dataclass(frozen=True)
 class Uniform:
-    """Spheres of a packing fraction in a periodic cube, `count` of them."""
+    """Spheres of a packing fraction in a periodic cube.
+
+    There are `count` of them.
+    """
 
     packing_fraction: float
     count: int
 
     def finite_size(self, observable: str) -> float:
-        """Compute the relative error that theory's correction for finite size leaves.
+        """Compute the relative error that remains after theory's correction for finite size.
 
-        It is the square of a correction of first order in 1/N; for D the uncertainty of the viscosity, and
-        the next order of hydrodynamics, see `displacement`.
+        It is the square of a correction of first order in 1/N. For D it is the uncertainty of the viscosity,
+        and the next order of hydrodynamics; see `displacement`.
         """
         eta, count = self.packing_fraction, self.count
         if observable == "collision_rate":
@@ -167,9 +170,9 @@ class Uniform:
     def decay(self, observable: str) -> tuple[float, float]:
         """Return the decay of the slowest trace of the initial state, and its initial size.
 
-        The decay to 1/e is in collisions per particle; the size is a maximum, relative to the observable. The
-        trace is in the speeds, all of the observable; but for D it is the longest shear wave, which carries
-        what D lacks in a finite container.
+        The decay time to 1/e is in collisions per particle. The size is a maximum, relative to the
+        observable. For most observables the trace is in the speeds, and its size is 1. For D the trace is the
+        longest shear wave, which carries the part of D that is missing in a finite container.
         """
         speeds = 1.0 / theory.KURTOSIS_RELAXATION_RATE[3]
         wave = (self._side / (2.0 * math.pi)) ** 2 / self._spreading
@@ -179,7 +182,7 @@ class Uniform:
     def choice(
         self, engine: str, observable: str, errors: tuple[float, float], each: Estimate, noise: float
     ) -> Choice:
-        """Return the choice of an engine.
+        """Return the choice of an engine for an observable.
 
         errors : errors of model and discretisation.
         each : CPU time per contact.
@@ -202,7 +205,7 @@ class Uniform:
 
     @property
     def _lost(self) -> float:
-        """The part of D that the container takes by its size, without correction [Yeh 2004]."""
+        """Fraction of D that is missing due to the finite container, without correction [Yeh 2004]."""
         diffusion = float(theory.enskog_diffusion(self.packing_fraction, 3))
         return float(theory.yeh_hummer(self._side, self._spreading * self._density)) / diffusion
 
@@ -216,7 +219,7 @@ class Uniform:
 
     @property
     def _spreading(self) -> float:
-        """Coefficient by which shear waves decay, a particle's own diffusion included."""
+        """Decay coefficient of shear waves, including a particle's own diffusion."""
         viscosity = float(theory.enskog_viscosity(self.packing_fraction, 3))
         return viscosity / self._density + float(theory.enskog_diffusion(self.packing_fraction, 3))
 
@@ -225,8 +228,8 @@ class Uniform:
 class Cells:
     """Effect of the cells of the Enskog model at one packing fraction.
 
-    rate : collision rate divided by the rate of its equation.
-    bound : bound on the fraction of the collisions that is lost, from docs/dsmc.md.
+    rate : collision rate divided by the rate of the Enskog equation.
+    bound : bound on the fraction of lost collisions, from docs/dsmc.md.
     noise : relative variance times contacts, by observable.
     """
 
@@ -236,14 +239,14 @@ class Cells:
 
     @property
     def error(self) -> float:
-        """Bound on the relative error of the collision rate, and of all that follows from it."""
+        """Bound on the relative error of the collision rate, and of all results derived from it."""
         return abs(self.rate.value - 1.0) + BOUND * self.rate.error
 
 
 def cells_of(point: Point) -> Cells:
-    """Return the cells of a run of the Enskog model in its default cells.
+    """Return the effect of default cells in a run of the Enskog model.
 
-    The rate is relative to its equation.
+    The collision rate is relative to the Enskog equation.
     """
     (replica,) = (series_of(run) for run in runs(point))
     fraction, count = point.scene.packing_fraction, point.scene.count
@@ -259,9 +262,9 @@ def cells_of(point: Point) -> Cells:
 
 
 def cells_by_fraction(points: Iterable[Point], experiments: Sequence[str]) -> dict[float, Cells]:
-    """Return the cells of the points of some experiments, by packing fraction.
+    """Return the effect of cells at the points of some experiments, by packing fraction.
 
-    The packing fraction is in their settings.
+    The packing fraction is in the points' settings.
     """
     of = (point for point in points if point.experiment in experiments)
     return {float(point.settings["packing_fraction"]): cells_of(point) for point in of}
@@ -272,7 +275,7 @@ def choices(
 ) -> Iterator[Choice]:
     """Yield all settings of all engines that were timed in a gas.
 
-    `cells` are those for the Enskog model, None if unknown.
+    `cells` is the effect of cells in the Enskog model, or None if it is unknown.
     """
     same = [timing for timing in timed if timing["gas"] == (3, gas.packing_fraction)]
     event = next(timing for timing in same if timing["setting"] == "event")
@@ -298,7 +301,7 @@ def choices(
             of_cells = cells.error if cells and model == "enskog" else 0.0
             own = cells.noise.get(observable, variance) if cells and model == "enskog" else variance
             if model == "boltzmann" and observable == "Z":
-                own = 0.0  # it is 1, whatever happens
+                own = 0.0  # it is 1 in any case
             both = model_error(gas.packing_fraction, 3, model, observable), error + of_cells
             yield gas.choice(model, observable, both, each, own)
 
@@ -306,13 +309,13 @@ def choices(
 def each_of(timed: dict, rate: float) -> Estimate:
     """Compute the CPU time per contact with each time step of a timing, (T,).
 
-    `rate` is the number of contacts per time.
+    `rate` is the number of contacts per simulated time.
     """
     return Estimate(timed["seconds"], timed["error"]) / rate
 
 
 def compare_steps(points: list[Point], timed: list[dict]) -> list[dict]:
-    """Return the errors of time steps with their costs, see `errors` and `add_costs`."""
+    """Return the errors of time steps with their costs; see `errors` and `add_costs`."""
     rows = [errors(point) for point in points if point.job == "compare"]
     for row in rows:
         add_costs(row, timed)
