@@ -256,7 +256,10 @@ def list_costs(runs: list[xr.Dataset], gases: xr.Dataset) -> xr.Dataset:
 
 
 def extrapolate(naive: xr.Dataset, count: float) -> Estimate:
-    """Compute the time of a naive step with `count` particles, from time = a N + b tests."""
+    """Compute the time of a naive step with `count` particles.
+
+    The time is fitted by a N + b tests.
+    """
     gases = Table(naive, "count")
     fit = weights(gases.seconds, gases.count.astype(float), gases.pair_tests)
     work = np.array([count, 0.5 * count * (count - 1.0)])
