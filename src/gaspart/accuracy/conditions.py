@@ -1,8 +1,8 @@
-"""Local density and temperature of a steady scene, its steady state, and columns under gravity.
+"""Local density and temperature of a steady scene, and barometric columns under gravity.
 
-A homogeneous gas has its mean values everywhere. For a gas under gravity, the profiles of hydrostatics are
-used (`gaspart.theory.columns`), where theory knows them. For all other gases, a pilot run of the exact engine
-measures the values. The conditions are used to bound the errors of DSMC.
+In a homogeneous gas the local values are equal to the mean values. For a gas under gravity, the profiles
+follow from hydrostatics (`gaspart.theory.columns`), if theory covers the gas. For all other gases, a pilot
+run of the exact engine measures the values. The conditions are used to bound the errors of DSMC.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 from gaspart.theory.columns import Column, GravityColumn
 
-# Columns of gas in equilibrium under gravity, by hydrostatics at the temperature of their energy.
+# Columns of gas in hydrostatic equilibrium, at the temperature that corresponds to the energy of the scene.
 
 
 def gravity_column(scene: Scene) -> GravityColumn | None:
-    """Return the column of a scene under gravity, or None if theory does not know it.
+    """Return the column of a scene under gravity, or None without a theory.
 
-    Theory knows particles of one size that lose no energy, between hard walls, or walls at one temperature.
+    Theory covers equal-sized particles that lose no energy, between hard walls or walls at one temperature.
     """
     pull = [(k, g) for k, g in enumerate(scene.gravity or ()) if g]
     kinds = [kind for kind in scene.kinds if kind.count]
@@ -55,9 +55,9 @@ def gravity_column(scene: Scene) -> GravityColumn | None:
 
 
 def compare_columns(real: Column, ideal: Column, observable: str, top: bool | None) -> float:
-    """Compute the relative difference of an observable between columns of points and of particles.
+    """Compute the relative difference of an observable between a column of ideal and of real gas.
 
-    For a pressure, `top` is True at the top, None for any wall.
+    `top` is used only for a pressure: True for the wall at the top, None for all walls together.
     """
     differences = {
         "collision_rate": abs(ideal.collisions / real.collisions - 1.0),
@@ -71,32 +71,32 @@ def compare_columns(real: Column, ideal: Column, observable: str, top: bool | No
 
 
 def _of_profiles(real: Column, ideal: Column) -> float:
-    """Compute the root mean square of the difference of two densities, relative to the first."""
+    """Compute the root mean square of the difference of two density profiles, relative to the first."""
     exact = real.numbers.sum(axis=0)
     other = np.interp(real.heights, ideal.heights, ideal.numbers.sum(axis=0), right=0.0)
     return float(np.sqrt(((other - exact) ** 2).sum() / (exact**2).sum()))
 
 
 _LAYERS = 12
-"""Number of equally populated layers of a measured profile, in each axis."""
+"""Number of layers per axis in a measured profile; all layers contain equally many particles."""
 _CERTAIN = 4.0
-"""Standard errors by which two of all layers differ if there is a gradient."""
+"""Difference between two layers, in standard errors, beyond which the profile has a gradient."""
 _HELD = 0.02
-"""Part of the particles beyond which a layer counts in the shortest scale."""
+"""Smallest fraction of the particles in a layer that counts in the shortest length scale."""
 
 
 @dataclass(frozen=True)
 class Conditions(Layers):
-    """Layers of a scene, with the columns that theory knows.
+    """Local state of a scene in layers, and the columns from theory.
 
-    columns : under gravity, the columns of the real gas and of an ideal gas.
+    columns : columns : columns of the real gas and of the ideal gas under gravity.
     """
 
     columns: tuple[Column, Column] | None = None
 
     @property
     def quickened(self) -> float:
-        """Collision rate divided by the rate in a homogeneous gas as hot as at the start."""
+        """Collision rate divided by the rate in a homogeneous gas at the initial temperature."""
         kinds = self.scene.moving_kinds
         d = self.scene.dimension
         start = sum(kind.count * kind.initial_temperature(d) for kind in kinds) / self.scene.count
@@ -106,25 +106,25 @@ class Conditions(Layers):
 
     @cached_property
     def memory(self) -> float:
-        """Effect |D / Enskog's - 1| of correlated collisions on the transport of spheres.
+        """Effect of correlated collisions on the transport coefficients of spheres, |D / D_Enskog - 1|.
 
-        For discs the transport coefficients grow with the size of the system; their estimate is the value at
-        the same packing fraction.
+        For discs the transport coefficients depend on the size of the system, so the value for spheres at the
+        same packing fraction is used as an estimate.
         """
         densest = min(float(self.filled.max()), theory.ERPENBECK_WOOD_HIGHEST)
         return abs(float(theory.erpenbeck_wood_ratio(densest)) - 1.0) if densest > 0.0 else 0.0
 
     def of_points(self, observable: str, face: str | None) -> float | None:
-        """Compute the relative difference of an observable between points and particles.
+        """Compute the relative difference of an observable between point particles and finite particles.
 
-        `face` is the wall of a pressure. None if theory does not know the column.
+        `face` is the wall at which a pressure acts. Returns None if theory does not cover the column.
         """
         return compare_columns(*self.columns, observable, self._top(face)) if self.columns else None
 
     def _top(self, face: str | None) -> bool | None:
         """Return True if a face of the container is at the top of a column.
 
-        None for a face that is not perpendicular to the axis of the column.
+        Return None for a face that is not perpendicular to the axis of the column.
         """
         scene, axis = self.scene, self.axis
         if face is None or axis is None or face[0] != "xyz"[axis] or scene.gravity is None:
@@ -133,14 +133,14 @@ class Conditions(Layers):
 
 
 def known_conditions(scene: Scene, start: State) -> Conditions | None:
-    """Compute conditions by theory; None if there is no theory.
+    """Compute the local conditions from theory, or return None if theory does not cover the scene.
 
     The energy of the scene is computed from the initial state `start`.
     """
     if column := gravity_column(scene):
         try:
             return _of_column(scene, column, start)
-        except ValueError:  # as of particles that come to rest as a crystal
+        except ValueError:  # for example, particles that come to rest as a crystal
             return None
     if not _is_even(scene):
         return None
@@ -149,7 +149,7 @@ def known_conditions(scene: Scene, start: State) -> Conditions | None:
 
 
 def _is_even(scene: Scene) -> bool:
-    """Return True if a scene becomes homogeneous from any start."""
+    """Return True if a scene becomes homogeneous from any initial state."""
     law = scene.restitution
     uneven = [
         scene.gravity is not None,
@@ -175,7 +175,7 @@ def even_conditions(scene: Scene, temperature: float) -> Conditions:
 
 
 def _of_column(scene: Scene, pulled_scene: GravityColumn, start: State) -> Conditions:
-    """Compute the conditions under gravity; raise ValueError if there is no theory."""
+    """Compute the conditions under gravity; raise ValueError if theory does not cover the scene."""
     energy, heat = pulled_scene.energy_of(start), max(scene.face_temperatures, default=None)
     real, ideal = (pulled_scene.equilibrate(energy, heat, is_ideal) for is_ideal in (False, True))
     z, numbers = real.heights, real.numbers.sum(axis=0)
@@ -196,10 +196,10 @@ def _of_column(scene: Scene, pulled_scene: GravityColumn, start: State) -> Condi
 
 
 def measured_conditions(scene: Scene, path: Path) -> Conditions:
-    """Measure conditions in a run, along the axis on which they change most.
+    """Measure the local conditions in a run, along the axis with the largest gradient.
 
-    The measured part of the run counts, and the change of density and temperature. Raises SceneError for a
-    file without all particles.
+    Only frames after the discarded part are used. Density and temperature both count in the gradient. Raises
+    SceneError for a file that does not store all particles.
     """
     with open_run(path, None, sheared=True) as run:
         positions = run.positions[:, run.moving]
@@ -209,7 +209,7 @@ def measured_conditions(scene: Scene, path: Path) -> Conditions:
 
 
 def _along(scene: Scene, axis: int, positions: np.ndarray, thermal: np.ndarray) -> Conditions:
-    """Compute layers that are equally populated in frames (T, M), along an axis."""
+    """Compute layers along an axis that contain equally many particles of the frames (T, M)."""
     lower, upper = (float(corner[axis]) for corner in accessible(scene))
     order = np.argsort(positions, axis=None)
     layers = np.array_split(order, _LAYERS)
@@ -220,7 +220,7 @@ def _along(scene: Scene, axis: int, positions: np.ndarray, thermal: np.ndarray) 
     middle, share = 0.5 * (edges[1:] + edges[:-1]), np.full(_LAYERS, 1.0 / _LAYERS)
     crowding = share * (upper - lower) / width
     temperature = np.array([float(thermal.ravel()[layer].mean()) for layer in layers])
-    # Particles of one frame are independent, roughly; frames are taken as not.
+    # Particles of one frame are treated as independent, but frames are treated as fully correlated.
     error = math.sqrt(2.0 * _LAYERS / max(1, positions.shape[1]) / max(1.0, len(positions) / 8.0))
     logarithms = [np.log(np.maximum(values, 1e-300)) for values in (crowding, temperature)]
     first, second = np.triu_indices(_LAYERS, 1)
@@ -230,13 +230,13 @@ def _along(scene: Scene, axis: int, positions: np.ndarray, thermal: np.ndarray) 
     return Conditions(scene, share, crowding, temperature, axis, scale)
 
 
-# Energy of a scene: its sources and sinks, and the existence of a steady state.
+# Energy of a scene: sources, sinks, and whether a steady state exists.
 
 
 def require_steady(scene: Scene) -> None:
-    """Raise SceneError for an empty scene, and for a scene that cools or heats.
+    """Raise SceneError if a scene is empty, cools or heats.
 
-    The observables of a scene without a steady state depend on the time.
+    In a scene without a steady state the observables depend on time.
     """
     if not scene.count:
         raise SceneError("count", 0, "advice is for a gas: the scene is empty")
@@ -252,16 +252,16 @@ def require_steady(scene: Scene) -> None:
 
 
 def is_driven(scene: Scene) -> bool:
-    """Return True if something exchanges energy with the particles.
+    """Return True if an external source exchanges energy with the particles.
 
-    The drive is a thermostat, or a face that is at a temperature or moves.
+    The source is a thermostat, a face with a temperature, or a moving face.
     """
     moves = any(face.moves for face in scene.faces.values())
     return scene.thermostat is not None or moves or at_temperature(scene)
 
 
 def at_temperature(scene: Scene) -> bool:
-    """Return True if a face or an interior wall draws velocities at a temperature."""
+    """Return True if a face or an interior wall draws velocities from a thermal distribution."""
     return bool(scene.face_temperatures)
 
 

@@ -117,15 +117,39 @@ def missed_contacts(time_step: float, several: bool, state: State) -> float:
         square.append((state.velocities[of] ** 2).mean())
         radius.append(state.radii[of].mean())
         number.append(of.sum())
-    square, radius, number = (np.array(values, dtype=float) for values in (square, radius, number))
+    kinds = np.array([square, radius, number], dtype=float)
+    return _missed_fraction(time_step, several, state.dimension, *kinds)
+
+
+def bias(engine: TimeStepped, scene: Scene) -> float:
+    """Bound the relative error of an observable due to the contacts that a step misses.
+
+    The particles are as hot as the hottest face, or as at the start if that is hotter.
+    """
+    kinds, heat = scene.moving_kinds, max(scene.face_temperatures, default=0.0)
+    squares = [max(kind.initial_temperature(scene.dimension), heat) / kind.mass for kind in kinds]
+    sizes = [kind.radius for kind in kinds], [kind.count for kind in kinds]
+    columns = np.array([squares, *sizes], dtype=float)
+    return _SAFE * _missed_fraction(engine.time_step, engine.passes > 1, scene.dimension, *columns)
+
+
+def _missed_fraction(
+    time_step: float,
+    several: bool,
+    dimension: int,
+    square: np.ndarray,
+    radius: np.ndarray,
+    number: np.ndarray,
+) -> float:
+    """Return the fraction of contacts that a step misses, by the (S,) properties of the species."""
     sigma = radius[:, None] + radius
     relative = 0.5 * (square[:, None] + square)
     pairs = number[:, None] * (number - np.eye(len(number)))
-    rate = np.maximum(0.0, pairs) * sigma ** (state.dimension - 1) * np.sqrt(relative)
+    rate = np.maximum(0.0, pairs) * sigma ** (dimension - 1) * np.sqrt(relative)
     if not rate.sum() > 0.0:
         return 0.0
     missed = relative * (time_step / sigma) ** 2
-    factor = {2: 1.0 / 4.0, 3: 2.0 / 3.0}[state.dimension] * (1.0 if several else 4.0)
+    factor = {2: 1.0 / 4.0, 3: 2.0 / 3.0}[dimension] * (1.0 if several else 4.0)
     return float(factor * (rate * missed).sum() / rate.sum())
 
 

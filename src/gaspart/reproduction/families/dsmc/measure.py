@@ -17,7 +17,9 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
+from gaspart.analysis import bulk
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.expected.equilibrium import collision_rate, compressibility_factor
 from gaspart.analysis.motion import average_correlations
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import fit_linear, mean_of
@@ -28,7 +30,6 @@ from gaspart.reproduction.families.shared.runs import series_of
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, entries, table
 from gaspart.scene.gas import plain_gas
-from gaspart.theory.enskog import approach_factor
 from gaspart.theory.heat import free_molecular_flux
 from gaspart.trajectory.reading import open_trajectory
 
@@ -163,21 +164,21 @@ def _paths(point: Point, settings: dict) -> dict[str, Any]:
 def _dense(point: Point, settings: dict) -> dict[str, Any]:
     """Measure Z, collision rate and D of the dense-gas model, divided by theory.
 
-    Model and theory use the contact value of Carnahan and Starling. The model has N (N - 1) pairs, where the
-    equation of state has N^2; its energy is fixed.
+    The theory is for the actual number of particles. Model and theory use the contact value of Carnahan and
+    Starling.
     """
     gas = plain_gas(point.scene)
-    eta, partners = gas.packing_fraction, 1.0 - 1.0 / gas.count
-    approach = approach_factor(3, gas.count)
-    excess = float(theory.carnahan_starling(eta)) - 1.0
-    contact = excess / (4.0 * eta)
-    rate = float(theory.collision_rate(eta, 3) / theory.contact_value(eta, 3)) * contact
-    series = [series_of(run) for run in _runs(point)]
+    excess, rate = [], []
+    for run in _runs(point):
+        series, theories = series_of(run), (compressibility_factor(run), collision_rate(run))
+        z, own = (expected[0] for expected in theories if expected)
+        excess.append((series.z.mean() - 1.0) / (z - 1.0))
+        rate.append(series.rate.mean() / own)
     return {
-        "packing_fraction": eta,
-        "excess": mean_of([(replica.z.mean() - 1.0) / (partners * excess) for replica in series]),
-        "rate": mean_of([replica.rate.mean() / (partners * approach * rate) for replica in series]),
-        "diffusion": mean_of(_running_diffusion(point) * contact),
+        "packing_fraction": gas.packing_fraction,
+        "excess": mean_of(excess),
+        "rate": mean_of(rate),
+        "diffusion": mean_of(_running_diffusion(point) * bulk.contact_value(gas, bulk.ENSKOG)),
     }
 
 

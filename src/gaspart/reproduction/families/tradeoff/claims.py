@@ -8,7 +8,7 @@ import xarray as xr
 from gaspart import theory
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.families.shared import PARTICLES
-from gaspart.reproduction.families.tradeoff.choices import relaxation_time
+from gaspart.reproduction.families.tradeoff import FREE_TIMES
 from gaspart.reproduction.table import Row, Table, each
 
 # Claims about the map of the cheapest engine: costs of collisions, and errors of engines.
@@ -160,6 +160,18 @@ def _relaxation(ds: xr.Dataset) -> list[Claim]:
             )
         )
     return claims
+
+
+def relaxation_time(slower: float) -> float:
+    """Compute the relaxation time of a gas with collisions rarer by a factor.
+
+    Its speeds follow the homogeneous Boltzmann equation.
+    """
+    times = np.linspace(0.0, FREE_TIMES / slower, 251)
+    curve = theory.relaxation(3)
+    end = theory.kurtosis(3)
+    remainder = (end - curve.kurtosis(curve.collisions(times))) / (end - 1.0)
+    return float(np.trapezoid(remainder, times) * slower)
 
 
 def _cells(ds: xr.Dataset) -> list[Claim]:

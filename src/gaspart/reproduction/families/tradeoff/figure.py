@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from gaspart.rendering import style
-from gaspart.reproduction.families.tradeoff.choices import ENGINES
+from gaspart.reproduction.families.tradeoff import ENGINES
 from gaspart.reproduction.table import Row, Table
 
 # Panels of the map of the cheapest engine, and of errors at two points, for each observable.

@@ -4,28 +4,28 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
 
 from gaspart import theory
 from gaspart.accuracy.conditions import even_conditions
+from gaspart.accuracy.estimates import Component
+from gaspart.accuracy.option import Option
 from gaspart.accuracy.table import PRECISIONS
+from gaspart.analysis.bulk import EXACT
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import mean_of
-from gaspart.engines.dsmc.accuracy import boltzmann_error, enskog_error
-from gaspart.engines.dsmc.defaults import rates
-from gaspart.engines.engine import AccuracyRequest
+from gaspart.engines.engine import AccuracyRequest, Candidate
 from gaspart.reproduction.families.heat.gap import Gap, averages
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.families.speeds.measure import kurtosis
-from gaspart.reproduction.families.tradeoff import uniform
-from gaspart.reproduction.families.tradeoff.choices import ENGINES, FREE_TIMES, PARTS, Choice, cheapest
-from gaspart.reproduction.families.tradeoff.uniform import BOUND, costs
+from gaspart.reproduction.families.tradeoff import ENGINES, FREE_TIMES, PARTS, uniform
+from gaspart.reproduction.families.tradeoff.uniform import BOUND, QUANTILE, Choice, costs, solver_of
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import entries
-from gaspart.theory.dsmc import cell_factor, step_factor
+from gaspart.scene.gas import Gas
 
 # Choices for two gases out of equilibrium: heat flux between plates, relaxation of speeds. There is no exact
 # theory in a dense gas. Therefore each engine is run. The error is bounded by the difference from the
@@ -42,8 +42,7 @@ SETTLED = 5.0
 class Flow:
     """Measurement by one engine.
 
-    engine : one of `choices.ENGINES`.
-    time_step : time step, 0 without.
+    candidate : the engine, with its bounds on the errors of model and discretisation.
     count : number of particles.
     value : flux, or relaxation time divided by the mean free time.
     variance : relative variance times the simulated time.
@@ -51,20 +50,22 @@ class Flow:
     decay : time in which the slowest trace of the initial state falls to 1/e; 0 if this decay itself is
     measured.
     shortest : minimum simulated time.
-    bounds : theoretical bounds on the errors of model and discretisation.
     """
 
     observable: str
     packing_fraction: float
-    engine: str
-    time_step: float
+    candidate: Candidate
     count: int
     value: Estimate
     variance: float
     contacts: float
     decay: float
     shortest: float
-    bounds: tuple[float, float]
+
+    @property
+    def engine(self) -> str:
+        """Name of the engine among `ENGINES`."""
+        return solver_of(self.candidate.engine)
 
 
 def flux_of(point: Point, blocks: int) -> Flow:
@@ -84,15 +85,13 @@ def flux_of(point: Point, blocks: int) -> Flow:
     return Flow(
         observable="heat_flux",
         packing_fraction=fraction_of(point),
-        engine=engine_of(point),
-        time_step=_step(point),
+        candidate=_candidate(point),
         count=point.scene.count,
         value=flux,
         variance=(flux.error / flux.value) ** 2 * length,
         contacts=contacts / length,
         decay=decay,
         shortest=decay,
-        bounds=_bounds(point, "conductivity"),
     )
 
 
@@ -114,19 +113,19 @@ def relaxation_of(point: Point) -> Flow:
         contacts += int(run.data["collisions"].values[-1])
     value = mean_of(values)
     length = FREE_TIMES / rate
-    model, steps = _bounds(point, "diffusion")
+    candidate = _candidate(point)
+    if candidate.engine.equation != EXACT:
+        candidate = replace(candidate, discretisation=0.0)
     return Flow(
         observable="relaxation",
         packing_fraction=fraction_of(point),
-        engine=engine_of(point),
-        time_step=_step(point),
+        candidate=candidate,
         count=point.scene.count,
         value=value,
         variance=(value.error / value.value) ** 2 * len(values) * length,
         contacts=contacts / (len(values) * (run.time[-1] - run.time[0])),
         decay=0.0,
         shortest=length,
-        bounds=(model, steps if engine_of(point) == "step" else 0.0),
     )
 
 
@@ -135,43 +134,13 @@ def fraction_of(point: Point) -> float:
     return float(f"{point.scene.packing_fraction:.2g}")
 
 
-def engine_of(point: Point) -> str:
-    """Return the engine of a point, one of `choices.ENGINES`."""
-    return point.engine.name if point.engine.equation == "exact" else point.engine.equation
-
-
-def _step(point: Point) -> float:
-    """Compute the length of a step; 0 for the event-driven engine."""
-    return point.engine.for_scene(point.scene, point.schedule.sample_interval).quantum or 0.0
-
-
-def _bounds(point: Point, coefficient: str) -> tuple[float, float]:
-    """Return theoretical bounds on the errors of model and discretisation.
-
-    Bounds are infinite without a theory. In a dilute gas, time steps lose 2/3 (v_th dt / sigma)^2 of the
-    contacts, and at most this fraction of what contacts transfer. In a dense gas, there is no theory of the
-    error of time steps. Cells and steps of the DSMC engine change a transport coefficient, `coefficient`, and
-    change the flux by at most the same ratio.
-    """
-    scene, name = point.scene, engine_of(point)
-    if name == "event":
-        return 0.0, 0.0
-    kinetics = rates(scene, dense=True)
-    if name == "step":
-        speed = kinetics.speed / math.sqrt(8.0 / math.pi)
-        lost = 2.0 / 3.0 * (speed * _step(point) / (2.0 * scene.largest_radius)) ** 2
-        return 0.0, lost if scene.packing_fraction <= 0.01 * 1.05 else math.inf
-    engine = point.engine.for_scene(scene, point.schedule.sample_interval)
-    cells = asdict(engine)["cells_per_side"]
-    width = max(
-        (length / n for length, n in zip(scene.container.lengths, cells, strict=True) if n > 1), default=0.0
-    )
-    step = _step(point) * kinetics.speed / math.sqrt(8.0 / math.pi) * math.sqrt(2.0)
-    grown = cell_factor(coefficient, width / kinetics.path) * step_factor(coefficient, step / kinetics.path)
-    bound = boltzmann_error if name == "boltzmann" else enskog_error
+def _candidate(point: Point) -> Candidate:
+    """Return the engine of a point, with its bounds on the errors of a flux."""
+    scene, engine = point.scene, point.engine.for_scene(point.scene, point.schedule.sample_interval)
+    if engine.equation == EXACT:
+        return Candidate(engine, discretisation=engine.bias(scene, "fluxes"))
     even = even_conditions(scene, 1.0)
-    model = bound(AccuracyRequest("D", 1.0, even, transported=True, memory=even.memory))
-    return model, float(grown) - 1.0
+    return engine.candidate(AccuracyRequest("heat_flux", 1.0, even, transported=True, memory=even.memory))
 
 
 def flow_choices(flows: Sequence[Flow], count: int, speeds: Mapping[str, Estimate]) -> Iterator[Choice]:
@@ -187,20 +156,15 @@ def flow_choices(flows: Sequence[Flow], count: int, speeds: Mapping[str, Estimat
         if flow.engine not in speeds:
             continue
         seconds = speeds[flow.engine].value
-        scaled = seconds * count / flow.count
         model, discretisation = errors_of(flow, event)
-        yield Choice(
-            engine=flow.engine,
-            model=model,
-            discretisation=discretisation,
-            finite_size=0.0,
-            unit=pooled * seconds,
-            least=flow.shortest * scaled,
-            equilibration=SETTLED * flow.decay * scaled,
-            decay=flow.decay * scaled,
-            trace=1.0,
-            uncertainty=speeds[flow.engine].error / seconds,
+        candidate = Candidate(flow.candidate.engine, model, discretisation)
+        noise = Component(
+            1.0, 1.0, flow.shortest, QUANTILE**2 * pooled * flow.count / count, freedom=math.inf
         )
+        settling = SETTLED * flow.decay
+        limits = flow.shortest + settling, math.inf, settling, 0.0
+        option = Option(candidate, candidate.bias, noise, seconds * count / flow.count, 1.0, *limits)
+        yield Choice(option, flow.decay, speeds[flow.engine].error / seconds)
 
 
 def errors_of(flow: Flow, event: Flow) -> tuple[float, float]:
@@ -208,14 +172,13 @@ def errors_of(flow: Flow, event: Flow) -> tuple[float, float]:
 
     They are the theoretical bounds, or the total difference of the runs if this is smaller.
     """
-    if flow.engine == "event":
+    bounds = flow.candidate
+    if bounds.engine.reference:
         return 0.0, 0.0
     ratio = flow.value / event.value
     seen = abs(ratio.value - 1.0) + BOUND * ratio.error
-    if flow.engine == "step":
-        return 0.0, min(flow.bounds[1], seen)
-    discretisation = min(flow.bounds[1], seen)
-    return min(flow.bounds[0], seen - discretisation), discretisation
+    discretisation = min(bounds.discretisation, seen)
+    return min(bounds.model, seen - discretisation), discretisation
 
 
 QUANTITIES = (*uniform.OBSERVABLES, *FLOWS)
@@ -251,7 +214,7 @@ def maps(points: Sequence[Point], settings: dict, timed: list[dict], compared: l
     for q, f in np.ndindex(shape[:2]):
         eta = fractions[f]
         if QUANTITIES[q] in uniform.OBSERVABLES:
-            gas = uniform.Uniform(eta, count)
+            gas = Gas(3, eta, count, 1.0, 1.0)
             choices = list(uniform.choices(gas, QUANTITIES[q], timed, compared, cells.get(eta)))
         else:
             of = [
@@ -285,10 +248,11 @@ def _enter(costs: np.ndarray, parts: np.ndarray, choices: list[Choice], accuraci
     The arrays are costs (A, E, 2) with errors, and parts (A, E, `PARTS`).
     """
     for e, engine in enumerate(ENGINES):
-        of = [choice for choice in choices if choice.engine == engine]
+        of = [choice for choice in choices if solver_of(choice.option.engine) == engine]
         for a, accuracy in enumerate(accuracies if of else ()):
-            best = cheapest(of, accuracy)
-            costs[a, e] = best.cost(accuracy) * np.array([1.0, best.uncertainty])
+            # the least biased choice, if no choice reaches the accuracy
+            best = min(of, key=lambda choice: (choice.option.cost(accuracy), choice.option.bias))
+            costs[a, e] = best.option.cost(accuracy) * np.array([1.0, best.uncertainty])
             parts[a, e] = list(best.parts(accuracy).values())
 
 
@@ -308,7 +272,7 @@ def _speeds_between(points: Sequence[Point], experiments: Sequence[str]) -> dict
     for point in points:
         if point.experiment in experiments:
             (seconds,) = uniform.each_of(costs(point), 1.0)
-            speeds.setdefault(fraction_of(point), {})[engine_of(point)] = seconds
+            speeds.setdefault(fraction_of(point), {})[solver_of(point.engine)] = seconds
     return speeds
 
 
@@ -328,7 +292,8 @@ def _speeds_of(timed: list[dict], of: list[Flow]) -> dict[str, Estimate]:
     for flow in of:
         if flow.engine in same:
             steps = same[flow.engine]["time_step"]
-            at = int(np.argmin(np.abs(np.log(steps / flow.time_step)))) if flow.time_step else 0
+            step = flow.candidate.engine.quantum
+            at = int(np.argmin(np.abs(np.log(steps / step)))) if step else 0
             speeds[flow.engine] = uniform.each_of(same[flow.engine], rate)[at] * contacts
     return speeds
 
@@ -347,7 +312,7 @@ def _compare_flows(measured: list[Flow], fractions: list[float]) -> xr.Dataset:
     array = np.full((len(names), len(FLOWS), len(fractions), len(ENGINES)), np.nan)
     for flow in measured:
         at = FLOWS.index(flow.observable), fractions.index(flow.packing_fraction)
-        numbers = flow.value.value, flow.value.error, flow.value.freedom, sum(flow.bounds)
+        numbers = flow.value.value, flow.value.error, flow.value.freedom, flow.candidate.bias
         array[:, *at, ENGINES.index(flow.engine)] = numbers
     axes = ("flow_quantity", "fraction", "solver")
     columns = {name: (axes, values, {"units": "1"}) for name, values in zip(names, array, strict=True)}

@@ -14,13 +14,16 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.accuracy import table
-from gaspart.accuracy.table import EQUILIBRATION, LEAST, PRECISIONS, REFERENCE, STEP
+from gaspart.accuracy.option import Option, fluid_option
+from gaspart.accuracy.table import PRECISIONS, REFERENCE, STEP
 from gaspart.accuracy.tabulated import model_error
 from gaspart.analysis import statistics
+from gaspart.analysis.bulk import EXACT
 from gaspart.analysis.estimate import Estimate
+from gaspart.engines.engine import Candidate
 from gaspart.reproduction import table as tables
 from gaspart.reproduction.families.shared.runs import pressure
-from gaspart.reproduction.families.tradeoff.choices import required_length
+from gaspart.reproduction.families.tradeoff import uniform
 from gaspart.reproduction.families.tradeoff.maps import maps
 from gaspart.reproduction.families.tradeoff.uniform import (
     OBSERVABLES,
@@ -33,6 +36,7 @@ from gaspart.reproduction.families.tradeoff.uniform import (
 )
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table
+from gaspart.scene.gas import Gas
 
 # Cheapest time-stepped setting for each accuracy of a collision, and the event-driven engine.
 
@@ -168,8 +172,8 @@ def time_to_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     ``regret``, the measured cost of the setting that the model chooses divided by the cost of the measured
     best setting, with ``regret_error`` from the timings.
     """
-    uniform = (point for point in points if point.experiment not in settings["plates_cost"])
-    timed = [costs(point) for point in uniform if point.job == "measure_cost"]
+    of_gases = (point for point in points if point.experiment not in settings["plates_cost"])
+    timed = [costs(point) for point in of_gases if point.job == "measure_cost"]
     every = compare_steps(points, timed)
     rows = compare_steps([point for point in points if point.experiment in settings["elsewhere"]], timed)
     speeds = _speeds(timed)
@@ -177,19 +181,24 @@ def time_to_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     shape = (len(gases), len(OBSERVABLES), len(settings["counts"]), len(settings["accuracies"]))
     measured, model = np.full((*shape, 2), np.nan), np.full((*shape, 2), np.nan)
     regret, error = np.full(shape, np.nan), np.full(shape, np.nan)
-    for g, o, c, a in np.ndindex(shape):
-        choices = _total_costs(
-            [row for row in rows if (row["dimension"], row["packing_fraction"]) == gases[g]],
-            o, settings["counts"][c], settings["accuracies"][a], speeds,
-        )  # fmt: skip
-        for e in range(2):
-            of = choices[choices[:, 0] == e]
-            if of.size:
-                measured[g, o, c, a, e], model[g, o, c, a, e] = of[:, 1].min(), of[:, 2].min()
-        if choices.size and np.isfinite(choices[:, 2].min()):
-            picked = choices[np.argmin(choices[:, 2])]
-            regret[g, o, c, a] = picked[1] / choices[:, 1].min()
-            error[g, o, c, a] = picked[3] * regret[g, o, c, a]
+    for g, o, c in np.ndindex(shape[:3]):
+        gas = Gas(*gases[g], settings["counts"][c], 1.0, 1.0)
+        exact = [
+            choice
+            for choice in uniform.choices(gas, OBSERVABLES[o], timed, rows, None)
+            if choice.option.engine.equation == EXACT
+        ]
+        steps = np.array([not choice.option.engine.reference for choice in exact])
+        options = [(choice.option, _by_table(gas, choice, OBSERVABLES[o], speeds)) for choice in exact]
+        for a, accuracy in enumerate(settings["accuracies"]):
+            both = np.array([[option.cost(accuracy) for option in pair] for pair in options])
+            for e, of in enumerate((both[~steps], both[steps])):
+                if of.size:
+                    measured[g, o, c, a, e], model[g, o, c, a, e] = of.min(axis=0)
+            picked = int(np.argmin(both[:, 1]))
+            if np.isfinite(both[picked, 1]):
+                regret[g, o, c, a] = both[picked, 0] / both[:, 0].min()
+                error[g, o, c, a] = exact[picked].uncertainty * regret[g, o, c, a]
     axes = ("gas", "observable", "count", "accuracy")
     return xr.Dataset(
         {
@@ -235,33 +244,17 @@ def _speeds(timed: list[dict]) -> dict[tuple[str, str], float]:
     return speeds
 
 
-def _total_costs(rows: list[dict], observable: int, count: int, accuracy: float, speeds: dict) -> np.ndarray:
-    """Compute the costs of settings, (settings, 4).
+def _by_table(gas: Gas, choice: uniform.Choice, observable: str, speeds: dict) -> Option:
+    """Return the option of a choice, with errors and times from the table.
 
-    The columns are the engine (0 for the event-driven engine, else 1), the measured cost, the cost by the
-    model, and the relative error of the measured cost. Costs are inf for a setting that does not reach the
-    accuracy.
+    Times are converted to this machine.
     """
-    dimension, fraction = rows[0]["dimension"], rows[0]["packing_fraction"]
-    name = OBSERVABLES[observable]
-    noise = table.noise(dimension, fraction, name)
-
-    def cost(bias: float, each: float) -> float:
-        contacts = required_length(noise, accuracy, bias, 0.5 * count * LEAST) + 0.5 * count * EQUILIBRATION
-        return contacts * each if np.isfinite(each) else np.inf
-
-    tabulated = table.seconds(dimension, fraction, "event") * speeds["event", "float64"]
-    event = rows[0]["event_seconds"]
-    costs = [(0, cost(0.0, event), cost(0.0, tabulated), rows[0]["event_error"] / event)]
-    for row in rows:
-        precision = PRECISIONS[row["setting"]]
-        bounds = np.abs(row["bias"][observable]) + 2.0 * row["bias_error"][observable]
-        for n, step in enumerate(row["time_step"]):
-            each = table.seconds(dimension, fraction, "step", precision, step) * speeds["step", precision]
-            bias = table.bias(dimension, fraction, precision, step, name)
-            spread = row["seconds_error"][n] / row["seconds"][n]
-            costs.append((1, cost(bounds[n], row["seconds"][n]), cost(bias, each), spread))
-    return np.array(costs)
+    engine, row = choice.option.engine, (gas.dimension, gas.packing_fraction)
+    step = engine.quantum or 0.0  # in units with v_th = sigma = 1
+    each = table.seconds(*row, engine.name, engine.precision, step) * speeds[engine.name, engine.precision]
+    bias = 0.0 if engine.reference else table.bias(*row, engine.precision, step, observable)
+    noise = uniform.QUANTILE**2 * table.noise(*row, observable)
+    return fluid_option(gas, Candidate(engine, discretisation=bias), each, noise, 1.0, discarded=0.0)
 
 
 def _orders(row: dict, largest: float) -> list[tuple[float, float]]:
