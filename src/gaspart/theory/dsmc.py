@@ -1,9 +1,9 @@
 """Effects of cells and time steps on a gas simulated by direct simulation Monte Carlo (DSMC).
 
-Widths are in mean free paths l = 1 / (sqrt 2 pi n sigma^2), steps in l / c with c = sqrt(2 k_B T / m). Within
-a cell, momentum and energy are exchanged between particles at any distance. Within a step, all particles move
-before any collide. Both effects are exact in the first Sonine approximation, in which fluxes relax
-exponentially.
+Widths are in mean free paths l = 1 / (sqrt 2 pi n sigma^2), steps in l / c with c = sqrt(2 k_B T / m).
+Particles within a cell exchange momentum and energy at any distance. Within a step, all particles move before
+any collision takes place. Both effects are computed exactly in the first Sonine approximation, in which
+fluxes relax exponentially.
 """
 
 from __future__ import annotations
@@ -23,7 +23,9 @@ CELL_COEFFICIENTS = {
     "diffusion": 0.0,
 }
 """Coefficients of (width / l)^2, spheres; Alexander, Garcia & Alder, Phys. Fluids 10, 1540 (1998), with its
-erratum, Phys. Fluids 12, 731 (2000). A particle's own displacement passes nothing on, so D has none."""
+erratum, Phys. Fluids 12, 731 (2000). The displacement of a single particle transfers nothing to others, so
+cells do not change D.
+"""
 STEP_COEFFICIENTS = {
     "viscosity": 16.0 / (75.0 * math.pi),
     "conductivity": 64.0 / (675.0 * math.pi),
@@ -34,7 +36,7 @@ Garcia & Wagner, Phys. Fluids 12, 2621 (2000)."""
 
 
 def cell_factor(quantity: str, width: Numbers) -> Values:
-    """Compute a transport coefficient of spheres in cells divided by the value in narrow cells.
+    """Compute a transport coefficient of spheres in cells divided by its value in small cells.
 
     Parameters
     ----------
@@ -50,8 +52,8 @@ def cell_factor(quantity: str, width: Numbers) -> Values:
 
     Notes
     -----
-    1 + a width^2 with a of `CELL_COEFFICIENTS`, and <dx^2> = width^2 / 6 for two positions in a cell (exact
-    at any width).
+    1 + a width^2 with a from `CELL_COEFFICIENTS`, and <dx^2> = width^2 / 6 for two positions in a cell (exact
+    for any width).
     """
     return 1.0 + CELL_COEFFICIENTS[quantity] * np.square(width)
 
@@ -73,11 +75,11 @@ def step_factor(quantity: str, step: Numbers) -> Values:
 
     Notes
     -----
-    (x/2) coth(x/2) = 1 + x^2/12 - ..., where x is the step divided by the relaxation time of the flux: the
-    sum of the flux's correlation at whole steps replaces the integral. x^2/12 is the literature's first
-    order, `STEP_COEFFICIENTS`.
+    (x/2) coth(x/2) = 1 + x^2/12 - ..., where x is the step divided by the relaxation time of the flux. The
+    sum of the flux correlation over whole steps replaces the integral. The first order in the literature is
+    x^2/12, `STEP_COEFFICIENTS`.
     """
-    half = np.sqrt(3.0 * STEP_COEFFICIENTS[quantity]) * np.maximum(step, 1e-6)  # its limit, where it is 0 / 0
+    half = np.sqrt(3.0 * STEP_COEFFICIENTS[quantity]) * np.maximum(step, 1e-6)  # limit of 0 / 0
     return half / np.tanh(half)
 
 
@@ -108,10 +110,11 @@ def diffusion_by_modes(
 
     Notes
     -----
-    (1 / d N) sum over k of (d - 1) / [(nu + D) k^2]: the integral of the shear modes in `modes`, which carry
-    particles along [1]_. The wave vectors k are those that `cells` along each side resolve, up to half of
-    their number, if the waves are longer than 2 pi mean free paths. With one cell no mode contributes:
-    partners are drawn wherever they are. This is a hydrodynamic estimate, with an uncertainty of a half.
+    (1 / d N) sum over k of (d - 1) / [(nu + D) k^2]. This is the integral of the shear modes in `modes`,
+    which transport particles [1]_. The sum includes the wave vectors k that the cells resolve, up to half of
+    `cells` along each side, and only waves longer than 2 pi mean free paths. With a single cell no mode
+    contributes, because collision partners are drawn at any distance. This is a hydrodynamic estimate with a
+    relative uncertainty of a half.
 
     References
     ----------
@@ -122,26 +125,28 @@ def diffusion_by_modes(
     return float((dimension - 1.0) / (dimension * count * spreading) * (numbers / waves).sum())
 
 
-# Expected cost of a partition of a gas into boxes, and the ideal number of boxes.
+# Expected cost of dividing a gas into boxes, and the optimal number of boxes.
 #
-# The gas is dilute and between walls: a cubic (square) container of side L is divided into n boxes a side.
-# Particles are kept in the box of their centre, and every pair of particles in the same or in neighbouring
-# boxes is tested once. Centres are uniform in [r, L - r] and no two centres are closer than a diameter;
-# otherwise they are independent. For such centres all formulas are exact to the first order in the
-# density, so for packing fractions below some 0.05.
+# The gas is dilute and between walls. A cubic (square) container of side L is divided into n boxes per side.
+# A particle belongs to the box that contains its centre. Each pair of particles in the same box or in
+# neighbouring boxes is tested once. Centres are uniform in [r, L - r] and no two centres are closer than a
+# diameter; otherwise they are independent. For such centres all formulas are exact to first order in the
+# density, that is for packing fractions below about 0.05.
 
 
 def _shares(per_side: int, side: float, radius: float) -> np.ndarray:
-    """Return the chances (n,) that a coordinate, uniform between the walls, lies in each box."""
+    """Return the probabilities (n,) that a coordinate, uniform between the walls, is in each box."""
     edges = np.linspace(0.0, side, per_side + 1)
     return np.diff(np.clip(edges, radius, side - radius)) / (side - 2.0 * radius)
 
 
 def _moments(per_side: int, side: float, radius: float) -> np.ndarray:
-    """Return means, along an axis, of the neighbourhood of a particle: boxes, chance and chance squared.
+    """Return three means along an axis for the neighbourhood of a particle.
 
-    The means are over the position of the particle. The chance is the chance that another particle is in the
-    neighbourhood.
+    They are the number of boxes, a probability, and its square.
+
+    The means are over the position of the particle. The probability is the probability that another particle
+    is in the neighbourhood.
     """
     if not (per_side >= 1 and side > 2.0 * radius >= 0.0):
         raise ValueError(
@@ -188,8 +193,9 @@ def expected_pair_tests(
 
     Notes
     -----
-    The mean is N(N-1)/2 times the chance that two particles are neighbours, exactly N(N-1)/2 for one box. The
-    variance is the variance of a sum over pairs of independent particles (Hoeffding 1948; exact for points).
+    The mean is N(N-1)/2 times the probability that two particles are neighbours; for one box it is exactly
+    N(N-1)/2. The variance is computed as for a sum over pairs of independent particles (Hoeffding 1948; exact
+    for points).
     """
     _, share, square = _moments(per_side, side, radius) ** checked_dimension(dimension)
     excluded = ball_volume(dimension, 2.0 * radius) / (side - 2.0 * radius) ** dimension
@@ -203,7 +209,7 @@ def expected_pair_tests(
 def neighbour_share(
     per_side: Sequence[int] | np.ndarray, dimension: int, side: float, radius: float
 ) -> np.ndarray:
-    """Compute the chance that two particles lie in the same box or in neighbouring boxes.
+    """Compute the probability that two particles are in the same box or in neighbouring boxes.
 
     Parameters
     ----------
@@ -219,7 +225,7 @@ def neighbour_share(
     Returns
     -------
     ndarray, shape (n,), [1]
-        Chance for each partition.
+        Probability for each partition.
     """
     return np.array([_moments(int(n), side, radius)[1] for n in per_side]) ** checked_dimension(dimension)
 
@@ -264,8 +270,8 @@ def boxes_in_reach(width: Numbers, reach: Numbers, dimension: int) -> Values:
     Returns
     -------
     float or ndarray
-        Mean number, the point's own box included: the volume within `reach` of a box divided by the volume of
-        the box (Steiner's formula).
+        Mean number, including the box of the point: the volume within `reach` of a box divided by the volume
+        of the box (Steiner's formula).
     """
     t = np.asarray(reach) / width
     if checked_dimension(dimension) == 2:
@@ -274,7 +280,7 @@ def boxes_in_reach(width: Numbers, reach: Numbers, dimension: int) -> Values:
 
 
 def share_of_contacts_in_a_box(width: Numbers, diameter: Numbers, dimension: int) -> Values:
-    """Compute the chance that two particles in contact lie in the same box.
+    """Compute the probability that two particles in contact are in the same box.
 
     Parameters
     ----------
@@ -288,8 +294,8 @@ def share_of_contacts_in_a_box(width: Numbers, diameter: Numbers, dimension: int
     Returns
     -------
     float or ndarray, [1]
-        Chance: the mean over the directions n of the contact of prod(1 - abs(n_k) diameter / width), for a
-        position that is uniform in the box.
+        Probability: the mean over the directions n of the contact of prod(1 - abs(n_k) diameter / width), for
+        a position that is uniform in the box.
     """
     s = np.asarray(diameter) / width
     if checked_dimension(dimension) == 2:
@@ -298,7 +304,7 @@ def share_of_contacts_in_a_box(width: Numbers, diameter: Numbers, dimension: int
 
 
 def ideal_boxes_per_particle(test_cost: Numbers, box_cost: Numbers, dimension: int) -> Values:
-    """Compute the number of boxes per particle at which a step costs least.
+    """Compute the number of boxes per particle at which a step has the lowest cost.
 
     Parameters
     ----------
@@ -317,6 +323,6 @@ def ideal_boxes_per_particle(test_cost: Numbers, box_cost: Numbers, dimension: i
     Notes
     -----
     With M boxes and N particles, far from walls, there are 3^d N / (2 M) tests per particle, and every box
-    must be emptied in every step. The sum of both is least at M / N = sqrt(3^d c_test / (2 c_box)).
+    must be emptied in every step. The sum of both costs is minimal at M / N = sqrt(3^d c_test / (2 c_box)).
     """
     return np.sqrt(0.5 * 3.0 ** checked_dimension(dimension) * np.asarray(test_cost) / box_cost)
