@@ -345,8 +345,9 @@ def lattice(scene: Scene, rng: np.random.Generator, slab: bool = False) -> np.nd
     ----------
     scene : Scene
         Scene, to whose container the lattice is stretched.
-    rng : numpy.random.Generator Generator. If there are more sites than particles, the empty sites are
-        random; the order of species in a mixture is random, too.
+    rng : numpy.random.Generator
+        Generator of random numbers. If there are more sites than particles, the empty sites are random. The
+        order of species in a mixture is random, too.
     slab : bool, default False
         If True, sites are empty only in the upper half of the longest side. This half melts at densities at
         which a complete crystal would not melt. The result is a start for a crystal that coexists with its

@@ -50,8 +50,9 @@ def range_of_centres(scene: Scene, kind: Species) -> tuple[tuple[float, ...], tu
     ----------
     scene : Scene
         Scene of the species.
-    kind : Species Species. The centres of all its particles are as far from walls as the centre of its
-        largest particle must be.
+    kind : Species
+        Species. The centres of all its particles are as far from walls as the centre of its largest particle
+        must be.
 
     Returns
     -------
