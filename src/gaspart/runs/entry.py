@@ -347,7 +347,7 @@ def resume(
 
 
 def _replica(path: str | Path) -> tuple[Path, Recipe] | None:
-    """Return a file of the replicas at a path and its recipe; None without replicas."""
+    """Return a file of the replicas at a path, and its recipe; None without replicas."""
     with suppress(SceneError):
         file, recipe = find_run(path)
         return (file, recipe) if recipe.replica else None
