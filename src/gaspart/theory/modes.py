@@ -276,6 +276,47 @@ def sum_of_modes(
     return (weights @ terms.real @ numbers).reshape(np.shape(time))[()]
 
 
+def diffusion_by_modes(
+    side: float, count: int, dimension: int, cells: int, path: float, spreading: float
+) -> float:
+    """Estimate the contribution of the fluctuating flow to the self-diffusion of a kinetic equation.
+
+    Parameters
+    ----------
+    side : float, [length]
+        Side of the periodic cube or square.
+    count : int
+        Number N of particles.
+    dimension : {2, 3}
+        Discs or spheres.
+    cells : int
+        Number of cells along each side.
+    path : float, [length]
+        Mean free path.
+    spreading : float, [length^2/time]
+        Kinematic viscosity plus diffusion coefficient, nu + D.
+
+    Returns
+    -------
+    float, [time]
+        Contribution to D, divided by k_B T / m.
+
+    Notes
+    -----
+    (1 / d N) sum over k of (d - 1) / [(nu + D) k^2]: the integral of the shear modes in `modes`, which carry
+    particles along [1]_. The wave vectors k are those that `cells` along each side resolve, up to half of
+    their number, if the waves are longer than 2 pi mean free paths. With one cell no mode contributes:
+    partners are drawn wherever they are. This is a hydrodynamic estimate, with an uncertainty of a half.
+
+    References
+    ----------
+    .. [1] A. Donev, J. B. Bell, A. de la Fuente and A. L. Garcia, Phys. Rev. Lett. 106, 204501 (2011).
+    """
+    squares, numbers = wave_vectors(dimension, int(min(0.5 * cells, 0.5 * side / (math.pi * path))))
+    waves = (2.0 * math.pi / side) ** 2 * squares
+    return float((dimension - 1.0) / (dimension * count * spreading) * (numbers / waves).sum())
+
+
 # Hydrodynamic modes of discs whose stress and heat flux relax, beyond the limit of long waves.
 #
 # Fourier's law and Newton's law hold if nothing changes within a time between collisions. For sound in a

@@ -25,7 +25,7 @@ from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import table
 from gaspart.scene.faces import thermal_face
 from gaspart.scene.scene import Scene
-from gaspart.theory.dsmc import cell_factor, step_factor
+from gaspart.theory.discretisation import cell_factor, step_factor
 
 # A gas in uniform shear, without walls (`scene.faces.LeesEdwards`).
 #
