@@ -1,7 +1,9 @@
-"""Column of a gas in equilibrium under gravity: hydrostatics at the temperature of its energy.
+"""Column of a gas in equilibrium under gravity: hydrostatics for a prescribed energy.
 
-Heights are heights of centres above the lowest position of a centre. Hard spheres and discs follow the
-reference equation of state. With `ideal` the gas follows the Boltzmann model, whose virial is 0.
+The temperature of the column is the temperature at which it has this energy.
+
+Heights are measured from the lowest possible position of a centre. Hard spheres and discs follow the
+reference equation of state. With `ideal`, the gas follows the Boltzmann equation, without a virial.
 """
 
 from __future__ import annotations
@@ -19,7 +21,7 @@ from gaspart.theory.state import compressibility_factor, contact_value
 
 _POINTS = 1200
 _SCALES = 25.0
-"""Scale heights above the floor beyond which nothing is left of a column."""
+"""Height above the floor, in scale heights, beyond which the density of a column is negligible."""
 _ROUNDS = 40
 
 
@@ -28,13 +30,13 @@ class Column:
     """Column of a gas in equilibrium under gravity.
 
     heights : (Z,), heights.
-    numbers : (S, Z), particles per height, of kinds that differ in mass.
+    numbers : (S, Z), particles per height, for each kind of particle mass.
     masses : (S,), masses of the kinds.
     temperature : temperature.
     pull : acceleration of gravity.
     area : area of the cross-section.
-    diameter, dimension : of the particles.
-    ideal : see the module.
+    diameter, dimension : diameter of the particles.
+    ideal : True for an ideal gas (see the module).
     """
 
     heights: np.ndarray
@@ -49,7 +51,7 @@ class Column:
 
     @cached_property
     def filled(self) -> np.ndarray:
-        """(Z,) packing fraction."""
+        """Packing fraction (Z,)."""
         return self.numbers.sum(axis=0) / self.area * particle_volume(self.dimension, self.diameter)
 
     @property
@@ -62,9 +64,9 @@ class Column:
 
     @property
     def collisions(self) -> float:
-        """Collisions per time, in units that do not depend on the state.
+        """Collisions per time, up to a constant factor.
 
-        These rates are for comparing two columns of one scene.
+        The result is only for comparisons between columns of one scene.
         """
         contact = 1.0 if self.ideal else contact_value(self.filled, self.dimension)
         speed = np.sqrt(1.0 / self.masses[:, None] + 1.0 / self.masses)
@@ -80,14 +82,14 @@ class Column:
 
 @dataclass(frozen=True)
 class GravityColumn:
-    """Scene under gravity along one axis with walls, whose columns are computed.
+    """Scene with gravity along one axis with walls, for which columns are computed.
 
     axis : number of the axis.
     low : True if the floor is the lower wall.
     pull : acceleration of gravity.
-    height : height that centres can reach.
-    area : area of the cross-section.
-    masses, counts : (S,), masses and numbers of particles of the kinds.
+    height : height that is accessible to centres.
+    area : cross-section.
+    masses, counts : (S,), masses and numbers of particles of each kind.
     diameter : diameter of the particles.
     """
 
@@ -104,7 +106,7 @@ class GravityColumn:
     def column(self, temperature: float, ideal: bool) -> Column:
         """Compute the column at a temperature.
 
-        Raises ValueError if the fluid would be denser than the range of its equation of state.
+        Raises ValueError if the density exceeds the range of the equation of state of the fluid.
         """
         d, weights = self.dimension, self.masses * self.pull / temperature
         top = min(self.height, self._reaches(temperature))
@@ -119,7 +121,7 @@ class GravityColumn:
         return Column(z, densities * self.area, *shape)
 
     def _reaches(self, temperature: float) -> float:
-        """Return the height of the gas: a close-packed bed, and an atmosphere above it.
+        """Return the height of the gas: a close-packed bed plus an atmosphere above it.
 
         The atmosphere consists of the lightest particles.
         """
@@ -127,9 +129,9 @@ class GravityColumn:
         return 2.0 * float(volume) + _SCALES * temperature / float(self.masses.min() * self.pull)
 
     def of_energy(self, energy: float, ideal: bool) -> Column:
-        """Compute the column at the temperature at which it has an energy.
+        """Compute the column whose temperature corresponds to an energy.
 
-        Raises ValueError as `column`, and for an energy that the column has at no temperature.
+        Raises ValueError for the reasons of `column`, and for an energy that no temperature gives.
         """
         if not energy > 0.0:
             raise ValueError(f"energy: {energy} (must be positive)")
@@ -138,7 +140,7 @@ class GravityColumn:
             middle = 0.5 * (low + high)
             try:
                 colder = self.column(middle, ideal).energy < energy
-            except ValueError:  # so cold that its floor would be denser than a fluid
+            except ValueError:  # at this temperature the floor would be denser than the fluid
                 colder = True
             low, high = (middle, high) if colder else (low, middle)
         return self.column(high, ideal)
@@ -150,8 +152,8 @@ class GravityColumn:
         return float(state.translational_energy + self.pull * (state.masses @ heights))
 
     def equilibrate(self, energy: float, heat: float | None, ideal: bool) -> Column:
-        """Compute the column in equilibrium: at the temperature of its faces, or with its energy.
+        """Compute the equilibrium column, at the temperature of its faces or for its energy.
 
-        The temperature of the faces is `heat`, if there is one. Raises ValueError as `of_energy`.
+        `heat` is the temperature of the faces, or None. Raises ValueError for the reasons of `of_energy`.
         """
         return self.column(heat, ideal) if heat else self.of_energy(energy, ideal)

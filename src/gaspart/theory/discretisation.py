@@ -1,9 +1,9 @@
-"""Effects of the cells and time steps of engines, and the contact values of the Enskog model.
+"""Effects of cells and time steps of engines, and contact values of the Enskog model.
 
 For DSMC, widths are in mean free paths l = 1 / (sqrt 2 pi n sigma^2), steps in l / c with c = sqrt(2 k_B T /
-m). Within a cell, momentum and energy are exchanged between particles at any distance. Within a step, all
-particles move before any collide. Both effects are exact in the first Sonine approximation, in which fluxes
-relax exponentially.
+m). Particles within a cell exchange momentum and energy at any distance. Within a step, all particles
+move before any collision takes place. Both effects are computed exactly in the first Sonine approximation, in
+which fluxes relax exponentially.
 
 Each run depends on the formulas of its engine, so this module imports no other theory except for geometry.
 """
@@ -33,7 +33,9 @@ CELL_COEFFICIENTS = {
     "diffusion": 0.0,
 }
 """Coefficients of (width / l)^2, spheres; Alexander, Garcia & Alder, Phys. Fluids 10, 1540 (1998), with its
-erratum, Phys. Fluids 12, 731 (2000). A particle's own displacement passes nothing on, so D has none."""
+erratum, Phys. Fluids 12, 731 (2000). The displacement of a single particle transfers nothing to others, so
+cells do not change D.
+"""
 CELL_VISCOSITY = {2: math.pi / 24.0, 3: CELL_COEFFICIENTS["viscosity"]}
 """Coefficients of (width / l)^2 for the viscosity, by dimension; for discs by the same argument."""
 STEP_COEFFICIENTS = {
@@ -76,7 +78,7 @@ def contact_values(number_densities: np.ndarray, radii: np.ndarray, dimension: i
 
 
 def cell_factor(quantity: str, width: Numbers) -> Values:
-    """Compute a transport coefficient of spheres in cells divided by the value in narrow cells.
+    """Compute a transport coefficient of spheres in cells divided by its value in small cells.
 
     Parameters
     ----------
@@ -92,8 +94,8 @@ def cell_factor(quantity: str, width: Numbers) -> Values:
 
     Notes
     -----
-    1 + a width^2 with a of `CELL_COEFFICIENTS`, and <dx^2> = width^2 / 6 for two positions in a cell (exact
-    at any width).
+    1 + a width^2 with a from `CELL_COEFFICIENTS`, and <dx^2> = width^2 / 6 for two positions in a cell (exact
+    for any width).
     """
     return 1.0 + CELL_COEFFICIENTS[quantity] * np.square(width)
 
@@ -115,9 +117,9 @@ def step_factor(quantity: str, step: Numbers) -> Values:
 
     Notes
     -----
-    (x/2) coth(x/2) = 1 + x^2/12 - ..., where x is the step divided by the relaxation time of the flux: the
-    sum of the flux's correlation at whole steps replaces the integral. x^2/12 is the literature's first
-    order, `STEP_COEFFICIENTS`.
+    (x/2) coth(x/2) = 1 + x^2/12 - ..., where x is the step divided by the relaxation time of the flux. The
+    sum of the flux correlation over whole steps replaces the integral. The first order in the literature is
+    x^2/12, `STEP_COEFFICIENTS`.
     """
-    half = np.sqrt(3.0 * STEP_COEFFICIENTS[quantity]) * np.maximum(step, 1e-6)  # its limit, where it is 0 / 0
+    half = np.sqrt(3.0 * STEP_COEFFICIENTS[quantity]) * np.maximum(step, 1e-6)  # limit of 0 / 0
     return half / np.tanh(half)

@@ -1,10 +1,10 @@
-"""Expected cost of a partition of a gas into boxes, and the ideal number of boxes.
+"""Expected cost of dividing a gas into boxes, and the optimal number of boxes.
 
-The gas is dilute and between walls: a cubic (square) container of side L is divided into n boxes a side.
-Particles are kept in the box of their centre, and every pair of particles in the same or in neighbouring
-boxes is tested once. Centres are uniform in [r, L - r] and no two centres are closer than a diameter;
-otherwise they are independent. For such centres all formulas are exact to the first order in the density, so
-for packing fractions below some 0.05.
+The gas is dilute and between walls. A cubic (square) container of side L is divided into n boxes per side.
+A particle belongs to the box that contains its centre. Each pair of particles in the same box or in
+neighbouring boxes is tested once. Centres are uniform in [r, L - r] and no two centres are closer than a
+diameter; otherwise they are independent. For such centres all formulas are exact to first order in the
+density, that is for packing fractions below about 0.05.
 """
 
 from __future__ import annotations
@@ -19,16 +19,18 @@ from gaspart.theory.geometry import Numbers, Values, check_ranges, checked_dimen
 
 
 def _shares(per_side: int, side: float, radius: float) -> np.ndarray:
-    """Return the chances (n,) that a coordinate, uniform between the walls, lies in each box."""
+    """Return the probabilities (n,) that a coordinate, uniform between the walls, is in each box."""
     edges = np.linspace(0.0, side, per_side + 1)
     return np.diff(np.clip(edges, radius, side - radius)) / (side - 2.0 * radius)
 
 
 def _moments(per_side: int, side: float, radius: float) -> np.ndarray:
-    """Return means, along an axis, of the neighbourhood of a particle: boxes, chance and chance squared.
+    """Return three means along an axis for the neighbourhood of a particle.
 
-    The means are over the position of the particle. The chance is the chance that another particle is in the
-    neighbourhood.
+    They are the number of boxes, a probability, and its square.
+
+    The means are over the position of the particle. The probability is the probability that another particle
+    is in the neighbourhood.
     """
     if not (per_side >= 1 and side > 2.0 * radius >= 0.0):
         raise ValueError(
@@ -75,8 +77,9 @@ def expected_pair_tests(
 
     Notes
     -----
-    The mean is N(N-1)/2 times the chance that two particles are neighbours, exactly N(N-1)/2 for one box. The
-    variance is the variance of a sum over pairs of independent particles (Hoeffding 1948; exact for points).
+    The mean is N(N-1)/2 times the probability that two particles are neighbours; for one box it is exactly
+    N(N-1)/2. The variance is computed as for a sum over pairs of independent particles (Hoeffding 1948; exact
+    for points).
     """
     _, share, square = _moments(per_side, side, radius) ** checked_dimension(dimension)
     excluded = ball_volume(dimension, 2.0 * radius) / (side - 2.0 * radius) ** dimension
@@ -90,7 +93,7 @@ def expected_pair_tests(
 def neighbour_share(
     per_side: Sequence[int] | np.ndarray, dimension: int, side: float, radius: float
 ) -> np.ndarray:
-    """Compute the chance that two particles lie in the same box or in neighbouring boxes.
+    """Compute the probability that two particles are in the same box or in neighbouring boxes.
 
     Parameters
     ----------
@@ -106,7 +109,7 @@ def neighbour_share(
     Returns
     -------
     ndarray, shape (n,), [1]
-        Chance for each partition.
+        Probability for each partition.
     """
     return np.array([_moments(int(n), side, radius)[1] for n in per_side]) ** checked_dimension(dimension)
 
@@ -151,8 +154,8 @@ def boxes_in_reach(width: Numbers, reach: Numbers, dimension: int) -> Values:
     Returns
     -------
     float or ndarray
-        Mean number, the point's own box included: the volume within `reach` of a box divided by the volume of
-        the box (Steiner's formula).
+        Mean number, including the box of the point: the volume within `reach` of a box divided by the volume
+        of the box (Steiner's formula).
     """
     t = np.asarray(reach) / width
     if checked_dimension(dimension) == 2:
@@ -161,7 +164,7 @@ def boxes_in_reach(width: Numbers, reach: Numbers, dimension: int) -> Values:
 
 
 def share_of_contacts_in_a_box(width: Numbers, diameter: Numbers, dimension: int) -> Values:
-    """Compute the chance that two particles in contact lie in the same box.
+    """Compute the probability that two particles in contact are in the same box.
 
     Parameters
     ----------
@@ -175,8 +178,8 @@ def share_of_contacts_in_a_box(width: Numbers, diameter: Numbers, dimension: int
     Returns
     -------
     float or ndarray, [1]
-        Chance: the mean over the directions n of the contact of prod(1 - abs(n_k) diameter / width), for a
-        position that is uniform in the box.
+        Probability: the mean over the directions n of the contact of prod(1 - abs(n_k) diameter / width), for
+        a position that is uniform in the box.
     """
     s = np.asarray(diameter) / width
     if checked_dimension(dimension) == 2:
@@ -185,7 +188,7 @@ def share_of_contacts_in_a_box(width: Numbers, diameter: Numbers, dimension: int
 
 
 def ideal_boxes_per_particle(test_cost: Numbers, box_cost: Numbers, dimension: int) -> Values:
-    """Compute the number of boxes per particle at which a step costs least.
+    """Compute the number of boxes per particle at which a step has the lowest cost.
 
     Parameters
     ----------
@@ -204,6 +207,6 @@ def ideal_boxes_per_particle(test_cost: Numbers, box_cost: Numbers, dimension: i
     Notes
     -----
     With M boxes and N particles, far from walls, there are 3^d N / (2 M) tests per particle, and every box
-    must be emptied in every step. The sum of both is least at M / N = sqrt(3^d c_test / (2 c_box)).
+    must be emptied in every step. The sum of both costs is minimal at M / N = sqrt(3^d c_test / (2 c_box)).
     """
     return np.sqrt(0.5 * 3.0 ** checked_dimension(dimension) * np.asarray(test_cost) / box_cost)
