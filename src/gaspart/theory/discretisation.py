@@ -22,7 +22,7 @@ SLOPE, BEND = {2: 0.5625, 3: 1.5}, {2: 0.0, 3: 0.5}
 _HIGHEST = 0.7  # packing fraction up to which contact values are evaluated
 MISSED_CONTACTS = {2: 1.0 / 4.0, 3: 2.0 / 3.0}
 """Fraction of the contacts of a dilute gas that begin and end within a step, divided by (v_th dt / sigma)^2,
-by dimension, with v_th = sqrt(k_B T / m). It is the flux of pairs through chords that they cross within a step.
+by dimension, with v_th = sqrt(k_B T / m): the flux of pairs through chords that they cross within a step.
 """
 ONE_PASS = 4.0
 """Factor of the missed contacts if a step resolves only overlaps that grow, in one pass."""
