@@ -28,8 +28,8 @@ _PLAIN = re.compile(r"^[ \t]*import (gaspart[\w.]*)", re.MULTILINE)
 def closure(*roots: str | Path) -> frozenset[Path]:
     """Return the files of the package that modules or scripts need, directly or indirectly.
 
-    Modules are given by dotted names, and scripts by paths. Tables in a folder `data` next to a module are
-    included.
+    Modules are given by dotted names, and scripts by paths. Tables in a folder `data` next to a module that
+    names it are included.
     """
     files: set[Path] = set()
     queue = [root if isinstance(root, Path) else _file(root) for root in roots]
@@ -39,13 +39,14 @@ def closure(*roots: str | Path) -> frozenset[Path]:
         for path in find_imports(queue.pop()) - files:
             files.add(path)
             queue.append(path)
-    folders = {path.parent for path in files}
-    return frozenset(files.union(*map(_tables, folders)))
+    return frozenset(files.union(*map(_tables, files)))
 
 
 @cache
-def _tables(folder: Path) -> frozenset[Path]:
-    return frozenset(folder.glob("data/*.csv"))
+def _tables(path: Path) -> frozenset[Path]:
+    """Return the tables that a module reads."""
+    reads = '"data"' in path.read_text(encoding="utf-8")
+    return frozenset(path.parent.glob("data/*.csv") if reads else ())
 
 
 @cache

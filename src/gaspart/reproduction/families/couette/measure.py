@@ -25,7 +25,7 @@ from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import table
 from gaspart.scene.faces import thermal_face
 from gaspart.scene.scene import Scene
-from gaspart.theory.dsmc import cell_factor, step_factor
+from gaspart.theory.discretisation import cell_factor, step_factor
 
 # Uniform shear flow of a gas without walls (`scene.faces.LeesEdwards`). The flow is along the first axis, its
 # gradient along the second. Particles have mass 1. The gas heats up.

@@ -11,7 +11,7 @@ from gaspart import theory
 from gaspart.analysis.statistics import combine_estimates
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.table import Table, each
-from gaspart.theory.dsmc import CELL_COEFFICIENTS, STEP_COEFFICIENTS, cell_factor, step_factor
+from gaspart.theory.discretisation import CELL_COEFFICIENTS, STEP_COEFFICIENTS, cell_factor, step_factor
 
 CELLS = "[Alexander 1998]"
 STEPS = "[Hadjiconstantinou 2000]; [Garcia 2000]"

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from gaspart import theory
 from gaspart.rendering import style
 from gaspart.reproduction.table import Table
-from gaspart.theory.dsmc import cell_factor, step_factor
+from gaspart.theory.discretisation import cell_factor, step_factor
 
 QUANTITIES = {"viscosity": "viscosity", "conductivity": "heat conductivity", "diffusion": "self-diffusion"}
 FINE = {"width": 0.3, "step": 0.3}

@@ -33,7 +33,7 @@ def remarks(ds: xr.Dataset) -> list[Claim]:
             measured=Estimate(visits[np.abs(visits - 1.0).argmax()], visits.std(ddof=1)),
             expected=1.0,
             half_width=0.03,
-            source="Steiner's formula, gaspart.theory.dsmc, without the walls' 1 %",
+            source="Steiner's formula, gaspart.theory.partition, without the walls' 1 %",
             fails_if="boxes within reach are left out, or others are searched",
         ),
         Claim(
@@ -107,7 +107,7 @@ def ideal_boxes(ds: xr.Dataset) -> list[Claim]:
             measured=_work_over_time(gases),
             expected=0.0,
             half_width=0.3,
-            source="(3^d c_test / 2 c_box)^(1/2), gaspart.theory.dsmc",
+            source="(3^d c_test / 2 c_box)^(1/2), gaspart.theory.partition",
             fails_if="something other than pair tests and boxes determines the optimum",
         ),
         *_exponents(Table(ds, "series")),
@@ -267,7 +267,7 @@ def _counts(scan: Table) -> list[Claim]:
 
     Pair tests are compared where there is about one box per particle, box visits everywhere.
     """
-    source = "uniform density, gaspart.theory.dsmc"
+    source = "uniform density, gaspart.theory.partition"
     nearest = scan[int(np.abs(scan.expected_tests - 1.0).argmin())]
     visits = scan.box_visits / scan.expected_visits
     return [

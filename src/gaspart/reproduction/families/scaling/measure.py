@@ -30,8 +30,8 @@ from gaspart.reproduction.families.shared.timings import (
 )
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, entries, table
-from gaspart.theory import dsmc as theory
-from gaspart.theory.dsmc import boxes_in_reach, share_of_contacts_in_a_box
+from gaspart.theory import partition as theory
+from gaspart.theory.partition import boxes_in_reach, share_of_contacts_in_a_box
 
 # Tests of source A's remarks on the cost of a step, by alternate timings. Jobs time a gas with and without a
 # modification.

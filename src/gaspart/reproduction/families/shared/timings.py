@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction.table import Table
-from gaspart.theory.dsmc import ideal_boxes_per_particle
+from gaspart.theory.partition import ideal_boxes_per_particle
 
 NEAR = 3.0
 """A minimum is fitted to partitions whose cost is at most this multiple of the smallest cost."""

@@ -10,6 +10,7 @@ from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.families.shared import PARTICLES
 from gaspart.reproduction.families.tradeoff import FREE_TIMES
 from gaspart.reproduction.table import Row, Table, each
+from gaspart.theory.discretisation import MISSED_CONTACTS, ONE_PASS
 
 # Claims about the map of the cheapest engine: costs of collisions, and errors of engines.
 
@@ -195,9 +196,6 @@ def _cells(ds: xr.Dataset) -> list[Claim]:
     )
 
 
-MISSED = {2: 1.0 / 4.0, 3: 2.0 / 3.0}
-"""Fraction of the contacts of a dilute gas that begin and end within a step, divided by (v_th dt / sigma)^2,
-by dimension."""
 BAND = {1.0: 0.15, 2.0: 0.3, 3.0: 0.6}
 """Half width of the interval around an order."""
 REQUIRED = {1.0: 0.1, 2.0: 0.2, 3.0: 0.4}
@@ -268,7 +266,7 @@ def _claims_on_misses(errors: Table) -> list[Claim]:
         setting = row.setting
         if setting not in ("4 passes", "1 pass"):
             continue
-        factor = MISSED[row.dimension] * (1.0 if setting == "4 passes" else 4.0)
+        factor = MISSED_CONTACTS[row.dimension] * (1.0 if setting == "4 passes" else ONE_PASS)
         lost = factor * row.time_step**2  # in units with v_th = sigma = 1
         at = int(np.argmax(np.where(lost <= 0.02, lost, -1.0)))
         claims.append(
