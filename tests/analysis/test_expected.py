@@ -16,7 +16,7 @@ from gaspart.analysis.run import open_run
 from gaspart.inspection.checks import judge
 from gaspart.inspection.readers import read_frames
 from gaspart.scene.gas import Gas
-from gaspart.theory.dsmc import diffusion_by_modes
+from gaspart.theory.modes import diffusion_by_modes
 from gaspart.trajectory.correlator import Correlations
 
 DENSE = gas(3, 278, 0.2, exact_temperature=True)

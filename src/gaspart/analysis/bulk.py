@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from gaspart import theory
-from gaspart.engines.dsmc import defaults as rates
 from gaspart.scene.gas import Gas
+from gaspart.theory.discretisation import contact_values
 
 EXACT, BOLTZMANN, ENSKOG = "exact", "boltzmann", "enskog"
 
@@ -27,7 +27,7 @@ def contact_value(gas: Gas, equation: str) -> float:
     if equation == ENSKOG:
         density = theory.number_density(gas.packing_fraction, gas.dimension, gas.diameter)
         radius = np.array([0.5 * gas.diameter])
-        return float(rates.contact_values(np.atleast_1d(density), radius, gas.dimension)[0, 0])
+        return float(contact_values(np.atleast_1d(density), radius, gas.dimension)[0, 0])
     return float(theory.contact_value(gas.packing_fraction, gas.dimension))
 
 

@@ -8,9 +8,10 @@ from functools import cached_property
 
 import numpy as np
 
-from gaspart.engines.dsmc.defaults import accessible, contact_values
+from gaspart.engines.dsmc.defaults import accessible
 from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
+from gaspart.theory.discretisation import contact_values
 
 _FREE = 0.02
 """Minimum fraction of the volume that is accessible to a pair where its contact value is evaluated."""

@@ -278,6 +278,48 @@ def sum_of_modes(
     return (weights @ terms.real @ numbers).reshape(np.shape(time))[()]
 
 
+def diffusion_by_modes(
+    side: float, count: int, dimension: int, cells: int, path: float, spreading: float
+) -> float:
+    """Estimate the contribution of the fluctuating flow to the self-diffusion of a kinetic equation.
+
+    Parameters
+    ----------
+    side : float, [length]
+        Side of the periodic cube or square.
+    count : int
+        Number N of particles.
+    dimension : {2, 3}
+        Discs or spheres.
+    cells : int
+        Number of cells along each side.
+    path : float, [length]
+        Mean free path.
+    spreading : float, [length^2/time]
+        Kinematic viscosity plus diffusion coefficient, nu + D.
+
+    Returns
+    -------
+    float, [time]
+        Contribution to D, divided by k_B T / m.
+
+    Notes
+    -----
+    (1 / d N) sum over k of (d - 1) / [(nu + D) k^2]. This is the integral of the shear modes in `modes`,
+    which transport particles [1]_. The sum includes the wave vectors k that the cells resolve, up to half of
+    `cells` along each side, and only waves longer than 2 pi mean free paths. With a single cell no mode
+    contributes, because collision partners are drawn at any distance. This is a hydrodynamic estimate with a
+    relative uncertainty of a half.
+
+    References
+    ----------
+    .. [1] A. Donev, J. B. Bell, A. de la Fuente and A. L. Garcia, Phys. Rev. Lett. 106, 204501 (2011).
+    """
+    squares, numbers = wave_vectors(dimension, int(min(0.5 * cells, 0.5 * side / (math.pi * path))))
+    waves = (2.0 * math.pi / side) ** 2 * squares
+    return float((dimension - 1.0) / (dimension * count * spreading) * (numbers / waves).sum())
+
+
 # Hydrodynamic modes of discs with relaxing stress and heat flux, beyond the limit of long waves.
 #
 # Fourier's law and Newton's law of viscosity hold if nothing changes within the time between collisions.

@@ -14,13 +14,13 @@ from gaspart.accuracy import tabulated
 from gaspart.accuracy.estimates import Component
 from gaspart.accuracy.option import Option, fluid_option
 from gaspart.analysis.estimate import Estimate
-from gaspart.engines.dsmc.defaults import contact_values
 from gaspart.engines.engine import Candidate
 from gaspart.reproduction.families.tradeoff import ENGINES, PARTS, claims, maps, uniform
 from gaspart.reproduction.families.tradeoff.uniform import Choice
 from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.gas import Gas
+from gaspart.theory.discretisation import contact_values
 
 
 def choice(model=0.0, discretisation=0.0, least=0.5, **changes):

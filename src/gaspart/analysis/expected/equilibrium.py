@@ -15,8 +15,8 @@ from gaspart.analysis.bulk import BOLTZMANN, ENSKOG, EXACT
 from gaspart.analysis.flow import FLOW
 from gaspart.analysis.run import Run
 from gaspart.engines import Engine, engine_from_dict
-from gaspart.engines.dsmc import defaults as rates
 from gaspart.scene.gas import Mixture
+from gaspart.theory import discretisation
 from gaspart.theory.geometry import unit_sphere_surface
 from gaspart.theory.speeds import mean_speed_factor
 from gaspart.trajectory.pairs import pairs_of
@@ -132,7 +132,7 @@ def _enskog_contacts(mixture: Mixture) -> tuple[np.ndarray, np.ndarray, np.ndarr
     filled = float((numbers * theory.particle_volume(mixture.dimension) * diameters**mixture.dimension).sum())
     densities = numbers * mixture.packing_fraction / filled
     distances = 0.5 * np.add.outer(diameters, diameters)
-    return numbers, distances, rates.contact_values(densities, 0.5 * diameters, mixture.dimension)
+    return numbers, distances, discretisation.contact_values(densities, 0.5 * diameters, mixture.dimension)
 
 
 def _pairs_of_enskog(mixture: Mixture) -> float:

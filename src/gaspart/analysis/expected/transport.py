@@ -21,10 +21,10 @@ from gaspart.analysis.expected.equilibrium import (
 )
 from gaspart.analysis.run import Run
 from gaspart.engines import Engine
-from gaspart.engines.dsmc import defaults as rates
 from gaspart.scene.gas import Gas
 from gaspart.scene.scene import Scene
-from gaspart.theory.dsmc import diffusion_by_modes
+from gaspart.theory.discretisation import contact_values
+from gaspart.theory.modes import diffusion_by_modes
 
 _WINDOW = 12.0, 24.0
 """Default window for the slope that gives D, in collisions of a particle; see `analysis.diffusion`."""
@@ -141,7 +141,7 @@ def mutual_diffusion(run: Run) -> Expected | None:
         contact = np.ones((2, 2))
     elif equation == ENSKOG:
         densities = np.array(counts) / run.scene.container.volume
-        contact = rates.contact_values(densities, 0.5 * np.array(diameters), d)
+        contact = contact_values(densities, 0.5 * np.array(diameters), d)
     masses = [kind.mass for kind in kinds]
     value = theory.enskog_mutual_diffusion(
         eta, d, diameters, counts, temperature=run.temperature, masses=masses, contact=contact

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.engines.dsmc.defaults import BEND, SLOPE, accessible
+from gaspart.engines.dsmc.defaults import accessible
 from gaspart.engines.features.faces import (
     WALL_DRAWS,
     accommodations,
@@ -25,6 +25,7 @@ from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
 from gaspart.state.random import key_of
 from gaspart.state.state import State
+from gaspart.theory.discretisation import BEND, SLOPE
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.settings import DSMC

@@ -15,20 +15,15 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from gaspart.errors import SceneError, SimulationError
-from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Particle, Species
 from gaspart.state.boxes import cube_side
 from gaspart.state.state import State
+from gaspart.theory.discretisation import CELL_VISCOSITY, STEP_COEFFICIENTS, contact_values
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.settings import DSMC
     from gaspart.kernels.dsmc.model import Pace
-
-
-SLOPE, BEND = {2: 0.5625, 3: 1.5}, {2: 0.0, 3: 0.5}
-"""Coefficients of the contact value, see `contact_values`, by dimension."""
-_HIGHEST = 0.7  # largest packing fraction at which contact values are evaluated
 
 
 @dataclass(frozen=True)
@@ -55,20 +50,6 @@ def accessible(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     """Return the lowest and highest coordinates (d,) of the centres of the smallest particles."""
     lower, upper = scene.reach(scene.smallest_radius)
     return np.array(lower), np.array(upper)
-
-
-def contact_values(number_densities: np.ndarray, radii: np.ndarray, dimension: int) -> np.ndarray:
-    """Compute the contact values (K, K) of the pair distributions of a mixture.
-
-    Spheres: Boublik, J. Chem. Phys. 53, 471 (1970), and Mansoori et al., J. Chem. Phys. 54, 1523 (1971); for
-    one species this is Carnahan & Starling's value. Discs: Jenkins & Mancini, J. Appl. Mech. 54, 27 (1987);
-    for one species this is Henderson's value.
-    """
-    filled = ball_volume(dimension) * float((number_densities * radii**dimension).sum())
-    free = 1.0 - min(filled, _HIGHEST)
-    surface = ball_volume(dimension) * float((number_densities * radii ** (dimension - 1)).sum())
-    ratio = surface * 2.0 * radii[:, None] * radii / (radii[:, None] + radii)
-    return 1.0 / free + SLOPE[dimension] * ratio / free**2 + BEND[dimension] * ratio**2 / free**3
 
 
 Kinds: TypeAlias = Sequence[Species | Particle]
@@ -329,10 +310,8 @@ then become rare. With 8 particles per cell a gas at a packing fraction of 0.4 h
 USUAL = 16.0
 """Sufficient number of particles per cell. Above it, cells become narrower than recommended."""
 LAYERS = 8
-"""Minimum number of cells along the direction of fall between walls, because speeds depend on the height."""
-_DIGITS = 2.0**10  # the step is rounded to this fraction, against rounding errors of sums
-_VISCOSITY = {2: math.pi / 24.0, 3: 16.0 / (45.0 * math.pi)}
-_VISCOSITY_IN_TIME, _DIFFUSION_IN_TIME = 16.0 / (75.0 * math.pi), 4.0 / (27.0 * math.pi)
+"""Minimum number of cells along the fall of particles between walls: their speeds depend on the height."""
+_DIGITS = 2.0**10  # parts to which a step is rounded, so that it does not depend on the rounding of sums
 CELL_LOSS = 0.5
 """Maximum fraction of collisions that the Enskog model misses, multiplied by the number of particles per
 cell.
@@ -409,12 +388,10 @@ def widths_of(cells: tuple[int, ...], scene: Scene) -> np.ndarray:
 def predicted_error(cells: tuple[int, ...], step: float, scene: Scene, gas_rates: Rates) -> float:
     """Return the relative error of the shear viscosity due to cells and step.
 
-    The viscosity is too high by this error. For spheres the error is 16/(45 pi) (w/l)^2 + 16/(75 pi) (c
-    dt/l)^2. Here w is the side of a cell, l the mean free path and c = sqrt(2 kT/m): Alexander, Garcia &
-    Alder, Phys. Fluids 10, 1540 (1998); Hadjiconstantinou, Phys. Fluids 12, 2634 (2000); Garcia & Wagner,
-    Phys. Fluids 12, 2621 (2000). For discs the first term is pi/24 (w/l)^2, by the same argument. The second
-    term is estimated by the term for spheres. An axis with a single cell between periodic faces does not
-    contribute, because it has no profile.
+    The viscosity is too high. The error is a (w/l)^2 + b (c dt/l)^2, with a of `CELL_VISCOSITY` and b of
+    `STEP_COEFFICIENTS`, where w is the side of a cell, l the mean free path and c = sqrt(2 kT/m). For discs b
+    is the value for spheres, an estimate. An axis with one cell between periodic faces has no profile to
+    distort.
     """
     if not gas_rates.path < math.inf:
         return 0.0
@@ -422,19 +399,19 @@ def predicted_error(cells: tuple[int, ...], step: float, scene: Scene, gas_rates
     flat = [n == 1 and around for n, around in zip(cells, scene.container.periodic, strict=True)]
     width = max((float(w) for w, is_flat in zip(widths, flat, strict=True) if not is_flat), default=0.0)
     return (
-        _VISCOSITY[d] * (width / gas_rates.path) ** 2
-        + _VISCOSITY_IN_TIME * _thermal_step(step, d, gas_rates) ** 2
+        CELL_VISCOSITY[d] * (width / gas_rates.path) ** 2
+        + STEP_COEFFICIENTS["viscosity"] * _thermal_step(step, d, gas_rates) ** 2
     )
 
 
 def diffusion_error(step: float, scene: Scene, gas_rates: Rates) -> float:
     """Return the relative error of the diffusion coefficient due to a step; it is positive.
 
-    For spheres the error is 4/(27 pi) (c dt/l)^2, see `predicted_error`. For discs the same value is used as
-    an estimate. Cells have no effect.
+    For spheres the error is b (c dt/l)^2, see `predicted_error`. The same value is an estimate for discs.
+    Cells have no effect.
     """
     return (
-        _DIFFUSION_IN_TIME * _thermal_step(step, scene.dimension, gas_rates) ** 2
+        STEP_COEFFICIENTS["diffusion"] * _thermal_step(step, scene.dimension, gas_rates) ** 2
         if gas_rates.path < math.inf
         else 0.0
     )

@@ -14,6 +14,7 @@ from gaspart.errors import SceneError, SimulationError
 from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
+from gaspart.theory.discretisation import MISSED_CONTACTS, ONE_PASS, contact_values
 
 if TYPE_CHECKING:
     from gaspart.engines.step.settings import TimeStepped
@@ -108,11 +109,8 @@ def check_precision(engine: TimeStepped, scene: Scene, state: State) -> None:
 def missed_contacts(time_step: float, several: bool, state: State) -> float:
     """Return the fraction of missed contacts, in which pairs touch and separate within a step.
 
-    For a dilute gas the fraction is (2/3) (v_th dt / sigma)^2 for spheres and (1/4) (v_th dt / sigma)^2 for
-    discs, with v_th = sqrt(kT/m). With one pass (not `several`) it is four times as large, because only
-    growing overlaps are then resolved. The fraction is computed from the flux of pairs through chords that
-    they cross within a step. v_th is the present value of each species. The result is averaged over colliding
-    pairs.
+    The fraction is that for a dilute gas (`MISSED_CONTACTS`), with several passes or one, at the present
+    thermal speed of each species. The result is the mean over the pairs that collide.
     """
     square, radius, number = [], [], []
     for kind in np.unique(state.species):
@@ -152,7 +150,7 @@ def _missed_fraction(
     if not rate.sum() > 0.0:
         return 0.0
     missed = relative * (time_step / sigma) ** 2
-    factor = {2: 1.0 / 4.0, 3: 2.0 / 3.0}[dimension] * (1.0 if several else 4.0)
+    factor = MISSED_CONTACTS[dimension] * (1.0 if several else ONE_PASS)
     return float(factor * (rate * missed).sum() / rate.sum())
 
 
@@ -202,9 +200,9 @@ def contacts_per_step(time_step: float, state: State) -> float:
     spheres = state.dimension == 3
     ball = ball_volume(state.dimension) * float((state.radii**state.dimension).mean())
     density = state.count / float(state.lengths.prod())
-    eta = min(density * ball, 0.7)  # higher only if a face stops centres
-    contact = (1.0 - 0.5 * eta) / (1.0 - eta) ** 3 if spheres else (1.0 - 0.4375 * eta) / (1.0 - eta) ** 2
+    eta = min(density * ball, 0.7)  # higher only where a face stops centres
     diameter = 2.0 * (ball / ball_volume(state.dimension)) ** (1.0 / state.dimension)
+    contact = float(contact_values(np.array([eta / ball]), np.array([0.5 * diameter]), state.dimension)[0, 0])
     thermal = math.sqrt(math.pi * float((state.velocities**2).mean()))
     around = 4.0 * diameter**2 if spheres else 2.0 * diameter
     return density * around * contact * thermal * time_step

@@ -1,4 +1,4 @@
-"""Cheapest engine for each observable, density and accuracy, with the parts of every error."""
+"""Cheapest engine for each observable, density and accuracy, with all parts of the error."""
 
 from __future__ import annotations
 
@@ -27,16 +27,15 @@ from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import entries
 from gaspart.scene.gas import Gas
 
-# Choices for two gases out of equilibrium: heat flux between plates, relaxation of speeds.
-#
-# Neither has a theory that is exact in a dense gas, so that each engine is run, and its difference from the
-# event-driven one, with two standard errors, bounds its error; theory's own bound is taken where it is
-# lower, as in a dilute gas. Runs are of about the number of particles that costs are stated for.
+# Choices for two gases out of equilibrium: heat flux between plates, relaxation of speeds. There is no exact
+# theory in a dense gas. Therefore each engine is run. The error is bounded by the difference from the
+# event-driven engine plus two standard errors, or by a theoretical bound if this is lower, as in a dilute
+# gas. The number of particles is about the number for which costs are stated.
 
 
 FLOWS = ("heat_flux", "relaxation")
 SETTLED = 5.0
-"""Decay times of the slowest wave of temperature between plates before the flux is measured."""
+"""Decay times of the slowest temperature wave between plates, before the flux is measured."""
 
 
 @dataclass(frozen=True)
@@ -45,11 +44,12 @@ class Flow:
 
     candidate : the engine, with its bounds on the errors of model and discretisation.
     count : number of particles.
-    value : value of the flux, or the relaxation time over the mean free time.
-    variance : relative variance, times the time of simulation.
+    value : flux, or relaxation time divided by the mean free time.
+    variance : relative variance times the simulated time.
     contacts : contacts per time.
-    decay : time in which the slowest trace of the initial state falls to 1/e, 0 if that is what is measured.
-    shortest : minimum time that is simulated.
+    decay : time in which the slowest trace of the initial state falls to 1/e; 0 if this decay itself is
+    measured.
+    shortest : minimum simulated time.
     """
 
     observable: str
@@ -64,15 +64,15 @@ class Flow:
 
     @property
     def engine(self) -> str:
-        """The engine, one of `ENGINES`."""
+        """Name of the engine among `ENGINES`."""
         return solver_of(self.candidate.engine)
 
 
 def flux_of(point: Point, blocks: int) -> Flow:
-    """Measure the heat flux between plates, averaged over both and over `blocks` blocks of the run.
+    """Measure the heat flux between plates, averaged over both plates and over blocks.
 
-    The slowest wave between them is the wave of the temperature, whose decay time is (gap / pi)^2 n c_p /
-    kappa, c_p = 5/2 k_B, kappa Enskog's at the mean temperature.
+    Each run has `blocks` of them. The slowest wave between the plates is a temperature wave. Its decay time
+    is (gap / pi)^2 n c_p / kappa, with c_p = 5/2 k_B and Enskog's kappa at the mean temperature.
     """
     scene, gap = point.scene, Gap.of(point.scene)
     flux = averages(point, gap, blocks, 1).flux()
@@ -96,11 +96,11 @@ def flux_of(point: Point, blocks: int) -> Flow:
 
 
 def relaxation_of(point: Point) -> Flow:
-    """Return the time in which speeds, equal at first, become Maxwell's, over the mean free time.
+    """Return the time in which equal speeds relax to Maxwell's, over the mean free time.
 
-    It is the integral of the kurtosis' part that is still to come, (K_end - K) / (K_end - 1), up to
-    `FREE_TIMES`, of the mean over replicas. In a uniform gas steps and cells of the DSMC engine change
-    nothing but positions, if all particles are in one cell.
+    It is the integral of (K_end - K) / (K_end - 1) up to `FREE_TIMES`, where K is the kurtosis, averaged over
+    replicas. In a uniform gas, steps and cells of the DSMC engine affect only positions, if all particles are
+    in one cell.
     """
     values, contacts, rate = [], 0, float(theory.collision_rate(point.scene.packing_fraction, 3))
     for run in runs(point, first=0):
@@ -130,7 +130,7 @@ def relaxation_of(point: Point) -> Flow:
 
 
 def fraction_of(point: Point) -> float:
-    """Compute the packing fraction, to two digits."""
+    """Compute the packing fraction, rounded to two digits."""
     return float(f"{point.scene.packing_fraction:.2g}")
 
 
@@ -144,13 +144,13 @@ def _candidate(point: Point) -> Candidate:
 
 
 def flow_choices(flows: Sequence[Flow], count: int, speeds: Mapping[str, Estimate]) -> Iterator[Choice]:
-    """Yield the choices for the engines that have measured one observable of one gas.
+    """Yield the choices for the engines that measured one observable of one gas.
 
-    count : number of particles that costs are for.
-    speeds : CPU time per time of simulation by engine, of the runs' particles.
+    count : number of particles for which costs are stated.
+    speeds : CPU time per simulated time by engine, for the particle number of the runs.
     """
     event = next(flow for flow in flows if flow.engine == "event")
-    # One equation governs what fluctuates, so that all runs together tell its variance.
+    # The fluctuations obey one equation, so all runs together determine their variance.
     pooled = float(np.mean([flow.variance for flow in flows]))
     for flow in flows:
         if flow.engine not in speeds:
@@ -170,7 +170,7 @@ def flow_choices(flows: Sequence[Flow], count: int, speeds: Mapping[str, Estimat
 def errors_of(flow: Flow, event: Flow) -> tuple[float, float]:
     """Return bounds on the errors of model and discretisation.
 
-    They are theory's bounds, or less if the runs differ by less in all.
+    They are the theoretical bounds, or the total difference of the runs if this is smaller.
     """
     bounds = flow.candidate
     if bounds.engine.reference:
@@ -187,21 +187,23 @@ QUANTITIES = (*uniform.OBSERVABLES, *FLOWS)
 def maps(points: Sequence[Point], settings: dict, timed: list[dict], compared: list[dict]) -> xr.Dataset:
     """Compute the costs of all engines in spheres of every timed density.
 
-    The points are of the experiments `cells`, `plates`, `plates_cost` and `relaxation` in settings, and
-    others; `timed` and `compared` are explained in `uniform`. The settings are also ``counts`` of particles,
-    of which the first is the map's, ``accuracies``, ``blocks`` of each run between plates.
+    The points belong to the experiments `cells`, `plates`, `plates_cost` and `relaxation` in settings, and
+    others. `timed` and `compared` are explained in `uniform`. Further settings are ``counts`` of particles,
+    of which the first is used for the map, ``accuracies``, and ``blocks`` of each run between plates.
 
     Over (``quantity``, ``fraction``, ``accuracy``, ``solver``): ``cost`` in s of the cheapest setting, with
-    its uncertainty from the timings, infinite if none is known to be as accurate and NaN where the engine was
-    not run. Over these and ``part``: ``error``, relative, of `PARTS`: ``model`` and ``discretisation`` bounds
-    from theory, or from runs where theory has none, ``finite_size`` the remainder after theory's correction,
-    ``equilibration`` a bound on the trace of the initial state, ``noise`` 1.96 standard errors.
+    its uncertainty from the timings. It is infinite if no setting is known to be as accurate, and NaN if the
+    engine was not run. With the further dimension ``part``: ``error``, relative, of `PARTS`. ``model`` and
+    ``discretisation`` are bounds from theory, or from runs if there is no theory. ``finite_size`` is the
+    remainder after theory's correction. ``equilibration`` is a bound on the trace of the initial state.
+    ``noise`` is 1.96 standard errors.
 
     Over (``flow_quantity``, ``fraction``, ``solver``): ``flow``, the heat flux, or the relaxation time over
-    the mean free time, with its error, and ``flow_bound`` of theory on its relative difference from hard
-    spheres. Over (``fraction``, ``solver``): ``each``, CPU time in s per contact of the exact gas, with the
-    cheapest step, and its error. Over ``fraction``: ``cells``, the collision rate of the Enskog model in its
-    default cells over the rate of its equation, with its error and ``cells_bound`` on the difference.
+    the mean free time, with its error; and ``flow_bound``, a theoretical bound on its relative difference
+    from hard spheres. Over (``fraction``, ``solver``): ``each``, CPU time in s per contact of the exact gas,
+    with the cheapest step, and its error. Over ``fraction``: ``cells``, the collision rate of the Enskog
+    model in its default cells divided by the rate of its equation, with its error; and ``cells_bound`` on the
+    difference.
     """
     fractions = sorted({timing["gas"][1] for timing in timed if timing["gas"][0] == 3})
     cells = uniform.cells_by_fraction(points, settings["cells"])
@@ -248,14 +250,14 @@ def _enter(costs: np.ndarray, parts: np.ndarray, choices: list[Choice], accuraci
     for e, engine in enumerate(ENGINES):
         of = [choice for choice in choices if solver_of(choice.option.engine) == engine]
         for a, accuracy in enumerate(accuracies if of else ()):
-            # The least biased one where none reaches the accuracy.
+            # the least biased choice, if no choice reaches the accuracy
             best = min(of, key=lambda choice: (choice.option.cost(accuracy), choice.option.bias))
             costs[a, e] = best.option.cost(accuracy) * np.array([1.0, best.uncertainty])
             parts[a, e] = list(best.parts(accuracy).values())
 
 
 def _flows(points: Sequence[Point], settings: dict) -> list[Flow]:
-    """Return all flows that were measured."""
+    """Return all measured flows."""
     plates = [point for point in points if point.experiment in settings["plates"]]
     relaxing = [point for point in points if point.experiment in settings["relaxation"]]
     return [
@@ -265,7 +267,7 @@ def _flows(points: Sequence[Point], settings: dict) -> list[Flow]:
 
 
 def _speeds_between(points: Sequence[Point], experiments: Sequence[str]) -> dict[float, dict[str, Estimate]]:
-    """Compute the CPU time per time of simulation between plates, by packing fraction and engine."""
+    """Compute the CPU time per simulated time between plates, by packing fraction and engine."""
     speeds: dict[float, dict[str, Estimate]] = {}
     for point in points:
         if point.experiment in experiments:
@@ -275,9 +277,9 @@ def _speeds_between(points: Sequence[Point], experiments: Sequence[str]) -> dict
 
 
 def _speeds_of(timed: list[dict], of: list[Flow]) -> dict[str, Estimate]:
-    """Return the speeds of flows in a uniform gas, from the timings of other particles.
+    """Return the speeds of flows in a uniform gas, from timings with other particle numbers.
 
-    The step is the one nearest to theirs.
+    The step nearest to the flow's step is used.
     """
     if not of:
         return {}
@@ -299,13 +301,13 @@ def _speeds_of(timed: list[dict], of: list[Flow]) -> dict[str, Estimate]:
 def _solver(setting: str) -> str:
     """Return the engine of a timed setting.
 
-    Other settings of the time-stepped engine than the default keep their names.
+    Non-default settings of the time-stepped engine keep their names.
     """
     return "step" if PRECISIONS.get(setting) == "float64" else setting
 
 
 def _compare_flows(measured: list[Flow], fractions: list[float]) -> xr.Dataset:
-    """Return the measurements of each engine, and theory's bounds on its error."""
+    """Return the measurements of each engine, and theoretical bounds on its error."""
     names = ("flow", "flow_error", "flow_freedom", "flow_bound")
     array = np.full((len(names), len(FLOWS), len(fractions), len(ENGINES)), np.nan)
     for flow in measured:

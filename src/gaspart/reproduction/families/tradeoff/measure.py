@@ -1,8 +1,8 @@
-"""Cost of accuracy: errors and costs of the time-stepped engine relative to the event-driven one.
+"""Cost of accuracy: errors and costs of time stepping relative to event-driven runs.
 
-Errors are from the job `compare` and costs from the job `measure_cost`, of the same gases and settings. The
-diffusion coefficient follows Enskog's theory, kT / m over the rate at which a particle forgets its velocity,
-taken from the memory after about one collision per particle.
+Errors come from the job `compare`, and costs from the job `measure_cost`, for equal gases and settings. The
+diffusion coefficient follows from Enskog's theory: it is kT / m divided by the rate at which a particle loses
+the memory of its velocity. The memory is measured after about one collision per particle.
 """
 
 from __future__ import annotations
@@ -42,17 +42,17 @@ from gaspart.scene.gas import Gas
 
 
 SEEN = 3.5
-"""Number of standard errors from 0 above which an error counts as seen."""
+"""Smallest significant error, in standard errors."""
 
 
 def frontier(dataset: xr.Dataset) -> xr.Dataset:
     """Find the cheapest time-stepped setting whose error is within each accuracy.
 
-    Two standard errors, and the error that is known to build up over many steps, are added.
+    Two standard errors, and the known increase of the error over many steps, are added to the error.
 
     Over ``gas``: ``gas_dimension``, ``gas_packing_fraction``. Over (``gas``, ``observable``, ``accuracy``):
-    ``best_seconds`` per exact collision (NaN if none is known to reach it), ``best_ratio`` of it to the
-    event-driven engine's with ``best_ratio_error``, ``best_step``, ``best_setting``.
+    ``best_seconds`` per exact collision (NaN if no setting is known to reach the accuracy), ``best_ratio``,
+    the ratio to the event-driven engine's time, with ``best_ratio_error``, ``best_step``, ``best_setting``.
     """
     errors, steady = Table(dataset, "row"), Table(dataset, "steady")
     gases = list(dict.fromkeys(zip(errors.dimension, errors.packing_fraction, strict=True)))
@@ -61,7 +61,7 @@ def frontier(dataset: xr.Dataset) -> xr.Dataset:
     chosen = np.full(shape, "none", dtype=object)
     for g, (dimension, fraction) in enumerate(gases):
         of = errors[(errors.dimension == dimension) & (errors.packing_fraction == fraction)]
-        within = np.abs(of.bias.value) + 2.0 * of.bias.error  # row, observable, step
+        within = np.abs(of.bias.value) + 2.0 * of.bias.error  # axes: row, observable, step
         within[:, OBSERVABLES.index("Z")] += np.array([_built_up(steady, row) for row in of])[:, None]
         cost = of.seconds.value
         for o, a in np.ndindex(shape[1:]):
@@ -87,9 +87,9 @@ def frontier(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def _built_up(steady: Table, row: Row) -> float:
-    """Return the largest error of Z that builds up over many steps, or 0.
+    """Return the largest increase of the error of Z over many steps, or 0.
 
-    It is of a gas and a setting; 0 means that no such error is seen.
+    It is for a gas and a setting. The result is 0 if no increase is significant.
     """
     if not steady:
         return 0.0
@@ -103,31 +103,35 @@ def _built_up(steady: Table, row: Row) -> float:
 
 
 FITTED = 3
-"""Errors that a fit of their order needs at least: two have an order whatever their law, also where an error
+"""Minimum number of errors in a fit of their order. Two errors always have an order, even if the error
 changes its sign."""
 
 
 def speed_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure errors and costs over the time steps of each gas and setting.
 
-    The points are `compare` jobs; `measure_cost` jobs of both engines; and runs of the time-stepped engine
-    long enough to see its errors in its steady state. The settings are ``order_up_to``, the largest error
-    that the fits of the order take; ``accuracies`` of the frontier.
+    The points are `compare` jobs, `measure_cost` jobs of both engines, and runs of the time-stepped engine
+    that are long enough for the error in the steady state. The settings are ``order_up_to``, the largest
+    error in the fits of the order, and ``accuracies`` of the frontier.
 
-    Over (``row``, ``step``), NaN beyond a row's own: ``time_step``; ``bias`` and ``bias_error`` (also over
-    ``observable``), relative to the exact run, an error being the snapshots' and at least one contact's;
-    ``missed``, ``made_up`` as parts of all contacts; ``energy_drift``, ``deepest_overlap`` (worst);
-    ``seconds`` (CPU time per exact collision, with ``seconds_error``) and ``pair_tests`` (per exact
-    collision), NaN where not timed. Over ``row``: ``dimension``, ``packing_fraction``, ``setting``,
-    ``contacts`` (of the exact runs), ``event_seconds`` with its error. Over (``row``, ``observable``):
-    ``order`` of the error in the time step, with ``order_error`` (NaN without `FITTED` errors of one sign).
-    Over (``gas``, ``observable``, ``accuracy``): see `frontier`. Over ``steady``: gas and setting of long
-    runs, and ``build_up`` with error, the relative error of their Z minus the error of the paired runs. Over
-    ``timed``, all gases in which the event-driven engine was timed: ``timed_dimension``,
-    ``timed_packing_fraction``, ``timed_seconds`` (per collision) with its error. Over ``dsmc``, the models of
-    the DSMC engine: ``dsmc_model``, ``dsmc_dimension``, ``dsmc_packing_fraction``, ``dsmc_seconds`` per exact
-    collision with its error, and ``dsmc_bias`` of Z, a bound; over ``part`` too, ``dsmc_step``, each step in
-    the engine's own, and the time with it, ``dsmc_step_seconds`` with its error.
+    Over (``row``, ``step``), with NaN beyond the steps of a row: ``time_step``; ``bias`` and ``bias_error``
+    (also over ``observable``), relative to the exact run; ``missed`` and ``made_up``, as fractions of all
+    contacts; ``energy_drift`` and ``deepest_overlap`` (worst values); ``seconds`` (CPU time per exact
+    collision, with ``seconds_error``) and ``pair_tests`` (per exact collision), NaN if not timed. An error of
+    a bias is computed from the scatter of snapshots, and is at least one contact.
+
+    Over ``row``: ``dimension``, ``packing_fraction``, ``setting``, ``contacts`` (of the exact runs),
+    ``event_seconds`` with its error. Over (``row``, ``observable``): ``order`` of the error in the time step,
+    with ``order_error`` (NaN without `FITTED` errors of equal sign). Over (``gas``, ``observable``,
+    ``accuracy``): see `frontier`.
+
+    Over ``steady``: gas and setting of long runs, and ``build_up`` with error. It is the relative error of
+    their Z minus the error of the paired runs. Over ``timed``, all gases with timings of the event-driven
+    engine: ``timed_dimension``, ``timed_packing_fraction``, ``timed_seconds`` (per collision) with its error.
+    Over ``dsmc``, the models of the DSMC engine: ``dsmc_model``, ``dsmc_dimension``,
+    ``dsmc_packing_fraction``, ``dsmc_seconds`` per exact collision with its error, and ``dsmc_bias``, a bound
+    on the bias of Z. With the further dimension ``part``: ``dsmc_step``, each step divided by the engine's
+    default step, and the time with this step, ``dsmc_step_seconds`` with its error.
     """
     timed = [costs(point) for point in points if point.job == "measure_cost"]
     rows = compare_steps(points, timed)
@@ -156,17 +160,17 @@ def speed_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
 def time_to_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure the cost of a required accuracy, by engine.
 
-    It is given in all gases, see `maps`; and in gases that the model was not fitted to, measured and by the
-    model.
+    The first part is for all gases; see `maps`. The second part compares measured costs with the model's
+    predictions, in gases that were not used to fit the model.
 
-    The points are as for `speed_accuracy`, the points of gases that are not in the model's table being the
-    experiments ``elsewhere`` in settings; timings of its reference gas, which scale the table's times to this
-    machine. The settings are ``counts`` of particles, ``accuracies``, and the settings of `maps`.
+    The points are those for `speed_accuracy`. The gases outside the model's table are the experiments
+    ``elsewhere`` in settings. Timings of the model's reference gas scale the table's times to this machine.
+    The settings are ``counts`` of particles, ``accuracies``, and the settings of `maps`.
 
     Over (``gas``, ``observable``, ``count``, ``accuracy``, ``engine``): ``measured`` and ``model``, CPU time
-    in s of the cheapest setting (see `gaspart.accuracy.plan`), NaN without one. Without ``engine``:
-    ``regret``, measured cost of the setting that the model picks divided by the cost of the measured best,
-    with ``regret_error`` from the timings.
+    in s of the cheapest setting (see `gaspart.accuracy.plan`), NaN without a setting. Without ``engine``:
+    ``regret``, the measured cost of the setting that the model chooses divided by the cost of the measured
+    best setting, with ``regret_error`` from the timings.
     """
     of_gases = (point for point in points if point.experiment not in settings["plates_cost"])
     timed = [costs(point) for point in of_gases if point.job == "measure_cost"]
@@ -219,7 +223,10 @@ def time_to_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _speeds(timed: list[dict]) -> dict[tuple[str, str], float]:
-    """Time of this machine over the table's, for each engine and precision, from the reference gas."""
+    """Compute this machine's time over the table's time in the reference gas.
+
+    The result is for each engine and precision.
+    """
     speeds = {}
     for timing in timed:
         if timing["gas"] != (3, REFERENCE) or timing["setting"] not in ("event", *PRECISIONS):
@@ -238,12 +245,12 @@ def _speeds(timed: list[dict]) -> dict[tuple[str, str], float]:
 
 
 def _by_table(gas: Gas, choice: uniform.Choice, observable: str, speeds: dict) -> Option:
-    """Return the option of a choice with the errors and times of the table.
+    """Return the option of a choice, with errors and times from the table.
 
     Times are converted to this machine.
     """
     engine, row = choice.option.engine, (gas.dimension, gas.packing_fraction)
-    step = engine.quantum or 0.0  # v_th and sigma are 1
+    step = engine.quantum or 0.0  # in units with v_th = sigma = 1
     each = table.seconds(*row, engine.name, engine.precision, step) * speeds[engine.name, engine.precision]
     bias = 0.0 if engine.reference else table.bias(*row, engine.precision, step, observable)
     noise = uniform.QUANTILE**2 * table.noise(*row, observable)
@@ -253,7 +260,7 @@ def _by_table(gas: Gas, choice: uniform.Choice, observable: str, speeds: dict) -
 def _orders(row: dict, largest: float) -> list[tuple[float, float]]:
     """Fit the order of each observable's error in the time step, with its error.
 
-    The error is scaled by the scatter.
+    The error of the order is scaled by the scatter.
     """
     orders = []
     for bias, error in zip(row["bias"], row["bias_error"], strict=True):
@@ -271,7 +278,7 @@ def _orders(row: dict, largest: float) -> list[tuple[float, float]]:
 def _models(events: list[dict], timed: list[dict], cells: dict[float, Cells]) -> list[tuple[dict, dict]]:
     """Pair the timings of the event-driven engine and of a DSMC model in one gas.
 
-    For the Enskog model the error by cells must have been measured, in spheres.
+    For the Enskog model, the error due to cells must have been measured, in spheres.
     """
     return [
         (event, timing)
@@ -289,9 +296,9 @@ def _cells(timed: dict, cells: dict[float, Cells]) -> Cells | None:
 
 
 def _model(timings: tuple[dict, dict], cells: dict[float, Cells]) -> dict[str, Any]:
-    """Return the cost and the error of Z of a model of the DSMC engine.
+    """Return the cost of a DSMC model, and its error of Z.
 
-    The step is the cheapest one, on which Z does not depend.
+    The cheapest step is used, because Z does not depend on the step.
     """
     event, timing = timings
     (dimension, fraction), model, own_cells = timing["gas"], timing["setting"], _cells(timing, cells)
@@ -310,7 +317,7 @@ def _model(timings: tuple[dict, dict], cells: dict[float, Cells]) -> dict[str, A
 
 
 def _time_per_collision(run: dict) -> dict[str, Any]:
-    """Return the time of a collision of the event-driven engine, in the gas of a timing."""
+    """Return the event-driven engine's time per collision in the gas of a timing."""
     dimension, fraction = run["gas"]
     return {
         "timed_dimension": dimension,
@@ -323,7 +330,7 @@ def _time_per_collision(run: dict) -> dict[str, Any]:
 def _steady(point: Point, rows: list[dict]) -> dict[str, Any]:
     """Return the error of Z in a long run of the time-stepped engine.
 
-    The error of the paired runs of its gas is subtracted.
+    The error of the paired runs of the same gas is subtracted.
     """
     own = point.settings
     long, fraction, dimension = pressure(point).z, own["packing_fraction"], own["dimension"]

@@ -1,9 +1,9 @@
-"""Choices for a gas in equilibrium: its collision rate, its compressibility factor Z and its D.
+"""Choices for a gas in equilibrium: its collision rate, compressibility factor Z, and D.
 
-The event-driven engine has no error but noise. Errors of time steps are measured, see
-`errors`. Errors of the DSMC engine follow from theory: its model lacks the contact value, the virial
-or the memory of collisions, and its steps change D by a law that `dsmc_convergence` confirms; only the effect
-of the few particles of a cell on the collisions of the Enskog model is measured.
+The event-driven engine has only a statistical error. Errors of time steps are measured; see `errors`. Errors
+of the DSMC engine follow from theory. Its model lacks the contact value, the virial or the memory of
+collisions. Its steps change D by a law that `dsmc_convergence` confirms. Only one of its errors is measured:
+the effect of the few particles per cell on the collisions of the Enskog model.
 """
 
 from __future__ import annotations
@@ -40,13 +40,13 @@ from gaspart.scene.species import Species
 
 
 def setting_name(rewind: bool, passes: int, precision: str) -> str:
-    """Return the name of a setting of the time-stepped engine in figures and claims."""
+    """Return the name of a time-stepped setting in figures and claims."""
     name = f"{passes} passes" if passes > 1 else "1 pass"
     return name + ("" if rewind else ", no rewinding") + (", float32" if precision == "float32" else "")
 
 
 def errors(point: Point) -> dict:
-    """Return the errors over the accepted time steps of a `compare` point, the longest first."""
+    """Return the errors of the accepted time steps of a `compare` point, the longest first."""
     run = xr.load_dataset(point.path)
     run = run.isel(setting=np.flatnonzero(run.refused == 0)).sortby("time_step", ascending=False)
     contacts = run.exact_collisions.sum("snapshot").values
@@ -83,9 +83,9 @@ def errors(point: Point) -> dict:
 
 
 def _difference(run: xr.Dataset, name: str, least: np.ndarray) -> np.ndarray:
-    """Compute the relative difference from the exact runs' sum, and its error.
+    """Compute the relative difference from the sum of the exact runs, and its error.
 
-    The shape is (2, setting); the error is from the snapshots.
+    The shape is (2, setting). The error is computed from the snapshots.
     """
     exact = run[f"exact_{name}"].values
     apart = run[name].values - exact
@@ -94,10 +94,10 @@ def _difference(run: xr.Dataset, name: str, least: np.ndarray) -> np.ndarray:
 
 
 def costs(point: Point) -> dict:
-    """Return the costs of a `measure_cost` point, per time simulated.
+    """Return the costs of a `measure_cost` point, per simulated time.
 
-    setting : "event", the name of the time-stepped engine's, or the model of the DSMC engine.
-    step_parts : steps of the latter, in its own.
+    setting : "event", the name of a time-stepped setting, or the model of the DSMC engine.
+    step_parts : steps of the DSMC engine divided by its default step.
     """
     run = xr.load_dataset(point.path)
     seconds, error = median(run.seconds.values)
@@ -120,9 +120,9 @@ def costs(point: Point) -> dict:
 
 
 def add_costs(row: dict, timed: list[dict]) -> None:
-    """Add the costs of a row's steps, where they were timed, and of the event-driven engine.
+    """Add the costs of a row's steps, if they were timed, and of the event-driven engine.
 
-    The latter are in the same gas.
+    All are for the same gas.
     """
     same = [timing for timing in timed if timing["gas"] == (row["dimension"], row["packing_fraction"])]
     event = next(timing for timing in same if timing["setting"] == "event")
@@ -145,13 +145,14 @@ def add_costs(row: dict, timed: list[dict]) -> None:
 
 OBSERVABLES = ("collision_rate", "Z", "D")
 BOUND = 2.0
-"""Standard errors that are added to a measured error, so that it is a bound."""
+"""Number of standard errors that are added to a measured error, so that it becomes a bound."""
 _VISCOSITY_UNCERTAINTY = 0.05
-"""Uncertainty of Enskog's viscosity, with which D is corrected for the size of the container [Yeh 2004]."""
+"""Relative uncertainty of Enskog's viscosity, used to correct D for the size of the container [Yeh 2004]."""
 
 
 QUANTILE = 1.96
-"""Half of a 95 % interval, in standard errors: figures compare engines at an accuracy of 95 % of all runs."""
+"""Half width of a 95 % interval, in standard errors. Figures compare engines at an accuracy that 95 % of all
+runs have."""
 
 
 @dataclass(frozen=True)
@@ -159,12 +160,12 @@ class Choice:
     """Option of `gaspart.accuracy`, with the errors that advice does not add.
 
     option : option whose noise is half of a 95 % interval.
-    decay : time in which the slowest trace of the initial state falls to 1/e (0: it is itself what is
-        measured).
+    decay : time in which the slowest trace of the initial state falls to 1/e; 0 if this decay itself is
+        measured.
     uncertainty : relative uncertainty of CPU times, from the timings.
-    finite_size : error left by theory's correction for the number of particles, which every engine has in
-        common and no cost removes.
-    trace : maximum relative change of the observable by the trace at first.
+    finite_size : error that remains after theory's correction for the number of particles. It is the same for
+        every engine and run length.
+    trace : maximum relative change of the observable by this trace, initially.
     """
 
     option: Option
@@ -176,8 +177,9 @@ class Choice:
     def parts(self, accuracy: float) -> dict[str, float]:
         """Compute the relative error by `PARTS` of a run for an accuracy.
 
-        The run is endless if the accuracy is out of reach. The mean of the initial state's trace over the
-        measurement is the part of the decay in that, times the remainder after equilibration.
+        If the accuracy is out of reach, the run is infinitely long. The trace of the initial state decays
+        during the measurement. Its mean is the decay time divided by the time of the measurement, times the
+        trace that remains after equilibration.
         """
         option = replace(self.option, accuracy=accuracy)
         length, remainder = option.measured, 0.0
@@ -205,10 +207,10 @@ def choice_of(gas: Gas, observable: str, candidate: Candidate, each: Estimate, n
 
 
 def finite_size(gas: Gas, observable: str) -> float:
-    """Compute the relative error that theory's correction for finite size leaves.
+    """Compute the relative error that remains after theory's correction for finite size.
 
-    It is the square of a correction of first order in 1/N; for D the uncertainty of the viscosity, and the
-    next order of hydrodynamics, see `displacement`.
+    It is the square of a correction of first order in 1/N. For D it is the uncertainty of the viscosity, and
+    the next order of hydrodynamics; see `displacement`.
     """
     correction = abs(getattr(bulk, f"finite_{declared[observable].bulk}")(gas)[0])
     if observable != "D":
@@ -220,8 +222,9 @@ def finite_size(gas: Gas, observable: str) -> float:
 def decay_of(gas: Gas, observable: str) -> tuple[float, float]:
     """Return the decay time of the slowest trace of the initial state, and its initial size.
 
-    The size is a maximum, relative to the observable. The trace is in the speeds, all of the observable; but
-    for D it is the longest shear wave, which carries what D lacks in a finite container.
+    The size is a maximum, relative to the observable. For most observables the trace is in the speeds, and
+    its size is 1. For D the trace is the longest shear wave, which carries the part of D that is missing in a
+    finite container.
     """
     eta = gas.packing_fraction
     speeds = 1.0 / (theory.KURTOSIS_RELAXATION_RATE[3] * float(theory.collision_rate(eta, 3)))
@@ -241,8 +244,8 @@ def _side(gas: Gas) -> float:
 class Cells:
     """Effect of the cells of the Enskog model at one packing fraction.
 
-    rate : collision rate divided by the rate of its equation.
-    bound : bound on the fraction of the collisions that is lost, from docs/dsmc.md.
+    rate : collision rate divided by the rate of the Enskog equation.
+    bound : bound on the fraction of lost collisions, from docs/dsmc.md.
     noise : relative variance times contacts, by observable.
     """
 
@@ -252,12 +255,12 @@ class Cells:
 
     @property
     def error(self) -> float:
-        """Bound on the relative error of the collision rate, and of all that follows from it."""
+        """Bound on the relative error of the collision rate, and of all results derived from it."""
         return abs(self.rate.value - 1.0) + BOUND * self.rate.error
 
 
 def cells_of(point: Point) -> Cells:
-    """Return the cells of a run of the Enskog model, relative to its equation."""
+    """Return the effect of cells in a run of the Enskog model, relative to its equation."""
     ((replica, expected),) = ((series_of(run), collision_rate(run)) for run in runs(point))
     assert expected is not None
     rate, uncertainty, _ = expected
@@ -270,9 +273,9 @@ def cells_of(point: Point) -> Cells:
 
 
 def cells_by_fraction(points: Iterable[Point], experiments: Sequence[str]) -> dict[float, Cells]:
-    """Return the cells of the points of some experiments, by packing fraction.
+    """Return the effect of cells at the points of some experiments, by packing fraction.
 
-    The packing fraction is in their settings.
+    The packing fraction is in the points' settings.
     """
     of = (point for point in points if point.experiment in experiments)
     return {float(point.settings["packing_fraction"]): cells_of(point) for point in of}
@@ -283,7 +286,7 @@ def choices(
 ) -> Iterator[Choice]:
     """Yield all settings of all engines that were timed in a gas of spheres.
 
-    `cells` are those for the Enskog model, None if unknown.
+    `cells` is the effect of cells in the Enskog model, or None if it is unknown.
     """
     same = [timing for timing in timed if timing["gas"] == (3, gas.packing_fraction)]
     event = next(timing for timing in same if timing["setting"] == "event")
@@ -310,7 +313,7 @@ def choices(
         of_cells = cells.error if cells and model == "enskog" else 0.0
         own = cells.noise.get(observable, variance) if cells and model == "enskog" else variance
         if model == "boltzmann" and observable == "Z":
-            own = 0.0  # it is 1, whatever happens
+            own = 0.0  # it is 1 in any case
         for step, each in zip(timing["time_step"], each_of(timing, rate), strict=True):
             engine = DSMC(float(step), model=model)
             steps = _error_of_steps(engine, gas) if observable == "D" else 0.0
@@ -318,7 +321,7 @@ def choices(
 
 
 def _error_of_steps(engine: Engine, gas: Gas) -> float:
-    """Return the relative error of D due to steps alone, as the engine states it."""
+    """Return the relative error of D due to time steps alone, as the engine estimates it."""
     species = Species(gas.count, 0.5 * gas.diameter, temperature=gas.temperature)
     scene = Scene(Container((_side(gas),) * 3, boundary="periodic"), species=(species,))
     return engine.bias(scene, "paths") - engine.bias(scene, "rates")
@@ -327,13 +330,13 @@ def _error_of_steps(engine: Engine, gas: Gas) -> float:
 def each_of(timed: dict, rate: float) -> Estimate:
     """Compute the CPU time per contact with each time step of a timing, (T,).
 
-    `rate` is the number of contacts per time.
+    `rate` is the number of contacts per simulated time.
     """
     return Estimate(timed["seconds"], timed["error"]) / rate
 
 
 def compare_steps(points: list[Point], timed: list[dict]) -> list[dict]:
-    """Return the errors of time steps with their costs, see `errors` and `add_costs`."""
+    """Return the errors of time steps with their costs; see `errors` and `add_costs`."""
     rows = [errors(point) for point in points if point.job == "compare"]
     for row in rows:
         add_costs(row, timed)

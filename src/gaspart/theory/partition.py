@@ -1,9 +1,10 @@
-"""Effects of cells and time steps on a gas simulated by direct simulation Monte Carlo (DSMC).
+"""Expected cost of dividing a gas into boxes, and the optimal number of boxes.
 
-Widths are in mean free paths l = 1 / (sqrt 2 pi n sigma^2), steps in l / c with c = sqrt(2 k_B T / m).
-Particles within a cell exchange momentum and energy at any distance. Within a step, all particles move before
-any collision takes place. Both effects are computed exactly in the first Sonine approximation, in which
-fluxes relax exponentially.
+The gas is dilute and between walls. A cubic (square) container of side L is divided into n boxes per side.
+A particle belongs to the box that contains its centre. Each pair of particles in the same box or in
+neighbouring boxes is tested once. Centres are uniform in [r, L - r] and no two centres are closer than a
+diameter; otherwise they are independent. For such centres all formulas are exact to first order in the
+density, that is for packing fractions below about 0.05.
 """
 
 from __future__ import annotations
@@ -15,123 +16,6 @@ import numpy as np
 
 from gaspart.scene.limits import ball_volume
 from gaspart.theory.geometry import Numbers, Values, check_ranges, checked_dimension
-from gaspart.theory.modes import wave_vectors
-
-CELL_COEFFICIENTS = {
-    "viscosity": 16.0 / (45.0 * math.pi),
-    "conductivity": 32.0 / (225.0 * math.pi),
-    "diffusion": 0.0,
-}
-"""Coefficients of (width / l)^2, spheres; Alexander, Garcia & Alder, Phys. Fluids 10, 1540 (1998), with its
-erratum, Phys. Fluids 12, 731 (2000). The displacement of a single particle transfers nothing to others, so
-cells do not change D.
-"""
-STEP_COEFFICIENTS = {
-    "viscosity": 16.0 / (75.0 * math.pi),
-    "conductivity": 64.0 / (675.0 * math.pi),
-    "diffusion": 4.0 / (27.0 * math.pi),
-}
-"""Coefficients of (c step / l)^2, spheres; Hadjiconstantinou, Phys. Fluids 12, 2634 (2000), confirmed by
-Garcia & Wagner, Phys. Fluids 12, 2621 (2000)."""
-
-
-def cell_factor(quantity: str, width: Numbers) -> Values:
-    """Compute a transport coefficient of spheres in cells divided by its value in small cells.
-
-    Parameters
-    ----------
-    quantity : {"viscosity", "conductivity", "diffusion"}
-        Transport coefficient.
-    width : array_like, [1]
-        Width of a cell in mean free paths.
-
-    Returns
-    -------
-    float or ndarray, same shape as `width`, [1]
-        Factor of the coefficient.
-
-    Notes
-    -----
-    1 + a width^2 with a from `CELL_COEFFICIENTS`, and <dx^2> = width^2 / 6 for two positions in a cell (exact
-    for any width).
-    """
-    return 1.0 + CELL_COEFFICIENTS[quantity] * np.square(width)
-
-
-def step_factor(quantity: str, step: Numbers) -> Values:
-    """Compute a transport coefficient of spheres with time steps divided by its value with short steps.
-
-    Parameters
-    ----------
-    quantity : {"viscosity", "conductivity", "diffusion"}
-        Transport coefficient.
-    step : array_like, [1]
-        Time step in mean free paths divided by sqrt(2 k_B T / m).
-
-    Returns
-    -------
-    float or ndarray, same shape as `step`, [1]
-        Factor of the coefficient.
-
-    Notes
-    -----
-    (x/2) coth(x/2) = 1 + x^2/12 - ..., where x is the step divided by the relaxation time of the flux. The
-    sum of the flux correlation over whole steps replaces the integral. The first order in the literature is
-    x^2/12, `STEP_COEFFICIENTS`.
-    """
-    half = np.sqrt(3.0 * STEP_COEFFICIENTS[quantity]) * np.maximum(step, 1e-6)  # limit of 0 / 0
-    return half / np.tanh(half)
-
-
-def diffusion_by_modes(
-    side: float, count: int, dimension: int, cells: int, path: float, spreading: float
-) -> float:
-    """Estimate the contribution of the fluctuating flow to the self-diffusion of a kinetic equation.
-
-    Parameters
-    ----------
-    side : float, [length]
-        Side of the periodic cube or square.
-    count : int
-        Number N of particles.
-    dimension : {2, 3}
-        Discs or spheres.
-    cells : int
-        Number of cells along each side.
-    path : float, [length]
-        Mean free path.
-    spreading : float, [length^2/time]
-        Kinematic viscosity plus diffusion coefficient, nu + D.
-
-    Returns
-    -------
-    float, [time]
-        Contribution to D, divided by k_B T / m.
-
-    Notes
-    -----
-    (1 / d N) sum over k of (d - 1) / [(nu + D) k^2]. This is the integral of the shear modes in `modes`,
-    which transport particles [1]_. The sum includes the wave vectors k that the cells resolve, up to half of
-    `cells` along each side, and only waves longer than 2 pi mean free paths. With a single cell no mode
-    contributes, because collision partners are drawn at any distance. This is a hydrodynamic estimate with a
-    relative uncertainty of a half.
-
-    References
-    ----------
-    .. [1] A. Donev, J. B. Bell, A. de la Fuente and A. L. Garcia, Phys. Rev. Lett. 106, 204501 (2011).
-    """
-    squares, numbers = wave_vectors(dimension, int(min(0.5 * cells, 0.5 * side / (math.pi * path))))
-    waves = (2.0 * math.pi / side) ** 2 * squares
-    return float((dimension - 1.0) / (dimension * count * spreading) * (numbers / waves).sum())
-
-
-# Expected cost of dividing a gas into boxes, and the optimal number of boxes.
-#
-# The gas is dilute and between walls. A cubic (square) container of side L is divided into n boxes per side.
-# A particle belongs to the box that contains its centre. Each pair of particles in the same box or in
-# neighbouring boxes is tested once. Centres are uniform in [r, L - r] and no two centres are closer than a
-# diameter; otherwise they are independent. For such centres all formulas are exact to first order in the
-# density, that is for packing fractions below about 0.05.
 
 
 def _shares(per_side: int, side: float, radius: float) -> np.ndarray:
