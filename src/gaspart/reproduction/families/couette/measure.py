@@ -36,7 +36,7 @@ _AXES = {"y": 0, "x": 1, "z": 2}
 
 
 def uniform(point: Point, blocks: int) -> dict[str, Any]:
-    """Measure the numbers of a uniformly sheared gas, as for a flow between walls.
+    """Measure the numbers of a uniformly sheared gas.
 
     viscosity : response divided by the Enskog viscosity at the instantaneous temperature.
     reduced_rate : stress divided by pressure.

@@ -198,9 +198,9 @@ def _walls(point: Point) -> dict[str, Any]:
     """Measure temperatures between two rough walls, relative to T_par at the start.
 
     T_par = m <v^2> for each direction along the walls. T_rot = I <w^2> for each spin component that a hit
-    changes. There are as many such components as directions. `exchange` is T_rot divided by theory, by least
-    squares until MIXING. `wall_ratio` is T_rot / T_par after MIXED, divided by theory. `wall_time` is t
-    sqrt(k_B T / m) / h.
+    changes. There are as many such components as directions. `exchange` is the ratio of T_rot to theory, from
+    a least-squares fit until MIXING. `wall_ratio` is T_rot / T_par after MIXED, divided by theory.
+    `wall_time` is t sqrt(k_B T / m) / h.
     """
     scene = point.scene
     kind, along = scene.species[0], np.array(scene.container.periodic)

@@ -106,11 +106,11 @@ def piston(points: list[Point], settings: dict) -> xr.Dataset:
 
     Particles have mass 1.
 
-    Points with a piston, without equilibration. Variables over (path, path_replica, frame) are volume and
-    temperature divided by their first values, and heating (see `_heating`). Variables over `path` are
-    dimension and the first packing_fraction.
+    The first kind are points with a piston and without equilibration. Variables over (path, path_replica,
+    frame) are volume and temperature divided by their first values, and heating (see `_heating`). Variables
+    over `path` are dimension and the first packing_fraction.
 
-    Points with a piston, with equilibration. Variables over (state, state_replica):
+    The second kind are points with a piston and with equilibration. Variables over (state, state_replica):
     density : packing fraction in the middle half of the volume
     factor : external pressure divided by this density and the temperature
     fluctuation : particle number times the variance of the volume, divided by the square of the volume at
@@ -119,7 +119,7 @@ def piston(points: list[Point], settings: dict) -> xr.Dataset:
 
     Variables over `state` are dimension and count.
 
-    Points without a piston. Variables over (expansion, expansion_replica):
+    The third kind are points without a piston. Variables over (expansion, expansion_replica):
     heat : final kinetic energy divided by the initial energy
     speed : final mean speed divided by its equilibrium value at the initial temperature
     share : fraction of particles in the half of the container that was empty

@@ -160,7 +160,7 @@ def _gas(timed: tuple[xr.Dataset, xr.Dataset], rule: float) -> dict[str, Any]:
 
 
 def _source(entry: dict, costs: list[xr.Dataset], gases: Table) -> dict[str, Any]:
-    """Return the results for a gas for which source A states a number, as in `ideal_boxes`."""
+    """Return the results of `ideal_boxes` for a gas for which source A states a number."""
     same = (gases.count == entry["count"]) & (gases.radius == entry["radius"])
     at = int(np.flatnonzero(same)[0])
     gas = gases[at]
@@ -235,9 +235,9 @@ def box_count(points: list[Point], settings: dict) -> xr.Dataset:
     boxes beyond a radius are left out. For ``in_reach``, boxes beyond a diameter are left out; they cannot
     contain a partner.
 
-    Over (``container``, ``fine``): ``fine_seconds`` and so on of two other scans. Their containers, with
-    sides ``container_side``, do and do not have round widths of boxes. Over ``power``: ``advantage``; see
-    `_advantages`. Over ``sector``: ``sector_seconds`` and so on, as in `per_event`.
+    Over (``container``, ``fine``): ``fine_seconds`` and so on of two other scans. Their containers have the
+    sides ``container_side``. One container has round widths of boxes, the other does not. Over ``power``:
+    ``advantage``; see `_advantages`. Over ``sector``: ``sector_seconds`` and so on, as in `per_event`.
 
     Scalars are the results of `ideal`, and with errors:
     source_penalty : time at the source's number divided by the least time
@@ -363,7 +363,7 @@ def _regime(part: dict, gases: Table) -> dict[str, Any]:
 def event_scaling(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure the cost of an event by each search method, against N.
 
-    The setting ``fit_from`` is the smallest N in the fits, for each search method. Over ``run``: ``search``,
+    The setting ``fit_from`` is, for each search method, the smallest N in the fits. Over ``run``: ``search``,
     ``dimension``, ``count``, and costs as in `per_event`. Over ``method`` (``method_search`` in
     ``method_dimension``): the exponents in N of time (``exponent``) and of pair tests (``work_exponent``) per
     event, with errors from the scatter. The scalar ``pairs_excess`` is for the search method "pairs". It is

@@ -232,8 +232,8 @@ def list_costs(runs: list[xr.Dataset], gases: xr.Dataset) -> xr.Dataset:
     """Return the costs per particle of neighbour lists, over ``listed``.
 
     The variables are ``list_seconds`` and so on, as in `per_particle`; ``list_count``, ``list_radius``; and
-    ``list_share``. The latter is the time, with error, divided by the time of the gas in `gases` with equal
-    count and radius. It is NaN without such a gas.
+    ``list_share``. ``list_share`` is the time divided by the time of the gas in `gases` with equal count and
+    radius, with error. It is NaN without such a gas.
     """
     costs = xr.concat(
         [per_particle(run).isel(partition=0) for run in runs], "listed", join="outer", compat="equals"
