@@ -17,11 +17,11 @@ from gaspart.keys.values import one_of
 from gaspart.scene.features import FEATURES
 
 if TYPE_CHECKING:
-    from gaspart.engines.conditions import Layers
     from gaspart.engines.dynamics import Dynamics
     from gaspart.scene.scene import Scene
     from gaspart.state.optional_tallies import OptionalTally
     from gaspart.state.state import State
+    from gaspart.theory.conditions import Conditions
 
 
 # Accuracy requests to engines, and their answers.
@@ -39,18 +39,14 @@ class AccuracyRequest:
     face : wall of a pressure
     transported : whether transport coefficients govern the observable
     initial : state at time 0, None if only the errors of models are requested
-    memory : relative change of transport by correlated collisions
-    points : relative deviation of the observable of points, None if theory does not know it
     """
 
     observable: str
     accuracy: float
-    conditions: Layers
+    conditions: Conditions
     face: str | None = None
     transported: bool = False
     initial: State | None = None
-    memory: float = 0.0
-    points: float | None = None
 
     @property
     def scene(self) -> Scene:

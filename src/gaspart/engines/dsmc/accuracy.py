@@ -17,8 +17,8 @@ from gaspart.engines.engine import AccuracyRequest, Candidate
 from gaspart.errors import SceneError
 
 if TYPE_CHECKING:
-    from gaspart.engines.conditions import Layers
     from gaspart.engines.dsmc.settings import DSMC
+    from gaspart.theory.conditions import Conditions
 
 DENSEST = 0.4
 """Packing fraction up to which the errors of the Enskog model are known."""
@@ -59,13 +59,14 @@ def candidate(engine: DSMC, request: AccuracyRequest) -> Candidate:
 def boltzmann_error(request: AccuracyRequest) -> float:
     """Bound the relative error of the Boltzmann equation, in which particles are points."""
     conditions, scene = request.conditions, request.scene
-    error = (request.memory if request.transported else 0.0) + _layers(request)
+    error = (conditions.memory if request.transported else 0.0) + _layers(request)
     if request.observable != "pressure":
         lost = _NORMAL[scene.dimension] * conditions.surfaces
         error += lost / (1.0 - lost) if lost < 1.0 else math.inf
     few = float((conditions.contact_of_few / conditions.contact).max()) - 1.0
-    if request.points is not None:
-        return float(error + few + request.points)
+    points = conditions.of_points(request.observable, request.face)
+    if points is not None:
+        return float(error + few + points)
     virial = float(conditions.virial.max())
     if math.isinf(virial):
         return math.inf
@@ -83,7 +84,7 @@ def enskog_error(request: AccuracyRequest, cells: tuple[int, ...] | None = None)
     conditions = request.conditions
     error = _STATIC + _layers(request)
     if request.transported:
-        error += request.memory
+        error += conditions.memory
     error += float((conditions.contact_of_few / conditions.contact).max()) - 1.0
     error += _AT_WALLS * float(conditions.filled.max()) * conditions.surfaces
     if request.observable == "pressure" and cells is not None:
@@ -112,7 +113,7 @@ def cell_error(engine: DSMC, request: AccuracyRequest) -> float:
     return float(error + (_lost(engine, conditions) if dense else 0.0))
 
 
-def require_resolved(engine: DSMC, conditions: Layers) -> None:
+def require_resolved(engine: DSMC, conditions: Conditions) -> None:
     """Raise SceneError for cells or steps that do not resolve an inhomogeneous gas.
 
     Cells and steps must not exceed the length or time over which the gas changes, nor its shortest free path
@@ -137,7 +138,7 @@ def require_resolved(engine: DSMC, conditions: Layers) -> None:
             raise SceneError(key, value, f"{text} {size:.2g}, more than {limit:.2g}, {name}")
 
 
-def cell_widths(engine: DSMC, conditions: Layers) -> np.ndarray:
+def cell_widths(engine: DSMC, conditions: Conditions) -> np.ndarray:
     """Return the sides (d,) of a cell, 0 along an axis without profile and cells.
 
     Such an axis has one cell between periodic faces and no profile.
@@ -150,7 +151,7 @@ def cell_widths(engine: DSMC, conditions: Layers) -> np.ndarray:
     return np.where(flat, 0.0, conditions.free / cells)
 
 
-def cells_of(engine: DSMC, conditions: Layers) -> tuple[int, ...]:
+def cells_of(engine: DSMC, conditions: Conditions) -> tuple[int, ...]:
     """Return the number of cells along each axis (d,), by default 1."""
     return tuple(np.broadcast_to(np.array(engine.cells_per_side or 1), conditions.free.shape).tolist())
 
@@ -168,7 +169,7 @@ def _layers(request: AccuracyRequest) -> float:
     return float(conditions.virial.max()) * math.sqrt(sigma / max(length, sigma))
 
 
-def _lost(engine: DSMC, conditions: Layers) -> float:
+def _lost(engine: DSMC, conditions: Conditions) -> float:
     """Return the fraction of collisions that the engine loses, weighted by collisions.
 
     Collisions are lost in cells with fewer particles than the mean.
