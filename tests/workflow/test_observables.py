@@ -9,10 +9,10 @@ from importlib import import_module
 import pytest
 
 from gaspart import analysis, theory
-from gaspart.analysis import bulk
 from gaspart.analysis.declaration import DIMENSIONS, powers_of, units_in
 from gaspart.analysis.observables import OBSERVABLES, about, observables_with
 from gaspart.reproduction.points.modules import PACKAGE
+from gaspart.theory import bulk
 from gaspart.theory.equations import carnahan_starling
 
 HOME = "analysis/observables.py"

@@ -13,7 +13,6 @@ from gaspart import theory
 from gaspart.accuracy.estimates import Component
 from gaspart.accuracy.option import Option
 from gaspart.accuracy.table import PRECISIONS
-from gaspart.analysis.bulk import EXACT
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import mean_of
 from gaspart.engines.engine import AccuracyRequest, Candidate
@@ -25,6 +24,7 @@ from gaspart.reproduction.families.tradeoff.uniform import BOUND, QUANTILE, Choi
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import entries
 from gaspart.scene.gas import Gas
+from gaspart.theory.bulk import EXACT
 from gaspart.theory.conditions import even_conditions
 
 # Choices for two gases out of equilibrium: heat flux between plates, relaxation of speeds. There is no exact
