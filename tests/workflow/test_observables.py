@@ -21,7 +21,7 @@ WORDS = {
     "rendering/view.py": "by what particles are coloured",
     "theory/geometry.py": "names of arguments",
     "errors/synonyms.py": "words of other programs",
-    "accuracy/conditions.py": "what differs between two columns of gas",
+    "theory/columns.py": "what differs between two columns of gas",
 }
 """Modules in which some of the names are words of something else, beside the families, whose data sets have
 columns of these names."""

@@ -16,7 +16,7 @@ from gaspart.accuracy.conditions import keeps_energy
 from gaspart.accuracy.target import Target
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
-from gaspart.theory.columns import Column, gravity_column, relative_change
+from gaspart.theory.columns import COMPARED, Column, gravity_column, relative_change
 from gaspart.theory.conditions import kinetic_temperature
 from gaspart.trajectory.reading import GIVEN_START
 from gaspart.yaml_text import parse_yaml
@@ -161,7 +161,7 @@ def _of_column(target: Target, deviation: float) -> float | None:
 def _change(target: Target, low: Column, middle: Column, high: Column) -> float:
     """Compute the difference of the observable between two columns, divided by its value."""
     columns = low, high, middle
-    if target.observable in ("collision_rate", "density"):
+    if target.observable in COMPARED:
         return relative_change(target.observable, *columns)
     if target.declared.of_impulses:
         pressed = [top for top in (False, True) if middle.pressure(top) > 0.0]

@@ -25,6 +25,8 @@ _POINTS = 1200
 _SCALES = 25.0
 """Height above the floor, in scale heights, beyond which the density of a column is negligible."""
 _ROUNDS = 40
+COMPARED = ("collision_rate", "temperature", "density")
+"""Observables by which columns are compared, besides pressures."""
 
 
 @dataclass(frozen=True)
@@ -192,8 +194,8 @@ def relative_change(
 ) -> float:
     """Compute the change of an observable between two columns, divided by its value in a third.
 
-    observable : collision_rate, temperature, density (root mean square), or pressure on the floor or at the
-        top.
+    observable : one of `COMPARED`, where density means the root mean square, or pressure.
+    top : for a pressure, True at the top and False on the floor.
     """
     if observable == "density":
         profiles = [
@@ -219,6 +221,5 @@ def compare_columns(real: Column, ideal: Column, observable: str, top: bool | No
     """
     if observable == "pressure" and top is not None:
         return relative_change(observable, real, ideal, real, top)
-    names = ("collision_rate", "temperature", "density")
-    differences = {name: relative_change(name, real, ideal, real) for name in names}
+    differences = {name: relative_change(name, real, ideal, real) for name in COMPARED}
     return differences.get(observable, max(differences.values()))
