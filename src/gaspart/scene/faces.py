@@ -35,15 +35,15 @@ if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
 
 FACES = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
-"""Keys of faces. In results they are named as walls, `x low`; users may write either."""
+"""Keys of faces. In results, faces are named as walls, such as `x low`. Users may write either form."""
 COMPONENTS = ("all", "normal")
 WAVEFORMS = ("sine", "sawtooth")
 FLOW, GRADIENT = 0, 1
-"""Axes of the flow of a sheared gas and of its gradient."""
+"""Axis of the flow of a sheared gas, and axis of its gradient."""
 
 
 FACE_KINDS: dict[str, type[Surface]] = {}
-"""All kinds of faces, by name; `Surface` adds each."""
+"""All kinds of faces, by name; the class `Surface` registers each kind."""
 
 
 @dataclass(frozen=True)
@@ -64,9 +64,9 @@ class Surface:
 
     @property
     def rule(self) -> tuple[str, float]:
-        """Name and parameter of the wall's effect on particles, as the kernels know it (`kernels.obstacles`).
+        """Name and parameter of the wall's effect on particles, for the kernels (`kernels.obstacles`).
 
-        The parameter is the only number on which the effect may depend: an energy or a momentum.
+        The parameter is the only number on which the effect may depend. It is an energy or a momentum.
         """
         return self.kind, 0.0
 
@@ -77,7 +77,7 @@ class Surface:
 
     @property
     def temperatures(self) -> tuple[float, ...]:
-        """Temperature of the face, or the temperatures of both its ends; () without a temperature."""
+        """Temperature of the face, or temperatures of its two ends; () without a temperature."""
         return ()
 
 
@@ -175,7 +175,7 @@ class Thermal(Surface):
         super().__post_init__()
         if self.components == "normal" and self.slides:
             raise SceneError("velocity", self.velocity, 'requires components "all"')
-        if self.accommodation == 1.0:  # absent everywhere, so that no other place has to ask
+        if self.accommodation == 1.0:  # absent everywhere, so that no other code has to test for this value
             set_fields(self, accommodation=None)
 
     @property
@@ -414,7 +414,7 @@ class Vibrating(Surface):
 
     @property
     def greatest_speed(self) -> float:
-        """Maximum speed of the wall, apart from the return of the sawtooth.
+        """Maximum speed of the wall, except during the return of the sawtooth.
 
         Examples
         --------
@@ -426,7 +426,7 @@ class Vibrating(Surface):
 
     @property
     def greatest_acceleration(self) -> float:
-        """Maximum acceleration of the wall, apart from the return of the sawtooth.
+        """Maximum acceleration of the wall, except during the return of the sawtooth.
 
         Examples
         --------
@@ -486,12 +486,12 @@ class Piston(Surface):
 
     Notes
     -----
-    The piston starts at the side of the container. With a mass and a pressure the piston starts at rest at
-    the side of the container. The side is its outermost position, where it bounces off without loss. The sum
-    of three energies is conserved: the kinetic energy of the piston, `pressure` times the volume, and the
-    energy of the particles. A light piston samples the ensemble of constant pressure and enthalpy [1]_, and a
-    heavy one compresses a gas adiabatically. A piston with a prescribed speed compresses a gas if it is slow
-    and drives a shock if it is fast. The particles gain its work.
+    The piston starts at the side of the container. With a mass and a pressure it starts at rest. The side is
+    its outermost position, where it bounces back without loss. The sum of three energies is conserved: the
+    kinetic energy of the piston, `pressure` times the volume, and the energy of the particles. A light piston
+    samples the ensemble of constant pressure and enthalpy [1]_, and a heavy one compresses a gas
+    adiabatically. A piston with a prescribed speed compresses a gas if it is slow and drives a shock if it is
+    fast. The particles gain its work.
 
     References
     ----------
@@ -722,7 +722,7 @@ SCHEMA = {
 
 
 def surface_from_dict(mapping: object, where: str) -> Surface:
-    """Return the face that {"kind": one of `FACE_KINDS`, setting: value, ...} describes.
+    """Return the face from a mapping {"kind": one of `FACE_KINDS`, setting: value, ...}.
 
     Parameters
     ----------
@@ -765,14 +765,14 @@ def surface_to_dict(surface: Surface) -> dict:
 
 
 def key_of(face: Any) -> Any:
-    """Return the key of a face from either of its names.
+    """Return the key of a face, from its key or its name as a wall.
 
     Other values are unchanged.
 
     Parameters
     ----------
     face : object
-        Name of a face, `x low` or `x_low`.
+        Name or key of a face, `x low` or `x_low`.
 
     Returns
     -------
@@ -801,7 +801,7 @@ def wall_of(face: Any) -> Any:
 
 
 def thermal_face(scene: Scene, name: str) -> Thermal:
-    """Return the face of a name, which must be at one temperature.
+    """Return the face of a name, which must be thermal with a uniform temperature.
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ from gaspart.theory.diffusion import ERPENBECK_WOOD_HIGHEST, erpenbeck_wood_rati
 from gaspart.theory.discretisation import contact_values
 
 _FREE = 0.02
-"""Minimum fraction of the volume that is free of a pair, where its contact value is evaluated."""
+"""Minimum fraction of the volume that is accessible to a pair where its contact value is evaluated."""
 _HELD = 0.02
 """Smallest fraction of the particles in a layer that counts in the shortest length scale."""
 
@@ -35,11 +35,10 @@ class Conditions:
     ----------
     scene : scene
     share : array (S,), fraction of all particles in each layer
-    crowding : (S,), density divided by the density of a gas that fills evenly the volume that centres can
-        reach
+    crowding : (S,), density divided by the density of a gas that fills the accessible volume homogeneously
     temperature : (S,), k_B T
     axis : axis of the layers, None for a homogeneous gas
-    scale : shortest length along the axis over which density or temperature change by the factor e
+    scale : shortest length along the axis over which density or temperature changes by a factor e
     columns : under gravity, the columns of the real and of the ideal gas, None if theory does not cover them
     """
 
@@ -53,13 +52,13 @@ class Conditions:
 
     @cached_property
     def free(self) -> np.ndarray:
-        """Lengths that centres can reach, shape (d,)."""
+        """Accessible lengths for centres, shape (d,)."""
         lower, upper = self.scene.reach(self.scene.smallest_radius)
         return np.subtract(upper, lower)
 
     @cached_property
     def _kinds(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Radii, masses and mean number densities (K,) of the kinds of particles that move."""
+        """Radii, masses and mean number densities (K,) of the kinds of moving particles."""
         kinds = self.scene.moving_kinds
         radii = np.array([kind.radius for kind in kinds])
         masses = np.array([kind.mass for kind in kinds])
@@ -67,26 +66,27 @@ class Conditions:
 
     @cached_property
     def filled(self) -> np.ndarray:
-        """Packing fraction in the volume that centres can reach, shape (S,)."""
+        """Packing fraction in the accessible volume, shape (S,)."""
         radii, _, numbers = self._kinds
         d = self.scene.dimension
         return self.crowding * ball_volume(d) * float((numbers * radii**d).sum())
 
     @cached_property
     def contact(self) -> np.ndarray:
-        """Contact value of an infinite gas, the largest of all pairs of kinds, shape (S,)."""
+        """Contact value of an infinite gas, the maximum over all pairs of kinds, shape (S,)."""
         radii, _, numbers = self._kinds
         d = self.scene.dimension
         return np.array([float(contact_values(numbers * ratio, radii, d).max()) for ratio in self.crowding])
 
     @cached_property
     def contact_of_few(self) -> np.ndarray:
-        """Contact value for the number of particles, shape (S,); inf without space for a pair.
+        """Contact value for the number of particles, shape (S,); inf if no pair fits.
 
-        A pair at contact need not avoid itself. The result is the contact value of the other particles times
-        1 / (1 - v / V), where v is the volume from which one particle of a pair excludes the centre of the
-        other. The factor is exact for two particles. To first order in the packing fraction of spheres it is
-        1 + (5/2 + 3/N) eta: 4 eta for two, 5/2 eta for many.
+        A particle of a pair in contact does not exclude volume from itself. So the result is the contact
+        value of the other particles times 1 / (1 - v / V). Here v is the volume from which one particle of
+        the pair excludes the centre of the other. The factor is exact for two particles. To first order in
+        the packing fraction of spheres the result is 1 + (5/2 + 3/N) eta: 4 eta for two particles, 5/2 eta
+        for many.
         """
         radii, _, numbers = self._kinds
         d, count = self.scene.dimension, self.scene.count
@@ -98,12 +98,12 @@ class Conditions:
 
     @cached_property
     def virial(self) -> np.ndarray:
-        """Local Z - 1, shape (S,)."""
+        """Local value of Z - 1, shape (S,)."""
         return 2.0 ** (self.scene.dimension - 1) * self.filled * self.contact_of_few
 
     @cached_property
     def path(self) -> np.ndarray:
-        """Mean free path of the kind that has the shortest one, shape (S,)."""
+        """Mean free path of the kind with the shortest mean free path, shape (S,)."""
         radii, _, numbers = self._kinds
         d = self.scene.dimension
         sigma = radii[:, None] + radii
@@ -120,17 +120,16 @@ class Conditions:
 
     @property
     def contrast(self) -> float:
-        """Shortest free path of a homogeneous gas divided by the shortest one here."""
+        """Shortest mean free path of a homogeneous gas divided by the shortest one in these layers."""
         radii, _, numbers = self._kinds
         even = float(contact_values(numbers, radii, self.scene.dimension).max())
         return float((self.crowding * self.contact).max() / even)
 
     @cached_property
     def surfaces(self) -> float:
-        """Fraction of all contacts that lack a neighbour beyond a wall, to first order.
+        """Fraction of contacts with a missing neighbour because of a wall, to first order.
 
-        The largest diameter, divided by the length that particles can reach, is summed over the axes with
-        walls.
+        It is the largest diameter divided by the accessible length, summed over the axes with walls.
         """
         sides = np.where(self.scene.container.periodic, math.inf, self.free)
         if self.axis is not None and math.isfinite(sides[self.axis]):
