@@ -17,7 +17,6 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.analysis import bulk
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.expected.equilibrium import collision_rate, compressibility_factor
 from gaspart.analysis.motion import average_correlations
@@ -30,6 +29,7 @@ from gaspart.reproduction.families.shared.runs import series_of
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, entries, table
 from gaspart.scene.gas import plain_gas
+from gaspart.theory import bulk
 from gaspart.theory.heat import free_molecular_flux
 from gaspart.trajectory.reading import open_trajectory
 

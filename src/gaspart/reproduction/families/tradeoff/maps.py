@@ -10,11 +10,9 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.accuracy.conditions import even_conditions
 from gaspart.accuracy.estimates import Component
 from gaspart.accuracy.option import Option
 from gaspart.accuracy.table import PRECISIONS
-from gaspart.analysis.bulk import EXACT
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import mean_of
 from gaspart.engines.engine import AccuracyRequest, Candidate
@@ -26,6 +24,8 @@ from gaspart.reproduction.families.tradeoff.uniform import BOUND, QUANTILE, Choi
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import entries
 from gaspart.scene.gas import Gas
+from gaspart.theory.bulk import EXACT
+from gaspart.theory.conditions import even_conditions
 
 # Choices for two gases out of equilibrium: heat flux between plates, relaxation of speeds. There is no exact
 # theory in a dense gas. Therefore each engine is run. The error is bounded by the difference from the
@@ -139,8 +139,7 @@ def _candidate(point: Point) -> Candidate:
     scene, engine = point.scene, point.engine.for_scene(point.scene, point.schedule.sample_interval)
     if engine.equation == EXACT:
         return Candidate(engine, discretisation=engine.bias(scene, "fluxes"))
-    even = even_conditions(scene, 1.0)
-    return engine.candidate(AccuracyRequest("heat_flux", 1.0, even, transported=True, memory=even.memory))
+    return engine.candidate(AccuracyRequest("heat_flux", 1.0, even_conditions(scene, 1.0), transported=True))
 
 
 def flow_choices(flows: Sequence[Flow], count: int, speeds: Mapping[str, Estimate]) -> Iterator[Choice]:

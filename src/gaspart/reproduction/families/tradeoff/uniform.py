@@ -20,7 +20,7 @@ from gaspart.accuracy import table
 from gaspart.accuracy.option import Option, fluid_option
 from gaspart.accuracy.table import PRECISIONS
 from gaspart.accuracy.tabulated import model_error
-from gaspart.analysis import bulk, statistics
+from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.expected.equilibrium import collision_rate
 from gaspart.analysis.observables import OBSERVABLES as declared
@@ -35,6 +35,7 @@ from gaspart.scene.container import Container
 from gaspart.scene.gas import Gas
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
+from gaspart.theory import bulk
 
 # Errors of time-stepped settings, and costs of all engines, from `compare` and `measure_cost` jobs.
 
