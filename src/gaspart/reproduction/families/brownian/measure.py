@@ -197,6 +197,7 @@ def brownian_msd(points: list[Point], settings: dict) -> xr.Dataset:
     be `share` and g the friction. Then the velocity autocorrelation is (k_B T / M)(1 - s)(exp(-g' t) + s),
     with g' = g / (1 - s). The constant part is subtracted from the autocorrelation and from the mean-squared
     displacement (msd). The results are converted to an infinite gas:
+
     equipartition : M <V^2> / (3 k_B T (1 - s))
     measured_friction : (1 - s) times the decay rate, which is the slope of ln C until FRICTION_TO
     measured_diffusion : D times the msd at DIFFUSION_AT, divided by the msd of the Langevin equation

@@ -35,13 +35,12 @@ def buoyancy(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure fixed and free discs in a fluid, and the source's free discs.
 
     Fixed discs differ in height, free discs in mass. The settings are:
+
     source : experiments with the source's fluid
     bins : number of bins of height
     blocks : number of blocks of each replica
-    clear : distance from floor and ceiling where small discs form layers and hydrostatics does not hold, in
-        small diameters
-    far : horizontal distance from the edge of the large disc beyond which the fluid is undisturbed, in small
-        diameters
+    clear : distance from floor and ceiling, in small diameters, without hydrostatics due to layers of discs
+    far : horizontal distance from the large disc's edge to undisturbed fluid, in small diameters
     near : distance from the large disc within which missing small discs are counted, in small diameters
     source_density : density at which a disc floats in the middle, as estimated by the source
 

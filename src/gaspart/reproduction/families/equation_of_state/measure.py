@@ -69,8 +69,8 @@ def equation_of_state(points: list[Point], settings: dict) -> xr.Dataset:
     The first of them is claimed.
 
     Variables over `packing_fraction` (ascending):
-    Z : compressibility factor with its error, for the infinite system; -finite_size, of first order in 1/N,
-        has been added
+
+    Z : compressibility factor with its error, for the infinite system; -finite_size, of order 1/N, is added
     poisson_error : (Z-1)/sqrt(collisions)
     reference : reference value of Z, with its error
     collision_rate : collision rate with its error, divided by Enskog's rate for N particles
@@ -188,6 +188,7 @@ def radius_grid(points: list[Point], settings: dict) -> xr.Dataset:
     "count".
 
     Variables over `point`, NaN if they do not apply:
+
     series, engine : series, and "event" or "step"
     radius, count, packing_fraction, boxes_per_side : properties of the gas and of the partition
     Z, Z_error, finite_size : of event-driven points, corrected to the infinite system

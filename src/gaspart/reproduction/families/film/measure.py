@@ -49,11 +49,13 @@ def thin_film(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure profiles and pressures of slits of several widths at one chemical potential.
 
     The numbers of spheres are chosen for equal chemical potentials. The settings are:
+
     bulk_packing_fraction : packing fraction of the bulk fluid that is (nearly) in equilibrium with all slits
     insertions : number of Widom's trial insertions for each width
     theory_widths : [first, last, number] of the widths of the theoretical curve
 
     Variables over `width`, the distance between the surfaces of the walls in diameters:
+
     pressure, contact : pressure, and density rho(0) at contact (k_B T = 1), each with _error
     truncation : error of the cubic, for the contact value of the density functional
     chemical_potential : chemical potential with _error

@@ -283,8 +283,7 @@ def speed_up(cores: ArrayLike, count: ArrayLike, serial: float, overhead: float)
     Source: AFIPS Conf. Proc. 30, 483 (1967).
 
     serial : fraction s of the work that runs on one core.
-    overhead : number of particles N_0 whose work on one core takes as long as starting and joining the
-        threads.
+    overhead : number of particles N_0 whose work on one core takes as long as starting and joining threads.
     """
     shared, waited = (1.0 - serial) / np.asarray(cores), overhead / np.asarray(count)
     return np.asarray(1.0 / (serial + shared + waited))

@@ -61,7 +61,7 @@ class Outcome:
     overlap : deepest observed overlap, in contact distances.
     contacts, missed : number of contacts of particles and walls, and number of missed contacts (negative if
     contacts are spurious).
-    seconds : CPU time in s.
+    seconds : wall-clock time in s.
     bits : digest of the final state.
     """
 
@@ -233,10 +233,11 @@ def stability_extremes(points: list[Point], settings: dict) -> xr.Dataset:
     """Run all rows of the table, or the rows of the groups in the setting `groups`.
 
     There are no points. Variables over row and engine:
+
     verdict : "passes", "refused", "fails" or "hangs"
     message : message of the rejection or failure
     energy, momentum, overlap, contacts, missed : see `Outcome`
-    seconds : CPU time in s
+    seconds : wall-clock time in s
     refusal : 1 if rejection is the expected result
 
     Over row are `group`, and `expected`, the exact number of contacts; -1 if the search of all pairs is the
@@ -289,6 +290,7 @@ def reversibility(points: list[Point], settings: dict) -> xr.Dataset:
     diameters).
 
     Variables over ``row``; those from growth to memory have an ``_error`` over seeds:
+
     dimension, packing_fraction, count, side : gas, with the side in diameters
     engine, precision : engine and its precision
     growth : growth of the logarithm of the echo per collision of a particle

@@ -75,6 +75,7 @@ def coefficient(point: Point, flux: str, enskog: Callable[..., Any]) -> dict[str
     """Measure a transport coefficient of a point, divided by Enskog's, from a flux.
 
     The fluxes are named in `trajectory.correlator.STRESS`. All numbers are estimates.
+
     value : integral of the correlation up to the longest lag
     growth : half of the slope of Helfand's squared change, between lags `LATE` and 1 of the longest
     difference : growth divided by the mean of the integral between these lags, minus 1, from the same runs
