@@ -68,7 +68,10 @@ def read_numbers(config: dict, files: Sequence[str | Path]) -> None:
 
 
 def _read_numbers(block: Any, held: list[Any]) -> None:
-    """Convert the numbers of a block; `held` has this block of each file."""
+    """Convert the numbers of a block.
+
+    `held` lists the same block of each file.
+    """
     for key, value in block.items() if isinstance(block, dict) else enumerate(block):
         below = []
         for part in held:

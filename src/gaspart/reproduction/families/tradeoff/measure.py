@@ -245,7 +245,7 @@ def _speeds(timed: list[dict]) -> dict[tuple[str, str], float]:
 
 
 def _by_table(gas: Gas, choice: uniform.Choice, observable: str, speeds: dict) -> Option:
-    """Return the option of a choice, with errors and times from the table.
+    """Return the option of a choice, but with errors and times from the table.
 
     Times are converted to this machine.
     """

@@ -161,11 +161,10 @@ class Choice:
     """Option of `gaspart.accuracy`, with the errors that advice does not add.
 
     option : option whose noise is half of a 95 % interval.
-    decay : time in which the slowest trace of the initial state falls to 1/e; 0 if this decay itself is
-        measured.
+    decay : time in which the initial state's slowest trace falls to 1/e; 0 if this decay is measured.
     uncertainty : relative uncertainty of CPU times, from the timings.
-    finite_size : error that remains after theory's correction for the number of particles. It is the same for
-        every engine and run length.
+    finite_size : error that remains after theory's correction for finite size, equal for all engines and
+        runs.
     trace : maximum relative change of the observable by this trace, initially.
     """
 
