@@ -338,7 +338,7 @@ def _grid_values(block: Any) -> Iterator[tuple[str, object]]:
 
 
 def explain_error(error: SceneError, config: dict, module: bool) -> SceneError:
-    """Return an error of a config, with an explanation if all keys are missing.
+    """Return an error of a config; add an explanation if all keys are missing.
 
     `config` is the merged config. `module` is True if another workflow uses this one as a module.
     """

@@ -96,7 +96,7 @@ def point_files(run: Finished) -> list[PointFile]:
 
 
 def inputs_of(measurement: Path) -> list[str]:
-    """Return the points, or tables of claims, from which a measurement was made, as it states."""
+    """Return the points, or tables of claims, that a measurement states as its origin."""
     from netCDF4 import Dataset
 
     with Dataset(measurement) as file:

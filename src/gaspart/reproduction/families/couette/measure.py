@@ -36,12 +36,11 @@ _AXES = {"y": 0, "x": 1, "z": 2}
 
 
 def uniform(point: Point, blocks: int) -> dict[str, Any]:
-    """Measure the numbers of a uniformly sheared gas, as for a flow between walls.
+    """Measure the numbers of a uniformly sheared gas.
 
     viscosity : response divided by the Enskog viscosity at the instantaneous temperature.
     reduced_rate : stress divided by pressure.
-    normal_x, normal_y, normal_z : pressure along gradient, flow and vorticity, divided by their mean, minus
-        1.
+    normal_x, normal_y, normal_z : pressure along gradient, flow and vorticity over their mean, minus 1.
 
     Errors are jackknife errors over blocks of time. Each run has `blocks` of them.
     """
@@ -86,24 +85,22 @@ def couette(points: list[Point], settings: dict) -> xr.Dataset:
     `_freedom` marks the degrees of freedom of an error `_error`.
 
     Variables of each flow:
+
     part, engine : part of the figure, and engine
     packing_fraction : packing fraction in the middle
     knudsen : mean free path divided by the gap
     speed : difference of the velocities of the walls
     stress : stress divided by the stress of free flight
-    viscosity : stress divided by the gradient in the middle, relative to Enskog theory at the local density
-        and temperature, including the errors of cells and steps of DSMC
-    slip : velocity of the gas relative to the wall, extrapolated from the middle, divided by the mean free
-        path and the gradient there
+    viscosity : stress over gradient in the middle, relative to Enskog theory there (with errors of DSMC)
+    slip : gas velocity relative to the wall, extrapolated from the middle, over mean free path and gradient
     heating : -dT/du^2 in the middle
-    normal_x, normal_y, normal_z : kinetic energy of each component in the middle, divided by their mean,
-        minus 1
+    normal_x, normal_y, normal_z : kinetic energy of each component in the middle over their mean, minus 1
     pressure : pressure on the walls divided by the pressure of the equation of state
     reduced_rate : stress divided by pressure
     place, flow, temperature : position, velocity and temperature, by bin
 
-    Uniformly sheared gases have the variables of `uniform`. Equilibrium points have packing_fraction, and
-    `viscosity` by Green and Kubo.
+    The errors of DSMC are due to its cells and steps. Uniformly sheared gases have the variables of
+    `uniform`. Equilibrium points have packing_fraction, and `viscosity` by Green and Kubo.
     """
     gases = [
         (part, point)

@@ -46,6 +46,7 @@ def dsmc_convergence(points: list[Point], settings: dict) -> xr.Dataset:
     plates. The dimension is point. The suffix `_freedom` marks the degrees of freedom of an error `_error`.
 
     Each point has part and engine. Further variables depend on the part:
+
     width, step : resolution, of dilute gases
     viscosity, conductivity, diffusion : coefficients divided by their exact values, of dilute gases
     transfer : viscosity due to transfer at collisions, divided by the exact viscosity, of dilute gases

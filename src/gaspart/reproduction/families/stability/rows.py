@@ -170,7 +170,7 @@ def falling_gas(gravity: float) -> Scene:
 
 
 def few(count: int) -> Scene:
-    """Return a gas of `count` discs, with a further species of no discs."""
+    """Return a gas of `count` discs, with an additional empty species."""
     return gas(Species(count, 0.5, speed=1.0), Species(0, 0.7, temperature=1.0), side=3.0)
 
 

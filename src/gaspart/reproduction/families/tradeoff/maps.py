@@ -169,7 +169,8 @@ def flow_choices(flows: Sequence[Flow], count: int, speeds: Mapping[str, Estimat
 def errors_of(flow: Flow, event: Flow) -> tuple[float, float]:
     """Return bounds on the errors of model and discretisation.
 
-    They are the theoretical bounds, or the total difference of the runs if this is smaller.
+    The theoretical bounds are used, unless the measured difference from the event-driven engine gives a
+    smaller bound.
     """
     bounds = flow.candidate
     if bounds.engine.reference:
@@ -187,8 +188,8 @@ def maps(points: Sequence[Point], settings: dict, timed: list[dict], compared: l
     """Compute the costs of all engines in spheres of every timed density.
 
     The points belong to the experiments `cells`, `plates`, `plates_cost` and `relaxation` in settings, and
-    others. `timed` and `compared` are explained in `uniform`. Further settings are ``counts`` of particles,
-    of which the first is used for the map, ``accuracies``, and ``blocks`` of each run between plates.
+    others. `timed` and `compared` are explained in `uniform`. Further settings are ``counts`` of particles
+    (the map uses the first), ``accuracies``, and ``blocks`` of each run between plates.
 
     Over (``quantity``, ``fraction``, ``accuracy``, ``solver``): ``cost`` in s of the cheapest setting, with
     its uncertainty from the timings. It is infinite if no setting is known to be as accurate, and NaN if the
