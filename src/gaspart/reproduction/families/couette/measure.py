@@ -153,7 +153,7 @@ class FlowBetweenPlates:
         """Return the flow of a point."""
         scene = point.scene
         gap, diameter, dilute = Gap.of(scene), 2.0 * scene.smallest_radius, point.engine.equation != "exact"
-        path = float(_path(scene.count / (gap.length * gap.area), diameter, dilute))
+        path = _path(scene.count / (gap.length * gap.area), diameter, dilute)
         position = gap.grid(settings["bins"]).middles[0] - 0.5 * gap.length
         clear = min(settings["clear"] * max(path, 0.0 if dilute else diameter), gap.length / 3.0)
         coarse = _coarseness(point, gap, path) if dilute else 1.0
@@ -174,8 +174,7 @@ def _speed(scene: Scene) -> float:
 def _path(density: float, diameter: float, dilute: bool) -> float:
     """Compute the mean free path; if `dilute`, the spheres occupy no volume."""
     eta = float(theory.packing_fraction(density, 3, diameter))
-    path = float(theory.mean_free_path(eta, 3, diameter))
-    return path * float(theory.contact_value(eta, 3)) if dilute else path
+    return float(theory.mean_free_path(eta, 3, diameter, contact=1.0 if dilute else None))
 
 
 def _coarseness(point: Point, gap: Gap, path: float) -> float:
