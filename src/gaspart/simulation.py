@@ -439,7 +439,7 @@ class Simulation:
         return self._dynamics.tally
 
     def sums_of(self, tally: str) -> np.ndarray:
-        """Return the sums of an optional tally, as in `tally` but read faster.
+        """Return the sums of an optional tally, faster than by `tally`.
 
         Parameters
         ----------
@@ -449,8 +449,8 @@ class Simulation:
         Returns
         -------
         ndarray
-            The sums. For "stress", shape (2 d^2 + d,): the sums of the stress tensor, of its collisional part
-            and of the heat flux.
+            The sums. For "stress", the shape is (2 d^2 + d,). The array has the sums of the stress tensor, of
+            its collisional part and of the heat flux.
 
         Raises
         ------

@@ -8,11 +8,13 @@ import pytest
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.accuracy.conditions import even_conditions, gravity_column, known_conditions, measured_conditions
+from gaspart.accuracy.conditions import measured_conditions
 from gaspart.accuracy.option import candidates, make_request
 from gaspart.accuracy.target import Target
 from gaspart.engines.dsmc.accuracy import boltzmann_error, cell_error, enskog_error, require_resolved
 from gaspart.state.initial import initial_state
+from gaspart.theory.columns import gravity_column
+from gaspart.theory.conditions import even_conditions, known_conditions
 
 SLIT = ("periodic", "periodic", "wall")
 

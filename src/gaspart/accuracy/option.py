@@ -12,7 +12,6 @@ import os
 from dataclasses import dataclass
 
 from gaspart import theory
-from gaspart.accuracy.conditions import Conditions
 from gaspart.accuracy.estimates import Component
 from gaspart.accuracy.table import EQUILIBRATION as EQUILIBRATED
 from gaspart.accuracy.table import LEAST
@@ -24,6 +23,7 @@ from gaspart.engines.engine import AccuracyRequest, Candidate
 from gaspart.errors import SceneError
 from gaspart.scene.gas import Gas
 from gaspart.scene.scene import Scene
+from gaspart.theory.conditions import Conditions
 from gaspart.trajectory.recipe import MOST_REPLICAS
 
 WORTH = 1.5
@@ -198,10 +198,7 @@ def make_request(target: Target, accuracy: float, conditions: Conditions) -> Acc
     governed = depends_on_transport(target.scene, target.observable)
     presses = target.declared.of_impulses  # a force has the same relative error as a pressure
     observable = "pressure" if presses else target.observable
-    return AccuracyRequest(
-        observable, accuracy, conditions, target.face, governed, target.initial,
-        memory=conditions.memory, points=conditions.of_points(observable, target.face),
-    )  # fmt: skip
+    return AccuracyRequest(observable, accuracy, conditions, target.face, governed, target.initial)
 
 
 def depends_on_transport(scene: Scene, observable: str) -> bool:

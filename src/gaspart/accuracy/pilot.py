@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from gaspart.accuracy.conditions import Conditions, measured_conditions
+from gaspart.accuracy.conditions import measured_conditions
 from gaspart.accuracy.estimates import Component, components, of_face
 from gaspart.accuracy.option import candidates, suitable_engines
 from gaspart.accuracy.target import SEED, Target
@@ -29,6 +29,7 @@ from gaspart.kernels.compile.cache import cache_directory
 from gaspart.kernels.compile.policy import source_digest
 from gaspart.simulation import Simulation
 from gaspart.state.given import state_at_time_zero
+from gaspart.theory.conditions import Conditions
 from gaspart.trajectory.last_state import last_state
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import Recipe

@@ -20,13 +20,13 @@ from gaspart.accuracy.scatter import Scatter, start_scatter
 from gaspart.accuracy.table import EQUILIBRATION as EQUILIBRATED
 from gaspart.accuracy.table import LEAST
 from gaspart.accuracy.target import Target, rounded_to_12_digits
-from gaspart.analysis import bulk
 from gaspart.analysis.pairs import MOST_FRAMES
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine
 from gaspart.keys.values import number
 from gaspart.scene.gas import Gas
 from gaspart.scene.scene import Scene
+from gaspart.theory import bulk
 from gaspart.trajectory.recipe import MOST_REPLICAS, Recipe
 from gaspart.trajectory.replicas import differ
 from gaspart.trajectory.until import Requirement, Until

@@ -11,14 +11,13 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from gaspart import theory
-from gaspart.accuracy.conditions import gravity_column, keeps_energy, kinetic_temperature
+from gaspart.accuracy.conditions import keeps_energy
 from gaspart.accuracy.target import Target
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
-from gaspart.theory.columns import Column
+from gaspart.theory.columns import COMPARED, Column, gravity_column, relative_change
+from gaspart.theory.conditions import kinetic_temperature
 from gaspart.trajectory.reading import GIVEN_START
 from gaspart.yaml_text import parse_yaml
 
@@ -161,20 +160,10 @@ def _of_column(target: Target, deviation: float) -> float | None:
 
 def _change(target: Target, low: Column, middle: Column, high: Column) -> float:
     """Compute the difference of the observable between two columns, divided by its value."""
-    by_temperature = (high.temperature - low.temperature) / middle.temperature
-    if target.observable == "collision_rate":
-        return abs(high.collisions - low.collisions) / middle.collisions
-    if target.observable == "density":
-        z = middle.heights
-        profiles = [
-            np.interp(z, column.heights, column.numbers.sum(axis=0), right=0.0) for column in (low, high)
-        ]
-        exact = middle.numbers.sum(axis=0)
-        return float(np.sqrt(((profiles[1] - profiles[0]) ** 2).sum() / (exact**2).sum()))
+    columns = low, high, middle
+    if target.observable in COMPARED:
+        return relative_change(target.observable, *columns)
     if target.declared.of_impulses:
-        changes = []
-        for top in (False, True):
-            if middle.pressure(top) > 0.0:
-                changes.append(abs(high.pressure(top) - low.pressure(top)) / middle.pressure(top))
-        return max(changes)
-    return max(target.declared.power, 0.5) * by_temperature
+        pressed = [top for top in (False, True) if middle.pressure(top) > 0.0]
+        return max(relative_change("pressure", *columns, top) for top in pressed)
+    return max(target.declared.power, 0.5) * relative_change("temperature", *columns)

@@ -13,13 +13,13 @@ from gaspart import theory
 from gaspart.accuracy import table
 from gaspart.accuracy.option import Option, fluid_option, sort_by_cost
 from gaspart.accuracy.target import Target
-from gaspart.analysis import bulk
 from gaspart.analysis.observables import OBSERVABLES, observables_with
 from gaspart.engines import Engine
 from gaspart.engines.engine import Candidate
 from gaspart.errors import SceneError
 from gaspart.scene.gas import Gas, plain_gas
 from gaspart.scene.scene import Scene
+from gaspart.theory import bulk
 
 # Errors of a gas in equilibrium due to the kinetic equation and the time step, from theory.
 

@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from gaspart.accuracy.conditions import Conditions, known_conditions
 from gaspart.analysis.diffusion import LINEAR_FROM
 from gaspart.analysis.impulses import USUAL_BINS, knows_energies, useful_impulses
 from gaspart.analysis.observables import (
@@ -33,6 +32,7 @@ from gaspart.simulation import Simulation
 from gaspart.state.initial import initial_state
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
+from gaspart.theory.conditions import Conditions, known_conditions
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.run_options import required_contents
 

@@ -119,7 +119,7 @@ class Named:
     Theory for comparison:
 
     theory : function in `analysis.expected` that computes the theory for the equation of the engine.
-    bulk : function of `analysis.bulk` for an infinite plain gas and each equation.
+    bulk : function of `theory.bulk` for an infinite plain gas and each equation.
     source : source of the theoretical value for the exact dynamics; {state} stands for the equation of state.
     mixture : function of `gaspart.theory` for a mixture; "" without one.
 

@@ -10,7 +10,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from gaspart.analysis.bulk import EXACT
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.expected.equilibrium import describe, equation_of
 from gaspart.analysis.impulses import estimator, mixture
@@ -21,6 +20,7 @@ from gaspart.analysis.statistics import correlated_mean, histogram_means
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number
 from gaspart.state.tally import FURTHEST, PairImpulseTally
+from gaspart.theory.bulk import EXACT
 from gaspart.theory.geometry import unit_sphere_surface
 from gaspart.theory.speeds import mean_speed_factor
 from gaspart.trajectory.pairs import pair_names, pairs_of

@@ -87,7 +87,7 @@ def _advise(options: argparse.Namespace) -> None:
 
 
 def _lines(plan: Plan, file: str) -> list[str]:
-    """Return the advice as text; `file` is the scene's, for the command."""
+    """Return the advice as text; `file` is the scene file, which the advised command names."""
     best, target = plan.best, plan.target
     notes = best.engine.notes(target.scene, target.observable, target.declared.memory)
     lines = [_line("engine", best.engine.describe()), *(_line(*note) for note in notes.items())]

@@ -54,10 +54,10 @@ def _formula(name: str, takes: tuple[str, ...]) -> Callable[[Gas, str], float]:
 
 
 def _observable(name: str) -> Callable[[Gas, str], float]:
-    """Return a function of `gaspart.analysis.bulk`."""
+    """Return a function of `gaspart.theory.bulk`."""
 
     def value(gas: Gas, equation: str) -> float:
-        from gaspart.analysis import bulk
+        from gaspart.theory import bulk
 
         return float(getattr(bulk, name)(gas, equation))
 

@@ -17,11 +17,11 @@ from gaspart.keys.values import one_of
 from gaspart.scene.features import FEATURES
 
 if TYPE_CHECKING:
-    from gaspart.engines.conditions import Layers
     from gaspart.engines.dynamics import Dynamics
     from gaspart.scene.scene import Scene
     from gaspart.state.optional_tallies import OptionalTally
     from gaspart.state.state import State
+    from gaspart.theory.conditions import Conditions
 
 
 # Accuracy requests to engines, and the answers.
@@ -39,18 +39,14 @@ class AccuracyRequest:
     face : wall on which a pressure acts
     transported : True if the observable depends on transport coefficients
     initial : initial state, or None if only the errors of models are requested
-    memory : relative change of transport coefficients due to correlated collisions
-    points : relative difference of the observable for point particles; None if unknown
     """
 
     observable: str
     accuracy: float
-    conditions: Layers
+    conditions: Conditions
     face: str | None = None
     transported: bool = False
     initial: State | None = None
-    memory: float = 0.0
-    points: float | None = None
 
     @property
     def scene(self) -> Scene:

@@ -13,7 +13,6 @@ from itertools import pairwise
 import numpy as np
 
 from gaspart import theory
-from gaspart.analysis.bulk import EXACT, collision_rate
 from gaspart.analysis.diffusion import linear_lags, settled_slope
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.expected.transport import diffusion_in_cube
@@ -24,6 +23,7 @@ from gaspart.inspection.frames import Frames
 from gaspart.inspection.verdict import Check, compare_with_theory
 from gaspart.scene.gas import Gas
 from gaspart.scene.limits import ball_volume
+from gaspart.theory.bulk import EXACT, collision_rate
 
 UNEVEN = 20.0
 """Power of a long wave above which a gas is not uniform. It is 1 on average for independent particles, and

@@ -58,7 +58,7 @@ def film(
     Parameters
     ----------
     trajectory : str, Path or Dataset
-        The trajectory, by its path or open.
+        The trajectory: its path, or an open trajectory.
     path : str or Path
         The film to write, with the suffix .mp4 (which needs the extra `film`) or .gif.
     size : tuple of int, default (1000, 750)
@@ -134,9 +134,9 @@ def film(
 
 
 def poster(source: str | Path, path: str | Path) -> None:
-    """Write the middle picture of an MP4 film as a JPEG file, for a page.
+    """Write the middle picture of an MP4 film as a JPEG file.
 
-    The page shows it until the film plays.
+    A page shows this picture until the film plays.
 
     Parameters
     ----------

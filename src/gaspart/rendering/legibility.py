@@ -98,7 +98,7 @@ def _text_points(text: Text) -> np.ndarray:
 def _extend_axis(axis: Axes, data: np.ndarray, box: Bbox, free: float) -> bool:
     """Return True if the vertical axis was extended so that the legend fits at the top.
 
-    `free` is the width of the panel, in pixels, that the legend leaves.
+    `free` is the width in pixels of the panel that is not below the legend.
     """
     legend, frame = axis.get_legend(), axis.bbox
     assert legend

@@ -44,7 +44,7 @@ LIVE_SIZE = (600, 450)
 
 
 class LiveGas:
-    """Simulation that advances from picture to picture, of a scene that may change.
+    """Simulation that advances from picture to picture; its scene may change.
 
     interval : time between two pictures.
     size : (W, H) in pixels.

@@ -328,7 +328,7 @@ class Labels:
         return np.asarray(paper)
 
     def _draw_surfaces(self, draw: ImageDraw, row: list[DrawnSurface], base: float) -> None:
-        """Draw the line of each surface in a row of the legend, with its meaning."""
+        """Draw a row of the legend of surfaces: the line of each surface, and its meaning."""
         x, y, thick = self.letters / 2, base - 0.3 * self.letters, max(3, self.letters // 5)
         for surface in row:
             count = 5 if surface.dashed else len(surface.colours)

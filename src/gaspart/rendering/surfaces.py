@@ -177,7 +177,10 @@ def _warm_walls(scene: Scene) -> tuple[DrawnSurface, ...]:
 
 
 def _moving_walls(scene: Scene, position: float | None) -> tuple[DrawnSurface, ...]:
-    """Return the appearance of the moving interior wall, at its coordinate or its start."""
+    """Return the appearance of the moving interior wall.
+
+    Its coordinate is `position`, or its initial coordinate.
+    """
     wall = scene.moving_wall
     if wall is None:
         return ()

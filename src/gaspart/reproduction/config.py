@@ -68,7 +68,10 @@ def read_numbers(config: dict, files: Sequence[str | Path]) -> None:
 
 
 def _read_numbers(block: Any, held: list[Any]) -> None:
-    """Convert the numbers of a block; `held` has this block of each file."""
+    """Convert the numbers of a block.
+
+    `held` lists the same block of each file.
+    """
     for key, value in block.items() if isinstance(block, dict) else enumerate(block):
         below = []
         for part in held:
@@ -338,7 +341,7 @@ def _grid_values(block: Any) -> Iterator[tuple[str, object]]:
 
 
 def explain_error(error: SceneError, config: dict, module: bool) -> SceneError:
-    """Return an error of a config, with an explanation if all keys are missing.
+    """Return an error of a config; add an explanation if all keys are missing.
 
     `config` is the merged config. `module` is True if another workflow uses this one as a module.
     """

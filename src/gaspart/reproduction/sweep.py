@@ -372,7 +372,7 @@ def _make_folder(root: str) -> None:
 
 
 def _plan(config: dict) -> tuple[list[Point], dict[str, str]]:
-    """Return the points in their order, and the reasons, by name, why some cannot be run.
+    """Return the points in order, and the reasons, by name, why points cannot be run.
 
     Raises SceneError for values that no point can use, or if no point can be run.
     """
@@ -393,7 +393,7 @@ def _plan(config: dict) -> tuple[list[Point], dict[str, str]]:
 
 
 def _of_sweep(error: SceneError) -> SceneError:
-    """Return an error of a config, with the key as it is named in a sweep."""
+    """Return an error of a config with the sweep's name of the key."""
     key = error.key.removeprefix(f"experiments.{EXPERIMENT}").lstrip(".")
     key = f"over{key.removeprefix('grid')}" if key.startswith("grid") else key
     return SceneError(key or "over", error.value, error.rule, error.file)
@@ -438,7 +438,7 @@ def make_all(
 
 
 def _make_in_process(tell: Callable[[Any], None], values: dict, path: str, overwrite: bool) -> str:
-    """Make a point, given as a dictionary, in a separate process; see `_make`."""
+    """Make a point from its dictionary in a separate process; see `_make`."""
     load_numba(ours=True)
     return _make(Point.from_dict(values, path), overwrite)
 

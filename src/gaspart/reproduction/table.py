@@ -99,7 +99,7 @@ class Table(_Columns):
         return (self[n] for n in range(len(self)))
 
     def by(self, *keys: str | np.ndarray) -> Iterator[tuple[Any, ...]]:
-        """Yield (value of each key, ..., rows with these values) by ascending values.
+        """Yield the values of the keys, and the rows with these values, in ascending order.
 
         Keys are names of columns, or arrays (rows,).
         """
@@ -151,9 +151,9 @@ def table(
 
 
 def made_of(value: Any) -> list[str]:
-    """Return experiment/name of each point of a grid in a value.
+    """Return a text `experiment/name` for each point that a value contains.
 
-    The value is a point, or lists and mappings of points.
+    The value is a point of a grid, or lists and mappings of such points.
     """
     if hasattr(value, "experiment") and hasattr(value, "name"):
         return [f"{value.experiment}/{value.name}"]

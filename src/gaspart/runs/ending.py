@@ -56,8 +56,8 @@ class Accuracy(Requirement):
 
     Notes
     -----
-    A run with a required accuracy of the density, or of the pressure on walls across one axis, also stores
-    impulses, if the engine can tally them and they make the run shorter.
+    Impulses are stored too, if the required accuracy concerns the density or the pressure on walls across one
+    axis, if the engine can tally impulses, and if they make the run shorter.
 
     Examples
     --------

@@ -133,7 +133,7 @@ def _interval(part: np.ndarray, slope: float, low: float, high: float) -> tuple[
 
 
 class Body(NamedTuple):
-    """Grown fixed particle or interior wall: its parts, whose union it is, and its volume."""
+    """Fixed particle or interior wall, grown: parts that form the body, and volume."""
 
     parts: list[Ball | Slab]
     volume: float

@@ -112,8 +112,8 @@ class Thermal(Surface):
     Parameters
     ----------
     temperature : float or dict of str to float, [energy]
-        Temperature k_B T of the wall. If it is given at two opposite faces, as {"y_low": 1.0, "y_high": 2.0},
-        the temperature is linear between them.
+        Temperature k_B T of the wall. If values at two opposite faces are given, as in {"y_low": 1.0,
+        "y_high": 2.0}, the temperature is linear between them.
     components : {"all", "normal"}, default "all"
         Velocity components that are drawn at random. "all": the tangential components and, with rough
         particles, the spins are Maxwellian, too (a diffuse wall with full accommodation). "normal": the
@@ -285,7 +285,7 @@ class Well(Surface):
 
     @property
     def rule(self) -> tuple[str, float]:
-        """Name of the effect of the wall behind the well in the kernels, and its temperature.
+        """Kernel name of the wall's effect behind the well, and temperature of the wall.
 
         Examples
         --------
@@ -388,9 +388,9 @@ class Vibrating(Surface):
     Notes
     -----
     The wall is at the side of the container at time 0, and moves inwards from this side by at most 2 A. The
-    sine is at A (1 - cos(2 pi t / period)). The sawtooth moves inwards at the speed 2 A / period and is back
-    at once at the end of each period. Contacts follow the collision law of the scene in the frame of the
-    wall.
+    sine is at A (1 - cos(2 pi t / period)). The sawtooth moves inwards at the speed 2 A / period. At the end
+    of each period it returns instantaneously. Contacts follow the collision law of the scene in the frame of
+    the wall.
 
     Examples
     --------
@@ -589,7 +589,7 @@ class Open(Surface):
     Parameters
     ----------
     activity : float, [1], optional
-        Activity eta exp(mu_excess / k_B T) of the reservoir outside, with its packing fraction eta. Requires
+        Activity eta exp(mu_excess / k_B T) of the reservoir outside; eta is its packing fraction. Requires
         `temperature`. Default: a vacuum.
     temperature : float, [energy], optional
         Temperature k_B T of the reservoir. Requires `activity`.
@@ -686,9 +686,10 @@ class LeesEdwards(Surface):
     Notes
     -----
     The boundary condition is by Lees and Edwards [1]_. The face must be y_high of a container that is
-    periodic along all axes; the flow also applies at y_low. A particle that leaves at y_high enters at y_low,
-    displaced by -shear_rate L_y t along x, with v_x less by shear_rate L_y, and back. The initial velocities
-    are drawn about this flow, with mean 0. The faces do work, which heats an elastic gas.
+    periodic along all axes; the flow also applies at y_low. A particle that leaves at y_high enters at y_low.
+    Its x is then displaced by -shear_rate L_y t, and its v_x is reduced by shear_rate L_y. In the other
+    direction the signs are reversed. The initial velocities are drawn about this flow, with mean 0. The faces
+    do work, which heats an elastic gas.
 
     References
     ----------
@@ -765,7 +766,7 @@ def surface_to_dict(surface: Surface) -> dict:
 
 
 def key_of(face: Any) -> Any:
-    """Return the key of a face, from its key or its name as a wall.
+    """Return the key of a face, which may be given by its wall name.
 
     Other values are unchanged.
 

@@ -101,7 +101,7 @@ class Facts:
 
     @cached_property
     def numbered_faces(self) -> tuple[tuple[int, Surface], ...]:
-        """Faces with a kind, with their indices, in the order of the indices."""
+        """Faces that have a kind, with their indices, in ascending order."""
         names = enumerate(FACES[: 2 * self.dimension])
         return tuple((n, self.faces[name]) for n, name in names if name in self.faces)
 
@@ -119,12 +119,12 @@ class Facts:
 
     @cached_property
     def pistons(self) -> list[tuple[int, Piston]]:
-        """Faces that are pistons, at most one, with their indices."""
+        """Faces that are pistons, with their indices; at most one face."""
         return self.faces_of(Piston)
 
     @cached_property
     def sliding_faces(self) -> list[tuple[int, Thermal]]:
-        """Faces that move along themselves, with their indices."""
+        """Faces that slide parallel to themselves, with their indices."""
         return [(n, face) for n, face in self.faces_of(Thermal) if face.slides]
 
     @cached_property

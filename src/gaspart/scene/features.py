@@ -30,14 +30,17 @@ class Feature(NamedTuple):
     kind: str | None = None
 
     def refuse(self, scene: Scene, rule: str) -> SceneError:
-        """Return an error about a scene with this feature, with the key and the face."""
+        """Return an error about a scene with this feature.
+
+        The error names the key and the face.
+        """
         faces = (name for name, face in scene.faces.items() if face.kind == self.kind)
         key = f"faces.{next(faces)}" if self.kind else self.key
         return SceneError(key, self.value(scene), rule)
 
 
 def _face(kind: str) -> Feature:
-    """Return the feature of a kind of face of the container."""
+    """Return the feature that represents a kind of face."""
 
     def value(scene: Scene) -> str | None:
         return kind if any(face.kind == kind for face in scene.faces.values()) else None

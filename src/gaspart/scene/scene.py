@@ -177,7 +177,7 @@ class Scene(Facts):
         check_packing(self)
 
     def _check_gravity(self) -> None:
-        """Check the acceleration; a zero vector is replaced by no gravity."""
+        """Check the acceleration; a zero vector means no gravity."""
         if self.gravity is None:
             return
         finite_vector("gravity", self.gravity, self.dimension)

@@ -147,7 +147,7 @@ def sides_for(scene: Scene, narrowest: float | None = None, per_particle: float 
 
 
 def cube_side(lengths: tuple[float, ...], number: float) -> float:
-    """Return the side of a cube, of which about `number` fill a container.
+    """Return the side of a cube, so that about `number` cubes fill a container.
 
     Parameters
     ----------

@@ -285,8 +285,8 @@ def _bounds(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the lowest and highest coordinates, (N, d) each, that particles may have.
 
-    The bounds are the walls and a piston. For a moving interior wall, they depend on the side on which a
-    particle is. A centre crosses a sheared face when it reaches the face.
+    The bounds are the walls and a piston. For a moving interior wall, the bounds depend on the particle's
+    side of the wall. A centre crosses a sheared face when it reaches the face.
     """
     walled = ~np.array(scene.container.periodic)
     margins = np.where(walled & (not scene.centres_to_walls), radii[:, None], 0.0)

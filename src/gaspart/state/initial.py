@@ -285,7 +285,7 @@ def _add_flow(scene: Scene, positions: np.ndarray, velocities: np.ndarray) -> No
 
 
 def in_flow(scene: Scene, masses: np.ndarray, positions: np.ndarray, velocities: np.ndarray) -> np.ndarray:
-    """Return velocities that include the flow of a sheared gas, with zero mean otherwise.
+    """Add the flow of a sheared gas to velocities, after their mean has been subtracted.
 
     Parameters
     ----------

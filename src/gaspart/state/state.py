@@ -429,7 +429,7 @@ def drift_of(scene: Scene, state: State) -> np.ndarray:
     Parameters
     ----------
     scene : Scene
-        Scene of the state. In a sheared gas the velocity is about the flow.
+        Scene of the state. In a sheared gas the velocity is relative to the flow.
     state : State
         State.
 

@@ -86,9 +86,10 @@ class Tally:
         Particles that have entered through each face. None unless faces are open.
     momentum_per_area : ndarray, shape (F, d), optional, [mass length^(2-d)/time]
         Momentum along each axis given to each face, positive along the outward normal. The momentum of each
-        particle is divided by the area of the face that centres of its size can reach (`scene.accessible`),
-        in the container at the start. The value is 0 for interior walls and for faces that an engine does not
-        tally. None unless particles of different sizes can reach different areas of faces.
+        particle is divided by the area of the face that is accessible to centres of particles of this size
+        (`scene.accessible`). The area is computed for the initial container. The value is 0 for interior
+        walls and for faces that an engine does not tally. None unless particles of different sizes can reach
+        different areas of faces.
     heat_per_area : ndarray, shape (F,), optional, [mass length^(3-d)/time^2]
         Energy of `wall_energy`, divided in the same way, with 0 for the same faces. None without
         `momentum_per_area`.
@@ -356,7 +357,7 @@ class PairImpulseTally(OptionalTally):
     shells : int
         Number of shells, from 2 to 100000.
     share : float, default 1.0, [1]
-        Fraction of contacts at which the pairs with the other particles are searched for, in (0, 1].
+        Fraction of contacts at which pairs with all other particles are searched, in (0, 1].
 
     Raises
     ------

@@ -14,6 +14,8 @@ from functools import cached_property
 
 import numpy as np
 
+from gaspart.scene.faces import Thermal
+from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 from gaspart.theory.geometry import particle_volume
 from gaspart.theory.gravity import hydrostatic_profiles
@@ -23,6 +25,8 @@ _POINTS = 1200
 _SCALES = 25.0
 """Height above the floor, in scale heights, beyond which the density of a column is negligible."""
 _ROUNDS = 40
+COMPARED = ("collision_rate", "temperature", "density")
+"""Observables by which columns are compared, besides pressures."""
 
 
 @dataclass(frozen=True)
@@ -157,3 +161,65 @@ class GravityColumn:
         `heat` is the temperature of the faces, or None. Raises ValueError for the reasons of `of_energy`.
         """
         return self.column(heat, ideal) if heat else self.of_energy(energy, ideal)
+
+
+def gravity_column(scene: Scene) -> GravityColumn | None:
+    """Return the column of a scene under gravity, or None without a theory.
+
+    Theory covers equal-sized particles that lose no energy, between hard walls or walls at one temperature.
+    """
+    pull = [(k, g) for k, g in enumerate(scene.gravity or ()) if g]
+    kinds = [kind for kind in scene.kinds if kind.count]
+    law, thermal = scene.restitution, scene.face_temperatures
+    if len(pull) != 1 or scene.thermostat is not None or scene.walls or not kinds:
+        return None
+    if law is not None and (law.dissipative or law.rough):
+        return None
+    if len({kind.radius for kind in kinds}) > 1 or not all(kind.alike and not kind.fixed for kind in kinds):
+        return None
+    if len(thermal) > 1 or any(not isinstance(face, Thermal) or face.slides for face in scene.faces.values()):
+        return None
+    (k, g), (lower, upper) = pull[0], map(np.array, scene.reach(scene.smallest_radius))
+    sides = upper - lower
+    masses = sorted({kind.mass for kind in kinds})
+    counts = [sum(kind.count for kind in kinds if kind.mass == mass) for mass in masses]
+    return GravityColumn(
+        scene.dimension, k, g < 0.0, abs(g), float(sides[k]), float(np.delete(sides, k).prod()),
+        np.array(masses), np.array(counts, dtype=float), 2.0 * kinds[0].radius,
+    )  # fmt: skip
+
+
+def relative_change(
+    observable: str, low: Column, high: Column, middle: Column, top: bool | None = None
+) -> float:
+    """Compute the change of an observable between two columns, divided by its value in a third.
+
+    observable : one of `COMPARED`, where density means the root mean square, or pressure.
+    top : for a pressure, True at the top and False on the floor.
+    """
+    if observable == "density":
+        profiles = [
+            np.interp(middle.heights, column.heights, column.numbers.sum(axis=0), right=0.0)
+            for column in (low, high, middle)
+        ]
+        return float(np.sqrt(((profiles[1] - profiles[0]) ** 2).sum() / (profiles[2] ** 2).sum()))
+    first, second, value = (_value(column, observable, top) for column in (low, high, middle))
+    return abs(second - first) / value if value > 0.0 else math.inf
+
+
+def _value(column: Column, observable: str, top: bool | None) -> float:
+    """Return the pressure, the collision rate or the temperature of a column."""
+    if top is not None:
+        return column.pressure(top)
+    return column.collisions if observable == "collision_rate" else column.temperature
+
+
+def compare_columns(real: Column, ideal: Column, observable: str, top: bool | None) -> float:
+    """Compute the relative difference of an observable between a column of ideal and of real gas.
+
+    `top` is used only for a pressure: True for the wall at the top, None for all walls together.
+    """
+    if observable == "pressure" and top is not None:
+        return relative_change(observable, real, ideal, real, top)
+    differences = {name: relative_change(name, real, ideal, real) for name in COMPARED}
+    return differences.get(observable, max(differences.values()))

@@ -235,7 +235,9 @@ def approach_factor(dimension: int, count: int) -> float:
 
 
 @check_ranges
-def mean_free_path(packing_fraction: Numbers, dimension: int, diameter: float = 1.0) -> Values:
+def mean_free_path(
+    packing_fraction: Numbers, dimension: int, diameter: float = 1.0, contact: Numbers | None = None
+) -> Values:
     """Compute the mean path of a particle between collisions.
 
     Parameters
@@ -246,6 +248,9 @@ def mean_free_path(packing_fraction: Numbers, dimension: int, diameter: float = 
         Discs or spheres.
     diameter : float, default 1.0, [length]
         Diameter sigma of a particle.
+    contact : array_like, [1], optional
+        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
+        state, or 1 in a gas of points.
 
     Returns
     -------
@@ -269,7 +274,8 @@ def mean_free_path(packing_fraction: Numbers, dimension: int, diameter: float = 
     0.158
     """
     with np.errstate(divide="ignore"):
-        return mean_speed(dimension) / collision_rate(packing_fraction, dimension, diameter)
+        rate = collision_rate(packing_fraction, dimension, diameter, contact=contact)
+        return mean_speed(dimension) / rate
 
 
 @check_ranges

@@ -84,8 +84,8 @@ def counters(engine: Engine, tallies: Iterable[OptionalTally] = ()) -> tuple[str
 def cell(scene: Scene, lengths: np.ndarray, piston: np.ndarray | None) -> dict[str, np.ndarray]:
     """Return the variables that describe the cell of a frame; it may end at a piston.
 
-    In two dimensions the cell is as high as its longest side. Readers assume that it is periodic along z as
-    well. Some of them limit distances to half of the smallest side.
+    In two dimensions the cell is as high as its longest side. Readers assume that the cell is periodic along
+    z as well. Some of them limit distances to half of the smallest side.
     """
     sides, origin = np.full(3, float(np.max(lengths))), np.zeros(3)
     sides[: len(lengths)] = lengths

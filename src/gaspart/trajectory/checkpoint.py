@@ -148,7 +148,7 @@ def _is_intact(file: BinaryIO) -> bool:
 def _checksum(file: BinaryIO, size: int | None = None) -> int:
     """Compute the checksum of a file, or of its first `size` bytes.
 
-    Afterwards the position in the file is after these bytes.
+    The next read of the file starts after these bytes.
     """
     remaining = file.seek(0, os.SEEK_END) if size is None else size
     file.seek(0)

@@ -66,7 +66,7 @@ _ROWS = 4096  # number of table rows that are formatted at once
 
 @dataclass(frozen=True)
 class Snapshot:
-    """Frame of a trajectory, with N particles.
+    """Frame of a trajectory with N particles.
 
     Attributes
     ----------

@@ -188,7 +188,7 @@ class Contents:
                 object.__setattr__(self, item.name, item.metadata["kind"].check(item.name, value))
 
     def check_scene(self, scene: Scene, until: bool) -> None:
-        """Raise SceneError for an option that a scene, or an end by accuracies, excludes."""
+        """Raise SceneError for an option that the scene or `until` excludes."""
         if self.follow is not None and self.follow > scene.count:
             rule = f"must be at most {scene.count}, the number of particles"
             raise SceneError("follow", self.follow, rule)
@@ -255,7 +255,10 @@ def recipe_fields(settings: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def contents_of(settings: Mapping[str, Any]) -> Contents:
-    """Return the contents of the file of a run, from settings as for `recipe_fields`."""
+    """Return the `Contents` of a run's file from settings in plain values.
+
+    The settings are explained in `recipe_fields`.
+    """
     names = {item.name for item in fields(Contents)}
     values = recipe_fields(
         {name: value for name, value in settings.items() if name in names | REQUESTED.keys()}
@@ -284,7 +287,7 @@ def tallied_fields(tallies: Iterable[OptionalTally]) -> list[str]:
 
 
 def tally_axes(tally: OptionalTally, scene: Scene) -> dict[str, int]:
-    """Return the lengths of the axes of the fields of a tally, by name, without `face`.
+    """Return the length of each axis of a tally's fields, by name, except `face`.
 
     The length of an axis is a setting of the tally whose name is the plural of the axis.
     """

@@ -10,13 +10,13 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from gaspart import theory
-from gaspart.analysis import bulk, observables
-from gaspart.analysis.bulk import BOLTZMANN, ENSKOG, EXACT
+from gaspart.analysis import observables
 from gaspart.analysis.flow import FLOW
 from gaspart.analysis.run import Run
 from gaspart.engines import Engine, engine_from_dict
 from gaspart.scene.gas import Mixture
-from gaspart.theory import discretisation
+from gaspart.theory import bulk, discretisation
+from gaspart.theory.bulk import BOLTZMANN, ENSKOG, EXACT
 from gaspart.theory.geometry import unit_sphere_surface
 from gaspart.theory.speeds import mean_speed_factor
 from gaspart.trajectory.pairs import pairs_of

@@ -12,13 +12,13 @@ from functools import reduce
 import numpy as np
 
 from gaspart import theory
-from gaspart.analysis.bulk import BOLTZMANN
 from gaspart.analysis.expected.equilibrium import Expected, equation_of
 from gaspart.analysis.run import Run
 from gaspart.scene.faces import Thermal
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import flow
 from gaspart.scene.walls import Plate
+from gaspart.theory.bulk import BOLTZMANN
 from gaspart.theory.heat import INTERPOLATED, TEMPERATURE_JUMP
 
 # Heat flux and shear stress of a gas between two thermal plates, from free molecular flow to the continuum.
@@ -424,10 +424,7 @@ def _path(run: Run) -> float:
     """Compute the mean free path of the largest particles, averaged over the container."""
     lower, upper = run.scene.reach(run.scene.largest_radius)
     density = run.count / float(np.subtract(upper, lower).prod())
-    filled = theory.packing_fraction(density, run.dimension, 2.0 * run.scene.largest_radius)
-    if filled > theory.HIGHEST_PACKING_FRACTION[run.dimension]:
-        return 0.0
-    return float(theory.mean_free_path(filled, run.dimension, 2.0 * run.scene.largest_radius))
+    return _free_path(density, 2.0 * run.scene.largest_radius, run)
 
 
 def opening(scene: Scene, axis: int, position: float, radius: float) -> float | None:

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from gaspart import theory
-from gaspart.analysis.bulk import BOLTZMANN, ENSKOG, EXACT
 from gaspart.analysis.expected.equilibrium import Expected, contact_of_number, equation_of, scale_of_number
 from gaspart.analysis.run import Run
+from gaspart.theory.bulk import BOLTZMANN, ENSKOG, EXACT
 from gaspart.trajectory.pairs import pairs_of
 
 _LEAST_UNIFORM = 16

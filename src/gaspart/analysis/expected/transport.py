@@ -9,8 +9,6 @@ from dataclasses import replace
 import numpy as np
 
 from gaspart import theory
-from gaspart.analysis import bulk
-from gaspart.analysis.bulk import BOLTZMANN, ENSKOG, EXACT
 from gaspart.analysis.expected.equilibrium import (
     OF_NUMBER,
     SOURCES,
@@ -23,6 +21,8 @@ from gaspart.analysis.run import Run
 from gaspart.engines import Engine
 from gaspart.scene.gas import Gas
 from gaspart.scene.scene import Scene
+from gaspart.theory import bulk
+from gaspart.theory.bulk import BOLTZMANN, ENSKOG, EXACT
 from gaspart.theory.discretisation import contact_values
 from gaspart.theory.modes import diffusion_by_modes
 

@@ -17,8 +17,8 @@ from gaspart.engines.engine import AccuracyRequest, Candidate
 from gaspart.errors import SceneError
 
 if TYPE_CHECKING:
-    from gaspart.engines.conditions import Layers
     from gaspart.engines.dsmc.settings import DSMC
+    from gaspart.theory.conditions import Conditions
 
 DENSEST = 0.4
 """Maximum packing fraction at which the errors of the Enskog model are known."""
@@ -61,13 +61,14 @@ def candidate(engine: DSMC, request: AccuracyRequest) -> Candidate:
 def boltzmann_error(request: AccuracyRequest) -> float:
     """Bound the relative error of the Boltzmann equation, in which particles are points."""
     conditions, scene = request.conditions, request.scene
-    error = (request.memory if request.transported else 0.0) + _layers(request)
+    error = (conditions.memory if request.transported else 0.0) + _layers(request)
     if request.observable != "pressure":
         lost = _NORMAL[scene.dimension] * conditions.surfaces
         error += lost / (1.0 - lost) if lost < 1.0 else math.inf
     few = float((conditions.contact_of_few / conditions.contact).max()) - 1.0
-    if request.points is not None:
-        return float(error + few + request.points)
+    points = conditions.of_points(request.observable, request.face)
+    if points is not None:
+        return float(error + few + points)
     virial = float(conditions.virial.max())
     if math.isinf(virial):
         return math.inf
@@ -86,7 +87,7 @@ def enskog_error(request: AccuracyRequest, cells: tuple[int, ...] | None = None)
     conditions = request.conditions
     error = _STATIC + _layers(request)
     if request.transported:
-        error += request.memory
+        error += conditions.memory
     error += float((conditions.contact_of_few / conditions.contact).max()) - 1.0
     error += _AT_WALLS * float(conditions.filled.max()) * conditions.surfaces
     if request.observable == "pressure" and cells is not None:
@@ -116,7 +117,7 @@ def cell_error(engine: DSMC, request: AccuracyRequest) -> float:
     return float(error + (_lost(engine, conditions) if dense else 0.0))
 
 
-def require_resolved(engine: DSMC, conditions: Layers) -> None:
+def require_resolved(engine: DSMC, conditions: Conditions) -> None:
     """Raise SceneError for cells or steps that do not resolve an inhomogeneous gas.
 
     Cells and steps must not exceed the length or time over which the gas changes, the shortest mean free
@@ -141,7 +142,7 @@ def require_resolved(engine: DSMC, conditions: Layers) -> None:
             raise SceneError(key, value, f"{text} {size:.2g}, more than {limit:.2g}, {name}")
 
 
-def cell_widths(engine: DSMC, conditions: Layers) -> np.ndarray:
+def cell_widths(engine: DSMC, conditions: Conditions) -> np.ndarray:
     """Return the side lengths (d,) of a cell, with 0 for an axis without a profile.
 
     Such an axis has periodic faces and a single cell.
@@ -154,7 +155,7 @@ def cell_widths(engine: DSMC, conditions: Layers) -> np.ndarray:
     return np.where(flat, 0.0, conditions.free / cells)
 
 
-def cells_of(engine: DSMC, conditions: Layers) -> tuple[int, ...]:
+def cells_of(engine: DSMC, conditions: Conditions) -> tuple[int, ...]:
     """Return the number of cells along each axis (d,); 1 by default."""
     return tuple(np.broadcast_to(np.array(engine.cells_per_side or 1), conditions.free.shape).tolist())
 
@@ -172,7 +173,7 @@ def _layers(request: AccuracyRequest) -> float:
     return float(conditions.virial.max()) * math.sqrt(sigma / max(length, sigma))
 
 
-def _lost(engine: DSMC, conditions: Layers) -> float:
+def _lost(engine: DSMC, conditions: Conditions) -> float:
     """Return the fraction of collisions that the engine misses, weighted by collisions.
 
     Collisions are missed in cells with fewer particles than the mean.

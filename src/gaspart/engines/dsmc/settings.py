@@ -357,7 +357,7 @@ class DSMC(Engine):
         Examples
         --------
         >>> import gaspart as gp
-        >>> from gaspart.accuracy.conditions import even_conditions
+        >>> from gaspart.theory.conditions import even_conditions
         >>> from gaspart.engines.engine import AccuracyRequest
         >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
         >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])

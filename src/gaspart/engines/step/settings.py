@@ -202,7 +202,7 @@ class TimeStepped(Engine):
         Examples
         --------
         >>> import gaspart as gp
-        >>> from gaspart.accuracy.conditions import even_conditions
+        >>> from gaspart.theory.conditions import even_conditions
         >>> from gaspart.engines.engine import AccuracyRequest
         >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
         >>> state = gp.Simulation(scene, "dsmc", seed=1).state

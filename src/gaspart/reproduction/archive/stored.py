@@ -273,7 +273,7 @@ def chosen(stored: Stored, folder: Path, count: int) -> list[Point]:
 
 
 def _write_config(stored: Stored, folder: Path) -> None:
-    """Write the config of an archive to a folder, with the scene files that it names.
+    """Write the config of an archive, and the scene files that it names, to a folder.
 
     Raises SceneError for a scene file that is not in the archive: the config of a stranger must not read
     files of this machine.

@@ -53,8 +53,8 @@ class ClaimData(NamedTuple):
     """Row of `claims.csv`: a claim and the digests of its data.
 
     data : measurement from which the claim is judged.
-    inputs_sha256 : joint digest of the files from which the measurement was made (see `joint_digest`). These
-        are the points of the figure, or the claims of other figures.
+    inputs_sha256 : joint digest of the inputs of the measurement, points or other claims (see
+        `joint_digest`).
     """
 
     figure: str
@@ -96,7 +96,7 @@ def point_files(run: Finished) -> list[PointFile]:
 
 
 def inputs_of(measurement: Path) -> list[str]:
-    """Return the points, or tables of claims, from which a measurement was made, as it states."""
+    """Return the points, or tables of claims, that a measurement states as its origin."""
     from netCDF4 import Dataset
 
     with Dataset(measurement) as file:

@@ -35,7 +35,7 @@ UNVERIFIED = "the reference is quoted from memory and has not been verified"
 
 @dataclass(frozen=True, kw_only=True)
 class Claim:
-    """Measured number and its expected value, in the unit that the claim's text gives.
+    """Measured number and its expected value; the claim's text gives their unit.
 
     claim : the statement in words.
     expected : expected value. A plain number is exact. The uncertainty of an Estimate is the allowance: the
@@ -151,7 +151,10 @@ class Claim:
 
     @classmethod
     def joint(cls, *, claim: str, deviations: ArrayLike, **others: Any) -> Claim:
-        """Return the `chi_square` claim on independent deviations, in standard deviations, of any shape."""
+        """Return the `chi_square` claim on independent deviations.
+
+        Deviations are in standard deviations, and have any shape.
+        """
         import numpy as np
 
         deviations = np.asarray(deviations, dtype=float)

@@ -75,7 +75,7 @@ def write(path: str | Path, figure: str, claims: Sequence[Claim]) -> None:
 
 
 def _row(claim: Claim, verdict: str) -> dict[str, str]:
-    """Return a judged claim as a row, by column."""
+    """Return a judged claim as a row: a value for each column."""
     lowest, highest = claim.bounds or (math.nan, math.nan)
     return {
         "claim": claim.claim,
@@ -102,7 +102,7 @@ def _row(claim: Claim, verdict: str) -> dict[str, str]:
 def read(path: str | Path) -> list[dict[str, Any]]:
     """Read the rows of a claims table as dictionaries by column, with numbers as floats.
 
-    An empty number, as pandas writes it, is NaN.
+    Empty entries, which pandas writes for missing numbers, are read as NaN.
 
     Raises ValueError with the file's name if the columns are not `COLUMNS`, or if a number or verdict is
     invalid.
@@ -222,7 +222,9 @@ def concise(value: float, error: float) -> str:
 
 
 def literal_copies(caption: str, rows: Iterable[dict[str, Any]]) -> list[str]:
-    """Return measured numbers that a caption contains as literal text, as "1.34: claim".
+    """Return measured numbers that a caption contains as literal text.
+
+    Each result has the form "1.34: claim".
 
     Such a number has a decimal point. It equals the measured value of a claim, but not its expected value, if
     both are rounded to the same number of digits. A few numbers of another origin are reported by chance.

@@ -88,7 +88,9 @@ def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) 
 
 
 def caption(settings: Mapping[str, Any]) -> str:
-    """Return the caption of a figure, as its kind's package makes it from the settings.
+    """Return the caption of a figure, made by the package of its kind.
+
+    The package makes the caption from the settings.
 
     Raises SceneError.
     """

@@ -6,12 +6,12 @@ with the name of each figure. `FIGURES` declares the settings of each figure: th
 meaning.
 
 A family may also state `OF_CLAIMS`: its figures are then made from the claims of all other figures, instead
-of points. Two more constants define what readers may vary on the page of the report (`report.explore`).
+of points. Two more constants define choices of the reader on the page of the report (`report.explore`).
 `SERIES` are figures of an equation of state, with dimension and largest packing fraction. `COSTS` are figures
-of the cost of an accuracy. `KINDS` are kinds of figures, with their settings, whose names a config chooses.
-The config entry of such a figure has `kind`, the name of the functions. Such a family also has the function
-`caption(settings)`. If its settings have rules of their own, it has `validate(figure, settings, points)`.
-Other installed packages may define families of this form (`families.installed`).
+of the cost of an accuracy. `KINDS` are kinds of figures, with their settings; a config chooses the names of
+such figures. The config entry of such a figure has `kind`, the name of the functions. Such a family also has
+the function `caption(settings)`. If its settings have rules of their own, it has `validate(figure, settings,
+points)`. Other installed packages may define families of this form (`families.installed`).
 """
 
 from __future__ import annotations

@@ -148,10 +148,10 @@ def measure_cost(
         partitions. Engines without a time step use the scene's default.
 
     Returns a dataset over ``partition`` (the engines, in their order) and ``repeat``. ``seconds`` and
-    ``wall_seconds`` (partition, repeat) are the CPU time of all threads, and the wall-clock time, of the
-    advance alone. Times for filling the container, setup and compilation are left out. Over ``partition`` are
-    the number of ``cores`` in use, the total number of ``boxes``, ``boxes_per_side`` (of the first axis; both
-    are 0 if the engine chooses them), ``duration`` (in the scene's time), the counts of the tally, and
+    ``wall_seconds`` (partition, repeat) are times of the advance alone: CPU time of all threads, and
+    wall-clock time. Times for filling the container, setup and compilation are left out. Over ``partition``
+    are the number of ``cores`` in use, the total number of ``boxes``, ``boxes_per_side`` (of the first axis;
+    both are 0 if the engine chooses them), ``duration`` (in the scene's time), the counts of the tally, and
     ``bits``, a digest of the final state and of the sums over collisions. Attributes are count, dimension,
     radius, side (first axis), packing_fraction, engine, search (event-driven), model (DSMC) or time_step,
     extras, and cores, the number that kernels may use on this machine. If a run needs more cores than this,

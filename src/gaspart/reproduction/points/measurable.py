@@ -16,7 +16,7 @@ _ENOUGH = 64  # number of particles of a kind; more make no difference for obser
 
 
 def require_observable(name: str, point: Point) -> None:
-    """Raise SceneError for an observable that no trajectory of a point has, of any length."""
+    """Raise SceneError for an observable that trajectories of a point never have."""
     contents, scene = contents_of(point.arguments), point.scene
     if contents.keep:
         raise point.make_error("keep", "observables need all that frames may hold")

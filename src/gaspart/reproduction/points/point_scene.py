@@ -101,7 +101,7 @@ def _small_count(point: Point) -> int:
 
 
 def _mean_volume(point: Point) -> float:
-    """Compute the mean of radius^d, divided by this power of the radius in the settings."""
+    """Compute the mean of (radius / radius in the settings)^d over the particles."""
     from gaspart.scene.sizes import relative_radii
 
     settings = point.settings

@@ -185,7 +185,7 @@ def _measure_point(point: Point, settings: dict) -> dict[str, Any]:
     estimates = _amounts(holder, held, free, far) | {"log_ratio": absent, "length": absent}
     if holder.kind == "ideal":
         estimates |= _well(holder, held, free)
-    if layer:  # hardly any particle leaves it
+    if layer:  # hardly any particle leaves the layer
         estimates |= {"flux": (np.full(bins, np.nan),) * 2, "slow_share": absent}
         estimates |= _isotherm(holder, held, free, far)
     else:
@@ -201,9 +201,9 @@ def _measure_point(point: Point, settings: dict) -> dict[str, Any]:
 
 
 def _amounts(holder: Holder, held: np.ndarray, free: np.ndarray, far: np.ndarray) -> dict[str, tuple]:
-    """Compute (value, error) of the adsorbed amount, and of the density of the gas, by name.
+    """Compute (value, error) of the adsorbed amount and of the gas density, by name.
 
-    The amounts are the number, its ratio to the free particles and the coverage.
+    The amounts are the number of held particles, its ratio to the number of free particles, and the coverage.
     """
     return {
         "held": jackknife(lambda inside: inside, held),
@@ -214,7 +214,7 @@ def _amounts(holder: Holder, held: np.ndarray, free: np.ndarray, far: np.ndarray
 
 
 def _well(holder: Holder, held: np.ndarray, free: np.ndarray) -> dict[str, tuple]:
-    """Compute (value, error) of the ratio of an ideal gas, and of the length that follows."""
+    """Compute (value, error) of the ideal-gas ratio, and of the length derived from it."""
     depth = holder.depth / holder.temperature
 
     def length(inside: np.ndarray, others: np.ndarray) -> np.ndarray:
@@ -227,7 +227,7 @@ def _well(holder: Holder, held: np.ndarray, free: np.ndarray) -> dict[str, tuple
 
 
 def _desorption(slowly: np.ndarray, flux: np.ndarray, width: float) -> dict[str, tuple]:
-    """Compute (value, error) of the density of normal speeds in bins, and of slow ones' fraction."""
+    """Compute (value, error) of the density of normal speeds, and of the slow fraction."""
     return {
         "flux": jackknife(lambda share: share / (share.sum() * width), flux),
         "slow_share": jackknife(lambda some, share: some / share.sum(), slowly, flux),
@@ -260,16 +260,17 @@ def _isotherm(holder: Holder, held: np.ndarray, free: np.ndarray, far: np.ndarra
 def counts_of(holder: Holder, height: np.ndarray, velocity: np.ndarray, settings: dict, slow: float) -> tuple:
     """Average counts of particles and fluxes over the frames of one block.
 
-    The counts are of held particles, of the others, and of the gas a diameter and more from both walls (and
-    from the well); the fluxes are of particles that leave near the wall, below the speed `slow`, and (bins,)
-    by speed. `height` (T, N) are heights of centres above the lowest position, `velocity` (T, N) is along x.
+    The counts are for three groups: held particles, other particles, and gas particles at least a diameter
+    from both walls (and from the well). The fluxes are for particles that leave, near the wall: with speeds
+    below `slow`, and by bins of speed (bins,). `height` (T, N) are heights of centres above the lowest
+    position. `velocity` (T, N) is along x.
     """
     held = holder.holds(height, velocity)
     above = height - holder.width
     far = (above > 2.0 * holder.radius) & (above < holder.outside - 2.0 * holder.radius)
     leaving = ~held & (above < settings["near"]) & (velocity > 0.0)
     speed = velocity[leaving] / np.sqrt(holder.temperature / holder.mass)
-    # a particle is near for a time proportional to 1 / speed
+    # a particle stays near for a time proportional to 1 / speed
     grid = _speeds(settings)
     flux = grid.sums(grid.cells(speed[:, None]), speed)
     frames = len(height)

@@ -17,7 +17,7 @@ BEVERLOO = "[Beverloo 1961], in two dimensions: free fall from an arch as wide a
 def settling(dataset: xr.Dataset) -> list[Claim]:
     """Return the claims on rest, contacts of a pile, and the law of discharge.
 
-    At rest nothing moves any more. A pile has as many contacts as mechanical equilibrium requires.
+    All discs come to rest. A pile has as many contacts as mechanical equilibrium requires.
     """
     return [*_piles(Table(dataset, "pile")), *_flows(Table(dataset, "orifice"))]
 

@@ -37,8 +37,8 @@ def settling(points: list[Point], settings: dict) -> xr.Dataset:
     `head` (see FIGURES).
 
     Variables of the result:
-    time, kinetic, contacts : time, kinetic energy per disc, and contacts per disc including walls, over
-        `pile` and `frame`
+
+    time, kinetic, contacts : time; kinetic energy and contacts (also with walls) per disc (`pile`, `frame`)
     duration : duration of contacts, over `pile`
     rest : time after which nothing moves, over `pile`; NaN if discs never come to rest
     final_contacts : contacts per disc at the end
@@ -261,6 +261,7 @@ def vibrated_bed(points: list[Point], settings: dict) -> xr.Dataset:
     profile in units of T/g.
 
     Variables over `bed`, with errors from replicas:
+
     sine : 1 if the floor moves as a sine, 0 for a sawtooth
     restitution : coefficient of restitution
     layers : (N - 1) d / width

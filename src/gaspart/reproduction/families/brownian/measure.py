@@ -103,7 +103,7 @@ def motion_of(point: Point) -> BrownianMotion:
 
 
 def light_paths(point: Point, motion: BrownianMotion) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """Yield paths of the linear Boltzmann equation that start at rest, in GROUPS.
+    """Yield groups of paths of the linear Boltzmann equation that start at rest.
 
     They are sampled like the point's runs: times (T,), displacements and velocities (T, N, 3). A gas of equal
     speeds relaxes meanwhile, by its own collisions.
@@ -155,10 +155,10 @@ def brownian_paths(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure the first `paths` paths of each point, and the final displacements of all replicas.
 
     Lengths are in the scene's units. `end_chi_square` is computed from the components of all final
-    displacements. Each component is divided by its variance, as expected for a particle that starts at rest.
-    The variance of the Langevin equation is corrected for the share of the gas, as in `brownian_msd`. It
-    includes the drift, with mean square (1 - share) share k_B T / M along each axis, because the momentum is
-    drawn with the velocities. The dimensions are point, path, frame, axis.
+    displacements. Each component is divided by the variance that theory predicts for a particle that starts
+    at rest. The variance of the Langevin equation is corrected for the share of the gas, as in
+    `brownian_msd`. It includes the drift, with mean square (1 - share) share k_B T / M along each axis,
+    because the momentum is drawn with the velocities. The dimensions are point, path, frame, axis.
     """
     return table("point", points, _ends, settings["paths"], inner=("path", "frame", "axis"))
 
@@ -197,6 +197,7 @@ def brownian_msd(points: list[Point], settings: dict) -> xr.Dataset:
     be `share` and g the friction. Then the velocity autocorrelation is (k_B T / M)(1 - s)(exp(-g' t) + s),
     with g' = g / (1 - s). The constant part is subtracted from the autocorrelation and from the mean-squared
     displacement (msd). The results are converted to an infinite gas:
+
     equipartition : M <V^2> / (3 k_B T (1 - s))
     measured_friction : (1 - s) times the decay rate, which is the slope of ln C until FRICTION_TO
     measured_diffusion : D times the msd at DIFFUSION_AT, divided by the msd of the Langevin equation

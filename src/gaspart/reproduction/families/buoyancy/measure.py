@@ -35,22 +35,21 @@ def buoyancy(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure fixed and free discs in a fluid, and the source's free discs.
 
     Fixed discs differ in height, free discs in mass. The settings are:
+
     source : experiments with the source's fluid
     bins : number of bins of height
     blocks : number of blocks of each replica
-    clear : distance from floor and ceiling where small discs form layers and hydrostatics does not hold, in
-        small diameters
-    far : horizontal distance from the edge of the large disc beyond which the fluid is undisturbed, in small
-        diameters
+    clear : distance from floor and ceiling, in small diameters, without hydrostatics due to layers of discs
+    far : horizontal distance from the large disc's edge to undisturbed fluid, in small diameters
     near : distance from the large disc within which missing small discs are counted, in small diameters
     source_density : density at which a disc floats in the middle, as estimated by the source
 
     The dimensions of the result are fixed, free, source, and height. Over height the theoretical curve
     `displaced` is the displaced mass in the mean fluid of the fixed points. Heights are defined as in
     `columns`; masses are in units of the mass of a small disc. The force equals the weight of a disc of
-    undisturbed fluid. The radius of this disc minus the radius of the large disc, in small radii, is
-    `force_radius`. `count_radius` is defined in the same way, from the number of missing discs instead of the
-    weight.
+    undisturbed fluid. `force_radius` is the radius of this disc minus the radius of the large disc, in units
+    of the small radius. `count_radius` is defined in the same way, from the number of missing discs instead
+    of the weight.
     """
     of_source = [point for point in points if point.experiment in settings["source"]]
     own = [point for point in points if point not in of_source]
@@ -166,7 +165,7 @@ def _measure_fixed(point: Point, settings: dict) -> dict:
 
 
 def _disc(radius: float, points: int = 400) -> tuple[np.ndarray, np.ndarray]:
-    """Compute areas and heights above the centre, (points,) each, of strips of a disc."""
+    """Compute the areas of strips of a disc, and their heights above its centre, (points,)."""
     up = radius * ((np.arange(points) + 0.5) * 2.0 / points - 1.0)
     return 2.0 * np.sqrt(radius**2 - up**2) * 2.0 * radius / points, up
 

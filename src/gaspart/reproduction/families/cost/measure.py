@@ -48,16 +48,16 @@ def price_of_features(points: list[Point], settings: dict) -> xr.Dataset:
     Relative costs are divided by the costs of the scene without the feature, timed in the same job.
 
     Variables over point (a feature with an engine):
+
     engine : name of the engine
     feature : feature that the other scene lacks
     seconds : time per event
-    ratio : time divided by the time of the other scene in the same jobs, with the error from the scatter of
-        the jobs, and its degrees of freedom
+    ratio : time divided by the time of the other scene in the same jobs, with error and degrees of freedom
     pair_tests, box_visits, crossings : counts per event
 
-    A plain scene compared with itself has the ratio 1. If a point counts instructions, there are variables
-    over kernel: the name of the engine, `instructions`, and `stripped`. The latter is the number of
-    instructions of a kernel whose source lacks the features.
+    The error of the ratio is the scatter of the jobs. A plain scene compared with itself has the ratio 1. If
+    a point counts instructions, there are variables over kernel: the name of the engine, `instructions`, and
+    `stripped`. The latter is the number of instructions of a kernel whose source lacks the features.
     """
     groups: dict[tuple, list[dict]] = {}
     for job in (_job(point) for point in points if point.job == "measure_cost"):
@@ -121,6 +121,7 @@ def cores(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure the speed-up by several cores, and fit a model of the speed-up by threads.
 
     Variables over run:
+
     engine, packing_fraction, count : engine and gas, with `count` particles
     copies : number of simultaneous runs; 1 for threads
     cores : number of cores in use

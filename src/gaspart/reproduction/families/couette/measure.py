@@ -36,12 +36,11 @@ _AXES = {"y": 0, "x": 1, "z": 2}
 
 
 def uniform(point: Point, blocks: int) -> dict[str, Any]:
-    """Measure the numbers of a uniformly sheared gas, as for a flow between walls.
+    """Measure the numbers of a uniformly sheared gas.
 
     viscosity : response divided by the Enskog viscosity at the instantaneous temperature.
     reduced_rate : stress divided by pressure.
-    normal_x, normal_y, normal_z : pressure along gradient, flow and vorticity, divided by their mean, minus
-        1.
+    normal_x, normal_y, normal_z : pressure along gradient, flow and vorticity over their mean, minus 1.
 
     Errors are jackknife errors over blocks of time. Each run has `blocks` of them.
     """
@@ -86,24 +85,22 @@ def couette(points: list[Point], settings: dict) -> xr.Dataset:
     `_freedom` marks the degrees of freedom of an error `_error`.
 
     Variables of each flow:
+
     part, engine : part of the figure, and engine
     packing_fraction : packing fraction in the middle
     knudsen : mean free path divided by the gap
     speed : difference of the velocities of the walls
     stress : stress divided by the stress of free flight
-    viscosity : stress divided by the gradient in the middle, relative to Enskog theory at the local density
-        and temperature, including the errors of cells and steps of DSMC
-    slip : velocity of the gas relative to the wall, extrapolated from the middle, divided by the mean free
-        path and the gradient there
+    viscosity : stress over gradient in the middle, relative to Enskog theory there (with errors of DSMC)
+    slip : gas velocity relative to the wall, extrapolated from the middle, over mean free path and gradient
     heating : -dT/du^2 in the middle
-    normal_x, normal_y, normal_z : kinetic energy of each component in the middle, divided by their mean,
-        minus 1
+    normal_x, normal_y, normal_z : kinetic energy of each component in the middle over their mean, minus 1
     pressure : pressure on the walls divided by the pressure of the equation of state
     reduced_rate : stress divided by pressure
     place, flow, temperature : position, velocity and temperature, by bin
 
-    Uniformly sheared gases have the variables of `uniform`. Equilibrium points have packing_fraction, and
-    `viscosity` by Green and Kubo.
+    The errors of DSMC are due to its cells and steps. Uniformly sheared gases have the variables of
+    `uniform`. Equilibrium points have packing_fraction, and `viscosity` by Green and Kubo.
     """
     gases = [
         (part, point)
@@ -156,7 +153,7 @@ class FlowBetweenPlates:
         """Return the flow of a point."""
         scene = point.scene
         gap, diameter, dilute = Gap.of(scene), 2.0 * scene.smallest_radius, point.engine.equation != "exact"
-        path = float(_path(scene.count / (gap.length * gap.area), diameter, dilute))
+        path = _path(scene.count / (gap.length * gap.area), diameter, dilute)
         position = gap.grid(settings["bins"]).middles[0] - 0.5 * gap.length
         clear = min(settings["clear"] * max(path, 0.0 if dilute else diameter), gap.length / 3.0)
         coarse = _coarseness(point, gap, path) if dilute else 1.0
@@ -177,8 +174,7 @@ def _speed(scene: Scene) -> float:
 def _path(density: float, diameter: float, dilute: bool) -> float:
     """Compute the mean free path; if `dilute`, the spheres occupy no volume."""
     eta = float(theory.packing_fraction(density, 3, diameter))
-    path = float(theory.mean_free_path(eta, 3, diameter))
-    return path * float(theory.contact_value(eta, 3)) if dilute else path
+    return float(theory.mean_free_path(eta, 3, diameter, contact=1.0 if dilute else None))
 
 
 def _coarseness(point: Point, gap: Gap, path: float) -> float:

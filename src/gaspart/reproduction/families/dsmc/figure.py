@@ -35,7 +35,8 @@ def dsmc_convergence(dataset: xr.Dataset) -> Figure:
 def _coarse(axis: Axes, gases: Table, along: str, other: str) -> None:
     """Draw transport coefficients over exact values, against cell width or time step.
 
-    Only points are drawn whose `other` discretisation is fine; its effect is removed. The curve is theory.
+    Points are drawn only if their `other` discretisation is fine. The effect of the `other` discretisation is
+    removed. The curve is theory.
     """
     factors = {"width": cell_factor, "step": step_factor}
     fine = gases[getattr(gases, other) < FINE[other]]

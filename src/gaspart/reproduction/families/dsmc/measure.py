@@ -17,7 +17,6 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.analysis import bulk
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.expected.equilibrium import collision_rate, compressibility_factor
 from gaspart.analysis.motion import average_correlations
@@ -30,6 +29,7 @@ from gaspart.reproduction.families.shared.runs import series_of
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, entries, table
 from gaspart.scene.gas import plain_gas
+from gaspart.theory import bulk
 from gaspart.theory.heat import free_molecular_flux
 from gaspart.trajectory.reading import open_trajectory
 
@@ -46,6 +46,7 @@ def dsmc_convergence(points: list[Point], settings: dict) -> xr.Dataset:
     plates. The dimension is point. The suffix `_freedom` marks the degrees of freedom of an error `_error`.
 
     Each point has part and engine. Further variables depend on the part:
+
     width, step : resolution, of dilute gases
     viscosity, conductivity, diffusion : coefficients divided by their exact values, of dilute gases
     transfer : viscosity due to transfer at collisions, divided by the exact viscosity, of dilute gases
@@ -99,8 +100,7 @@ def _narrow(gases: Table) -> dict[str, Estimate]:
 def _dilute_path(point: Point) -> float:
     """Compute the mean free path l of the dilute gas."""
     gas = plain_gas(point.scene)
-    path = theory.mean_free_path(gas.packing_fraction, 3, gas.diameter)
-    return float(path * theory.contact_value(gas.packing_fraction, 3))
+    return float(theory.mean_free_path(gas.packing_fraction, 3, gas.diameter, contact=1.0))
 
 
 def _resolution(point: Point) -> dict[str, float]:
@@ -152,7 +152,7 @@ def _running_diffusion(point: Point) -> np.ndarray:
     At a given density this D is therefore independent of N.
     """
     gas = plain_gas(point.scene)
-    dilute = theory.enskog_diffusion(**gas.parameters) * theory.contact_value(gas.packing_fraction, 3)
+    dilute = theory.enskog_diffusion(**gas.parameters, contact=1.0)
     return np.array([average_correlations(run.data).running[-1] for run in _runs(point)]) / float(dilute)
 
 
@@ -195,7 +195,8 @@ def _plates(point: Point, settings: dict) -> dict[str, Any]:
     scene = point.scene
     gap, kind = Gap.of(scene), scene.kinds[0]
     density = scene.count / (gap.length * gap.area)
-    path = 1.0 / (math.sqrt(2.0) * math.pi * density * (2.0 * kind.radius) ** 2)
+    filled = theory.packing_fraction(density, 3, 2.0 * kind.radius)
+    path = float(theory.mean_free_path(filled, 3, 2.0 * kind.radius, contact=1.0))
     return {
         "knudsen": path / gap.length,
         "packing_fraction": scene.packing_fraction,

@@ -49,11 +49,13 @@ def thin_film(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure profiles and pressures of slits of several widths at one chemical potential.
 
     The numbers of spheres are chosen for equal chemical potentials. The settings are:
+
     bulk_packing_fraction : packing fraction of the bulk fluid that is (nearly) in equilibrium with all slits
     insertions : number of Widom's trial insertions for each width
     theory_widths : [first, last, number] of the widths of the theoretical curve
 
     Variables over `width`, the distance between the surfaces of the walls in diameters:
+
     pressure, contact : pressure, and density rho(0) at contact (k_B T = 1), each with _error
     truncation : error of the cubic, for the contact value of the density functional
     chemical_potential : chemical potential with _error
@@ -61,11 +63,11 @@ def thin_film(points: list[Point], settings: dict) -> xr.Dataset:
     functional_pressure : pressure by the density functional
     count : number of spheres
 
-    Over `bin`, for the widest slit, are the place, the density with density_error, and `functional`, the
-    density functional at these places. The variable `middle` is the density in the two diameters around the
-    middle of the widest slit, with _error. Over `theory_width` is the theoretical curve. Attributes are
-    bulk_density, bulk_pressure, bulk_chemical_potential, and the period and period_error of the damped
-    oscillation.
+    The dimension `bin` is for the widest slit. Its variables are the place, the density with density_error,
+    and `functional`, the density by the density functional. The variable `middle` is the density of the
+    widest slit, averaged over two diameters around its middle, with _error. Over `theory_width` is the
+    theoretical curve. Attributes are bulk_density, bulk_pressure, bulk_chemical_potential, and the period and
+    period_error of the damped oscillation.
     """
     points = sorted(points, key=lambda point: point.extents[2][2])
     eta = settings["bulk_packing_fraction"]

@@ -42,9 +42,9 @@ def freezing_discs(points: list[Point], settings: dict) -> xr.Dataset:
 
     Variables over `start` and `packing_fraction` are defined in `_states`; the order is |mean psi_6|. Further
     variables:
-    compared_pressure : pressure of points with COMPARED discs, with _error, _drift and _drift_error, over
-        `start` and `compared_packing_fraction`
-    plateau : plateau pressure with plateau_error, over `start`
+
+    compared_pressure : pressure of COMPARED discs, with _error, _drift and _drift_error
+    plateau : plateau pressure with plateau_error (`start`)
     plateau_low, plateau_high : packing fractions at the ends of the plateau (see `plateau`), over `start`
     g, S : g(distance) and S(wave_x, wave_y) of the last start, over `shown`
     x, y, angle : position in diameters, and argument of psi_6, in the last frame, over `shown` and `particle`
@@ -65,6 +65,7 @@ def freezing_spheres(points: list[Point], settings: dict) -> xr.Dataset:
 
     There are no settings. Variables over `start` and `packing_fraction` are defined in `_states`; the order
     is the global Q_6. Further variables:
+
     crystalline : 1 if the order stayed above CRYSTAL_ORDER
     Z, Z_error : compressibility factor of the infinite system (the first order in 1/N is subtracted)
     finite_size : subtracted correction
@@ -158,14 +159,13 @@ def _states(points: list[Point], row: Callable[[Point], dict[str, Any]]) -> xr.D
 
     Entries without a run are NaN.
 
-    pressure, order : pressure in k_B T / sigma^d and order, with _error, _drift and _drift_error, over
-        `start` and `packing_fraction`
+    pressure, order : pressure in k_B T / sigma^d and order, with _error, _drift and _drift_error
     count : number of particles, over `packing_fraction`
     density : number density in 1 / sigma^d, over `packing_fraction`
-    disagreement : largest deviation of pressure and order, in standard errors, between the two starts and
-        between the halves of each run
+    disagreement : largest deviation between the starts or between halves of a run, in standard errors
 
-    A disagreement above 3 shows that the runs are not in equilibrium.
+    Pressure and order are over `start` and `packing_fraction`. The deviations are those in pressure and
+    order. A disagreement above 3 shows that the runs are not in equilibrium.
     """
     chosen = [point for start in STARTS.values() for point in _of_start(points, start).values()]
     dataset = table("point", chosen, row).set_index(point=["start", "packing_fraction"]).unstack("point")

@@ -195,7 +195,7 @@ def _clusters(gases: Table) -> list[Claim]:
 
 
 def _claim_growth(subject: str, ratio: Estimate, least: float, **others: Any) -> Claim:
-    """Return the claim that a ratio is `least` or more, by its logarithm.
+    """Return the claim that the logarithm of a ratio is at least ln(`least`).
 
     The logarithm is 0 for an unchanged gas.
     """

@@ -97,19 +97,16 @@ spins at a rate that depends on the moment of inertia. From MIXED on, the differ
 def equipartition(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure equipartition of rough discs, and its violation by dissipation.
 
-    In points whose container has walls, particles hit only these. The other points belong to three groups. If
-    the tangential restitution is below 1, they are `cooling`. The rest is in `equilibrium` with an
-    equilibration, and else is a `start` without spins. The setting is `steady_from`; see `_cooling`.
+    In points whose container has walls, particles hit only these. The other points belong to three groups.
+    Points with a tangential restitution below 1 are `cooling`. Of the rest, points with an equilibration are
+    in `equilibrium`; points without it are a `start` without spins. The setting is `steady_from`; see
+    `_cooling`.
 
-    collisions, translation, rotation : collisions per particle and temperatures with errors, over `start` and
-        `frame`
-    inertia, rate : q = I / (m R^2); initial decay rate of T_tr - T_rot per collision of a particle, with
-        error, over `start`
+    collisions, translation, rotation : collisions per particle; temperatures with errors (`start`, `frame`)
+    inertia, rate : q = I / (m R^2); initial decay rate of T_tr - T_rot per collision, with error (`start`)
     equilibrium_inertia, equilibrium_ratio : q and T_rot / T_tr with error, over `equilibrium`
-    cooling_collisions, cooling_ratio : collisions per particle and ratio of temperatures, over `cooling` and
-        `step`
-    tangential, cooling_inertia, steady_ratio : tangential restitution, q and steady ratio with error, over
-        `cooling`
+    cooling_collisions, cooling_ratio : collisions per particle; T_rot / T_tr (`cooling`, `step`)
+    tangential, cooling_inertia, steady_ratio : restitution; q; steady ratio with error (`cooling`)
     wall_time, wall_translation, wall_rotation : time and temperatures with errors, over `walls` and `moment`
     wall_dimension, wall_inertia, exchange, wall_ratio : see `_walls`; the last two with errors, over `walls`
     """
@@ -198,9 +195,9 @@ def _walls(point: Point) -> dict[str, Any]:
     """Measure temperatures between two rough walls, relative to T_par at the start.
 
     T_par = m <v^2> for each direction along the walls. T_rot = I <w^2> for each spin component that a hit
-    changes. There are as many such components as directions. `exchange` is T_rot divided by theory, by least
-    squares until MIXING. `wall_ratio` is T_rot / T_par after MIXED, divided by theory. `wall_time` is t
-    sqrt(k_B T / m) / h.
+    changes. There are as many such components as directions. `exchange` is the ratio of T_rot to theory, from
+    a least-squares fit until MIXING. `wall_ratio` is T_rot / T_par after MIXED, divided by theory.
+    `wall_time` is t sqrt(k_B T / m) / h.
     """
     scene = point.scene
     kind, along = scene.species[0], np.array(scene.container.periodic)
@@ -240,15 +237,13 @@ def cooling(points: list[Point], settings: dict) -> xr.Dataset:
     The settings are `clustering`, the experiments of the dense gas, and `cells_per_side`, the number of cells
     along each side of its container.
 
-    collisions, time, temperature : collisions per particle, time in Haff's t_H, and temperature with error,
-        over `gas` and `frame`
+    collisions, time, temperature : per particle; in Haff's t_H; with error (`gas`, `frame`)
     dimension, restitution : properties of a gas, over `gas`
     rate : -d ln T / ds per replica, between `RELAXED` and the end, with error, over `gas`
     exponent : exponent of T against 1 + t / t_H, with error, over `gas`
     cluster_collisions : collisions per particle, over `clusters` and `step`
     cluster_excess : T divided by exp(-rate s) of theory, with error, over `clusters` and `step`
-    variance : variance of the particle number in a cell divided by its mean, with error, over `clusters` and
-        `step`
+    variance : variance of the particle number in a cell over its mean, with error (`clusters`, `step`)
     cluster_restitution : restitution, over `clusters`
     x, y : positions at the end of one run with the smallest restitution, over `particle`
 

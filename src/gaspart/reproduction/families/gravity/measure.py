@@ -135,16 +135,17 @@ def profiles(points: list[Point], settings: dict, of_source: Callable[[Point], d
     """Measure columns of discs of one size under gravity, point by point.
 
     The settings are:
+
     bins : number of bins of height
     blocks : number of time blocks of each replica
-    clear : distance from floor and ceiling that is left out of comparisons, in diameters; there the fluid has
-        layers, and is not hydrostatic
+    clear : distance from floor and ceiling, in diameters, that is left out of comparisons because of layers
     ranges : pairs of packing fractions between which the equation of state is averaged
     columns : experiment of each column, by name
 
     `of_source` returns further numbers of the column "source".
 
     The dimensions are point, species, bin, range, and layer (for the source's shares). Variables include:
+
     pressure_ratio : pressure that supports the weight above, divided by rho T Z(eta) of the reference
     slope_ratio : slope of ln eta_i + mu_excess against height, divided by -m_i g / T
     exchange_ratio : slope of ln (eta_1 / eta_0), divided by -(m_1 - m_0) g / T

@@ -21,7 +21,7 @@ NOISY = 0.03
 
 
 def heat_conduction_gas(ds: xr.Dataset) -> Figure:
-    """Draw flux against density and Knudsen number, the approach to steadiness, and profiles.
+    """Draw flux against density and Knudsen number, the approach to a steady state, profiles.
 
     The flux is also drawn relative to free flight. The profiles are of temperature and of density.
     """

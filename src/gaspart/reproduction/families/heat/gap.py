@@ -59,10 +59,8 @@ class Averages:
     heat_in, heat_out : (K,), heat flux out of the hot wall, and heat flux into the cold wall.
     density : (K, B), particles in bins, per volume.
     energy : (K, B), energy of the particles per volume, as a temperature.
-    imbalance : largest difference between energy supplied by the walls and energy gained by the particles,
-        divided by the conducted heat.
-    stored : (R, K/R + 1, 2), energy of the particles, and its first moment about the middle, at the ends of
-        the blocks of each replica.
+    imbalance : largest difference between supplied energy and gained energy, over the conducted heat.
+    stored : (R, K/R + 1, 2), particles' energy and its first moment about the middle, at ends of blocks.
     heat : total conducted heat.
     """
 

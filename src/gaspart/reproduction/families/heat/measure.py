@@ -35,10 +35,11 @@ INNER = dict.fromkeys(_PROFILES, ("bin",)) | {name.removesuffix("_error"): ("fra
 def heat_conduction_gas(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure the heat flux through gases of one kind of particles, and their profiles.
 
-    The settings are `bins` across the gap, `blocks` of each replica, and `clear`. The latter is the distance
-    from the walls, in mean free paths, that is left out of comparisons with Fourier's law.
+    The settings are `bins` across the gap, `blocks` of each replica, and `clear`. `clear` is a distance from
+    the walls, in mean free paths; this region is left out of comparisons with Fourier's law.
 
     The dimensions are point and bin. The suffix `_freedom` marks the degrees of freedom of an error `_error`.
+
     flux : steady flux through both walls
     wall_ratio : flux into the cold wall divided by the flux out of the hot wall
     half_ratio : flux in the second half of the run divided by the flux in the first half
@@ -47,10 +48,10 @@ def heat_conduction_gas(points: list[Point], settings: dict) -> xr.Dataset:
 
     Further variables are for gases in three dimensions between walls of full accommodation, at Knudsen
     numbers below FLUID.
+
     slab_flux : flux by Fourier's law with temperature jumps, with its profiles
     profile_ratio : mean of T divided by this theory
-    jump : temperature jump in units of mean free path times slope, averaged over the walls; T^(3/2) is a
-        straight line away from the walls, and is extrapolated to them
+    jump : mean temperature jump over mean free path times slope, by linear extrapolation of T^(3/2)
     approach_time, approach, expected_approach : approach to the steady state over `frame`; see `approach`
     """
     return table("point", points, _gas, settings, inner=INNER)
@@ -141,6 +142,7 @@ def heat_conduction_metal(points: list[Point], settings: dict) -> xr.Dataset:
     are random.
 
     The dimensions are point and bin.
+
     electrons : temperature of the electrons, over point and bin
     modes : mean energy of a vibrational mode, over point and bin
     share : `modes` divided by `electrons`, averaged over bins

@@ -81,27 +81,27 @@ def fill_failures(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure failures per particle against packing fraction, and saturation, of each container.
 
     The settings are:
+
     bins : number of bins of packing fraction, up to the densest fill
     windows : list of ratios of last to first time of the fitted window; the first window is claimed
     saturated : experiments that are filled to saturation
     dilute : largest packing fraction at which failures are compared with the low-density expansion
 
     Variables over `container` (the name of the experiment):
+
     dimension, side_over_diameter, rule, replicas : properties of the container
     placed : mean number of placed particles
     final, final_spread : mean and standard deviation of the final packing fraction of a single fill
     last_time : last time, in t
-    failures_per_particle : failures with error, at `packing_fraction`, over (container, bin); NaN without
-        attempts
+    failures_per_particle : with error, at `packing_fraction` (container, bin); NaN without attempts
     filled : mean packing fraction at `time`, over (container, sample)
-    saturation, slope : fitted saturation with error, and slope of the line in t^(-1/d), over (container,
-        window); NaN except for `saturated` containers; degrees of freedom over container
-    approach : exponent p of eta_s - eta ~ t^-p with error, with eta_s from literature; only for saturated
-        periodic containers
-    dilute_failures : failures divided by the expected failures at low density, with error; only for periodic
-        containers
+    saturation, slope : fitted saturation with error; slope of the line in t^(-1/d) (container, window)
+    approach : exponent p of eta_s - eta ~ t^-p with error; eta_s is from literature
+    dilute_failures : failures divided by the expected failures at low density, with error
 
-    The attribute is dilute_up_to.
+    Saturation and slope are NaN except for `saturated` containers. The degrees of freedom of the saturation
+    are over container. The approach is only for `saturated` periodic containers, and `dilute_failures` only
+    for periodic containers. The attribute is dilute_up_to.
     """
     inner = {
         **dict.fromkeys(("packing_fraction", "failures_per_particle"), ("bin",)),
@@ -257,12 +257,11 @@ def densest_fill(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure packing fractions with standard errors over replicas, and contacts.
 
     The result also has the first replica of each packing, for the picture.
+
     packing_fraction, error : packing fraction with its error, over (packing,)
-    contacts, contacts_error : contacts per sphere that does not rattle, over (packing,); NaN for inserted
-        spheres, which do not touch
+    contacts, contacts_error : contacts per sphere that does not rattle (packing,); NaN for inserted spheres
     rule : rule of the packing, over (packing,)
-    position, radius, length : positions (packing, particle, axis), radius (packing,) and container lengths
-        (packing, axis)
+    position, radius, length : (packing, particle, axis); (packing,); of the container, (packing, axis)
     freedom : degrees of freedom of the errors
     """
     inner = {"position": ("particle", "axis"), "length": ("axis",)}

@@ -39,19 +39,17 @@ def mixture_state(points: list[Point], settings: dict) -> xr.Dataset:
     size_ratio, small_fraction : of gases of two sizes, else NaN
     polydispersity, distribution : of polydisperse gases, else NaN or ""
     Z : compressibility factor of the infinite gas, with `_error` and `_freedom`
-    correction : subtracted correction of first order in 1/N, valid for equal particles of the same packing
-        fraction
+    correction : subtracted correction of first order in 1/N, for equal particles of this packing fraction
     reference_error : uncertainty of the equation of state of equal particles
     boublik, linear, santos : Z by these theories (see `gaspart.theory.mixtures`); NaN without a value
     starling : Z by the linear theory with Carnahan and Starling's equation of equal spheres
-    virial : of two sizes, the sum of |dr . dp| divided by its prediction, minus 1, with `_error` and
-        `_freedom`
-    contact, rate : contact value and collision rate over pair ("large-large", "large-small", "small-small"),
-        with `_error`, and by theory, such as contact_boublik
+    virial : of two sizes, sum of |dr . dp| over its prediction, minus 1, with `_error` and `_freedom`
+    contact, rate : contact value and collision rate, with `_error`, and by theory, such as contact_boublik
 
-    The prediction for `virial` uses the numbers of collisions of each pair, and Maxwellian velocities. The
-    rate counts collisions of a particle of the first kind with all particles of the second kind. Its unit is
-    sqrt(k_B T / m) divided by the larger diameter.
+    The dimension of contact and rate is pair ("large-large", "large-small", "small-small"). The prediction
+    for `virial` uses the numbers of collisions of each pair, and Maxwellian velocities. The rate counts
+    collisions of a particle of the first kind with all particles of the second kind. Its unit is sqrt(k_B T /
+    m) divided by the larger diameter.
     """
     units = {"rate": "sqrt(k_B T / m) / diameter"}
     return table("point", points, _row, inner=("pair",), units=units).assign_coords(pair=list(_PAIRS))

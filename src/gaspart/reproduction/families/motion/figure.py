@@ -51,7 +51,7 @@ def _fractions(points: Table) -> np.ndarray:
 
 
 def _spread(first: int, last: int) -> np.ndarray:
-    """Compute about eight indices per decade, from first to last - 1."""
+    """Compute indices from `first` to `last` - 1, about eight per decade."""
     number = int(np.ceil(8.0 * np.log10(last / first))) + 1
     return np.unique(np.geomspace(first, max(last - 1, first), number).round().astype(int))
 

@@ -290,8 +290,7 @@ def velocity_autocorrelation(points: list[Point], settings: dict) -> xr.Dataset:
     parabola, if the sampling is fine enough. The setting `tail` is the interval for fits of the tail, for all
     other points.
 
-    collisions, time, correlation : s, time, and C with its error, over `point` and `lag`; NaN beyond the last
-        lag
+    collisions, time, correlation : s; time; C with its error (`point`, `lag`); NaN beyond the last lag
     dimension, packing_fraction, count : properties of the gas, over `point`
     sound : s at which sound has crossed the container
     start_rate : initial decay rate divided by the collision rate, with error

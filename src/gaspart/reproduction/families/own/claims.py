@@ -16,7 +16,7 @@ APPROXIMATE = "the uncertainty of this theory is not known: a tolerance would de
 
 
 def observable(dataset: xr.Dataset, stated: list[dict]) -> list[Claim]:
-    """Return the claims about an observable that the config states, `stated`.
+    """Return the claims about an observable from the config's list `stated`.
 
     There is a claim for each point or for each series.
     """

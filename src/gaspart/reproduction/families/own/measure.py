@@ -25,15 +25,16 @@ def observable(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure an observable of each point, averaged over its replicas.
 
     The settings are:
+
     observable : name of the observable
     against : key of the points on the horizontal axis
     place : for a curve, the position at which its value is taken; see `families.own`
 
     The dimension is point, ordered by `series` and `against`.
+
     against : value of the key
     series : other varying settings, as text
-    value, theory : value and theory (NaN without theory), each with its `_error`, in the units of the
-        observable
+    value, theory : value and theory (or NaN), each with its `_error`, in the units of the observable
     value_freedom : degrees of freedom of the error
 
     Some observables have several named values, such as one for each face; then each name is a series. For a

@@ -47,14 +47,14 @@ def wall_pressure(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure the pressure on the walls of containers, with theory for each.
 
     The containers have walls on some or all axes. Variables over `point`:
+
     pressure : mean force on a wall divided by the area that centres can reach, with error
     whole_pressure : the same force divided by the full area of the wall
-    bulk_pressure : theoretical pressure of an infinite fluid with the particle number per volume of the
-        container
+    bulk_pressure : theoretical pressure of an infinite fluid of this `density`
     expected : theoretical pressure of this container, with error
     density : particle number per volume of the container
-    packing_fraction, temperature, hits, count, dimension : packing fraction, temperature of the scene, wall
-        hits, particle number, dimension
+    packing_fraction, temperature, dimension : of the scene
+    hits, count : number of wall hits, and of particles
     axes, length : number of axes with walls, and length along them
 
     Raises SceneError for containers without walls, or whose axes with walls have different lengths.
@@ -106,20 +106,21 @@ def piston(points: list[Point], settings: dict) -> xr.Dataset:
 
     Particles have mass 1.
 
-    Points with a piston, without equilibration. Variables over (path, path_replica, frame) are volume and
-    temperature divided by their first values, and heating (see `_heating`). Variables over `path` are
-    dimension and the first packing_fraction.
+    The first kind are points with a piston and without equilibration. Variables over (path, path_replica,
+    frame) are volume and temperature divided by their first values, and heating (see `_heating`). Variables
+    over `path` are dimension and the first packing_fraction.
 
-    Points with a piston, with equilibration. Variables over (state, state_replica):
+    The second kind are points with a piston and with equilibration. Variables over (state, state_replica):
+
     density : packing fraction in the middle half of the volume
     factor : external pressure divided by this density and the temperature
-    fluctuation : particle number times the variance of the volume, divided by the square of the volume at
-        this density
+    fluctuation : particle number times variance of the volume, over the squared volume at this density
     energy : twice the kinetic energy of the piston, divided by the temperature
 
     Variables over `state` are dimension and count.
 
-    Points without a piston. Variables over (expansion, expansion_replica):
+    The third kind are points without a piston. Variables over (expansion, expansion_replica):
+
     heat : final kinetic energy divided by the initial energy
     speed : final mean speed divided by its equilibrium value at the initial temperature
     share : fraction of particles in the half of the container that was empty
@@ -224,11 +225,11 @@ def estimators(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure variances of densities along the last axis, for gases between walls across it.
 
     The setting is `widths` of bins. Variables over `case`, which is a point with a width of bins:
+
     packing_fraction, width : packing fraction, and width in diameters
     mixture, impulses : variance of counts divided by the variance of these estimators, median of all bins
     at_walls : `mixture` in the two bins at the walls
-    mean_square : mean square of the difference between counts and impulses over its error, divided by the
-        value for Student's distribution
+    mean_square : mean square of (counts - impulses) / error, over the value for Student's distribution
     additions : additions to the tally per tested pair of particles
     pressure : squared error of the wall pressure by impulses, divided by the squared error with known means
     pressures_apart : difference of both pressures divided by the latter

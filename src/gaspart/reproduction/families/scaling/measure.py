@@ -41,15 +41,14 @@ def near_boxes(runs: list[xr.Dataset]) -> xr.Dataset:
     """Compare the search of boxes within contact range with a search of all neighbours.
 
     `runs` are jobs of one gas, each with the same partitions. Variables over ``near`` (the partitions):
+
     near_boxes_per_side : number of boxes
-    near_seconds : time per particle and step with boxes within range only, with the error from the scatter of
-        jobs
-    near_box_visits, near_expected_visits : counted visits, and expected visits in a uniform gas far from
-        walls
+    near_seconds : time per particle and step with boxes within range only; error from the scatter of jobs
+    near_box_visits, near_expected_visits : counted visits; visits in a uniform gas far from walls
 
     Scalars:
-    near_least : least time of all partitions divided by the least time with all neighbouring boxes, with
-        error and ``_freedom``
+
+    near_least : least time over the least time with all neighbouring boxes, with error and ``_freedom``
     near_missed : largest difference between the numbers of contacts
     own_first : fraction of searches that could end in the particle's own box, with error
 
@@ -99,11 +98,10 @@ def ideal_boxes(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure the ideal number of boxes of many gases.
 
     The settings are:
+
     rule : source A's number of boxes per particle
-    source_numbers : numbers that source A found for the largest gas of its figures 5, 6 and 7, each with
-        ``count``, ``radius``, ``boxes_per_particle``
-    source_plateaus : ranges of N in which source A found a constant number of boxes, each with ``radius``,
-        ``counts``, ``boxes_per_side``
+    source_numbers : ``count``, ``radius``, ``boxes_per_particle`` for the largest gas of A's figures 5 to 7
+    source_plateaus : A's ranges of N of constant number of boxes (``radius``, ``counts``, ``boxes_per_side``)
 
     Over (``gas``, ``partition``) are the costs of `per_particle`, with NaN beyond the partitions of a gas.
     Over ``gas``: ``count``, ``radius``, ``most`` (the maximum number of boxes per particle, whose width is a
@@ -160,7 +158,7 @@ def _gas(timed: tuple[xr.Dataset, xr.Dataset], rule: float) -> dict[str, Any]:
 
 
 def _source(entry: dict, costs: list[xr.Dataset], gases: Table) -> dict[str, Any]:
-    """Return the results for a gas for which source A states a number, as in `ideal_boxes`."""
+    """Return the results of `ideal_boxes` for a gas for which source A states a number."""
     same = (gases.count == entry["count"]) & (gases.radius == entry["radius"])
     at = int(np.flatnonzero(same)[0])
     gas = gases[at]
@@ -206,6 +204,7 @@ def naive_scaling(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure the cost of a step with one box against the number of particles N.
 
     Over ``count``: ``pair_tests`` per step, and ``seconds`` per step with ``seconds_error``. Scalars:
+
     exponent : exponent of the time in N, with ``exponent_error`` from the scatter
     tests_excess : largest relative difference of the pair tests from N(N-1)/2
     test_seconds : time b of a pair test, from a fit of time = a N + b tests
@@ -235,17 +234,18 @@ def box_count(points: list[Point], settings: dict) -> xr.Dataset:
     boxes beyond a radius are left out. For ``in_reach``, boxes beyond a diameter are left out; they cannot
     contain a partner.
 
-    Over (``container``, ``fine``): ``fine_seconds`` and so on of two other scans. Their containers, with
-    sides ``container_side``, do and do not have round widths of boxes. Over ``power``: ``advantage``; see
-    `_advantages`. Over ``sector``: ``sector_seconds`` and so on, as in `per_event`.
+    Over (``container``, ``fine``): ``fine_seconds`` and so on of two other scans. Their containers have the
+    sides ``container_side``. One container has round widths of boxes, the other does not. Over ``power``:
+    ``advantage``; see `_advantages`. Over ``sector``: ``sector_seconds`` and so on, as in `per_event`.
 
     Scalars are the results of `ideal`, and with errors:
+
     source_penalty : time at the source's number divided by the least time
-    event_searches, crossing_searches : numbers of neighbourhoods of sectors that are searched at an event (a)
-        and at a crossing (b), from pair tests = discs in a neighbourhood x (a + b crossings)
+    event_searches, crossing_searches : searched neighbourhoods of sectors, a at an event and b at a crossing
     crossing_exponent : exponent of the crossings per event in the number of planes between sectors
 
-    Points that are timed alternately with and `without` a modification are in `remarks`.
+    The numbers a and b follow from pair tests = discs in a neighbourhood x (a + b crossings). Points that are
+    timed alternately with and `without` a modification are in `remarks`.
     """
     near = [xr.load_dataset(point.path) for point in points if point.settings.get("near_boxes")]
     huge = [xr.load_dataset(point.path) for point in points if "scene" in point.settings]
@@ -302,6 +302,7 @@ def linear_scaling(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure the cost of a step with the cheapest partition of each gas, against N.
 
     The settings are:
+
     source_figures : radius and range of counts of source A's figures 8, 9 and 10
     naive_count : number of particles to which the naive method is extrapolated
     source_years : source A's estimate for this number
@@ -313,6 +314,7 @@ def linear_scaling(points: list[Point], settings: dict) -> xr.Dataset:
     ``listed`` (points without partition): see `list_costs`.
 
     Scalars, with errors:
+
     work_exponent : exponent of the work per step, over all gases
     extrapolated_count, extrapolated_seconds : number of particles, and time of a naive step
     extrapolated_ratio : time of a naive step divided by the time of a step with a partition
@@ -363,7 +365,7 @@ def _regime(part: dict, gases: Table) -> dict[str, Any]:
 def event_scaling(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure the cost of an event by each search method, against N.
 
-    The setting ``fit_from`` is the smallest N in the fits, for each search method. Over ``run``: ``search``,
+    The setting ``fit_from`` is, for each search method, the smallest N in the fits. Over ``run``: ``search``,
     ``dimension``, ``count``, and costs as in `per_event`. Over ``method`` (``method_search`` in
     ``method_dimension``): the exponents in N of time (``exponent``) and of pair tests (``work_exponent``) per
     event, with errors from the scatter. The scalar ``pairs_excess`` is for the search method "pairs". It is

@@ -1,7 +1,7 @@
 """Column of gas under gravity: heights, energies and forces, averaged over blocks.
 
-The container has two dimensions. Gravity points down the last axis. The height of a particle is measured from
-the lowest position that the centre of the smallest particle can reach, to its own centre.
+The container has two dimensions. Gravity points down the last axis. Height 0 is the lowest position that the
+centre of the smallest particle can reach. The height of a particle is the height of its centre.
 """
 
 from __future__ import annotations

@@ -232,8 +232,8 @@ def list_costs(runs: list[xr.Dataset], gases: xr.Dataset) -> xr.Dataset:
     """Return the costs per particle of neighbour lists, over ``listed``.
 
     The variables are ``list_seconds`` and so on, as in `per_particle`; ``list_count``, ``list_radius``; and
-    ``list_share``. The latter is the time, with error, divided by the time of the gas in `gases` with equal
-    count and radius. It is NaN without such a gas.
+    ``list_share``. ``list_share`` is the time divided by the time of the gas in `gases` with equal count and
+    radius, with error. It is NaN without such a gas.
     """
     costs = xr.concat(
         [per_particle(run).isel(partition=0) for run in runs], "listed", join="outer", compat="equals"
@@ -283,8 +283,7 @@ def speed_up(cores: ArrayLike, count: ArrayLike, serial: float, overhead: float)
     Source: AFIPS Conf. Proc. 30, 483 (1967).
 
     serial : fraction s of the work that runs on one core.
-    overhead : number of particles N_0 whose work on one core takes as long as starting and joining the
-        threads.
+    overhead : number of particles N_0 whose work on one core takes as long as starting and joining threads.
     """
     shared, waited = (1.0 - serial) / np.asarray(cores), overhead / np.asarray(count)
     return np.asarray(1.0 / (serial + shared + waited))

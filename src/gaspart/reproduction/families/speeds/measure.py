@@ -181,7 +181,7 @@ def _require_alike(points: list[Point], groups: list[list]) -> None:
 
 
 def _rate_between_walls(scene: Scene, temperature: float) -> float:
-    """Compute collisions per particle and time of a dilute gas within a container.
+    """Compute the collision rate per particle of a dilute gas in a container.
 
     The centres are confined to the container.
 

@@ -97,7 +97,7 @@ def _size(outcome: Row, name: str) -> float:
 
 
 def _draw_cell(axis: Axes, x: float, top: int, cell: tuple[str, Any, str], letters: float) -> None:
-    """Draw a cell, (text, background, ink), with its upper left corner at a position."""
+    """Draw a cell (text, background, ink) with its upper left corner at (x, top)."""
     text, colour, ink = cell
     axis.add_patch(Rectangle((x, top), 1, 1, facecolor=colour, edgecolor="white", linewidth=0.4))
     if text:
@@ -130,7 +130,7 @@ def _reason(message: str) -> tuple[str, str]:
 
 
 def _key(scenes: Table, columns: int) -> str:
-    """Return the reasons that occur, with their letters, several in a line."""
+    """Return lines with the letters and texts of the reasons that occur."""
     reasons = sorted({_reason(message) for message in scenes.message[scenes.verdict == "refused"]})
     texts = [f"{letter}: {text}" for letter, text in reasons]
     lines = ["; ".join(texts[n : n + columns]) for n in range(0, len(texts), columns)]

@@ -61,7 +61,7 @@ class Outcome:
     overlap : deepest observed overlap, in contact distances.
     contacts, missed : number of contacts of particles and walls, and number of missed contacts (negative if
     contacts are spurious).
-    seconds : CPU time in s.
+    seconds : wall-clock time in s.
     bits : digest of the final state.
     """
 
@@ -168,7 +168,10 @@ def momentum_drift(before: State, after: State) -> float:
 
 
 def deepest_overlap(state: State, periodic: tuple[bool, ...]) -> float:
-    """Compute the deepest overlap of any pair, in contact distances, from all pairs."""
+    """Compute the deepest overlap of any pair, divided by the contact distance.
+
+    All pairs are searched.
+    """
     deepest = 0.0
     for n in range(state.count - 1):
         apart = state.positions[n + 1 :] - state.positions[n]
@@ -230,10 +233,11 @@ def stability_extremes(points: list[Point], settings: dict) -> xr.Dataset:
     """Run all rows of the table, or the rows of the groups in the setting `groups`.
 
     There are no points. Variables over row and engine:
+
     verdict : "passes", "refused", "fails" or "hangs"
     message : message of the rejection or failure
     energy, momentum, overlap, contacts, missed : see `Outcome`
-    seconds : CPU time in s
+    seconds : wall-clock time in s
     refusal : 1 if rejection is the expected result
 
     Over row are `group`, and `expected`, the exact number of contacts; -1 if the search of all pairs is the
@@ -285,7 +289,8 @@ def reversibility(points: list[Point], settings: dict) -> xr.Dataset:
     are `echo` jobs. Over (``row``, ``sample``) are ``collisions`` (mean) and ``echo`` (median over seeds, in
     diameters).
 
-    Variables over ``row``, with an ``_error`` over seeds for the last four groups:
+    Variables over ``row``; those from growth to memory have an ``_error`` over seeds:
+
     dimension, packing_fraction, count, side : gas, with the side in diameters
     engine, precision : engine and its precision
     growth : growth of the logarithm of the echo per collision of a particle
@@ -293,7 +298,8 @@ def reversibility(points: list[Point], settings: dict) -> xr.Dataset:
     exponent : growth in the linearised dynamics; NaN for time steps
     memory : collisions per particle until the echo is `FORGOTTEN`
 
-    `jumps` is the fraction of the echoes that leave the window, within one interval, from its lower half.
+    `jumps` is the fraction of the echoes that pass from the lower half of the window to beyond the window
+    within one interval.
     """
     rows = table("row", points, _row, inner=("sample",))
     return rows.sortby(["dimension", "packing_fraction"])

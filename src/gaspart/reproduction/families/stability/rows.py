@@ -170,7 +170,7 @@ def falling_gas(gravity: float) -> Scene:
 
 
 def few(count: int) -> Scene:
-    """Return a gas of `count` discs, with a further species of no discs."""
+    """Return a gas of `count` discs, with an additional empty species."""
     return gas(Species(count, 0.5, speed=1.0), Species(0, 0.7, temperature=1.0), side=3.0)
 
 
@@ -237,12 +237,11 @@ class Row:
     name, group : name and group of the row.
     scene : function that makes the scene; it may reject its arguments.
     duration, time_step : in the scene's time.
-    contacts : exact number of contacts of particles and walls, if it is known. Otherwise the search of all
-        pairs is the reference.
-    chaotic : True for a gas. Engines with different rounding then agree in the number of contacts only on
-        average.
-    refused : engines that must reject the scene, by the beginning of their names, such as "step"; "" for all
-        engines, NOWHERE for no engine.
+    contacts : exact number of contacts if known; otherwise the search of all pairs is the reference.
+    chaotic : True for a gas, in which engines agree in the number of contacts only on average.
+    refused : beginning of the names of engines that must reject the scene; "" for all, NOWHERE for none.
+
+    Contacts are between particles, and with walls. In a gas, runs of engines with different rounding diverge.
     """
 
     name: str

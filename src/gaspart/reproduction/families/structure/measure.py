@@ -73,16 +73,15 @@ def structure(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure g(r), S(k) and derived numbers at each point of the experiments `measured`.
 
     The settings are in `FIGURES`. Variables over `point`, the numbers with _error and _freedom:
+
     dimension, packing_fraction, count : properties of the fluid
     s0, state_s0, s0_ratio : extrapolated S(0), S(0) by the measured equation of state, and their ratio
-    contact_g, contact_z, contact_rate : contact value times (N - 1) / N of N particles, from g, Z and
-        collision rate
+    contact_g, contact_z, contact_rate : (N - 1) / N times contact value, from g, Z and collision rate
     g_ratio, rate_ratio : contact_g and contact_rate divided by contact_z
-    g_gain, s_gain : of spheres, the root-mean-square distance of the measured curve from Verlet-Weis, divided
-        by the distance from Percus-Yevick
+    g_gain, s_gain : of spheres, distance of the curve from Verlet-Weis over distance from Percus-Yevick
 
-    Curves with _error are g over `bin`, at `distance` in diameters, and s over `shell`, at `wave_number`
-    times the diameter.
+    Distances of curves are root mean squares. Curves with _error are g over `bin`, at `distance` in
+    diameters, and s over `shell`, at `wave_number` times the diameter.
     """
     measured = [point for point in points if point.experiment in settings["measured"]]
     inner = {"g": ("bin",), "distance": ("bin",), "s": ("shell",), "wave_number": ("shell",)}

@@ -112,22 +112,20 @@ def chemical_potential(points: list[Point], settings: dict) -> xr.Dataset:
 
     `measured` are experiments. The settings are in `FIGURES`. Variables over `point`, by ascending packing
     fraction in each dimension:
+
     dimension, packing_fraction, count : properties of the fluid
-    probability, expected : probability that a random position is free, and this probability by the measured
-        equation of state for this number of particles
-    inserted : chemical potential of the infinite fluid by insertion (the effect of the finite size is
-        subtracted)
+    probability, expected : probability that a random position is free, and by the measured equation of state
+    inserted : chemical potential by insertion, for the infinite fluid (finite size is subtracted)
     integrated, ratio : chemical potential by the measured equation of state, and ratio of both
     reference : chemical potential by the reference equation of state, with _error
-    successes, hit_frames, frames : number of free positions, number of frames that have any, and number of
-        frames
+    successes, hit_frames, frames : numbers of free positions, of frames that have any, and of all frames
     places : number of random positions that the trials represent
     resolution : probability that corresponds to a single success
     works : 1 if there are `enough` hit frames
-    ln_q, ln_q_integrated, ln_q_ratio : minus ln Q / N by insertion up to this packing fraction, by the
-        equation of state, and their ratio; NaN if insertion does not work
+    ln_q, ln_q_integrated, ln_q_ratio : minus ln Q / N by insertion, by the equation of state, and their ratio
 
-    Variables from probability to ratio, and of ln_q, have _error and _freedom.
+    ln Q / N is for this packing fraction, and NaN if insertion does not work. `expected` is for this number
+    of particles. Variables from probability to ratio, and of ln_q, have _error and _freedom.
     """
     states = measured_states(points)
     measured = [point for point in points if point.experiment in settings["measured"]]

@@ -18,7 +18,6 @@ from gaspart.accuracy.option import Option, fluid_option
 from gaspart.accuracy.table import PRECISIONS, REFERENCE, STEP
 from gaspart.accuracy.tabulated import model_error
 from gaspart.analysis import statistics
-from gaspart.analysis.bulk import EXACT
 from gaspart.analysis.estimate import Estimate
 from gaspart.engines.engine import Candidate
 from gaspart.reproduction import table as tables
@@ -37,6 +36,7 @@ from gaspart.reproduction.families.tradeoff.uniform import (
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table
 from gaspart.scene.gas import Gas
+from gaspart.theory.bulk import EXACT
 
 # Cheapest time-stepped setting for each accuracy of a collision, and the event-driven engine.
 
@@ -245,7 +245,7 @@ def _speeds(timed: list[dict]) -> dict[tuple[str, str], float]:
 
 
 def _by_table(gas: Gas, choice: uniform.Choice, observable: str, speeds: dict) -> Option:
-    """Return the option of a choice, with errors and times from the table.
+    """Return the option of a choice, but with errors and times from the table.
 
     Times are converted to this machine.
     """

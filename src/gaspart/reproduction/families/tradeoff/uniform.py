@@ -20,7 +20,7 @@ from gaspart.accuracy import table
 from gaspart.accuracy.option import Option, fluid_option
 from gaspart.accuracy.table import PRECISIONS
 from gaspart.accuracy.tabulated import model_error
-from gaspart.analysis import bulk, statistics
+from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.expected.equilibrium import collision_rate
 from gaspart.analysis.observables import OBSERVABLES as declared
@@ -35,6 +35,7 @@ from gaspart.scene.container import Container
 from gaspart.scene.gas import Gas
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
+from gaspart.theory import bulk
 
 # Errors of time-stepped settings, and costs of all engines, from `compare` and `measure_cost` jobs.
 
@@ -160,11 +161,10 @@ class Choice:
     """Option of `gaspart.accuracy`, with the errors that advice does not add.
 
     option : option whose noise is half of a 95 % interval.
-    decay : time in which the slowest trace of the initial state falls to 1/e; 0 if this decay itself is
-        measured.
+    decay : time in which the initial state's slowest trace falls to 1/e; 0 if this decay is measured.
     uncertainty : relative uncertainty of CPU times, from the timings.
-    finite_size : error that remains after theory's correction for the number of particles. It is the same for
-        every engine and run length.
+    finite_size : error that remains after theory's correction for finite size, equal for all engines and
+        runs.
     trace : maximum relative change of the observable by this trace, initially.
     """
 

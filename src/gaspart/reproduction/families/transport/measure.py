@@ -75,6 +75,7 @@ def coefficient(point: Point, flux: str, enskog: Callable[..., Any]) -> dict[str
     """Measure a transport coefficient of a point, divided by Enskog's, from a flux.
 
     The fluxes are named in `trajectory.correlator.STRESS`. All numbers are estimates.
+
     value : integral of the correlation up to the longest lag
     growth : half of the slope of Helfand's squared change, between lags `LATE` and 1 of the longest
     difference : growth divided by the mean of the integral between these lags, minus 1, from the same runs
@@ -138,13 +139,14 @@ def logarithmic_growth(points: list[Point], settings: dict) -> xr.Dataset:
 
     The settings `viscosity_from` and `conductivity_from` are numbers of collisions of a particle after which
     both are compared. Over `point`: count, packing_fraction, and sound, the number of collisions until sound
-    has crossed the container. Over `lag` too: time, in collisions.
+    has crossed the container. With the further dimension `lag`: time, in collisions.
 
-    The following variables begin with "viscosity" or "conductivity", and are divided by Enskog's values.
-    Without suffix: the integral up to each time, (lag,), with `_error`. `_modes`: the modes of the container,
-    (lag,), shifted to the height of the integral at the start of the comparison; NaN before. `_growth`: the
-    growth of the integral up to the last time, divided by the growth of the modes, with `_error` and
-    `_freedom`. `_short_waves`: the fraction of this growth due to waves of one to two mean free paths.
+    The following variables begin with "viscosity" or "conductivity", and are divided by Enskog's values. The
+    variable without a suffix is the integral up to each time, (lag,), with `_error`. `_modes`: the modes of
+    the container, (lag,), shifted to the height of the integral at the start of the comparison; NaN before.
+    `_growth`: the growth of the integral up to the last time, divided by the growth of the modes, with
+    `_error` and `_freedom`. `_short_waves`: the fraction of this growth due to waves of one to two mean free
+    paths.
 
     Raises SceneError for spheres, and for discs whose diameter or temperature is not 1.
     """
