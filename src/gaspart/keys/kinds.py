@@ -14,7 +14,7 @@ Check = Callable[[str, Any], Any]
 
 
 def _identity(_: str, value: Any) -> Any:
-    """Return the value as it is."""
+    """Return the value unchanged."""
     return value
 
 
@@ -26,7 +26,7 @@ class Kind(dict[str, Any]):
     schema : mapping
         Entries of the schema.
     check : Check, optional
-        Check for a field of a class. Default: the value is taken as it is, and the class itself checks it.
+        Check for a field of a class. Default: the value is unchanged, and the class itself checks it.
     """
 
     def __init__(self, schema: Mapping[str, Any], check: Check = _identity) -> None:
@@ -118,7 +118,7 @@ def not_negative(meaning: str, **more: Any) -> Kind:
 
 
 def real(meaning: str) -> Kind:
-    """Return the kind of a number of either sign, 0 or of an acceptable size.
+    """Return the kind of a number of either sign, 0 or of acceptable size.
 
     Parameters
     ----------
@@ -250,7 +250,7 @@ def vector(meaning: str, dimension: int | None = None, sized: bool = True) -> Ki
     meaning : str
         Description.
     dimension : int, optional
-        Number of components. Default: 2 or 3, where it is not known.
+        Number of components. Default: 2 or 3 are both accepted.
     sized : bool, default True
         Require that the largest component is 0 or of an acceptable size.
 
@@ -277,7 +277,7 @@ def two_vectors(meaning: str, dimension: int | None = None) -> Kind:
     meaning : str
         Description.
     dimension : int, optional
-        Number of components of each list. Default: 2 or 3, where it is not known.
+        Number of components of each list. Default: 2 or 3 are both accepted.
 
     Returns
     -------
@@ -294,7 +294,7 @@ def two_vectors(meaning: str, dimension: int | None = None) -> Kind:
 
 
 def _numbers(dimension: int | None) -> Kind:
-    """Return the kind of a list of numbers with the length of a vector."""
+    """Return the kind of a list of numbers that is as long as a vector."""
     least, most = (2, 3) if dimension is None else (dimension, dimension)
     return list_of({"type": "number"}, least=least, most=most)
 
@@ -310,7 +310,8 @@ def per_side(meaning: str) -> Kind:
     Returns
     -------
     Kind
-        Kind of a number for all sides, or a number for each. Its check is `values.partition`.
+        Kind of a number for all sides, or of a list with a number for each side. Its check is
+        `values.partition`.
     """
     types = {"type": ["integer", "array"], "items": COUNT}
     return describe({**COUNT, **types, **_PER_AXIS}, meaning, values.partition)
@@ -362,7 +363,7 @@ def names(meaning: str, **more: Any) -> Kind:
 
 
 def record(keys: Mapping[str, Mapping[str, Any]], meaning: str = "", **more: Any) -> Kind:
-    """Return the kind of a mapping of these keys and no others.
+    """Return the kind of a mapping with these keys only.
 
     Parameters
     ----------

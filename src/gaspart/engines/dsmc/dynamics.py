@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from gaspart.engines.dsmc.settings import DSMC
 
 
-# Limits of the scenes that the DSMC engine can model.
+# Scenes that the DSMC engine supports.
 
 
 MOST_PARTICLES = 2**32 - 1
@@ -56,7 +56,7 @@ def check_scene(scene: Scene, state: State) -> None:
 
 
 def check_made(counts: np.ndarray, time: float, most: int) -> None:
-    """Raise SimulationError for steps that could not be finished.
+    """Raise SimulationError if steps could not be completed.
 
     counts : see `kernels.dsmc.model`
     most : greatest number of particles
@@ -77,11 +77,11 @@ def check_made(counts: np.ndarray, time: float, most: int) -> None:
         )
 
 
-# Optional tallies of the DSMC engine. Threads add to them, exactly.
+# Optional tallies of the DSMC engine. Threads add to them without rounding errors.
 
 
 class StressPart(TallyPart):
-    """Stress tensor and heat flux, relative to the centre of mass at time 0."""
+    """Stress tensor and heat flux relative to the initial velocity of the centre of mass."""
 
     kernel: Stress
 
@@ -93,11 +93,11 @@ class StressPart(TallyPart):
         super().__init__("stress", kernel, {}, {"stress": sums})
 
     def read(self, clock: float) -> np.ndarray:
-        """Return the sums (2 d^2 + d,) of stress tensor, its collisional part and heat flux."""
+        """Return the sums (2 d^2 + d,) of stress tensor, collisional part and heat flux."""
         return exact_parts(self.kernel.sums)[:, 0]
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the sums by the fields of `Tally`."""
+        """Return the sums under the names of fields of `Tally`."""
         return tallied_fluxes(self.read(clock), self.kernel.drift)
 
 
@@ -111,18 +111,18 @@ class WallShearPart(Part):
         super().__init__({}, sums={"shear": shear})
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the momentum by the field of `Tally`."""
+        """Return the momentum under the name of its field of `Tally`."""
         return {"wall_shear": exact_parts(self.sums["shear"])[..., 0]}
 
 
 PARTS = {"stress": StressPart}
-"""Classes of the parts of optional tallies, by name."""
+"""Classes of the parts for optional tallies, by name."""
 
 
 def tally_parts(
     tallies: Iterable[OptionalTally], scene: Scene, state: State, threads: int
 ) -> list[TallyPart]:
-    """Return the parts of optional tallies.
+    """Return the parts for optional tallies.
 
     state : state at time 0
     """
@@ -130,15 +130,15 @@ def tally_parts(
 
 
 _WHOLE = 2**FINEST
-"""Number of parts of a step in which the position within it is counted."""
+"""Number of subdivisions of a step that count the position within the step."""
 
 
 class DsmcDynamics(SteppedDynamics):
-    """Dynamics of a scene. Its time is a whole number of steps.
+    """Dynamics of a scene under the DSMC engine. Its time is an integer number of steps.
 
-    A step may be made in parts, and cells may become narrower: see `defaults` and `resolution`.
+    A step may be divided into parts, and cells may become narrower: see `defaults` and `resolution`.
 
-    time_step : length of a step, prescribed or chosen
+    time_step : length of a step, prescribed or chosen by the engine
     """
 
     numbers = ("steps", "since", "place_in_step", "clock_since")
@@ -228,7 +228,7 @@ class DsmcDynamics(SteppedDynamics):
         return self._steps + self._place_in_step / _WHOLE
 
     def _advance_to(self, step: int) -> None:
-        """Advance to a step. Raises SimulationError if the particles become too fast for a step."""
+        """Advance to a step. Raises SimulationError if the particles become too fast for any step."""
         while self._steps < step:
             epoch = self._steps - self._steps % EPOCH + EPOCH
             self._make(min(step, epoch) if self._resolution.crowds else step)
@@ -237,7 +237,7 @@ class DsmcDynamics(SteppedDynamics):
         self._resolution.warn_of_speed(self.time)
 
     def _make(self, stop: int) -> None:
-        """Perform all steps up to one."""
+        """Perform all steps up to a given one."""
         while self._steps < stop:
             level = self._resolution.level(self._particles, self._place_in_step, self.time)
             part, at = _WHOLE >> level, self._steps * _WHOLE + self._place_in_step
@@ -251,9 +251,9 @@ class DsmcDynamics(SteppedDynamics):
             check_made(self._workspace.counts, self.time, self._scene.capacity)
 
     def _run(self, level: int, number: int) -> int:
-        """Run the kernel for some parts of a step; return the number of completed parts.
+        """Run the kernel for some parts of a step, and return the number of completed parts.
 
-        level : level of the parts
+        level : level of the division of the step
         """
         now = self._resolution
         pace = now.pace and now.pace._replace(level=level)
@@ -287,7 +287,7 @@ class DsmcDynamics(SteppedDynamics):
         return sum_over_threads(sums) if sums.shape[-1] == WIDTH else super()._sum_threads(sums)
 
     def _counts(self) -> dict[str, Any]:
-        """Return the counts, with the number of steps that were made in parts."""
+        """Return the counts, including the number of divided steps."""
         workspace, counts = self._workspace, self._workspace.counts.sum(axis=0)
         return {
             "collisions": int(counts[layout.COLLISIONS]),
@@ -303,13 +303,13 @@ class DsmcDynamics(SteppedDynamics):
         return {**super()._arrays(), "clock": self._workspace.clock}
 
     def _checkpoint_data(self) -> dict[str, Any]:
-        """Return the data of a checkpoint, with the level of density and a dense gas's fields."""
+        """Return the data of a checkpoint, with the density level and a dense gas's fields."""
         dense = self._resolution.dense
         fields = {"fields": dense.fields} if dense else {}
         return {**super()._checkpoint_data(), "crowded": self._resolution.crowded, **fields}
 
     def _required_arrays(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """Return the data needed from a checkpoint, with fields for its level of density."""
+        """Return the data required from a checkpoint, with fields for its density level."""
         check_parts(checkpoint, {"crowded": np.array(0)})
         crowded = int(checkpoint["crowded"])
         if not 0 <= crowded <= HIGHEST:
@@ -322,7 +322,7 @@ class DsmcDynamics(SteppedDynamics):
         return required
 
     def _place_again(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Place the particles in cells for the density of the checkpoint."""
+        """Put the particles into cells for the density level of the checkpoint."""
         resolution, crowded = self._resolution, int(checkpoint["crowded"])
         if crowded != resolution.crowded:
             resolution.set(crowded)
@@ -332,5 +332,5 @@ class DsmcDynamics(SteppedDynamics):
 
 
 def _per_area(sums: np.ndarray) -> np.ndarray:
-    """Return the values of the sums per accessible area."""
+    """Return the sums divided by the accessible area."""
     return exact_parts(sums)[..., 0]
