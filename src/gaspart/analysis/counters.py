@@ -303,9 +303,9 @@ def refuse_rest(run: Run, rule: str) -> None:
     Parameters
     ----------
     run : Run
-        Rule for the error message.
+        The run.
     rule : str
-        Rule of the message.
+        Rule for the error message.
 
     Raises
     ------

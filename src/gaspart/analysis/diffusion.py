@@ -232,9 +232,9 @@ def lags_of_slopes(run: Run, stride: int = 1, parts: int = 1) -> tuple[int, ...]
     Parameters
     ----------
     run : Run
-        Use every `stride`-th frame.
+        The run.
     stride : int, default 1
-        One of this number of frames is taken.
+        Use every `stride`-th frame.
     parts : int, default 1
         Number of parts of the run; the lags must fit into each part.
 

@@ -260,8 +260,7 @@ def partial_structure_factors(
 
     References
     ----------
-    .. [1] N. W. Ashcroft and D. C. Langreth, Phys. Return means of `products` over 16 blocks of the run, in
-           intervals of |k|.
+    .. [1] N. W. Ashcroft and D. C. Langreth, Phys. Rev. 156, 685 (1967).
 
     Examples
     --------
@@ -300,10 +299,10 @@ def _average_products(
     highest: float | None,
     products: Callable[[np.ndarray, np.ndarray], np.ndarray],
 ) -> tuple[np.ndarray, dict[str, Any]]:
-    """`products` is a function of (frames, waves) that returns an array (T, ..., M).
+    """Return means of `products` over 16 blocks of the run, in intervals of |k|.
 
-    (T, ..., M). Returns an array (16, ..., wave_number), and the coordinate. Raises SceneError for the
-    reasons of `structure_factor`.
+    `products` is a function of (frames, waves) that returns an array (T, ..., M). Returns an array
+    (16, ..., wave_number), and the coordinate. Raises SceneError for the reasons of `structure_factor`.
     """
     bins = count_of("bins", bins, least=2)
     lengths = run.scene.container.lengths
