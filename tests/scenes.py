@@ -192,9 +192,12 @@ def partitioned(draw, most=10):
 
 
 @st.composite
-def opened(draw):
-    """Discs between open faces: dense, dilute or empty, one or more reservoirs or a vacuum."""
-    activities = st.one_of(st.none(), st.floats(-8.0, 4.0).map(lambda power: 10.0**power))
+def opened(draw, most=1e4):
+    """Discs between open faces: dense, dilute or empty, one or more reservoirs or a vacuum.
+
+    most: greatest activity
+    """
+    activities = st.one_of(st.none(), st.floats(-8.0, math.log10(most)).map(lambda power: 10.0**power))
     kinds = {}
     for name in draw(st.sets(st.sampled_from(["x_low", "x_high", "y_low", "y_high"]), min_size=1)):
         activity = draw(activities)

@@ -1,7 +1,7 @@
-"""Hard-sphere and hard-disc gases, simulated, measured, and compared with theory.
+"""Hard-sphere and hard-disc gases: simulation, measurement, and comparison with theory.
 
-The public names of gaspart are in `__init__.pyi`. They are loaded when first used, so that planning a
-workflow starts no compiler.
+The public names of gaspart are in `__init__.pyi`. They are imported at their first use, so that planning a
+workflow does not start a compiler.
 """
 
 from gaspart.public import attach as _attach

@@ -1,6 +1,6 @@
 """Entry point of the command line: `gaspart`, and `python -m gaspart`.
 
-It prepares signals and the three standard streams before anything large is imported.
+It prepares signals and the three standard streams before any large import.
 """
 
 import os
@@ -10,7 +10,7 @@ from io import TextIOWrapper
 
 
 def main() -> int:
-    """Carry out the command line of this process; returns the exit code."""
+    """Run the command line of this process, and return the exit code."""
     for number in (signal.SIGINT, signal.SIGTERM):
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _exit)
@@ -33,8 +33,8 @@ def _exit(signum: int, frame: object) -> None:
 def _open_closed_streams() -> set[int]:
     """Open the null device in place of closed standard streams (`2>&-`); return their numbers.
 
-    Otherwise the next file to be opened, such as a trajectory, would get the number of stderr, and the output
-    of libraries.
+    Otherwise the next opened file, such as a trajectory, would get the number of stderr, and would receive
+    the output of libraries.
     """
     closed = set()
     for number in range(3):
@@ -42,7 +42,7 @@ def _open_closed_streams() -> set[int]:
             os.fstat(number)
         except OSError:
             closed.add(number)
-            os.open(os.devnull, os.O_RDWR)  # takes the lowest free number, which is this one
+            os.open(os.devnull, os.O_RDWR)  # returns the lowest free number, which is this one
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, "w"))  # noqa: SIM115

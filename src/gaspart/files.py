@@ -1,4 +1,4 @@
-"""Writer of all results: complete files, which replace no files of other kinds."""
+"""Writer of all results: files are complete, and never replace files of other kinds."""
 
 from __future__ import annotations
 
@@ -21,22 +21,22 @@ from gaspart.system import NO_LINK, OPEN_AS_IT_IS, is_own, is_running, rename_to
 
 _SPECIAL_FILES = {stat.S_IFIFO: "a pipe", stat.S_IFSOCK: "a socket", stat.S_IFLNK: "a link"}
 _SCRATCH = re.compile(r"\.gaspart-[0-9a-f]{12}-(\d+)-[0-9a-f]{8}\.partial")
-"""Name of a scratch file, with the number of the process that writes it."""
+"""Pattern of the name of a scratch file, which contains the number of the process that writes it."""
 
 OVERWRITE = "overwrite it (overwrite=True)"
-"""Remedy in the message about a file that exists; the command line has its own option for it."""
+"""Remedy in the message about an existing file; the command line has its own option for it."""
 
 
 @dataclass(frozen=True)
 class FileKind:
-    """Kind of result: its name in messages, and a test of a file's content."""
+    """Kind of result: name in messages, and a test of the content of a file."""
 
     name: str
     recognises: Callable[[Path], bool]
 
 
 def begins_with(*beginnings: bytes, at: int = 0) -> Callable[[Path], bool]:
-    """Return a test whether a file has one of some byte strings at a position.
+    """Return a test for one of several byte strings at a position in a file.
 
     beginnings : byte strings
     at : offset from the start of the file
@@ -51,7 +51,7 @@ def begins_with(*beginnings: bytes, at: int = 0) -> Callable[[Path], bool]:
 
 
 def output_path(path: str | Path) -> Path:
-    """Return `path` as the path of a file to be written.
+    """Return `path` as the path of an output file.
 
     Raises SceneError if it names no file ("", "a/", ".").
     """
@@ -62,12 +62,12 @@ def output_path(path: str | Path) -> Path:
 
 
 def open_regular(path: str | Path, follow: bool = True) -> BinaryIO:
-    """Open a file to read; this function opens all input.
+    """Open a file for reading; all input is opened by this function.
 
-    Raises OSError for a folder, pipe, socket or device, because reading could block or never end, and without
-    `follow` for a link; ValueError for a name that contains a NUL.
+    Raises OSError for a folder, pipe, socket or device, because reading could block or never end. Without
+    `follow` it is also raised for a link. Raises ValueError for a name that contains a NUL.
     """
-    _require_regular(os.stat(path, follow_symlinks=follow), path)  # before: some devices act when opened
+    _require_regular(os.stat(path, follow_symlinks=follow), path)  # opening some devices has side effects
     flags = OPEN_AS_IT_IS | (0 if follow else NO_LINK)
     file = open(path, "rb", opener=lambda name, mode: os.open(name, mode | flags))  # noqa: SIM115
     try:
@@ -79,7 +79,7 @@ def open_regular(path: str | Path, follow: bool = True) -> BinaryIO:
 
 
 def _require_regular(status: os.stat_result, path: str | Path) -> None:
-    """Raise OSError for what is no regular file."""
+    """Raise OSError for anything that is not a regular file."""
     if stat.S_ISDIR(status.st_mode):
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
     if not stat.S_ISREG(status.st_mode):
@@ -90,16 +90,16 @@ def _require_regular(status: os.stat_result, path: str | Path) -> None:
 def resolve_path(path: str | Path) -> Path:
     """Return the absolute path without links, for any path.
 
-    `Path.resolve` fails for links in a circle.
+    `Path.resolve` fails for circular links.
     """
     try:
         return Path(os.path.realpath(path))
-    except ValueError:  # a NUL in it, which opening refuses
+    except ValueError:  # the name contains a NUL, which `open` rejects
         return Path(path)
 
 
 def is_same_file(path: str | Path, other: str | Path) -> bool:
-    """Return True if two names are names of one file, also through links and other spellings.
+    """Return True if two paths refer to the same file, also through links and other spellings.
 
     The result is False if a file does not exist.
     """
@@ -110,10 +110,11 @@ def is_same_file(path: str | Path, other: str | Path) -> bool:
 
 
 def may_replace(path: Path, kind: FileKind | None, overwrite: bool) -> bool:
-    """Return True if there is a file at `path` that a result may replace.
+    """Return True if `path` exists and a result may replace it.
 
-    Returns False without a file. Raises SceneError for a folder, link or device, a file of another kind
-    (None: any kind), and, without `overwrite`, any file. An empty file is of every kind. May raise OSError.
+    Return False if there is no file. Raises SceneError for a folder, link or device, for a file of another
+    kind (None: any kind), and, without `overwrite`, for any file. An empty file counts as any kind. May raise
+    OSError.
     """
     try:
         status = path.lstat()
@@ -130,16 +131,16 @@ def may_replace(path: Path, kind: FileKind | None, overwrite: bool) -> bool:
 
 
 def place(scratch: Path, path: Path, kind: FileKind | None, overwrite: bool) -> None:
-    """Rename `scratch` to `path`, atomically, if `may_replace` still allows it. May raise OSError."""
+    """Rename `scratch` to `path` atomically, if `may_replace` still permits it. May raise OSError."""
     while True:
         if may_replace(path, kind, overwrite):
             return os.replace(scratch, path)
-        with suppress(FileExistsError):  # another process wrote it meanwhile: apply `may_replace` to it
+        with suppress(FileExistsError):  # another process wrote it: apply `may_replace`
             return rename_to_new(scratch, path)
 
 
 def remove_own(path: Path, kind: FileKind) -> None:
-    """Remove a file of this kind, by its content, and the remainders of a killed process.
+    """Remove a file of this kind, identified by its content, and scratch files of killed processes.
 
     No other file is removed, and no link or folder. May raise OSError.
     """
@@ -156,38 +157,38 @@ def place_folder(scratch: Path, path: Path) -> None:
 
 @contextmanager
 def writing(path: str | Path, kind: FileKind | None = None, overwrite: bool = False) -> Iterator[Path]:
-    """Provide a scratch file to write to, and rename it to `path` atomically on success.
+    """Provide a scratch file, and rename it to `path` atomically on success.
 
-    `may_replace` is applied before the work and again at its end. The scratch file is in the folder of `path`
-    and has a unique name. It is removed if writing fails; after a kill the next attempt removes it.
+    `may_replace` is applied before the block and again at its end. The scratch file is in the folder of
+    `path` and has a unique name. It is removed if writing fails. After a kill, the next attempt removes it.
 
-    Raises SceneError as `output_path` and `may_replace` do, and for a missing folder, a full disk and the
-    like.
+    Raises SceneError for the reasons of `output_path` and `may_replace`, and for a missing folder or a full
+    disk.
     """
     path = output_path(path)
     try:
         may_replace(path, kind, overwrite)
         with scratch_beside(path) as scratch:
             yield scratch
-            with scratch.open("r+b") as file:  # Windows syncs no file that is open to read only
+            with scratch.open("r+b") as file:  # Windows cannot sync a file that is open for reading only
                 os.fsync(file.fileno())
             place(scratch, path, kind, overwrite)
     except OSError as error:
         reason = error.strerror or "its writer has stopped"
         raise SceneError("path", str(path), f"cannot be written: {reason}") from None
-    except UnicodeEncodeError:  # raised by a library that accepts UTF-8 names only
+    except UnicodeEncodeError:  # raised by libraries that accept only UTF-8 names
         rule = "cannot be written: the name of its folder must be UTF-8"
         raise SceneError("path", str(path), rule) from None
 
 
 def whole_file(path: str | Path) -> AbstractContextManager[Path]:
-    """Perform `writing` for an output of the workflow, which may replace any file."""
+    """Apply `writing` to an output of the workflow, which may replace any file."""
     return writing(path, overwrite=True)
 
 
 @contextmanager
 def scratch_beside(path: Path) -> Iterator[Path]:
-    """Make a new file next to `path` for this process, and remove it at the end."""
+    """Create a scratch file next to `path` for this process, and remove it at the end."""
     _remove_remainders(path)
     scratch = path.with_name(f"{_beginning(path)}{os.getpid()}-{secrets.token_hex(4)}.partial")
     with scratch_file(scratch):
@@ -199,13 +200,13 @@ def scratch_beside(path: Path) -> Iterator[Path]:
 
 
 def _beginning(path: Path) -> str:
-    """Return the beginning of the names of scratch files for `path` on this machine."""
+    """Return the first part of the names of scratch files for `path` on this machine."""
     of = hashlib.sha256(os.fsencode(path.name) + socket.gethostname().encode()).hexdigest()[:12]
     return f".gaspart-{of}-"
 
 
 def _remove_remainders(path: Path) -> None:
-    """Remove the scratch files that killed processes of this user have left for `path`."""
+    """Remove the scratch files of killed processes of this user for `path`."""
     for old in path.parent.glob(f"{_beginning(path)}*.partial"):
         with suppress(OSError):
             if is_remainder(old):
@@ -213,7 +214,7 @@ def _remove_remainders(path: Path) -> None:
 
 
 def is_remainder(path: Path) -> bool:
-    """Return True for a scratch file that an ended process of this user has left."""
+    """Return True for a scratch file of a process of this user that has ended."""
     name = _SCRATCH.fullmatch(path.name)
     if name is None or is_running(int(name[1])):
         return False
@@ -222,9 +223,9 @@ def is_remainder(path: Path) -> bool:
 
 
 def _is_lock(path: Path) -> bool:
-    """Return True for a lock of filelock where a file system has no locks.
+    """Return True for a lock file of filelock on a file system without locks.
 
-    The name begins with the number of a process.
+    Its name begins with the number of a process.
     """
     with open_regular(path) as file:
         return file.read(1).isdigit()
@@ -235,13 +236,13 @@ _LOCK = FileKind("a lock", _is_lock)
 
 @contextmanager
 def only_process(path: Path, wait: bool = False) -> Iterator[None]:
-    """Hold the lock of a path, so that no other process has it within the block.
+    """Hold the lock of a path, so that no other process holds it within the block.
 
-    The lock is the file `path`.lock, which the system releases when the process ends, however it does. Raises
-    BlockingIOError while another process has the lock, unless `wait` is set; SceneError for a file of that
-    name that is no lock. May raise OSError.
+    The lock is the file `path`.lock. The system releases it whenever the process ends. Raises BlockingIOError
+    if another process holds the lock, unless `wait` is set. Raises SceneError if a file of this name is not a
+    lock. May raise OSError.
     """
-    from filelock import FileLock, Timeout  # 0.3 s
+    from filelock import FileLock, Timeout  # importing takes 0.3 s
 
     file = path.with_name(f"{path.name}.lock")
     may_replace(file, _LOCK, overwrite=True)
@@ -254,6 +255,6 @@ def only_process(path: Path, wait: bool = False) -> Iterator[None]:
         try:
             yield
         finally:
-            with suppress(OSError):  # Windows removes no open file, but when it is released
-                file.unlink()  # before the release: no other process may hold it then
+            with suppress(OSError):  # Windows removes an open file only when it is released
+                file.unlink()  # before the release: another process may then hold the lock
             lock.release()

@@ -1,14 +1,14 @@
-"""SIGINT and SIGTERM: when they take effect, and what the process does before it ends.
+"""SIGINT and SIGTERM: when they take effect, and the actions of the process before it ends.
 
-An exception raised by a signal handler appears wherever the interpreter is at this moment. If a compiled
-kernel is returning its result, the kernel then fails with a SystemError. Therefore no handler of this module
-raises an exception.
+An exception raised by a signal handler appears at any point of the program. If a compiled kernel is just
+returning its result, the kernel then fails with a SystemError. Therefore no handler of this module raises an
+exception.
 
-`exit_on_signals` is for processes that belong to gaspart: the command line, and the jobs of the workflow. A
-thread waits for the signal, so that imports, compilers and kernels need not return first.
+`exit_on_signals` is for processes that belong to gaspart: the command line and the jobs of the workflow. In
+these processes a thread waits for the signal, so imports, compilers and kernels need not return first.
 
 `defer_signals` is for work whose state must be saved. In a process of gaspart, a signal then waits until the
-work has saved its state. In any other program, such as a notebook, the handler of that program is called
+state has been saved. In any other program, such as a notebook, the program's own handler is called
 afterwards.
 """
 
@@ -23,23 +23,23 @@ from contextlib import contextmanager, suppress
 from gaspart.errors import visible
 
 TYPE_CHECKING = False
-if TYPE_CHECKING:  # no slow imports: until the handlers are set, Ctrl-C gives a traceback
+if TYPE_CHECKING:  # no slow imports, because Ctrl-C gives a traceback until the handlers are set
     from collections.abc import Callable, Iterator
     from pathlib import Path
     from typing import NoReturn
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
-_TOGETHER = 1.0  # seconds
+_TOGETHER = 1.0  # in seconds
 
 
 class Deferral:
-    """Work during which signals wait.
+    """Block of work during which signals wait.
 
     Attributes
     ----------
-    pending : signal that waits, if any
-    since : time of its arrival
-    unsaved : True if there is work that an exit would lose; before that, a process of gaspart ends at once
+    pending : waiting signal, or None
+    since : arrival time of the signal
+    unsaved : True if an exit would lose work. Before that, a process of gaspart ends at once
     """
 
     def __init__(self) -> None:
@@ -49,15 +49,15 @@ class Deferral:
         self.handlers: dict[int, Callable | int] = {}
 
     def receive(self, signum: int, frame: object = None) -> None:
-        """Record a signal: the handler while the work is in progress."""
+        """Store a signal; this is the handler during the work."""
         self.pending, self.since = signum, time.monotonic()
 
     def deliver(self) -> None:
         """Deliver the waiting signal, if there is one.
 
         A process of gaspart then ends. Elsewhere the program's own handler is called: Python's handler raises
-        KeyboardInterrupt, and SIGTERM ends the process unless it is handled. If the handler returns, so does
-        this method, and the work continues.
+        KeyboardInterrupt, and SIGTERM ends the process unless it is handled. If the handler returns, this
+        method also returns, and the work continues.
         """
         signum, self.pending = self.pending, None
         if signum is None:
@@ -79,7 +79,7 @@ class _Process:
     Attributes
     ----------
     announce : function that prints the line
-    note : the part of the work that is saved
+    note : description of the work that is saved
     """
 
     def __init__(self) -> None:
@@ -97,29 +97,29 @@ _process = _Process()
 def exit_on_signals(announce: Callable[[str], None] | None = None) -> None:
     """End this process at SIGINT and SIGTERM with exit code 130 or 143 and one line.
 
-    No scratch files are left. Call it again to replace `announce`. Signals that are ignored, as in a process
-    in the background of a shell script, stay ignored. Main thread only.
+    No scratch files are left. A second call replaces `announce`. Signals that are ignored remain ignored, for
+    example in a background process of a shell script. Only the main thread may call this function.
 
-    announce : function that prints the line; by default to stderr
+    announce : function that prints the line, by default to stderr
     """
     _process.announce = announce
     if _process.watched:
         return
     _process.watched = True
     reader, writer = os.pipe()
-    if hasattr(os, "set_blocking"):  # which Windows did not have before Python 3.12
+    if hasattr(os, "set_blocking"):  # missing on Windows before Python 3.12
         os.set_blocking(writer, False)
     signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
     threading.Thread(target=_watch, args=(reader,), name="signals", daemon=True).start()
     for number in SIGNALS:
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _defer_to_thread)
-            if hasattr(signal, "siginterrupt"):  # C libraries do not all repeat what a signal interrupts
+            if hasattr(signal, "siginterrupt"):  # some C libraries do not repeat interrupted calls
                 signal.siginterrupt(number, False)
 
 
 def _defer_to_thread(signum: int, frame: object) -> None:
-    """Do nothing: the interpreter has written the signal's number to the pipe."""
+    """Do nothing, because the interpreter has already written the signal number to the pipe."""
 
 
 def _watch(reader: int) -> None:
@@ -132,8 +132,8 @@ def _watch(reader: int) -> None:
 def _defer(signum: int) -> bool:
     """Return True if a signal can wait.
 
-    A repeated signal takes effect at once, because files are resumable at any moment. An exception is a
-    signal that arrives together with the first, for example if a terminal and a parent process both send one.
+    A second signal takes effect at once, because files are always resumable. An exception is a second signal
+    that arrives together with the first one, for example from a terminal and a parent process.
     """
     with _process.lock:
         deferral = _process.deferral
@@ -146,7 +146,7 @@ def _defer(signum: int) -> bool:
 
 def _exit(signum: int) -> NoReturn:
     """End the process, from any thread."""
-    _process.exiting.acquire()  # never released: the first of two threads ends the process
+    _process.exiting.acquire()  # never released, so that only the first of two threads ends the process
     for path in tuple(_process.scratch):
         with suppress(OSError):
             path.unlink()
@@ -157,19 +157,19 @@ def _exit(signum: int) -> NoReturn:
 
 
 def _announce(text: str) -> None:
-    """Print a line on stderr without its locks, because the main thread may have them."""
+    """Print a line on stderr without locks, because the main thread may hold them."""
     clear = "\r\033[K" if os.isatty(2) else ""
     os.write(2, f"{clear}gaspart: {text}\n".encode(errors="surrogateescape"))
 
 
 def describe_interruption(signum: int = signal.SIGINT) -> str:
-    """Return one line about an interruption and about the part of the work that is saved."""
+    """Return a line that states the interruption and the work that is saved."""
     how = "interrupted" if signum == signal.SIGINT else "terminated"
     return f"{how}; {_process.note}" if _process.note else how
 
 
 def set_note(text: str) -> None:
-    """Set the text about the saved work for the line at an interruption."""
+    """Set the text about saved work in the line at an interruption."""
     _process.note = visible(text)
 
 
@@ -185,10 +185,10 @@ def scratch_file(path: Path) -> Iterator[None]:
 
 @contextmanager
 def prevent_interruption() -> Iterator[None]:
-    """Defer signals to the end of this block where their handlers might raise within it.
+    """Defer signals to the end of this block if their handlers might raise within it.
 
-    This is for programs other than gaspart, such as a notebook. In a process of gaspart signals end it at
-    once, as ever.
+    This is for other programs, such as a notebook. In a process of gaspart, signals still end the process at
+    once.
     """
     if _process.watched:
         yield
@@ -201,8 +201,8 @@ def prevent_interruption() -> Iterator[None]:
 def defer_signals() -> Iterator[Deferral]:
     """Defer signals until `Deferral.deliver` or the end of the block.
 
-    Outside of the main thread, where Python calls no handlers, and for handlers that Python did not install,
-    nothing is changed.
+    Nothing is changed outside of the main thread, where Python calls no handlers, and for handlers that were
+    not installed by Python.
     """
     deferral = Deferral()
     if _process.watched:

@@ -1,4 +1,4 @@
-"""Simulation of a scene by an engine: the state and the counters at the time reached."""
+"""Simulation of a scene by an engine: its state and counters at the present time."""
 
 from __future__ import annotations
 
@@ -29,9 +29,10 @@ if TYPE_CHECKING:
     from gaspart.rendering.view import View
 
 ENERGY_DRIFT = {"float64": 1e-9, "float32": 1e-3}
-"""Drift of the energy at which a run is stopped, relative to that of the gas, by the engine's precision."""
+"""Relative drift of the gas's energy at which a run is stopped, by the engine's precision."""
 EXCHANGE_ERROR = {"float64": 2.0**-52, "float32": 2.0**-23}
-"""Drift relative to the energy exchanged with contacts and thermal walls that is allowed for its rounding."""
+"""Allowed drift for the rounding of energy exchanged with contacts and thermal walls, relative to this
+energy."""
 PROPERTIES = (
     "positions",
     "unwrapped",
@@ -61,7 +62,7 @@ class Simulation:
     seed : int or tuple of int, default 0
         Seed of the initial state and of the random numbers of thermal walls.
     stress : bool, default False
-        Also tally the stress tensor and the heat flux, of a periodic scene without gravity. This adds a
+        Also tally the stress tensor and the heat flux, in a periodic scene without gravity. This adds a
         `StressTally` to the `tallies`.
     initial : State, optional
         State with the positions, velocities and spins at time 0, instead of the initial state of the
@@ -81,10 +82,10 @@ class Simulation:
 
     Notes
     -----
-    If `initial` has another shear rate than the scene, its flow is subtracted from the velocities, and the
-    flow of the scene is added. Displacements of sheared images and the motion of a piston are taken from the
-    state. If the state has no piston, the piston is at rest at its side. Vibrating faces start at the
-    beginning of a period.
+    If the shear rates of `initial` and of the scene differ, the flow of `initial` is subtracted from the
+    velocities, and the flow of the scene is added. Displacements of sheared images and the motion of a piston
+    are taken from the state. If the state has no piston, the piston is at rest at its side. Vibrating faces
+    start at the beginning of a period.
 
     Examples
     --------
@@ -123,7 +124,7 @@ class Simulation:
         return f"<Simulation of {count} {kind}, {self.engine.name} engine: {reached}>"
 
     def _repr_html_(self) -> str:
-        """Return a picture of the present state, with `repr` below it."""
+        """Return a picture of the present state, with `repr` as a caption."""
         if self.scene.count > DRAWN:
             return html.escape(repr(self))
         return gaspart.render(self, size=THUMBNAIL).figure(repr(self))
@@ -288,7 +289,7 @@ class Simulation:
         self._change(self.scene.with_walls(*box_of_walls(tuple(lower), tuple(upper))))
 
     def _change(self, scene: Scene) -> None:
-        """Set up the simulation of another scene; if this fails, nothing changes."""
+        """Set up the simulation of another scene; if this fails, the simulation is unchanged."""
         if self._advanced:
             raise SceneError(
                 "scene", "under way", "particles and walls can only be added before the first advance"
@@ -309,7 +310,7 @@ class Simulation:
         until: float | None = None,
         max_work: int | None = None,
     ) -> None:
-        """Advance by a duration, to a time, or by a number of events, whichever comes first.
+        """Advance by a duration, to a time, or by a number of events, whichever is first.
 
         Parameters
         ----------
@@ -320,13 +321,14 @@ class Simulation:
         until : float, [time], optional
             Time to which to advance. It may be infinite together with `max_events`.
         max_work : int, optional
-            Event-driven engine: also stop after about this number of events, including crossings of boxes and
-            of periodic faces, and predictions. So a call takes a limited time even if events are rare.
+            Event-driven engine: also stop after about this number of operations: events, crossings of boxes
+            and of periodic faces, and predictions. A call then takes a limited time even if events are rare.
 
         Raises
         ------
         SceneError
-            If no target is given, or the target is in the past or not a number. Nothing is changed then.
+            If no target is given, or the target is in the past or not a number. The simulation is then
+            unchanged.
 
         Notes
         -----
@@ -367,12 +369,12 @@ class Simulation:
             self._warn_at_rest()
         try:
             self._dynamics.advance(until, max_events, self._log, max_work)
-        except SceneError:  # the engine refused the target
+        except SceneError:  # the engine rejected the target
             self._advanced = before
             raise
 
     def _warn_at_rest(self) -> None:
-        """Warn if all particles are at rest and nothing in the scene moves them."""
+        """Warn if all particles are at rest, and no feature of the scene can move them."""
         scene = self.scene
         moved = any(face.moves for face in scene.faces.values()) or scene.is_open or scene.moving_wall
         if self._moving or not scene.moving_count or scene.gravity or scene.thermostat or moved:
@@ -385,7 +387,7 @@ class Simulation:
 
     @property
     def time(self) -> float:
-        """Simulated time reached.
+        """Present simulated time.
 
         Examples
         --------
@@ -437,7 +439,7 @@ class Simulation:
         return self._dynamics.tally
 
     def sums_of(self, tally: str) -> np.ndarray:
-        """Return the sums of an optional tally, as in `tally` but read faster.
+        """Return the sums of an optional tally, faster than by `tally`.
 
         Parameters
         ----------
@@ -447,8 +449,8 @@ class Simulation:
         Returns
         -------
         ndarray
-            The sums. For "stress", shape (2 d^2 + d,): the sums of the stress tensor, of its collisional part
-            and of the heat flux.
+            The sums. For "stress", the shape is (2 d^2 + d,). The array has the sums of the stress tensor, of
+            its collisional part and of the heat flux.
 
         Raises
         ------
@@ -506,11 +508,11 @@ class Simulation:
 
     @property
     def events(self) -> dict[str, np.ndarray]:
-        """Recorded events: times, particles, and their positions and velocities just after.
+        """Recorded events: times, particles, and their positions and velocities after the event.
 
         Arrays of M events: time (M,), particles (M, 2), positions and velocities (M, 2, d). With rough
-        contacts also spins, (M, 2) in 2D and (M, 2, 3) in 3D. The second entry of `particles` is -1 - face
-        for a hit at a face of the container or at the edge of its well. It is -1 - 2d - n for a hit at
+        contacts there are also spins, (M, 2) in 2D and (M, 2, 3) in 3D. The second entry of `particles` is -1
+        - face for a hit at a face of the container or at the edge of its well. It is -1 - 2d - n for a hit at
         interior wall n.
 
         Raises
@@ -653,7 +655,7 @@ class Simulation:
         return {"time": np.array(times), **arrays}
 
     def check_invariants(self, state: State | None = None) -> None:
-        """Check that the energy has not drifted and that all positions and velocities are finite.
+        """Check that the energy does not drift, and that positions and velocities are finite.
 
         The energy that is exchanged with contacts and walls is taken into account.
 
@@ -685,7 +687,8 @@ class Simulation:
             masses = state.masses[np.isfinite(state.masses)]
             scale += float(masses.sum() * (abs(state.gravity) @ state.lengths))
         precision = self.engine.precision
-        exchanged = self._dynamics.exchanged + abs(state.potential_energy)  # a flow falls without end
+        # in a flow driven along a periodic axis, particles fall without end
+        exchanged = self._dynamics.exchanged + abs(state.potential_energy)
         allowed = ENERGY_DRIFT[precision] * scale + EXCHANGE_ERROR[precision] * exchanged
         if drift > allowed:
             raise SimulationError(
@@ -719,10 +722,11 @@ class Simulation:
         >>> type(simulation.show(frames=5)).__name__
         'View'
         """
-        return gaspart.view(self, frames)  # its public name, because views are made of simulations
+        # imported by its public name, because views are made from simulations
+        return gaspart.view(self, frames)
 
     def checkpoint(self) -> dict[str, np.ndarray]:
-        """Return a checkpoint, from which `restore` continues to the same bits.
+        """Return a checkpoint, from which `restore` continues with identical bits.
 
         Returns
         -------
@@ -750,7 +754,7 @@ class Simulation:
         )
 
     def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Continue from a checkpoint, to the same bits.
+        """Continue from a checkpoint with identical bits.
 
         Parameters
         ----------
@@ -761,7 +765,8 @@ class Simulation:
         Raises
         ------
         SceneError
-            If it is any other checkpoint, or arrays are missing. Nothing is changed then.
+            If the checkpoint belongs to another simulation, or arrays are missing. The simulation is then
+            unchanged.
 
         Examples
         --------

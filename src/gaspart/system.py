@@ -1,7 +1,8 @@
 """Differences between operating systems.
 
-The rest of the package uses this module, and otherwise only functions that Python has on all systems. The
-tests simulate what Windows and macOS lack (`tests/test_system.py`); the code was not run on these systems.
+Other modules use this module, and otherwise only Python functions that exist on all systems. The tests
+simulate functions that Windows and macOS lack (`tests/test_system.py`). The code was not run on these
+systems.
 """
 
 from __future__ import annotations
@@ -15,21 +16,21 @@ import threading
 from pathlib import Path
 
 TYPE_CHECKING = False
-if TYPE_CHECKING:  # this module is imported before signals are handled: no slow imports
+if TYPE_CHECKING:  # this module is imported before signals are handled, so it must not import slowly
     from typing import IO
 
 POSIX = os.name == "posix"
 OPEN_AS_IT_IS = getattr(os, "O_NONBLOCK", 0)
-"""Flag of `os.open`: return at once, also for a pipe. Windows has none."""
+"""Flag of `os.open`: return at once, even for a pipe. Windows has no such flag."""
 NO_LINK = getattr(os, "O_NOFOLLOW", 0)
-"""Flag of `os.open`: refuse a link. Without it the caller's own check before has to do."""
+"""Flag of `os.open`: reject a link. On systems without this flag, the caller must check before opening."""
 _HERE, _NO_REPLACE = -100, 1
 """AT_FDCWD and RENAME_NOREPLACE of Linux's renameat2."""
 _position = threading.Lock()
 
 
 def memory() -> int | None:
-    """Return the bytes of this machine's memory; None if unknown, as on Windows."""
+    """Return the memory of this machine in bytes; None if unknown, as on Windows."""
     try:
         return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     except (AttributeError, ValueError, OSError):
@@ -37,7 +38,7 @@ def memory() -> int | None:
 
 
 def largest_memory() -> float:
-    """Return the largest memory that this process has used, in bytes; nan if unknown."""
+    """Return the peak memory of this process in bytes; nan if unknown."""
     try:
         import resource
     except ImportError:
@@ -56,17 +57,17 @@ def user() -> str:
 
 
 def is_own(status: os.stat_result) -> bool:
-    """Return True if a file belongs to this user, and on Windows.
+    """Return True if a file belongs to this user; always True on Windows.
 
-    Files on Windows have no number of a user.
+    Files on Windows have no user number.
     """
     return not hasattr(os, "geteuid") or status.st_uid == os.geteuid()
 
 
 def is_private(status: os.stat_result) -> bool:
-    """Return True if no other user may write to a file or folder, and on Windows.
+    """Return True if no other user may write to a file or folder; True on Windows.
 
-    On Windows the modes of files do not show this.
+    On Windows the file mode does not show this.
     """
     return is_own(status) and not (POSIX and status.st_mode & 0o022)
 
@@ -76,7 +77,7 @@ def is_running(process: int) -> bool:
 
     On Windows it cannot be known.
     """
-    if not POSIX:  # where signal 0 is Ctrl-C
+    if not POSIX:  # on Windows, signal 0 is Ctrl-C
         return True
     try:
         os.kill(process, 0)
@@ -88,26 +89,26 @@ def is_running(process: int) -> bool:
 
 
 def descriptor_path(file: IO[bytes]) -> str:
-    """Return a path of an open file in ASCII, for libraries that accept only UTF-8 names.
+    """Return an ASCII path of an open file, for libraries that accept only UTF-8 names.
 
-    If the system has no such path, it is the file's own.
+    If the system has no such path, return the path of the file itself.
     """
     path = f"/proc/self/fd/{file.fileno()}"
     return path if os.path.exists(path) else str(file.name)
 
 
 def path_for_others(file: IO[bytes]) -> str:
-    """Return a path by which another process opens a file that this process has open.
+    """Return a path with which another process can open a file that this process has open.
 
-    The path is valid even if the file has been renamed or removed. If the system has no such path, the result
-    is the name of the file.
+    The path is valid even if the file has been renamed or removed. If the system has no such path, return the
+    name of the file.
     """
     path = f"/proc/{os.getpid()}/fd/{file.fileno()}"
     return path if os.path.exists(path) else str(file.name)
 
 
 def read_at(descriptor: int, size: int, offset: int) -> bytes:
-    """Read up to `size` bytes from `offset` on, without moving the position in the file.
+    """Read up to `size` bytes at `offset`, without moving the file position.
 
     May raise OSError.
     """
@@ -123,7 +124,7 @@ def read_at(descriptor: int, size: int, offset: int) -> bytes:
 
 
 def write_at(descriptor: int, data: bytes, offset: int) -> None:
-    """Write a few bytes at `offset`, without moving the position in the file. May raise OSError."""
+    """Write a few bytes at `offset`, without moving the file position. May raise OSError."""
     if hasattr(os, "pwrite"):
         os.pwrite(descriptor, data, offset)
         return
@@ -137,8 +138,11 @@ def write_at(descriptor: int, data: bytes, offset: int) -> None:
 
 
 def rename_to_new(old: Path, new: Path) -> None:
-    """Rename a file or folder without replacing one. Raises FileExistsError if the path exists."""
-    if not POSIX:  # where this never replaces
+    """Rename a file or folder without replacing an existing one.
+
+    Raises FileExistsError if the path exists.
+    """
+    if not POSIX:  # on systems where this never replaces a file
         os.rename(old, new)
         return
     rename = getattr(ctypes.CDLL(None, use_errno=True), "renameat2", None)
@@ -147,7 +151,7 @@ def rename_to_new(old: Path, new: Path) -> None:
     code = ctypes.get_errno() if rename else errno.ENOSYS
     if code not in (errno.ENOSYS, errno.EINVAL, errno.EOPNOTSUPP):
         raise OSError(code, os.strerror(code), str(new))
-    # Not supported by this file system or C library: a new, empty one is replaced instead.
+    # Not supported by this file system or C library: a new, empty file or folder is replaced instead.
     if old.is_dir():
         new.mkdir()
     else:

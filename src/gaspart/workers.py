@@ -1,8 +1,8 @@
-"""Work that several processes or threads share.
+"""Work that is shared by several processes or threads.
 
-Processes make calls of a function that writes files which can be continued. Unlike the processes of a pool,
-these processes do not run the caller's script again, and do not receive signals of the terminal. Each process
-writes a checkpoint and ends at a signal, or when the process that began it has ended.
+Each process calls a function that writes resumable files. Unlike processes of a pool, these processes do not
+run the caller's script again, and do not receive signals of the terminal. Each process writes a checkpoint
+and ends when it receives a signal, or when its parent process has ended.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from gaspart.errors import SceneError, SimulationError
 from gaspart.interruption import defer_signals, exit_on_signals
 from gaspart.system import POSIX
 
-_LOOK = 0.1  # seconds between two looks at signals while processes run
-_PATIENCE = 60.0  # seconds for a process to write a checkpoint before it is killed
-_SIGNALLED = (130, 143)  # exit codes of a process that a signal has ended after a checkpoint
+_LOOK = 0.1  # seconds between two checks for signals while processes run
+_PATIENCE = 60.0  # seconds that a process has for its checkpoint before it is killed
+_SIGNALLED = (130, 143)  # exit codes of a process that ended at a signal after its checkpoint
 
 
 @dataclass(frozen=True)
 class Lost:
-    """Result of a process that has ended without a result: its exit code."""
+    """Result of a process that ended without a result: its exit code."""
 
     code: int
 
@@ -40,7 +40,7 @@ class Lost:
 
 
 def require_processes(key: str, count: int) -> None:
-    """Raise SceneError for several processes if no connection to them is possible."""
+    """Raise SceneError if several processes are requested and the system cannot connect to them."""
     if count > 1 and not POSIX:
         raise SceneError(key, count, f"more than one process needs Linux or macOS; {key}=1")
 
@@ -48,7 +48,7 @@ def require_processes(key: str, count: int) -> None:
 def in_threads(function: Callable[[Any], Any], items: Iterable[Any], threads: int) -> list[Any]:
     """Return the results of a function for all items, in their order.
 
-    This saves time for functions that spend their time in kernels, which release the lock of the interpreter.
+    This is faster for functions that mostly run kernels, which release the interpreter lock.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def in_threads(function: Callable[[Any], Any], items: Iterable[Any], threads: in
     items : iterable
         The items.
     threads : int
-        Number of items that are processed at once.
+        Number of items processed at the same time.
 
     Returns
     -------
@@ -77,16 +77,16 @@ def in_processes(
     finished: Callable[[int, Any], None],
     received: Callable[[int, Any], None] | None = None,
 ) -> None:
-    """Call a function of a module in several processes at a time.
+    """Call a function of a module in several processes at the same time.
 
-    The call is function(send, *arguments). A signal takes effect when all calls have ended after a
-    checkpoint. If the handler of the caller returns, the calls are started again. A SceneError or
-    SimulationError of a call is raised after all others have ended.
+    The call is function(send, *arguments). A signal takes effect after all calls have written a checkpoint
+    and ended. If the caller's signal handler returns, the calls are started again. A SceneError or
+    SimulationError of a call is raised after all other calls have ended.
 
     calls : arguments of each call
-    workers : number of processes at a time
-    finished : finished(n, result) is called when call n has returned, or its process is `Lost`
-    received : received(n, message) is called when a process has sent a message, send(message)
+    workers : number of processes at the same time
+    finished : called as finished(n, result) when call n has returned, or when its process is `Lost`
+    received : called as received(n, message) when a process has sent a message with send(message)
     """
     waiting = list(reversed(range(len(calls))))
     running: list[_Worker] = []
@@ -118,7 +118,7 @@ def in_processes(
 class _Worker:
     """Process that performs one call.
 
-    connection : to the process, readable when it has sent a message or ended
+    connection : connection to the process, readable when it has sent a message or ended
     """
 
     def __init__(self, number: int, function: Callable[..., Any], arguments: tuple) -> None:
@@ -146,7 +146,7 @@ class _Worker:
         return True
 
     def result(self) -> Any:
-        """Return the result of the call of a process that has ended, or raise its exception."""
+        """Return the result of the call after the process has ended, or raise its exception."""
         code = self._process.wait()
         self.connection.close()
         if code or not self._results:
@@ -160,7 +160,7 @@ class _Worker:
         self._process.terminate()
 
     def wait(self) -> None:
-        """Wait for its end."""
+        """Wait until the process has ended."""
         try:
             self._process.wait(_PATIENCE)
         except subprocess.TimeoutExpired:
@@ -179,8 +179,8 @@ def _end(running: list[_Worker]) -> None:
 
 
 def _serve(descriptor: int) -> None:
-    """Make the call that arrives, and send its result or its error."""
-    exit_on_signals(announce=lambda line: None)  # the process that began this one says so
+    """Perform the call that is received, and send its result or its error."""
+    exit_on_signals(announce=lambda line: None)  # the parent process reports it
     other, sending = connection.Connection(descriptor), threading.Lock()
     function, arguments = pickle.loads(other.recv_bytes())
     threading.Thread(target=_end_with, args=(other,), daemon=True).start()
@@ -197,7 +197,7 @@ def _serve(descriptor: int) -> None:
 
 
 def _end_with(other: connection.Connection) -> None:
-    """End after a checkpoint when the process that began this one has ended, however it did."""
+    """End after a checkpoint when the parent process has ended for any reason."""
     with suppress(EOFError, OSError):
         other.recv_bytes()  # there are no further messages
     os.kill(os.getpid(), SIGTERM)

@@ -1,8 +1,8 @@
-"""YAML, read within limits and written.
+"""Reading of YAML within limits, and writing of YAML.
 
-The result is a tree of mappings with text keys, lists, text, numbers, true, false and null, as defined by
-YAML 1.1; in addition `1e3` is a number. An alias gives a copy; `<<` merges mappings. Tags are rejected, and
-dates are text. Duplicate keys are errors.
+The result is a tree of mappings with text keys, lists, texts, numbers, true, false and null, as defined by
+YAML 1.1. In addition, `1e3` is a number. An alias is replaced by a copy; `<<` merges mappings. Tags are
+rejected, and dates are text. Duplicate keys are errors.
 """
 
 from __future__ import annotations
@@ -21,9 +21,10 @@ if TYPE_CHECKING:
     import yaml
 
 MOST_BYTES, MOST_VALUES, MOST_COPIES, DEEPEST = 2**26, 2_500_000, 100_000, 64
-"""Limits of a text: its size, its values, those of them that come from aliases, and their nesting. The text
-of every valid scene is within them (`keys.values.MOST_LISTED`)."""
-_LONGEST_NUMBER = 1000  # characters
+"""Limits of a text: its size, the number of its values, the number of values that come from aliases, and the
+depth of nesting. The texts of all valid scenes are within these limits (`keys.values.MOST_LISTED`).
+"""
+_LONGEST_NUMBER = 1000  # number of characters
 _NUMBERS = re.compile(r"[-+]?(\d[\d_]*(\.[\d_]*)?|\.\d[\d_]*)[eE][-+]?\d+\Z")
 _SCALARS = tuple(f"tag:yaml.org,2002:{kind}" for kind in ("null", "bool", "int", "float"))
 _MERGE = "tag:yaml.org,2002:merge"
@@ -32,7 +33,7 @@ _MERGE = "tag:yaml.org,2002:merge"
 def read_yaml(path: str | Path) -> Any:
     """Return the content of a YAML file.
 
-    Raises SceneError, naming the file, if it cannot be read.
+    If the file cannot be read, raises SceneError that names the file.
     """
     try:
         with open_regular(os.fspath(path)) as file:  # not Path, which accepts `file.yaml/`
@@ -41,7 +42,7 @@ def read_yaml(path: str | Path) -> Any:
         raise SceneError("file", str(path), f"cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
         raise SceneError("file", str(path), "cannot be read as YAML: it is not text in UTF-8") from None
-    except (TypeError, ValueError) as error:  # no path; a NUL in it
+    except (TypeError, ValueError) as error:  # invalid path, for example one with a NUL
         raise SceneError("file", path, f"cannot be read: {error}") from None
     return parse_yaml(text, str(path))
 
@@ -49,7 +50,7 @@ def read_yaml(path: str | Path) -> Any:
 def parse_yaml(text: str, name: str = "YAML") -> Any:
     """Return the content of a YAML text.
 
-    Raises SceneError, naming `name`, line and column.
+    Raises SceneError that states `name`, line and column.
     """
     import yaml
 
@@ -69,32 +70,32 @@ def parse_yaml(text: str, name: str = "YAML") -> Any:
         remedy = "; indent with spaces, not with tabs" if "\t" in line else ""
         rule = f"is not valid YAML: {error.problem}{remedy}"
         raise _error(mark, line.strip() or "the end", rule).inside("", name) from None
-    except (yaml.YAMLError, UnicodeEncodeError) as error:  # characters that no YAML may hold
+    except (yaml.YAMLError, UnicodeEncodeError) as error:  # characters that YAML does not allow
         raise SceneError("YAML", text, f"is not valid YAML: {error}", name) from None
 
 
 def dump_yaml(content: object) -> str:
-    """Return `content` as YAML text, with keys in their own order."""
+    """Return `content` as YAML text; keys keep their order."""
     import yaml
 
     return yaml.dump(content, Dumper=_dumper(), sort_keys=False, default_flow_style=None)
 
 
 def write_yaml(path: str | Path, content: object) -> None:
-    """Write `content` as a YAML file, completely or not at all."""
+    """Write `content` as a YAML file, atomically."""
     with whole_file(path) as partial:
         partial.write_text(dump_yaml(content), encoding="utf-8")
 
 
 def is_exponential(text: str) -> bool:
-    """Return True for a number here that is text in YAML 1.1, such as 1e3."""
+    """Return True for a number such as 1e3, which is text in YAML 1.1."""
     return bool(_NUMBERS.match(text)) and len(text) <= _LONGEST_NUMBER
 
 
 def _with_exponents(base: Any) -> Any:
-    """Return a loader or dumper that reads 1e3 and 1.5e3 as numbers.
+    """Return a loader or dumper that treats 1e3 and 1.5e3 as numbers.
 
-    In YAML 1.1 such numbers are text.
+    In YAML 1.1 they are text.
     """
     subclass: Any = type("WithExponents", (base,), {})
     subclass.add_implicit_resolver(_SCALARS[-1], _NUMBERS, list("-+.0123456789"))
@@ -105,7 +106,7 @@ def _with_exponents(base: Any) -> Any:
 def _loader() -> Any:
     import yaml
 
-    return _with_exponents(getattr(yaml, "CSafeLoader", yaml.SafeLoader))  # C where PyYAML was built with it
+    return _with_exponents(getattr(yaml, "CSafeLoader", yaml.SafeLoader))  # the C version if PyYAML has it
 
 
 @cache
@@ -120,7 +121,7 @@ def _error(mark: yaml.Mark, value: object, rule: str) -> SceneError:
 
 
 class _Document:
-    """Reads one document event by event, within the limits: its depth bounds the recursion."""
+    """Reader of one document, event by event, within the limits; the depth limit bounds the recursion."""
 
     def __init__(self, text: str) -> None:
         import yaml
@@ -166,7 +167,7 @@ class _Document:
             yield event
 
     def _mapping(self, depth: int) -> dict[str, Any]:
-        """Return a mapping; its own entries replace merged entries."""
+        """Return a mapping; its own entries override merged entries."""
         content: dict[str, Any] = {}
         merged: dict[str, Any] = {}
         lines: dict[str, int] = {}
@@ -179,7 +180,7 @@ class _Document:
                 if merged or not all(isinstance(part, dict) for part in parts):
                     rule = "<< must be given once, with a mapping or a list of mappings"
                     raise _error(first.start_mark, value, rule)
-                for part in reversed(parts):  # the first ones take precedence
+                for part in reversed(parts):  # earlier entries take precedence
                     merged.update(part)
                 continue
             if isinstance(event, self._yaml.CollectionStartEvent):
@@ -209,7 +210,7 @@ class _Document:
             raise _error(event.start_mark, text, "is not a number that can be read") from None
 
     def _copy(self, value: Any, depth: int, mark: yaml.Mark) -> Any:
-        """Return a copy of the value of an alias; its values count like written values."""
+        """Return a copy of the value of an alias; the copied values count as written values."""
         self._count(depth, mark)
         self._copies += 1
         if self._copies > MOST_COPIES:

@@ -8,11 +8,13 @@ import pytest
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.accuracy.conditions import even_conditions, gravity_column, known_conditions, measured_conditions
+from gaspart.accuracy.conditions import measured_conditions
 from gaspart.accuracy.option import candidates, make_request
 from gaspart.accuracy.target import Target
 from gaspart.engines.dsmc.accuracy import boltzmann_error, cell_error, enskog_error, require_resolved
 from gaspart.state.initial import initial_state
+from gaspart.theory.columns import gravity_column
+from gaspart.theory.conditions import even_conditions, known_conditions
 
 SLIT = ("periodic", "periodic", "wall")
 
@@ -91,6 +93,23 @@ def test_two_spheres_collide_as_often_as_their_bound_says():
         excess, abs=3.0 * error
     )
     assert error < 0.1 * excess
+
+
+@pytest.mark.parametrize(("dimension", "missed"), [(3, 2.0 / 3.0), (2, 1.0 / 4.0)])
+def test_time_steps_err_by_twice_the_contacts_that_they_miss(dimension, missed):
+    """Of a dilute gas (v_th dt / sigma)^2 times 2/3 or 1/4, with one pass four times as many; of a wall at
+    four times the temperature too. Advice has the same bound."""
+    scene = gas(50, 0.01, dimension=dimension)
+    engine = gp.TimeStepped(0.1)
+    assert engine.bias(scene, "rates") == pytest.approx(2.0 * missed * 0.01, rel=1e-12)
+    once = replace(engine, passes=1)
+    assert once.bias(scene, "fluxes") == pytest.approx(8.0 * missed * 0.01, rel=1e-12)
+    hot = replace(scene, container=gp.Container(scene.container.lengths), faces={"x_low": gp.Thermal(4.0)})
+    assert engine.bias(hot, "rates") == pytest.approx(8.0 * missed * 0.01, rel=1e-12)
+    target = Target(scene, "collision_rate")
+    able, _ = candidates(target, 0.01, target.conditions)
+    (stepped,) = (one for one in able if one.engine.name == "step")
+    assert stepped.discretisation == pytest.approx(stepped.engine.bias(scene, "rates"), rel=1e-9)
 
 
 @pytest.mark.parametrize(("fraction", "width"), [(0.01, 5), (0.001, 3)])

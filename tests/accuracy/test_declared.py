@@ -7,13 +7,13 @@ import xarray as xr
 from scenes import gas
 
 import gaspart as gp
-from gaspart.accuracy.conditions import even_conditions
 from gaspart.accuracy.option import candidates
 from gaspart.accuracy.target import Target
 from gaspart.analysis.measuring import measure
 from gaspart.analysis.observables import OBSERVABLES, require_defined
 from gaspart.runs.ending import require_measurable
 from gaspart.state.initial import initial_state
+from gaspart.theory.conditions import even_conditions
 from gaspart.trajectory.run_options import Contents
 from gaspart.yaml_text import dump_yaml
 

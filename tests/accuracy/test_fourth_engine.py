@@ -7,7 +7,6 @@ import pytest
 
 import gaspart as gp
 from gaspart.accuracy import pilot, plan, table
-from gaspart.accuracy.conditions import even_conditions
 from gaspart.accuracy.option import candidates
 from gaspart.accuracy.table import price_of
 from gaspart.accuracy.target import Target
@@ -15,6 +14,7 @@ from gaspart.cli.advise import _lines
 from gaspart.engines import ENGINES, EventDriven
 from gaspart.engines.engine import Candidate
 from gaspart.reproduction import cost
+from gaspart.theory.conditions import even_conditions
 
 GAS = gp.Scene(gp.Container((12.0,) * 3, "periodic"), [gp.Species(200, 0.5, temperature=1.0)])
 

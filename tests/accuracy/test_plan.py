@@ -9,7 +9,6 @@ import pytest
 import gaspart as gp
 from gaspart.accuracy import pilot, plan
 from gaspart.accuracy import target as target_module
-from gaspart.accuracy.conditions import gravity_column
 from gaspart.accuracy.estimates import Component
 from gaspart.accuracy.option import Option, candidates, suitable_engines
 from gaspart.accuracy.pilot import Pilot, Trials, raised_bias
@@ -23,6 +22,7 @@ from gaspart.engines import EventDriven
 from gaspart.engines.dsmc.defaults import CELL_LOSS
 from gaspart.engines.engine import Candidate
 from gaspart.state import initial
+from gaspart.theory.columns import gravity_column
 
 BOX = gp.Scene(gp.Container((12.0, 12.0)), [gp.Species(40, 0.5, temperature=1.0)])
 SHEARED = gp.Scene(

@@ -7,7 +7,6 @@ import pytest
 from scenes import gas
 
 import gaspart as gp
-from gaspart.analysis import bulk
 from gaspart.analysis.expected.equilibrium import compressibility_factor
 from gaspart.analysis.expected.transport import diffusion_in_cube
 from gaspart.analysis.measuring import measure
@@ -16,7 +15,8 @@ from gaspart.analysis.run import open_run
 from gaspart.inspection.checks import judge
 from gaspart.inspection.readers import read_frames
 from gaspart.scene.gas import Gas
-from gaspart.theory.dsmc import diffusion_by_modes
+from gaspart.theory import bulk
+from gaspart.theory.modes import diffusion_by_modes
 from gaspart.trajectory.correlator import Correlations
 
 DENSE = gas(3, 278, 0.2, exact_temperature=True)

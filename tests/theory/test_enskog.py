@@ -99,12 +99,13 @@ def test_units(dimension, function, unit):
 
 
 def test_dilute_limits():
-    assert theory.mean_free_path(1e-6, 3) == pytest.approx(
-        1.0 / (np.sqrt(2.0) * np.pi * theory.number_density(1e-6, 3)), rel=1e-5
-    )
-    assert theory.mean_free_path(1e-6, 2) == pytest.approx(
-        1.0 / (2.0 * np.sqrt(2.0) * theory.number_density(1e-6, 2)), rel=1e-5
-    )
+    for eta, contact, rel in ((1e-6, None, 1e-5), (0.3, 1.0, 1e-12)):  # the latter of points
+        assert theory.mean_free_path(eta, 3, 2.0, contact) == pytest.approx(
+            1.0 / (np.sqrt(2.0) * np.pi * theory.number_density(eta, 3, 2.0) * 4.0), rel=rel
+        )
+        assert theory.mean_free_path(eta, 2, 2.0, contact) == pytest.approx(
+            1.0 / (2.0 * np.sqrt(2.0) * theory.number_density(eta, 2, 2.0) * 2.0), rel=rel
+        )
     assert theory.mean_free_path(0.0, 3) == np.inf
     assert theory.enskog_diffusion(0.0, 2) == np.inf
     assert theory.collision_rate(0.0, 2) == 0.0

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gaspart.theory import dsmc as partition
+from gaspart.theory import partition
 
 
 def neighbours(positions, per_side, side):

@@ -70,6 +70,14 @@ def test_a_stage_is_made_of_what_it_uses_and_of_no_engine_where_it_simulates_not
 
 def test_tables_are_part_of_what_reads_them():
     assert PACKAGE / "theory/data/virial_3d.csv" in closure("gaspart.theory.virial")
+    assert PACKAGE / "accuracy/data/accuracy.csv" in closure("gaspart.accuracy.table")
+
+
+def test_a_simulation_depends_on_no_theory_but_that_of_its_engine():
+    """Another value of the literature measures and evaluates again, and simulates nothing again."""
+    needed = {path.relative_to(PACKAGE) for path in closure("gaspart.reproduction.jobs.simulate")}
+    theories = {str(path) for path in needed if path.parts[0] == "theory"}
+    assert theories == {"theory/__init__.py", "theory/discretisation.py", "theory/geometry.py"}
 
 
 @pytest.mark.parametrize(

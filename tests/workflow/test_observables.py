@@ -9,10 +9,10 @@ from importlib import import_module
 import pytest
 
 from gaspart import analysis, theory
-from gaspart.analysis import bulk
 from gaspart.analysis.declaration import DIMENSIONS, powers_of, units_in
 from gaspart.analysis.observables import OBSERVABLES, about, observables_with
 from gaspart.reproduction.points.modules import PACKAGE
+from gaspart.theory import bulk
 from gaspart.theory.equations import carnahan_starling
 
 HOME = "analysis/observables.py"
@@ -21,7 +21,7 @@ WORDS = {
     "rendering/view.py": "by what particles are coloured",
     "theory/geometry.py": "names of arguments",
     "errors/synonyms.py": "words of other programs",
-    "accuracy/conditions.py": "what differs between two columns of gas",
+    "theory/columns.py": "what differs between two columns of gas",
 }
 """Modules in which some of the names are words of something else, beside the families, whose data sets have
 columns of these names."""

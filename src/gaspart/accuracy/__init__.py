@@ -1,10 +1,11 @@
-"""Accuracy and its cost: errors of engines, noise of runs, CPU time, and the cheapest run.
+"""Accuracy and cost of runs, and the choice of the cheapest run for an accuracy.
 
-`plan` chooses among an `Option` for each engine. If `data/accuracy.csv` contains measurements of an
-observable (written by `gaspart.accuracy.fit`, read by `table`), `plan_from_table` makes the plan and scales
-it to this machine by `speed`. In all other cases `plan_from_pilots` makes the plan from pilot runs.
-`gaspart.runs` runs until observables are accurate, by the rule in `reached`.
+`plan` returns an `Option` for each engine and the best of these options. Measurements of some observables are
+in the table `data/accuracy.csv` (written by `gaspart.accuracy.fit`, read by `table`). For these observables
+`plan_from_table` makes the plan and converts CPU times to this machine (`speed`). For all other observables
+`plan_from_pilots` makes the plan from short pilot runs. `gaspart.runs` continues a run until its observables
+are accurate; the stopping rule is in `reached`.
 """
 
 PILOT_SECONDS = 20.0
-"""Processor time of all pilot runs of an advice, by default."""
+"""Default CPU time of all pilot runs of a plan in seconds."""

@@ -1,11 +1,11 @@
-"""Observables of a trajectory by component, with their errors: of pilots, and of runs `until` accurate.
+"""Components of observables and their errors, for pilot runs and for runs `until` accurate.
 
 The squared error of a mean over a time t is S / t + C / t^2. S is the spectrum of the series at frequency 0,
-by `correlated_mean`. C is due to stored quantities. A wall takes from the gas the momentum and the sum m x v
-that the gas has stored, and returns them later. So impulses in consecutive intervals are anticorrelated. In a
-short run C dominates, and an error that is extrapolated as t^(-1/2) is too large. In a series of short
-intervals S is hidden by C. Both stored quantities are known in each frame. The series is regressed on their
-changes, and S is the spectrum of the residual.
+by `correlated_mean`. The term C is due to stored quantities. During a run a wall takes up momentum and the
+sum m x v that the gas stores, and returns them later. So impulses in consecutive intervals are
+anticorrelated. In a short run C dominates, and an error that is extrapolated as t^(-1/2) is too large. In a
+series of short intervals S is hidden by C. Both stored quantities are known at each frame. Therefore the
+series is regressed on the changes of the stored quantities, and S is the spectrum of the residual.
 """
 
 from __future__ import annotations
@@ -28,20 +28,20 @@ if TYPE_CHECKING:
     from gaspart.analysis.run import Run
 
 LEAST_FREEDOM = 15.0
-"""Minimum number of degrees of freedom of an error that ends a run, from 16 groups or blocks.
+"""Minimum number of degrees of freedom of an error that may end a run; 16 groups or blocks give this number.
 
-An observable that states none is given this number.
+It is also the number for an observable without stated degrees of freedom.
 """
 _SAME = 1e-12
-"""Relative scatter of what does not change."""
+"""Relative scatter below which a series counts as constant."""
 _DOUBT = 0.1
-"""Probability with which the true error exceeds its bound."""
+"""Probability that the true error exceeds its bound."""
 
 
 def bound(freedom: float) -> float:
-    """Compute the upper bound of an error with some degrees of freedom, divided by the error.
+    """Compute the upper bound of an error divided by the error, for given degrees of freedom.
 
-    The bound is computed from the quantile of chi-square.
+    The bound is computed from a quantile of the chi-square distribution.
     """
     from scipy.special import chdtri
 
@@ -50,14 +50,14 @@ def bound(freedom: float) -> float:
 
 @dataclass(frozen=True)
 class Component:
-    """Value of a component of an observable, from a part `time` of a run.
+    """Value of one component of an observable, measured during `time`.
 
-    The component is a face, an axis or a pair, or the whole observable.
+    The component is a face, an axis, a pair of species, or the whole observable.
 
-    spectrum, stored : S and C of its squared error.
+    spectrum, stored : coefficients S and C of the squared error.
     freedom : degrees of freedom of the error.
-    scale : reference of the relative error, the value unless that vanishes on average.
-    points : for a curve, the number of known points and the number of points.
+    scale : value to which the relative error refers: the measured value unless it vanishes on average.
+    points : for a curve, the number of measured points and the number of all points.
     """
 
     value: float
@@ -70,22 +70,22 @@ class Component:
 
     @property
     def estimate(self) -> Estimate:
-        """The value with its error in this run."""
+        """Value with its error in this run."""
         return Estimate(self.value, self.error(self.time), self.freedom)
 
     @property
     def accuracy(self) -> float:
-        """The relative error, or inf if it is unknown."""
+        """Relative error, or inf if it is unknown."""
         return self.error(self.time) / self.scale if self.scale > 0.0 else math.inf
 
     def error(self, time: float) -> float:
-        """Compute the standard error of a run whose measured part has a duration."""
+        """Compute the standard error of a run from the duration of its measured part."""
         return math.sqrt(self.spectrum / time + self.stored / time**2)
 
     def length(self, accuracy: float) -> float:
-        """Compute the measured time after which the upper bound of the error has an accuracy.
+        """Compute the measured time after which the upper bound of the relative error equals `accuracy`.
 
-        A run `until` accurate uses this bound. The time is inf if no time suffices.
+        Runs `until` accurate use this bound. The result is inf if no time suffices.
         """
         if not self.accuracy < math.inf or not accuracy > 0.0:
             return math.inf
@@ -94,17 +94,17 @@ class Component:
         return part + math.sqrt(part**2 + self.stored / remaining**2)
 
     def reaches(self, time: float) -> float:
-        """Compute the relative bound of the error after a measured time, the inverse of `length`."""
+        """Compute the bound of the relative error after a measured time; inverse of `length`."""
         if not self.accuracy < math.inf or not time > 0.0:
             return math.inf
         return self.error(time) / self.scale * bound(self.freedom)
 
 
 def components(data: xr.Dataset, observable: str, start: float | None = None) -> dict[str, Component]:
-    """Estimate an observable of `gaspart measure` from a trajectory, by component.
+    """Estimate each component of an observable of `gaspart measure` from a trajectory.
 
-    The component is "" for a scalar or a curve, whose value and error are root mean squares. Raises
-    SceneError as the functions of `gaspart.analysis`.
+    A scalar or a curve has one component, "". For a curve, value and error are root mean squares. Raises the
+    same SceneError as the function of `gaspart.analysis`.
     """
     from gaspart.analysis.measuring import measure
     from gaspart.analysis.run import open_run
@@ -137,12 +137,12 @@ def components(data: xr.Dataset, observable: str, start: float | None = None) ->
 
 
 def of_face(name: str, face: str | None) -> bool:
-    """Return True if a component belongs to a face of the container; None means any."""
+    """Return True if a component belongs to a face of the container; None means any face."""
     return face is None or name == face or name.startswith(f"{face} ")
 
 
 def _freedom(observable: Observable) -> np.ndarray | float:
-    """Return the degrees of freedom of the error, of each value where these are known."""
+    """Return the degrees of freedom of the error, an array if they differ between values."""
     each = observable.get(f"{observable.attrs['quantity']}_freedom")
     return float(observable.attrs.get("freedom", LEAST_FREEDOM)) if each is None else np.asarray(each)
 
@@ -161,7 +161,7 @@ def _norm(values: np.ndarray) -> float:
 
 
 def _on_walls(run: Run, observable: str) -> dict[str, Component]:
-    """Estimate the pressures or forces on walls, each from a series over intervals of frames."""
+    """Estimate the pressures or forces on walls; each series consists of intervals between frames."""
     from gaspart.analysis.counters import controlled_on_walls, on_walls
     from gaspart.analysis.impulses import stores
 
@@ -184,9 +184,9 @@ def _on_walls(run: Run, observable: str) -> dict[str, Component]:
 
 
 def without_stores(series: np.ndarray, rest: np.ndarray, interval: float, controls: int) -> Component:
-    """Estimate the mean of a series (K,) by the `rest` (K,) after subtraction of `controls` controls.
+    """Estimate the mean of a series (K,) from its residual after regression on `controls` variables.
 
-    The intervals have one length. All stored quantities are among the controls.
+    All intervals have the same length. The stored quantities are among the regressors.
     """
     from gaspart.analysis.statistics import correlated_mean
 
@@ -196,11 +196,11 @@ def without_stores(series: np.ndarray, rest: np.ndarray, interval: float, contro
 
 
 def _remaining_freedom(series: np.ndarray, rest: Estimate, controls: int) -> float:
-    """Return the degrees of freedom of the error of a series (K,) without its controls.
+    """Return the degrees of freedom of the error of a series (K,) after the regression.
 
-    Controls may explain a series to rounding, as the momentum of a single particle does the impulses on two
-    walls. The residual is the same in all samples, but the series is not. So its error is known to be 0, with
-    the degrees of freedom of the changes that were explained.
+    The regressors may explain a series up to rounding. For example, the momentum of a single particle
+    explains its impulses on two walls. Then the residual is constant although the series changes. The error
+    is known to be 0, and its degrees of freedom are computed from the changes of the series.
     """
     from gaspart.analysis.statistics import count_changes
 
@@ -209,9 +209,9 @@ def _remaining_freedom(series: np.ndarray, rest: Estimate, controls: int) -> flo
 
 
 def with_stores(series: np.ndarray, stores: np.ndarray, interval: float) -> Component:
-    """Estimate the mean of a series (K,) that contains changes of stored quantities.
+    """Estimate the mean of a series (K,) that includes changes of stored quantities.
 
-    The quantities (K + 1, stores) are given at the ends of the intervals, which have equal lengths. The
+    `stores` (K + 1, n) are the n stored quantities at the ends of the intervals of equal length. The
     coefficients of the changes come from a regression of the series. The sum of all changes remains in the
     mean. The variance of this sum is twice the variance of the stored quantities.
     """

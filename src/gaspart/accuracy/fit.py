@@ -1,4 +1,4 @@
-"""The model's table from the workflow's measurements.
+"""Writer of the table `data/accuracy.csv` from measurements of the workflow.
 
     python -m gaspart.accuracy.fit results/measurements > src/gaspart/accuracy/data/accuracy.csv
 
@@ -23,7 +23,7 @@ from gaspart.trajectory import provenance
 
 
 def rows(folder: Path) -> list[dict]:
-    """Return all rows of the table; `gaspart.accuracy.table` explains them."""
+    """Return all rows of the table; `gaspart.accuracy.table` describes the columns."""
     accuracy = xr.load_dataset(folder / "speed_accuracy.nc")
     entries = [
         *_events(accuracy),
@@ -52,7 +52,7 @@ def _row(
 
 
 def _events(accuracy: xr.Dataset) -> Iterator[dict]:
-    """Yield times of the event-driven engine, in denser gases than the time-stepped engine too."""
+    """Yield CPU times of the event-driven engine, also in gases too dense for the time-stepped engine."""
     for n in range(accuracy.sizes["timed"]):
         run = accuracy.isel(timed=n)
         gas = run.timed_dimension, run.timed_packing_fraction
@@ -60,7 +60,7 @@ def _events(accuracy: xr.Dataset) -> Iterator[dict]:
 
 
 def _steps(accuracy: xr.Dataset) -> Iterator[dict]:
-    """Yield errors and times of the time-stepped engine."""
+    """Yield errors and CPU times of the time-stepped engine."""
     for n in range(accuracy.sizes["row"]):
         row = accuracy.isel(row=n)
         gas = row.dimension, row.packing_fraction
@@ -79,7 +79,7 @@ def _steps(accuracy: xr.Dataset) -> Iterator[dict]:
 
 
 def _models(accuracy: xr.Dataset) -> Iterator[dict]:
-    """Yield times of the models of the DSMC engine, with its default step and longer steps."""
+    """Yield CPU times of both models of DSMC, with the default step and longer steps."""
     names = {engine.equation: engine.timed_as for engine in DSMC.variants()}
     for n in range(accuracy.sizes["dsmc"]):
         run = accuracy.isel(dsmc=n)
@@ -92,7 +92,7 @@ def _models(accuracy: xr.Dataset) -> Iterator[dict]:
 
 
 def _noise(virial: xr.Dataset, dimension: int) -> Iterator[dict]:
-    """Yield relative variances of Z and of the collision rate, times their numbers of contacts."""
+    """Yield relative variances of Z and of the collision rate, multiplied by the numbers of contacts."""
     for n, fraction in enumerate(virial.packing_fraction.values):
         contacts = float(virial.collisions[n])
         for name, quantity in (("Z", "Z"), ("collision_rate", "collision_rate")):
@@ -102,11 +102,11 @@ def _noise(virial: xr.Dataset, dimension: int) -> Iterator[dict]:
 
 
 def _diffusion(msd: xr.Dataset) -> Iterator[dict]:
-    """Yield the relative variance of D of spheres, times its number of contacts.
+    """Yield the relative variance of D of spheres, multiplied by the number of contacts.
 
-    The result is one number, the median over all gases, since each gas has few replicas.
+    The result is the median over all gases, because each gas has few replicas.
     """
-    length = msd.time.max("lag") * 2.0 * msd.collision_rate  # lags reach to half a run
+    length = msd.time.max("lag") * 2.0 * msd.collision_rate  # lags extend to half of the run
     contacts = 0.5 * msd["count"] * length * msd.replicas
     values = ((msd.diffusion_error / msd.diffusion) ** 2 * contacts).values
     values = values[np.isfinite(values)]
@@ -116,7 +116,7 @@ def _diffusion(msd: xr.Dataset) -> Iterator[dict]:
 
 
 def _prices(price: xr.Dataset) -> Iterator[dict]:
-    """Yield the cost of each feature, for 4000 spheres at a packing fraction of 0.2."""
+    """Yield the cost of each feature for 4000 spheres at a packing fraction of 0.2."""
     for n in np.flatnonzero(price.feature.values != "plain"):
         at = price.isel(point=n)
         name = f"price_{str(at.feature.values).replace(' ', '_')}"
@@ -124,7 +124,7 @@ def _prices(price: xr.Dataset) -> Iterator[dict]:
 
 
 def main(folder: str) -> None:
-    """Write the table to the standard output."""
+    """Write the table to standard output."""
     revision = provenance.git_revision()
     print(
         "# What accuracy costs; columns in gaspart/accuracy/table.py. Made by python -m gaspart.accuracy.fit"

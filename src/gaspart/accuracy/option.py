@@ -1,8 +1,8 @@
-"""Engine with its settings for a scene, and the cost of a run with it.
+"""Engine with its settings for a scene, and the cost of a run with this engine.
 
-The relative error of a run of a measured time t is its standard error sqrt(variance(t)) and, in full, the
-bound on its bias. The engine bounds the bias, from theory or from measurements. Noise and CPU time are from a
-pilot run, or from the table, which contains results of earlier pilots.
+The relative error of a run with measured time t is its standard error sqrt(variance(t)) plus the full bound
+on the bias. The engine computes the bound on its bias from theory or from measurements. Noise and CPU time
+come from a pilot run, or from the table, which stores results of earlier pilots.
 """
 
 from __future__ import annotations
@@ -11,32 +11,39 @@ import math
 import os
 from dataclasses import dataclass
 
-from gaspart.accuracy.conditions import Conditions
+from gaspart import theory
 from gaspart.accuracy.estimates import Component
+from gaspart.accuracy.table import EQUILIBRATION as EQUILIBRATED
+from gaspart.accuracy.table import LEAST
 from gaspart.accuracy.target import Target
 from gaspart.analysis.observables import OBSERVABLES, require_modelled
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine, candidate_engines
 from gaspart.engines.engine import AccuracyRequest, Candidate
 from gaspart.errors import SceneError
+from gaspart.scene.gas import Gas
 from gaspart.scene.scene import Scene
+from gaspart.theory.conditions import Conditions
 from gaspart.trajectory.recipe import MOST_REPLICAS
 
 WORTH = 1.5
-"""Cost ratio of the exact engine to another engine above which the other one is preferred."""
+"""Minimum ratio of the cost of the exact engine to the cost of another engine at which the other engine is
+preferred.
+"""
 _PER_EQUILIBRATION = 10.0  # smallest ratio of a replica's length to its equilibration
 
 
 @dataclass(frozen=True)
 class Option:
-    """Candidate engine, with its cost for an accuracy.
+    """Candidate engine with the cost of an accurate run.
 
-    bias : bound on its systematic error, by pilots too.
+    bias : bound on the systematic error, from theory and from pilots.
     noise : noise of the observable.
     speed : CPU seconds per unit of time.
     accuracy : requested accuracy.
-    least, most : durations of the shortest run, and of the longest run that is of use and within the budget.
-    settling : minimum time before anything is measured.
+    least, most : durations of the shortest run, and of the longest run that is useful and within the budget.
+    settling : minimum time before the measurement begins.
+    discarded : minimum fraction of a run before the measurement begins.
     """
 
     candidate: Candidate
@@ -47,6 +54,7 @@ class Option:
     least: float = 0.0
     most: float = math.inf
     settling: float = 0.0
+    discarded: float = EQUILIBRATION
 
     @property
     def engine(self) -> Engine:
@@ -55,7 +63,7 @@ class Option:
 
     @property
     def measured(self) -> float:
-        """Measured time for the requested accuracy, or the longest time; inf if out of reach."""
+        """Measured time for the requested accuracy, or the maximum time; inf if out of reach."""
         return max(0.0, min(self._length(self.accuracy), self.part(self.most)))
 
     @property
@@ -70,37 +78,59 @@ class Option:
 
     @property
     def error(self) -> float:
-        """Relative standard error of the run plus the bound on its bias; inf without a run.
-
-        The time is inf if the accuracy is out of reach.
-        """
+        """Relative standard error of the run plus the bound on its bias; inf without a run."""
         measured = self.measured
         return self.bias + self.noise.reaches(measured) if math.isfinite(measured) else math.inf
 
     def cost(self, accuracy: float) -> float:
-        """Compute the CPU seconds for an accuracy, without a budget; inf if out of reach."""
+        """Compute the CPU seconds for an accuracy without a budget; inf if out of reach."""
         return self.whole(self._length(accuracy)) * self.speed
 
     def whole(self, measured: float) -> float:
         """Compute the duration of a run from the duration of its measured part.
 
-        A quarter of the run is discarded, by default, and the time of settling always.
+        By default a quarter of the run is discarded, and at least the time `settling`.
         """
-        return max(measured + self.settling, measured / (1.0 - EQUILIBRATION))
+        return max(measured + self.settling, measured / (1.0 - self.discarded))
 
     def part(self, duration: float) -> float:
-        """Compute the measured part of a duration, the inverse of `whole`."""
-        return min(duration - self.settling, (1.0 - EQUILIBRATION) * duration)
+        """Compute the duration of the measured part of a run, the inverse of `whole`."""
+        return min(duration - self.settling, (1.0 - self.discarded) * duration)
 
     def _length(self, accuracy: float) -> float:
-        """Compute the measured time for an accuracy, of a run that is not too short."""
+        """Compute the measured time for an accuracy, at least the shortest allowed time."""
         return max(self.noise.length(accuracy - self.bias), self.part(self.least))
 
 
-def sort_by_cost(options: list[Option]) -> list[Option]:
-    """Sort options from the best: the cheapest accurate option, or otherwise the most accurate option.
+def fluid_option(
+    gas: Gas,
+    candidate: Candidate,
+    each: float,
+    noise: float,
+    accuracy: float,
+    value: float = 1.0,
+    discarded: float = EQUILIBRATION,
+) -> Option:
+    """Return the option of an engine for a fluid, by the cost of a contact.
 
-    The exact engine is preferred unless another one is `WORTH` times as cheap.
+    each : CPU time per contact.
+    noise : relative variance of the observable times the number of contacts.
+    value : value of the observable.
+    discarded : minimum fraction of a run before the measurement begins.
+    """
+    frequency = float(theory.collision_rate(**gas.parameters))
+    contacts = 0.5 * gas.count * frequency  # per time
+    spectrum = noise / contacts * value**2
+    component = Component(value, value, LEAST / frequency, spectrum, freedom=math.inf)
+    settling = EQUILIBRATED / frequency
+    limits = settling + LEAST / frequency, math.inf, settling, discarded
+    return Option(candidate, candidate.bias, component, each * contacts, accuracy, *limits)
+
+
+def sort_by_cost(options: list[Option]) -> list[Option]:
+    """Sort options: first accurate options by cost, then the others by accuracy.
+
+    The exact engine comes first unless another engine is cheaper by a factor of at least `WORTH`.
     """
 
     def key(option: Option) -> tuple[float, float]:
@@ -111,10 +141,10 @@ def sort_by_cost(options: list[Option]) -> list[Option]:
 
 
 def replicas_of(option: Option, longest: float) -> int:
-    """Return the number of runs that share the measured time.
+    """Return the number of replicas among which the measured time is divided.
 
-    The number is one replica per processor, under three conditions: each replica is much longer than its
-    equilibration, is not shorter than a run may be, and is not longer than `longest`.
+    The number is at most one replica per processor. Each replica must be much longer than its equilibration,
+    at least as long as the shortest allowed run, and at most as long as `longest`.
     """
     if not math.isfinite(option.measured):
         return 1
@@ -123,16 +153,16 @@ def replicas_of(option: Option, longest: float) -> int:
     return min(MOST_REPLICAS, max(1, shared, math.ceil(option.duration / longest)))
 
 
-# The engines that could run a scene, each with bounds on its errors from theory, which it states itself.
+# Candidate engines for a scene. Each engine computes bounds on its own errors from theory.
 #
-# A bound is relative and names what makes the error: the model (pairs drawn in cells instead of pairs that
-# touch) or the discretisation (time step, cells).
+# A bound is a relative error. Its name states the cause: the model (collision pairs drawn at random in cells)
+# or the discretisation (time step, cells).
 
 
 def suitable_engines(target: Target) -> tuple[list[Engine], dict[str, str]]:
-    """Return the engines that model a scene and an observable, the reference first.
+    """Return the engines that can simulate a scene and an observable, the exact engine first.
 
-    For every other engine the reason is returned, by its name in the table.
+    Also return the reason for each rejected engine, under the engine's name in the table.
     """
     suitable, refused = [], {}
     for engine in candidate_engines():
@@ -150,8 +180,8 @@ def candidates(
 ) -> tuple[list[Candidate], dict[str, str]]:
     """Return the `suitable_engines` with their settings, and the reason for each rejected engine.
 
-    accuracy : accuracy of the observable for which time steps are chosen.
-    conditions : conditions of the steady scene.
+    accuracy : requested accuracy of the observable, from which time steps are chosen.
+    conditions : local conditions of the steady scene.
     """
     engines, refused = suitable_engines(target)
     request, proposals = make_request(target, accuracy, conditions), []
@@ -164,20 +194,18 @@ def candidates(
 
 
 def make_request(target: Target, accuracy: float, conditions: Conditions) -> AccuracyRequest:
-    """Return the request to engines for a target and an accuracy."""
+    """Return the request to engines for an observable and an accuracy."""
     governed = depends_on_transport(target.scene, target.observable)
-    presses = target.declared.of_impulses  # a force has the relative errors of a pressure
+    presses = target.declared.of_impulses  # a force has the same relative error as a pressure
     observable = "pressure" if presses else target.observable
-    return AccuracyRequest(
-        observable, accuracy, conditions, target.face, governed, target.initial,
-        memory=conditions.memory, points=conditions.of_points(observable, target.face),
-    )  # fmt: skip
+    return AccuracyRequest(observable, accuracy, conditions, target.face, governed, target.initial)
 
 
 def depends_on_transport(scene: Scene, observable: str) -> bool:
-    """Return True if transport coefficients govern an observable.
+    """Return True if an observable depends on transport coefficients.
 
-    These are observables with lags, and all observables if something drives a flow of heat or momentum.
+    This is true for observables with lags, and for all observables if the scene drives a flow of heat or
+    momentum.
     """
     lost = scene.dissipates
     flows = len(scene.face_temperatures) > 1 or lost or bool(scene.sliding_faces)

@@ -1,6 +1,6 @@
-"""Short run of a scene, which predicts its cost and the noise of an observable.
+"""Short run of a scene that predicts the cost and the noise of a longer run.
 
-A pilot is stored in the folder `pilots` of the cache, and reused for the same request.
+Pilots are stored in the folder `pilots` of the cache, and reused for an identical request.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from gaspart.accuracy.conditions import Conditions, measured_conditions
+from gaspart.accuracy.conditions import measured_conditions
 from gaspart.accuracy.estimates import Component, components, of_face
 from gaspart.accuracy.option import candidates, suitable_engines
 from gaspart.accuracy.target import SEED, Target
@@ -29,6 +29,7 @@ from gaspart.kernels.compile.cache import cache_directory
 from gaspart.kernels.compile.policy import source_digest
 from gaspart.simulation import Simulation
 from gaspart.state.given import state_at_time_zero
+from gaspart.theory.conditions import Conditions
 from gaspart.trajectory.last_state import last_state
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import Recipe
@@ -44,34 +45,37 @@ if TYPE_CHECKING:
 
 
 _PROBE = 0.15
-"""Processor seconds that the speed is measured for, at least."""
+"""Minimum CPU time of a speed measurement in seconds."""
 _TIMED = 4
-"""Duration of a timed run with correlations, in longest lags."""
+"""Duration of a timed run with correlations, in units of the longest lag."""
 _BRIEF, _TRIED = 1e-3, 24
-"""The length of a run that shows whether there is an observable, in crossings of the container, and its
-frames."""
+"""Length, in crossings of the container, and number of frames of a run that only tests if an observable is
+defined.
+"""
 _UNKNOWN_YET = *TOO_SHORT, "particles at rest", "sample_interval"
-"""Keys of errors that a longer run may not have."""
+"""Keys of errors that may disappear in a longer run."""
 _SAME = 1e-6
-"""Part of a kinetic energy that is rounding."""
+"""Relative change of a kinetic energy that counts as rounding."""
 _USUAL, _RANGE = 2.0, 5.0
-"""Standard deviations within which a start is like a steady run, and which that does not go beyond."""
+"""Deviations from the steady mean, in standard deviations: limit for a start that is already steady, and
+limit that a steady run does not exceed.
+"""
 _CONTINUED = 2
 """Maximum number of times that a pilot in a transient is doubled in length."""
 
 
 @dataclass(frozen=True)
 class Pilot:
-    """Results of a short run of an engine.
+    """Results of a short run with one engine.
 
     speed : CPU seconds per unit of time.
-    seconds : CPU time of the pilot, 0 if it was stored before.
-    component : the least accurate component, None if the observable could not be measured, for the reason in
+    seconds : CPU time of the pilot, 0 if it was already stored.
+    component : the least accurate component; None if the observable could not be measured, with the reason in
         `rule`.
-    counted : this component without the impulses that the run has stored, None if the run has stored none.
+    counted : the same component measured without the stored impulses; None if the run stores no impulses.
     interval : time between frames.
-    settled : time from which the run is steady (`settling_time`).
-    path : file, None for a run that failed.
+    settled : time after which the run is steady (`settling_time`).
+    path : trajectory file, None for a run that failed.
     """
 
     engine: Engine
@@ -86,12 +90,12 @@ class Pilot:
 
     @property
     def measured(self) -> float:
-        """The time that the observable is of, 0 where it was not measured."""
+        """Duration of the measured part of the run; 0 if nothing was measured."""
         return self.component.time if self.component else 0.0
 
     @property
     def duration(self) -> float:
-        """Duration of the run, with its discarded part; 0 if nothing was measured."""
+        """Duration of the run including its discarded part; 0 if nothing was measured."""
         return self.measured / (1.0 - EQUILIBRATION)
 
     @property
@@ -106,18 +110,18 @@ class Pilot:
 
 
 def speed_of(target: Target, engine: Engine) -> float:
-    """Measure the CPU seconds per unit of a scene's time.
+    """Measure the CPU seconds that an engine needs per unit of simulated time.
 
-    The run takes a fraction of a second after its kernels were compiled. Raises SceneError for a scene that
-    the engine does not model.
+    Once the kernels are compiled, this takes a fraction of a second. Raises SceneError if the engine cannot
+    simulate the scene.
     """
-    if target.correlated:  # samples take longer than what happens between them
+    if target.correlated:  # sampling takes longer than the simulation between samples
         return _speed_of_sampling(target, engine)
     tallies = target.tallies(engine)
     simulation = Simulation(target.scene, engine, SEED, initial=target.start, tallies=tallies)
     quantum = simulation.engine.quantum
     stretch = quantum or 1e-3 * target.crossing
-    simulation.advance(duration=4.0 * stretch)  # compiles
+    simulation.advance(duration=4.0 * stretch)  # compiles the kernels
     while True:
         before, start = simulation.time, time.process_time()
         simulation.advance(duration=stretch * 1.0000001)
@@ -128,7 +132,10 @@ def speed_of(target: Target, engine: Engine) -> float:
 
 
 def _speed_of_sampling(target: Target, engine: Engine) -> float:
-    """Measure the speed of a run with correlations by two short runs; the first one compiles."""
+    """Measure the speed of a run with correlations by two short runs.
+
+    The first run compiles the kernels.
+    """
     took, correlations = math.inf, target.correlations(engine)
     interval = correlations.lags * correlations.interval
     with TemporaryDirectory() as folder:
@@ -147,9 +154,9 @@ def _make(
     scheduled: tuple[float, float, Correlations | None],
     displacements: bool = True,
 ) -> Path:
-    """Run a target with a schedule: duration, time between frames, correlations.
+    """Run a target with a schedule: duration, time between frames, and correlations.
 
-    Pilots store `displacements`, which serve other observables too.
+    Pilots store `displacements` because other observables need them too.
     """
     duration, interval, correlations = scheduled
     recipe = Recipe(
@@ -160,11 +167,11 @@ def _make(
 
 
 def require_defined(target: Target) -> None:
-    """Raise SceneError for an observable that a scene does not have, however long its run.
+    """Raise SceneError for an observable that is undefined in a scene for runs of any length.
 
-    The observable is measured in a very short run.
+    The test is a measurement in a very short run.
     """
-    if target.correlated:  # what these need, engines state
+    if target.correlated:  # the engines state these requirements
         return
     interval = _BRIEF * target.crossing / _TRIED
     with TemporaryDirectory() as folder:
@@ -174,9 +181,9 @@ def require_defined(target: Target) -> None:
 
 
 def _estimate(trajectory: xr.Dataset, target: Target) -> dict[str, Component] | str:
-    """Return the components of an observable, or the reason if the run is too short.
+    """Return the components of an observable, or the reason why the run is too short.
 
-    Raises SceneError for an observable that the scene does not have.
+    Raises SceneError if the observable is undefined in the scene.
     """
     try:
         estimates = components(trajectory, target.observable)
@@ -189,13 +196,13 @@ def _estimate(trajectory: xr.Dataset, target: Target) -> dict[str, Component] | 
 
 
 def run_pilot(target: Target, engine: Engine, seconds: float, speed: float, fraction: float = 1.0) -> Pilot:
-    """Make and measure a run of about a given number of CPU seconds.
+    """Run a pilot of about the given CPU time, and measure the observable.
 
     speed : result of `speed_of`.
-    fraction : fraction of the seconds that remains, unless a pilot was stored.
+    fraction : fraction of the CPU time that remains after preparation, unless a stored pilot is reused.
 
-    A pilot in a transient is continued, to four times its length at most. An observable that needs a longer
-    run is not measured. Raises SceneError for an observable that the scene does not have.
+    A pilot in a transient is extended to at most four times its length. If the observable needs a longer run,
+    the pilot has no measured value. Raises SceneError if the observable is undefined in the scene.
     """
     scheduled = target.schedule(engine, fraction * seconds / speed)
     folder = cache_directory() / "pilots" / _digest(target, engine, seconds)
@@ -228,9 +235,9 @@ def _worst(estimates: dict[str, Component]) -> Component:
 
 
 def _equilibrate(path: Path) -> float:
-    """Return the `settling_time` of a pilot, and continue the pilot until it is steady.
+    """Return the `settling_time` of a pilot, after extending the pilot until it is steady.
 
-    The run is steady if the settling time is within the discarded part.
+    The pilot is steady if the settling time lies within the discarded part.
     """
     for last in (False,) * _CONTINUED + (True,):
         with open_trajectory(path) as trajectory:
@@ -242,11 +249,11 @@ def _equilibrate(path: Path) -> float:
 
 
 def settling_time(trajectory: xr.Dataset) -> float:
-    """Return the time from which a run is steady.
+    """Return the time after which a run is steady.
 
-    After the settling time two conditions hold for the kinetic energy, and for the mean position of the
-    particles along each axis with walls. They have reached their means of the second half, and they never
-    leave the range of the second half again.
+    The test uses the kinetic energy and the mean position of the particles along each axis with walls. Each
+    of these series has reached its mean over the second half of the run, and from then on stays within the
+    range of the second half.
     """
     with open_run(trajectory, 0.0, sheared=True) as run:
         velocities, masses = run.peculiar, run.masses[run.moving]
@@ -257,7 +264,7 @@ def settling_time(trajectory: xr.Dataset) -> float:
 
 
 def _settled_at(series: np.ndarray) -> int:
-    """Return the number of the frame from which a series (T,) is steady."""
+    """Return the index of the frame after which a series (T,) is steady."""
     later = series[len(series) // 2 :]
     beyond = series - later.mean()
     scatter = max(float(later.std()), _SAME * abs(float(later.mean())))
@@ -268,9 +275,9 @@ def _settled_at(series: np.ndarray) -> int:
 
 
 def _digest(target: Target, engine: Engine, seconds: float) -> str:
-    """Return the digest of a pilot's content.
+    """Return a hash that identifies the content of a pilot.
 
-    Runs of one kind, which store the same data, serve other observables too.
+    It is the same for all observables that need the same stored data, so they share pilots.
     """
     kind = "motion" if target.correlated else target.declared.samples
     if target.declared.needs in KEPT:
@@ -280,27 +287,27 @@ def _digest(target: Target, engine: Engine, seconds: float) -> str:
     return hashlib.sha256(json.dumps(content).encode()).hexdigest()[:24]
 
 
-# The candidates of a scene with their speeds, and the pilots that show what they are like.
+# Candidate engines of a scene with their speeds, and their pilot runs.
 
 
 DIFFERS = 2.5
-"""Standard errors by which two pilots differ if one is biased more than theory says."""
+"""Difference between two pilots, in standard errors, beyond which the bias exceeds its theoretical bound."""
 _CERTAIN = 1.96
-"""Standard errors of a difference that are added to it for a bound on a bias."""
+"""Number of standard errors that is added to a difference of pilots to bound a bias."""
 _PREPARED = 5.0
-"""Processor seconds until pilots begin that are not taken from theirs."""
+"""CPU seconds of preparation that are not subtracted from the time of pilots."""
 Announce: TypeAlias = Callable[[str], None]
 
 
 @dataclass
 class Trials:
-    """Speeds and pilots of the engines for a target.
+    """Speeds and pilots of all candidate engines for a target.
 
     seconds : CPU time for all pilots.
-    speeds : CPU time of a unit of time by candidate.
-    refused : reasons why other engines are rejected.
-    pilots : pilots made so far, the exact engine's first.
-    target : if a pilot has a steady state, runs start from it.
+    speeds : CPU time per unit of simulated time, by candidate.
+    refused : reason for each rejected engine.
+    pilots : pilots so far; the pilot of the exact engine is first.
+    target : state from which later runs start, if a pilot reached a steady state.
     """
 
     target: Target
@@ -313,10 +320,10 @@ class Trials:
     _begun: float = field(default_factory=time.process_time)
 
     def begin(self) -> None:
-        """Find the candidates and make the pilot of the exact engine.
+        """Find the candidates and run the pilot of the exact engine.
 
-        The pilot takes half the time if another engine may be cheaper. Raises SceneError if no engine runs
-        the scene, and for an observable that the scene does not have.
+        This pilot takes half of the CPU time if another engine may be cheaper. Raises SceneError if no engine
+        can simulate the scene, or if the observable is undefined in the scene.
         """
         engines, self.refused = suitable_engines(self.target)
         if not engines or not engines[0].reference:
@@ -348,9 +355,9 @@ class Trials:
         self._ask_another()
 
     def make(self, candidate: Candidate, part: float = 0.5) -> Pilot:
-        """Make one more pilot, with a part of the CPU time.
+        """Run another pilot with a fraction of the CPU time.
 
-        A third and a fourth one have less time.
+        The third and the fourth pilot get less time.
         """
         if candidate not in self.speeds:
             raise self._no_engine()
@@ -363,7 +370,7 @@ class Trials:
         return pilot
 
     def _ask_another(self) -> None:
-        """Make a pilot of the cheapest accurate engine if the exact engine's has measured nothing."""
+        """Run a pilot of the cheapest accurate engine if the exact engine's pilot measured nothing."""
         able = [
             candidate
             for candidate in self.speeds
@@ -373,7 +380,7 @@ class Trials:
             self.make(min(able, key=lambda candidate: self.speeds[candidate]))
 
     def refuse(self, candidate: Candidate, rule: str) -> None:
-        """Reject a candidate for a reason."""
+        """Reject a candidate with a reason."""
         self.refused[candidate.engine.timed_as] = rule
         del self.speeds[candidate]
 
@@ -384,19 +391,19 @@ class Trials:
     def bias(self, candidate: Candidate) -> float:
         """Return the bound on a candidate's bias, from theory or from its pilot.
 
-        The pilot's bound is its difference from the exact engine's pilot.
+        The bound from the pilot is its difference from the pilot of the exact engine.
         """
         own = [pilot for pilot in self.known if pilot.engine == candidate.engine]
         return raised_bias(candidate, own[0], self.known) if own else candidate.bias
 
     @property
     def known(self) -> list[Pilot]:
-        """The pilots that have measured the observable."""
+        """Pilots that measured the observable."""
         return [pilot for pilot in self.pilots if 0.0 < pilot.accuracy < math.inf]
 
     @property
     def differing(self) -> tuple[Pilot, ...]:
-        """Pilots that differ from the exact engine's by more than their bounds."""
+        """Pilots that differ from the exact engine's pilot by more than the bounds on their biases."""
         pairs = ((pilot, self._candidate(pilot.engine)) for pilot in self.known)
         return tuple(
             pilot for pilot, candidate in pairs if candidate and self.bias(candidate) > candidate.bias
@@ -404,9 +411,9 @@ class Trials:
 
     @property
     def reference(self) -> Pilot:
-        """Longest pilot of an engine that is accurate enough, or otherwise of any engine.
+        """Longest pilot of a sufficiently accurate engine, otherwise of any engine.
 
-        Raises SceneError if the observable was not measured.
+        Raises SceneError if no pilot measured the observable.
         """
         accurate = [pilot for pilot in self.known if self._is_accurate(pilot)] or self.known
         if accurate:
@@ -418,10 +425,10 @@ class Trials:
         raise SceneError("observable", target.observable, rule)
 
     def noise(self, engine: Engine) -> Component:
-        """Return the noise of the observable in a run by an engine.
+        """Return the noise of the observable in a run with an engine.
 
-        If the engine stores impulses, it is the noise in a pilot with impulses, otherwise the noise of
-        counts. Raises SceneError as `reference`.
+        If the engine stores impulses, the noise comes from a pilot with impulses, otherwise from a pilot that
+        counts contacts. Raises the same error as `reference`.
         """
         with_impulses = [pilot for pilot in self.known if pilot.counted]
         if with_impulses and self.target.tallies(engine):
@@ -444,19 +451,19 @@ class Trials:
         return able
 
     def _time(self, able: list[Candidate]) -> None:
-        """Measure the speeds of candidates; reject a candidate that cannot start."""
+        """Measure the speeds of candidates, and reject each candidate that cannot start."""
         for candidate in able:
             self.announce(f"timing the {candidate.engine.title} engine")
             try:
                 self.speeds[candidate] = speed_of(self.target, candidate.engine)
-            except SceneError as error:  # as of particles from which the engine cannot start
+            except SceneError as error:  # for example, particles from which the engine cannot start
                 self.refused[candidate.engine.timed_as] = f"{error.key}: {error.rule}"
 
     def _settle(self, pilot: Pilot) -> None:
-        """Start the continuation from the end of a pilot, if its file contains the state."""
+        """Start later runs from the end of a pilot, if its file contains the final state."""
         try:
             state = state_at_time_zero(self.target.scene, last_state(pilot.path or ""))
-        except SceneError:  # as of a piston
+        except SceneError:  # for example, a piston
             return
         self.target = replace(self.target, settled=state)
 
@@ -466,10 +473,9 @@ class Trials:
 
 
 def raised_bias(candidate: Candidate, own: Pilot, pilots: list[Pilot]) -> float:
-    """Raise the bound on a candidate's bias to its difference from the exact engine.
+    """Raise the bound on a candidate's bias to its measured difference from the exact engine.
 
-    The difference of its pilot from the pilot of the exact engine counts, with its error, if it is
-    significant.
+    The difference between the pilots of the two engines counts, including its error, if it is significant.
     """
     exact = [pilot for pilot in pilots if pilot.engine.reference]
     if candidate.engine.reference or not exact:

@@ -1,8 +1,8 @@
-"""The cheapest engine and run for an accuracy of any observable of any steady scene.
+"""The cheapest engine and run for a requested accuracy, for any observable of a steady scene.
 
-Scenes in the table need no run (`plan_from_table`). For all other scenes pilot runs give the noise and the
-CPU time of a unit of time (`plan_from_pilots`). Both functions return an `Option` for each engine, and the
-plan uses the best option.
+For scenes in the table no run is needed (`plan_from_table`). For all other scenes pilot runs measure the
+noise and the CPU time per unit of simulated time (`plan_from_pilots`). Both functions compute an `Option` for
+each engine, and the plan takes the best option.
 """
 
 from __future__ import annotations
@@ -20,47 +20,52 @@ from gaspart.accuracy.scatter import Scatter, start_scatter
 from gaspart.accuracy.table import EQUILIBRATION as EQUILIBRATED
 from gaspart.accuracy.table import LEAST
 from gaspart.accuracy.target import Target, rounded_to_12_digits
-from gaspart.analysis import bulk
 from gaspart.analysis.pairs import MOST_FRAMES
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine
 from gaspart.keys.values import number
 from gaspart.scene.gas import Gas
 from gaspart.scene.scene import Scene
+from gaspart.theory import bulk
 from gaspart.trajectory.recipe import MOST_REPLICAS, Recipe
 from gaspart.trajectory.replicas import differ
 from gaspart.trajectory.until import Requirement, Until
 
 ACCURACIES = 1e-8, 1.0
-"""The best relative accuracy that float64 sums and the table support, and the worst."""
+"""Smallest and largest allowed relative accuracy; the smallest is the limit of float64 sums and of the table.
+"""
 _FRAMES = 384
-"""Number of frames of a run: 288 independent intervals give an error 17 degrees of freedom, of 15 required.
+"""Number of frames of a run: 288 independent intervals give an error with 17 degrees of freedom, and 15 are
+required.
 """
 _LONGEST = 4.0
-"""The longest duration of a run with `--until` over the predicted one: two examinations, and an error that
-chance made too small in the pilot."""
+"""Maximum duration of a run with `--until`, divided by the predicted duration. It allows for two
+examinations, and for a pilot whose error was too small by chance.
+"""
 _SETTLED = 2.0
-"""The part of a run that is not measured, over the time in which the energy came to its mean in the pilot."""
+"""Discarded time of a run divided by the time in which the energy of the pilot reached its mean."""
 _CROSSINGS = 10.0
-"""Minimum number of times that a particle crosses a container with walls in a run."""
+"""Minimum number of times that a particle crosses a container with walls during a run."""
 _OF_STARTS = 0.5
-"""Scatter of the mean of replicas by their starts, divided by the accuracy, beyond which one run is made."""
-_BULK = 4.0  # the finite size of a gas should cost no more than this part of the accuracy
+"""Scatter of the mean of replicas due to their starts, divided by the accuracy, above which a single run is
+used.
+"""
+_BULK = 4.0  # largest finite-size error of a gas, as a fraction of the accuracy
 
 
 @dataclass(frozen=True)
 class Plan:
-    """Advice for a scene.
+    """Recommended run for a scene, and the alternatives.
 
-    options : option of each engine, the best first.
-    refused : reasons why other engines cannot run the scene, by their names in the table.
-    value : value of the observable, by the pilots or by theory.
-    replicas : number of runs that share the measured time.
-    pilots : their results, none if the table has the answer.
-    differing : pilots that differ from the pilot of the exact engine by more than their bounds.
-    points : for a curve, the number of points that the pilots measured, to which the accuracy refers, and the
-        number of all points.
-    budget : CPU time of the run in s, if it is limited.
+    options : one option per engine, the best first.
+    refused : reason for each engine that cannot run the scene, by the engine's name in the table.
+    value : value of the observable, from the pilots or from theory.
+    replicas : number of replicas among which the measured time is divided.
+    pilots : pilot runs, empty if the table contains the answer.
+    differing : pilots that differ from the exact engine's pilot by more than the bounds on their biases.
+    points : for a curve, the number of points that the pilots measured and the number of all points. The
+        accuracy refers to the measured points.
+    budget : limit of the CPU time of the run in s, if there is a limit.
     """
 
     target: Target
@@ -76,7 +81,7 @@ class Plan:
 
     @property
     def best(self) -> Option:
-        """The option to take."""
+        """Recommended option."""
         return self.options[0]
 
     @property
@@ -86,19 +91,19 @@ class Plan:
 
     @property
     def scatter(self) -> Scatter:
-        """Scatter of the observable from run to run by the initial energy, beyond the interval."""
+        """Scatter of the observable between runs due to the initial energy, not part of the interval."""
         return start_scatter(self.target)
 
     @property
     def gas(self) -> Gas | None:
-        """Fluid in a periodic container that the table describes; None for a plan by pilots."""
+        """Fluid in a periodic container that the table covers; None for a plan from pilots."""
         return None if self.pilots else known.fluid_of(self.target.scene)
 
     @property
     def finite_size(self) -> tuple[float, float]:
         """Relative difference from an infinite gas, to first order, and a sufficient number of particles.
 
-        For this number the difference is a quarter of the accuracy.
+        For this number of particles the difference is a quarter of the accuracy.
         """
         gas = known.fluid_of(self.target.scene)
         differing, power = getattr(bulk, f"finite_{self.target.declared.bulk}")(gas)
@@ -106,24 +111,24 @@ class Plan:
 
     @property
     def duration(self) -> float:
-        """Duration of each run, with its discarded part."""
+        """Duration of each run, including its discarded part."""
         return self.best.whole(self.best.measured / self.replicas)
 
     @property
     def runs(self) -> int:
-        """Number of runs like the best option whose mean is accurate, if one run is not."""
+        """Number of runs with the best option whose mean is accurate, if one run is not."""
         best = self.best
         noise, remaining = best.error - best.bias, self.accuracy - best.bias
         return math.ceil((noise / remaining) ** 2) if remaining > 0.0 and math.isfinite(noise) else 0
 
     @property
     def seconds(self) -> float:
-        """CPU time of all replicas, with their discarded parts; inf if out of reach."""
+        """CPU time of all replicas, including their discarded parts; inf if out of reach."""
         return self.replicas * self.duration * self.best.speed
 
     @property
     def collisions_per_particle(self) -> float:
-        """Measured in each run, by the rate of theory."""
+        """Collisions per particle during the measured part of each run, from theory."""
         gas = self.gas
         rate = float(theory.collision_rate(**gas.parameters)) if gas else self.target.frequency
         return self.best.measured / self.replicas * rate
@@ -132,8 +137,8 @@ class Plan:
     def longest_interval(self) -> float:
         """Maximum time between frames.
 
-        For diffusion the interval follows from the lags. For an observable that frames sample, it is the
-        interval of the pilot, whose noise is known.
+        For a diffusion coefficient the interval follows from the lags. For an observable that is sampled at
+        frames, the interval is the interval of the pilot, whose noise was measured.
         """
         declared = self.target.declared
         if declared.samples == "paths":
@@ -143,10 +148,10 @@ class Plan:
 
     @property
     def recipe(self) -> Recipe:
-        """Recipe of the run to make, one of the replicas.
+        """Recipe of the recommended run, one for all replicas.
 
-        The duration is fixed if the noise is in the table, or if the observable cannot end a run. Otherwise
-        the run ends when it is accurate.
+        The duration is fixed if the noise comes from the table, or if the observable cannot end a run.
+        Otherwise the run ends when it is accurate.
         """
         target, duration = self.target, self.duration
         scene, engine, correlations = target.scene, self.best.engine, None
@@ -167,7 +172,7 @@ class Plan:
         )  # fmt: skip
 
     def _until(self, duration: float) -> Until:
-        """Return the condition that ends a run of about a duration."""
+        """Return the condition that ends a run of about this duration."""
         target = self.target
         remaining = self.accuracy - self.best.bias
         relative = float(f"{0.99 * remaining if self.best.bias else remaining:.3g}")
@@ -185,22 +190,22 @@ def plan(
     pilot_seconds: float = PILOT_SECONDS,
     announce: Announce = lambda text: None,
 ) -> Plan:
-    """Find the cheapest run for a relative accuracy of an observable of `gaspart measure`.
+    """Find the cheapest run that measures an observable of `gaspart measure` to a relative accuracy.
 
-    The observable may be the pressure on one wall, like `pressure:x low`.
+    The observable may name one wall, such as `pressure:x low`.
 
-    accuracy : standard error plus the bound on systematic errors, divided by the value; without these bounds
-        this is the accuracy that `--until` requires.
-    budget : CPU time of the run in seconds; if it does not suffice, the most accurate run within it is
-        advised.
-    pilot_seconds : for scenes and observables that the table does not cover, total CPU time of the pilots.
-        Most scenes need two pilots. Up to half of this time is spent on the preparation if the preparation
-        takes more than 5 s, for example to compress particles. More is needed where a third engine turns out
-        to be the best, and by a pilot in a transient, which is continued.
-    announce : function of a text, called before each pilot.
+    accuracy : relative accuracy: the standard error plus the bound on systematic errors, divided by the
+        value. A run with `--until` requires this accuracy of its standard error alone.
+    budget : CPU time of the run in seconds. If it does not suffice, the plan is the most accurate run within
+        it.
+    pilot_seconds : total CPU time of the pilots, for scenes and observables that the table does not cover.
+        Most scenes need two pilots. If the preparation takes more than 5 s, for example to compress
+        particles, it may use up to half of this time. The pilots take longer if a third engine turns out to
+        be the best, or if a pilot in a transient is extended.
+    announce : function that is called with a text before each pilot.
 
-    Raises SceneError for a scene without a steady state, for an observable that is not defined in the scene,
-    and for an observable for which the pilots are too short.
+    Raises SceneError if the scene has no steady state, if the observable is undefined in the scene, or if the
+    pilots are too short for the observable.
     """
     if known.is_tabulated(scene, observable):
         return plan_from_table(scene, observable, accuracy, budget)
@@ -213,9 +218,9 @@ def plan_from_table(
     accuracy: float,
     budget: float | None = None,
 ) -> Plan:
-    """Make a `plan` by the table; its times are for the machine of the table.
+    """Make a `plan` from the table; its CPU times are for the machine of the table.
 
-    Raises SceneError for anything that the table does not cover.
+    Raises SceneError if the table does not cover the scene or the observable.
     """
     gas, target = known.tabulated_target(scene, observable)
     accuracy, budget = _check_arguments(accuracy, budget)
@@ -237,7 +242,7 @@ def plan_from_pilots(
     pilot_seconds: float = PILOT_SECONDS,
     announce: Announce = lambda text: None,
 ) -> Plan:
-    """Make a `plan` by pilot runs, even if the table covers the scene."""
+    """Make a `plan` from pilot runs, even if the table covers the scene."""
     target = Target.from_name(scene, observable)
     accuracy, budget = _check_arguments(accuracy, budget)
     pilot_seconds = number("pilot", pilot_seconds, "must be positive", above=0.0)
@@ -245,7 +250,7 @@ def plan_from_pilots(
     trials = Trials(target, accuracy, pilot_seconds, announce)
     trials.begin()
     options = _options(trials, budget)
-    while not trials.has_pilot(options[0].engine):  # none is advised without one
+    while not trials.has_pilot(options[0].engine):  # no option is recommended without a pilot
         best = options[0].candidate
         pilot = trials.make(best)
         if not pilot.measured:
@@ -262,7 +267,7 @@ def plan_from_pilots(
     replicas = replicas_of(advice.best, target.span[1])
     of_starts = advice.scatter.value / math.sqrt(replicas)
     if advice.best.duration <= target.span[1] and of_starts > _OF_STARTS * accuracy:
-        return advice  # one run has no scatter of starts
+        return advice  # a single run has no scatter between starts
     return replace(advice, replicas=replicas)
 
 
@@ -276,7 +281,7 @@ def _check_arguments(accuracy: float, budget: float | None) -> tuple[float, floa
 def _options(trials: Trials, budget: float | None) -> list[Option]:
     """Return an option for each candidate, the best first.
 
-    Raises SceneError if no pilot has measured the observable.
+    Raises SceneError if no pilot measured the observable.
     """
     target, longest = trials.target, trials.reference
     assert longest.component is not None
@@ -293,19 +298,19 @@ def _options(trials: Trials, budget: float | None) -> list[Option]:
 
 
 def _can_share(target: Target, engine: Engine) -> bool:
-    """Return True if replicas can share the measured time.
+    """Return True if the measured time can be divided among replicas.
 
-    These are runs that end when they are accurate and differ by their seeds. For other runs, the error would
-    be the scatter of a few runs.
+    This requires runs that end when they are accurate and that differ in their seeds. For other runs the
+    error of the mean would have to come from the scatter of a few replicas.
     """
     return target.declared.ends_runs and differ(target.scene, engine)
 
 
 def _longest(target: Target, pilot: Pilot) -> float:
-    """Return the longest duration that is of use.
+    """Return the longest useful duration.
 
-    For an observable of positions the number of frames is limited. The frames of the pilot show how much each
-    frame contributes; a longer time between frames is not known to improve this.
+    For an observable of positions the number of frames is limited. The pilot shows how much each frame
+    contributes to the accuracy. A longer time between frames may not improve this.
     """
     if target.declared.samples != "structure":
         return math.inf
@@ -316,9 +321,9 @@ def _longest(target: Target, pilot: Pilot) -> float:
 def _least(target: Target, engine: Engine, pilot: Pilot) -> float:
     """Return the shortest duration of a run.
 
-    The time covers the least equilibration and measurement of the table, crossings of a container with walls,
-    the time in which the pilot became steady, and the steps between frames. With correlations it also covers
-    the frames that are needed for an error.
+    This time covers the minimum equilibration and measurement of the table, crossings of a container with
+    walls, the time after which the pilot was steady, and the time steps between frames. With correlations it
+    also covers the number of frames that an error estimate needs.
     """
     scene, frequency = target.scene, target.frequency
     collisions = (EQUILIBRATED + LEAST) / frequency if frequency > 0.0 else 0.0

@@ -1,32 +1,36 @@
-"""Accuracy that a run until accurate has reached, and the rule that ends the run.
+"""Accuracy reached by a run with `--until`, and the rule that ends the run.
 
-A run is examined when it has 64, 96, 128, 192 ... frames, without their first quarter. The result does not
-depend on the speed of the machine or on interruptions. Each examination gives a value and its standard error
-e with f degrees of freedom. A run that ended at the first e that is small enough would end when e happens to
-be too small. The 95 % intervals at the first small error would contain the true value in only 88 to 94 % of
-runs. Two rules prevent this:
+A run is examined when it has 64, 96, 128, 192 ... frames. The first quarter of the frames is discarded. The
+result does not depend on the speed of the machine or on interruptions. Each examination gives a value and its
+standard error e with f degrees of freedom. Suppose that a run ended at the first examination whose e is small
+enough. Then it would often end because e is too small by chance. The 95 % intervals would contain the true
+value in only 88 to 94 % of such runs. Two rules prevent this:
 
-- The error that counts is the larger one of two successive examinations, the earlier one multiplied by the
-  root of the ratio of their lengths. So an error that is small by chance does not end the run. Intervals from
-  the larger error, with Student's t for f degrees of freedom, contain the true value in 95 % of runs.
-- An upper bound of this error must be as small as required. The bound is e sqrt(f / chi2), where chi2 is the
-  lower 10 % quantile of chi-square for f; it is 1.32 e for f = 15 and 1.10 e for 100. f must be at least 15,
-  from 16 independent blocks. Then the true standard error is as small as required in 98 % of runs.
+- The error that counts is the larger error of two successive examinations. The earlier error is first
+  multiplied by the square root of the ratio of the two lengths. So a single error that is small by chance
+  does not end the run. Intervals from the larger error, with Student's t for f degrees of freedom, contain
+  the true value in 95 % of runs.
+- An upper bound of this error must be at most the required error. The bound is e sqrt(f / chi2), where chi2
+  is the lower 10 % quantile of chi-square for f; it is 1.32 e for f = 15 and 1.10 e for 100. f must be at
+  least 15, from 16 independent blocks. With this rule the true standard error is at most the required error
+  in 98 % of runs.
 
-Samples that are all equal have the error 0, which is not informative, because the next sample may differ.
-Such a run continues, and is stopped after 16384 frames unless it has a longest duration. A series that
-changed k times has at most k degrees of freedom, so that one jump, or a few, end no run either.
+If all samples are equal, the computed error is 0. This is not reliable, because the next sample may differ.
+Such a run continues. Without a maximum duration it is stopped after 16384 frames. A series that changed k
+times has at most k degrees of freedom, so a few jumps do not end a run either.
 
-For replicas, which are independent, the value is the mean. The error is computed from the errors of the
-replicas, and their degrees of freedom add up. Replicas are examined when all have the same number of frames.
+For independent replicas the value is the mean. The error is computed from the errors of the replicas, and
+their degrees of freedom are added. Replicas are examined when all have the same number of frames.
 
-If a run conserves the energy of its start, which is drawn by its seed, its error is only for this energy;
-other seeds scatter by more (`gaspart.accuracy.scatter`). The mean of replicas is over several energies, so
-its error includes the scatter of the starts. No longer run reduces this part. Noise has to be as small as
-what the part leaves of the required accuracy, or as the accuracy itself if nothing is left.
+Some runs conserve their initial energy, which depends on the seed. The error of a single run then refers to
+this energy only. Runs with other seeds scatter more (`gaspart.accuracy.scatter`). The mean of replicas covers
+several energies, so its error includes the scatter of the starts. Longer runs do not reduce this
+contribution. The noise must then be at most the remainder of the required accuracy, or at most the accuracy
+itself if no remainder is left.
 
-Both rules were tested with autoregressive series (`tests/accuracy/test_until.py`). For fixed widths and
-independent samples the first rule is the problem of Chow and Robbins, Ann. Math. Stat. 36, 457 (1965).
+Both rules were tested with autoregressive series (`tests/accuracy/test_until.py`). For intervals of fixed
+width and independent samples the first rule is the problem of Chow and Robbins, Ann. Math. Stat. 36, 457
+(1965).
 """
 
 from __future__ import annotations
@@ -51,7 +55,7 @@ if TYPE_CHECKING:
 
 _CONFIDENCE = 0.95
 IDLE = 16384
-"""Frames without any contact, or any change, after which a run ends that has no longest duration."""
+"""Number of frames without any contact or change after which a run without a maximum duration ends."""
 _UNCHANGED = "frames: all are the same so far, which tells no error"
 
 
@@ -59,15 +63,15 @@ _UNCHANGED = "frames: all are the same so far, which tells no error"
 class AccuracyStatus:
     """Estimate of an observable by a run, compared with the required accuracy.
 
-    request : requirement.
-    component : the least accurate face or axis, "" for a scalar.
-    value : its value.
-    noise : its standard error at the energies of the runs, correlations included: the larger one of the last
-        two examinations, or inf if nothing was measured, for the reason in `rule`.
+    request : required accuracy.
+    component : name of the least accurate face or axis, "" for a scalar.
+    value : value of this component.
+    noise : standard error for the initial energies of the runs, with correlations. It is the larger error of
+        the last two examinations, or inf if nothing was measured; the reason is in `rule`.
     freedom : degrees of freedom of the noise.
-    confirmed : True if there were two examinations.
-    scatter : relative standard deviation of the value from seed to seed due to the energy of the start, in
-        addition to the noise.
+    confirmed : True after two examinations.
+    scatter : relative standard deviation of the value between seeds due to the initial energy, in addition to
+        the noise.
     replicas : number of runs.
     """
 
@@ -83,33 +87,33 @@ class AccuracyStatus:
 
     @property
     def of_starts(self) -> float:
-        """Relative standard error of the mean of replicas by the energies of their starts.
+        """Relative standard error of the mean of replicas due to their initial energies.
 
-        The error is 0 for a single run, whose interval is for its own energy.
+        The error is 0 for a single run, because its interval refers to its own energy.
         """
         return self.scatter / math.sqrt(self.replicas) if self.replicas > 1 else 0.0
 
     @property
     def error(self) -> float:
-        """Standard error: for replicas with the scatter of the starts.
+        """Standard error of the value. For replicas it includes the scatter of the starts.
 
-        For a single run it is the error at its energy.
+        For a single run it is the error at the energy of the run.
         """
         return math.hypot(self.noise, self.of_starts * self.value) if self.of_starts else self.noise
 
     @property
     def accuracy(self) -> float:
-        """The relative standard error, or inf if it is unknown."""
+        """Relative standard error, or inf if it is unknown."""
         return self._relative(self.error)
 
     @property
     def bound(self) -> float:
-        """The upper bound of `accuracy`, which the true one exceeds with probability 10 % by itself."""
+        """Upper bound of `accuracy`; the true relative error exceeds it with 10 % probability."""
         return math.hypot(self._relative(self.noise) * bound(self.freedom), self.of_starts)
 
     @property
     def interval(self) -> tuple[float, float]:
-        """The interval that covers the true value in 95 % of runs."""
+        """Interval that contains the true value in 95 % of runs."""
         if not math.isfinite(self.error):
             return -math.inf, math.inf
         half = math.hypot(
@@ -119,7 +123,7 @@ class AccuracyStatus:
 
     @property
     def excess(self) -> float:
-        """Upper bound of the noise divided by the required noise; above 1 until confirmed."""
+        """Upper bound of the noise divided by the allowed noise; above 1 until confirmed."""
         if not self.confirmed or not math.isfinite(self.accuracy):
             return math.inf
         few = math.sqrt(LEAST_FREEDOM / self.freedom)
@@ -132,21 +136,18 @@ class AccuracyStatus:
         return self.excess <= 1.0 and self.of_starts < self.request.accuracy
 
     def _relative(self, error: float) -> float:
-        """Return an error divided by the value; inf if the value is not known."""
+        """Return an error divided by the value; inf if the value is unknown."""
         is_defined = math.isfinite(self.value) and self.value != 0.0
         return error / abs(self.value) if is_defined else math.inf
 
 
 def noise_allowed(accuracy: float, of_starts: float) -> float:
-    """Return the relative noise at which a run ends, given the error due to its starts.
-
-    Both errors are relative.
-    """
+    """Return the relative noise at which a run ends, given the error due to its starts."""
     return math.sqrt(accuracy**2 - of_starts**2) if of_starts < accuracy else accuracy
 
 
 def _student(freedom: float) -> float:
-    """Return half the width of a 95 % interval, in standard errors."""
+    """Return half the width of a 95 % confidence interval in standard errors."""
     from scipy.special import ndtri, stdtrit
 
     beyond = 0.5 * (1.0 + _CONFIDENCE)
@@ -156,7 +157,7 @@ def _student(freedom: float) -> float:
 def confirm_estimate(now: Estimate, before: Estimate | None, ratio: float) -> Estimate:
     """Return an estimate with the larger error of two examinations.
 
-    The measured part at the examination before was shorter by `ratio`.
+    At the earlier examination the measured part was shorter by the factor `ratio`.
     """
     from gaspart.analysis.estimate import Estimate
 
@@ -166,32 +167,33 @@ def confirm_estimate(now: Estimate, before: Estimate | None, ratio: float) -> Es
 
 
 def combine_replicas(estimates: Sequence[Estimate]) -> Estimate:
-    """Average independent estimates, with the error that follows from their errors.
+    """Average independent estimates, and compute the error of the mean from their errors.
 
-    `gaspart.analysis.replicas` does the same, because the scatter of a few replicas is less informative.
+    `gaspart.analysis.replicas` uses the same formula, because the scatter of a few replicas is a poor
+    estimate.
     """
     first, *others = estimates
     return sum(others, first) / len(estimates) if others else first
 
 
 def reached_accuracy(path: str | Path) -> list[AccuracyStatus]:
-    """Return the accuracies that a run until accurate has reached.
+    """Return the accuracies that a run with `--until` has reached.
 
     Parameters
     ----------
     path : str or Path
-        The trajectory, finished or not. One of several replicas represents all of them.
+        Trajectory, complete or incomplete. One file of several replicas represents all of them.
 
     Returns
     -------
     list of AccuracyStatus
-        Reached accuracies in the order of the required accuracies, by all frames of the run. For replicas, by
-        the frames that all of them have. Empty for a run of a fixed duration.
+        Reached accuracies, in the order of the required accuracies, from all frames of the run. For replicas,
+        only frames that exist in all replicas are used. The list is empty for a run of a fixed duration.
 
     Raises
     ------
     SceneError
-        If `open_trajectory` rejects the file, or replicas are missing.
+        If `open_trajectory` rejects the file, or if replicas are missing.
 
     Examples
     --------
@@ -210,9 +212,9 @@ def reached_accuracy(path: str | Path) -> list[AccuracyStatus]:
 
 
 class Examiner:
-    """Examination of a run, or of all replicas, whose result is passed to `report`.
+    """Examination of a run, or of all replicas; `report` receives the result.
 
-    The last examination is stored, because its frames do not change any more.
+    The last examination is stored, because its frames cannot change any more.
     """
 
     def __init__(self, report: Callable[[list[AccuracyStatus]], None] | None = None) -> None:
@@ -221,10 +223,9 @@ class Examiner:
         self._scatters: dict[Requirement, float] = {}
 
     def __call__(self, runs: Sequence[xr.Dataset], until: Until, frames: int) -> float:
-        """Return the largest error divided by the required one, by the first frames of trajectories.
+        """Return the largest error divided by its required value, from the first frames of open trajectories.
 
-        The trajectories are open. The result is 0 for a run without a longest duration that is stopped,
-        because nothing happens that could be measured.
+        Return 0 to stop a run without a maximum duration in which nothing happens that could be measured.
         """
         reached = self.examine(runs, until.accuracies, frames)
         collisions = sum(_contacts(data.isel(frame=frames - 1)) for data in runs)
@@ -268,8 +269,8 @@ class Examiner:
         return results
 
     def _scatter(self, run: xr.Dataset, requirement: Requirement) -> float:
-        """Return the relative scatter of an observable from seed to seed by the initial energy."""
-        from gaspart.accuracy.scatter import scatter_of_run  # loads the analysis
+        """Return the relative standard deviation of an observable between seeds due to the initial energy."""
+        from gaspart.accuracy.scatter import scatter_of_run  # imports gaspart.analysis
 
         if requirement not in self._scatters:
             self._scatters[requirement] = scatter_of_run(run, requirement.observable, requirement.face).value
@@ -278,7 +279,7 @@ class Examiner:
     def _estimates(
         self, runs: Sequence[xr.Dataset], requirement: Requirement, frames: int
     ) -> dict[str, Estimate] | str:
-        """Return the components of an observable, or the rule that the frames break."""
+        """Return the components of an observable, or the reason why the frames are insufficient."""
         key = requirement, frames
         if key not in self._known:
             self._known = {
@@ -294,14 +295,14 @@ class Examiner:
 
 
 def _contacts(frame: xr.Dataset) -> float:
-    """Count collisions until a frame; with open faces, add entries and hits of faces."""
-    entered = "entries" in frame and bool(frame["entries"].any())  # not of every engine
+    """Count collisions until a frame; with open faces also count entries and wall hits."""
+    entered = "entries" in frame and bool(frame["entries"].any())  # some engines do not count these
     names = ("collisions", "entries", "wall_hits") if entered else ("collisions",)
     return float(sum(frame[name].sum() for name in names))
 
 
 def _is_idle(reached: list[AccuracyStatus], collisions: float) -> bool:
-    """Return True if an observable never changed, or counts contacts and there was none."""
+    """Return True if an observable never changed, or if it counts contacts and none occurred."""
     return any(
         status.rule == _UNCHANGED
         or (
@@ -314,7 +315,7 @@ def _is_idle(reached: list[AccuracyStatus], collisions: float) -> bool:
 
 
 def _measure(runs: Sequence[xr.Dataset], requirement: Requirement) -> dict[str, Estimate]:
-    """Measure an observable by component, as the mean over runs.
+    """Measure each component of an observable as the mean over runs.
 
     The component is "" for a scalar. Pressures are restricted to the requested face.
     """

@@ -1,7 +1,7 @@
-"""Characteristic scales of a scene, which suggest a duration and an interval.
+"""Characteristic scales of a scene, from which a duration and an interval are suggested.
 
-The scales are a speed, a length and two times, at the start. They are for a homogeneous gas, with the speeds
-of its initial velocities or of its faces, whichever is hotter.
+The scales are a speed, a length and two times in the initial state. They assume a homogeneous gas. Its
+temperature is the initial temperature or the temperature of the faces, whichever is higher.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from gaspart.scene.scene import Scene
 from gaspart.scene.species import Particle, Species
 
 _COLLISIONS, _CROSSINGS = 200.0, 10.0
-"""Numbers of collisions and of crossings of a particle in the suggested duration; both hold."""
-_FRAMES = 1000  # the most that are suggested
+"""Minimum numbers of collisions and of container crossings per particle in the suggested duration."""
+_FRAMES = 1000  # largest suggested number of frames
 _KNUDSEN = 10.0
 """Mean free path, in lengths of the shortest side, beyond which a gas is free-molecular."""
 _KINDS = 200
 """Maximum number of kinds whose pairs are evaluated; each single particle is a kind."""
 _REDUCED = 1e5
-"""Speed beyond which, or below its inverse, the units hardly suit the particles."""
+"""Speed above which, or below whose inverse, the units do not suit the particles."""
 
 
 @dataclass(frozen=True)
@@ -37,9 +37,9 @@ class Scales:
     crossing_time : time in which a particle crosses the shortest side of the container, with its speed or by
         falling.
     packing_fraction : packing fraction.
-    end : longest run that is suggested, where a piston moves at a prescribed speed.
+    end : maximum suggested duration, if a piston moves at a prescribed speed.
     walled : True if any side is not periodic.
-    attempts : particles of reservoirs that try to enter per time.
+    attempts : particles of reservoirs that try to enter, per time.
     """
 
     thermal_speed: float
@@ -61,16 +61,16 @@ class Scales:
     def event_time(self) -> float:
         """Time between collisions, or the time to cross the container; infinite if nothing moves.
 
-        The time to cross the container is used without collisions, and for a `free_molecular` gas with walls.
+        The crossing time is used if there are no collisions, and for a `free_molecular` gas with walls.
         """
         collides = math.isfinite(self.collision_time) and not self.free_molecular
         return self.collision_time if collides else self.crossing_time
 
     @property
     def interval(self) -> float | None:
-        """Suggested time between frames, to two digits; None if nothing moves.
+        """Suggested time between frames, rounded to two digits; None if nothing moves.
 
-        It is the `event_time`, or a longer time, so that the suggested duration has at most 1000 frames.
+        It is `event_time`, or longer if the suggested duration would otherwise have more than 1000 frames.
         """
         if not math.isfinite(self.event_time):
             return None
@@ -80,8 +80,8 @@ class Scales:
     def duration(self) -> float | None:
         """Suggested duration, a multiple of the interval.
 
-        The duration is 200 collisions of a particle and ten crossings, or 200 crossings of a `free_molecular`
-        gas.
+        The duration is 200 collisions of a particle and at least ten crossings; for a `free_molecular` gas it
+        is 200 crossings.
         """
         if self.interval is None:
             return None
@@ -102,7 +102,7 @@ class Scales:
 
     @property
     def lines(self) -> list[str]:
-        """The scales and the suggestion, for the command line."""
+        """Lines of text with the scales and the suggestion, for the command line."""
         if self.interval is None:
             return ["scales: nothing moves at the start, and nothing falls"]
         quantities = {
@@ -125,7 +125,8 @@ class Scales:
 def scales(scene: Scene) -> Scales:
     """Compute the scales of a scene.
 
-    Collisions of a plain gas follow from theory, otherwise from the rates of all kinds.
+    For a gas without further features the collision rate follows from theory, otherwise from the rates of all
+    pairs of kinds.
     """
     d, gas_rates = scene.dimension, rates(scene, True, _few_kinds(scene))
     thermal = gas_rates.speed / math.sqrt(8.0 / math.pi if d == 3 else math.pi / 2.0)
@@ -139,16 +140,16 @@ def scales(scene: Scene) -> Scales:
         collision_time=1.0 / frequency if frequency else math.inf,
         crossing_time=side / fastest if fastest else math.inf,
         packing_fraction=scene.packing_fraction,
-        end=0.5 * piston_end(scene),  # at which there is no room left
+        end=0.5 * piston_end(scene),  # at this density no free volume remains
         walled=not all(scene.container.periodic),
         attempts=sum(attempt_rate(scene, number, face) for number, face in scene.faces_of(Open)),
     )
 
 
 def _few_kinds(scene: Scene) -> list[Species | Particle]:
-    """Return the kinds of particles that move; a few representatives if there are many.
+    """Return the kinds of particles that move; if there are many, a few representatives.
 
-    The representative has their mean volume, mass and energy.
+    A representative has the mean volume, mass and energy of the kinds that it replaces.
     """
     kinds, d = list(scene.moving_kinds), scene.dimension
     if len(kinds) <= _KINDS:
@@ -161,16 +162,16 @@ def _few_kinds(scene: Scene) -> list[Species | Particle]:
 
 
 def collision_frequency(scene: Scene) -> float:
-    """Compute the collisions of a particle of a plain gas per time, by theory.
+    """Compute the collisions per time of a particle of a plain gas from theory.
 
-    The frequency is 0 if there is no theory.
+    The frequency is 0 if theory does not cover the gas.
     """
     gas = scene.gas
     if gas is None or gas.count < 2 or not gas.temperature > 0.0:
         return 0.0
     try:
         return float(theory.collision_rate(**gas.parameters))
-    except ValueError:  # denser than theory goes
+    except ValueError:  # above the density range of the theory
         return 0.0
 
 

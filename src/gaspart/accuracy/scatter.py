@@ -1,8 +1,8 @@
-"""Scatter of an observable from seed to seed by the energy of the start.
+"""Scatter of an observable between seeds due to the initial energy.
 
-If nothing exchanges energy with the particles, each run conserves the energy of its start, or under a loaded
-piston its enthalpy. Velocities that are drawn have a temperature only on average. Random positions under
-gravity also have random energies, for any velocities.
+If nothing exchanges energy with the particles, each run conserves its initial energy, or its enthalpy under a
+loaded piston. Randomly drawn velocities have the prescribed temperature only on average. Random positions
+under gravity also have random energies, even if the velocities are fixed.
 """
 
 from __future__ import annotations
@@ -11,14 +11,13 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from gaspart import theory
-from gaspart.accuracy.conditions import gravity_column, keeps_energy, kinetic_temperature
+from gaspart.accuracy.conditions import keeps_energy
 from gaspart.accuracy.target import Target
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
-from gaspart.theory.columns import Column
+from gaspart.theory.columns import COMPARED, Column, gravity_column, relative_change
+from gaspart.theory.conditions import kinetic_temperature
 from gaspart.trajectory.reading import GIVEN_START
 from gaspart.yaml_text import parse_yaml
 
@@ -26,19 +25,20 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _STRATIFIED = 1.5
-"""Power of the temperature, at least, if the density changes with it: under a piston, and under gravity where
-theory knows nothing."""
+"""Assumed minimum power of the temperature if the density changes with it: under a piston, and under gravity
+without a theory.
+"""
 _CHANGE = 0.01
-"""Relative change of the energy by which derivatives are taken."""
+"""Relative change of the energy for numerical derivatives."""
 _DENSEST = 0.45
-"""Packing fraction up to which the scatter of random places is known."""
+"""Maximum packing fraction at which the scatter of random positions is known."""
 
 
 @dataclass(frozen=True)
 class Scatter:
-    """Relative standard deviation of an observable from seed to seed by the energy of the start.
+    """Relative standard deviation of an observable between seeds due to the initial energy.
 
-    value : the deviation.
+    value : the relative standard deviation.
     drawn, placed : True if drawn velocities and random positions contribute.
     """
 
@@ -48,7 +48,7 @@ class Scatter:
 
     @property
     def remedy(self) -> str:
-        """The change of a scene or a run that removes the scatter."""
+        """Change of the scene or of the run that removes the scatter."""
         if not self.placed:
             return "exact_temperature: true removes it"
         drawn = "; exact_temperature: true removes the part of the velocities" if self.drawn else ""
@@ -56,9 +56,9 @@ class Scatter:
 
 
 def scatter_of_run(run: xr.Dataset, observable: str, face: str | None = None) -> Scatter:
-    """Compute the scatter of an observable between runs like an open trajectory with other seeds.
+    """Compute the scatter of an observable between a run and runs with other seeds.
 
-    Runs from the same state have the same energy.
+    Runs that start from the same state have the same energy, so their scatter is 0.
     """
     if GIVEN_START in run.attrs:
         return Scatter()
@@ -66,7 +66,7 @@ def scatter_of_run(run: xr.Dataset, observable: str, face: str | None = None) ->
 
 
 def start_scatter(target: Target) -> Scatter:
-    """Compute the scatter of an observable of a scene."""
+    """Compute the scatter of an observable of a scene between seeds."""
     scene = target.scene
     if not keeps_energy(scene):
         return Scatter()
@@ -77,7 +77,7 @@ def start_scatter(target: Target) -> Scatter:
 
 
 def _of_velocities(scene: Scene) -> float:
-    """Compute the standard deviation of the kinetic energy at the start."""
+    """Compute the standard deviation of the initial kinetic energy."""
     drawn = [kind for kind in scene.species if kind.temperature is not None and not kind.exact_temperature]
     return math.sqrt(
         sum(0.5 * scene.dimension * kind.count * (kind.temperature or 0.0) ** 2 for kind in drawn)
@@ -85,9 +85,9 @@ def _of_velocities(scene: Scene) -> float:
 
 
 def _of_places(scene: Scene) -> float:
-    """Compute the standard deviation of the potential energy at the start.
+    """Compute the standard deviation of the initial potential energy.
 
-    The result is the deviation for uniform positions in a region, reduced by the density.
+    The standard deviation for independent uniform positions is reduced by a factor for the excluded volume.
     """
     kinds = [kind for kind in scene.species if kind.count and kind.arrangement == "random" and not kind.fixed]
     square = 0.0
@@ -98,7 +98,7 @@ def _of_places(scene: Scene) -> float:
 
 
 def _range(scene: Scene, kind: Species, axis: int) -> float:
-    """Return the length along an axis in which a species is placed."""
+    """Return the length of the region along an axis in which a species is placed."""
     lower, upper = (bounds[axis] for bounds in scene.reach(kind.radius))
     if kind.region is None:
         return float(upper - lower)
@@ -109,7 +109,7 @@ def _range(scene: Scene, kind: Species, axis: int) -> float:
 def _compressibility(scene: Scene, kinds: list[Species]) -> float:
     """Return the factor by which excluded volume reduces the scatter of positions.
 
-    The result is the reduced compressibility of the fluid.
+    This factor is the reduced compressibility of the fluid.
     """
     d = scene.dimension
     filled = 0.0
@@ -120,7 +120,7 @@ def _compressibility(scene: Scene, kinds: list[Species]) -> float:
 
 
 def _of_observable(target: Target, deviation: float) -> float:
-    """Compute the relative standard deviation of an observable from a deviation of the energy."""
+    """Compute the relative standard deviation of an observable from the standard deviation of the energy."""
     scene = target.scene
     freedom = 0.5 * scene.dimension * scene.count
     power = target.declared.power
@@ -128,7 +128,7 @@ def _of_observable(target: Target, deviation: float) -> float:
     mean = 0.5 * scene.dimension * kinetic
     for _, piston in scene.pistons:
         if target.observable == "pressure":
-            return 0.0  # the load
+            return 0.0  # the pressure equals the load
         mean += (piston.pressure or 0.0) * scene.container.volume
         power = max(power, _STRATIFIED)
     if not scene.gravity:
@@ -143,9 +143,9 @@ def _of_observable(target: Target, deviation: float) -> float:
 
 
 def _of_column(target: Target, deviation: float) -> float | None:
-    """Compute the deviation of an observable under gravity, by hydrostatics.
+    """Compute the standard deviation of an observable under gravity from hydrostatics.
 
-    None if hydrostatics gives no column.
+    Return None if theory does not cover the column.
     """
     column = gravity_column(target.scene)
     assert column is not None
@@ -159,21 +159,11 @@ def _of_column(target: Target, deviation: float) -> float | None:
 
 
 def _change(target: Target, low: Column, middle: Column, high: Column) -> float:
-    """Compute the change of the observable between two columns, divided by its value."""
-    by_temperature = (high.temperature - low.temperature) / middle.temperature
-    if target.observable == "collision_rate":
-        return abs(high.collisions - low.collisions) / middle.collisions
-    if target.observable == "density":
-        z = middle.heights
-        profiles = [
-            np.interp(z, column.heights, column.numbers.sum(axis=0), right=0.0) for column in (low, high)
-        ]
-        exact = middle.numbers.sum(axis=0)
-        return float(np.sqrt(((profiles[1] - profiles[0]) ** 2).sum() / (exact**2).sum()))
+    """Compute the difference of the observable between two columns, divided by its value."""
+    columns = low, high, middle
+    if target.observable in COMPARED:
+        return relative_change(target.observable, *columns)
     if target.declared.of_impulses:
-        changes = []
-        for top in (False, True):
-            if middle.pressure(top) > 0.0:
-                changes.append(abs(high.pressure(top) - low.pressure(top)) / middle.pressure(top))
-        return max(changes)
-    return max(target.declared.power, 0.5) * by_temperature
+        pressed = [top for top in (False, True) if middle.pressure(top) > 0.0]
+        return max(relative_change("pressure", *columns, top) for top in pressed)
+    return max(target.declared.power, 0.5) * relative_change("temperature", *columns)

@@ -1,4 +1,4 @@
-"""Speed of this machine relative to the table's, measured in a tenth of a second."""
+"""Speed of this machine relative to the machine of the table, measured in 0.1 s."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from gaspart.scene.species import Species
 from gaspart.simulation import Simulation
 
 _LEAST, _MOST = 500, 100_000  # particles in a timed run
-_GROWTH = 0.15  # exponent of the time per contact with the number of particles beyond, which exceed the cache
+_GROWTH = 0.15  # growth exponent of the time per contact with N, beyond the processor cache
 _CONTACTS = 2e4
 
 
 @cache
 def factor(dimension: int, engine: str, precision: str, count: int) -> float:
-    """Measure the CPU time of a contact here, divided by the time in the table.
+    """Measure the CPU time of a contact on this machine, divided by the table's time.
 
-    The gas at which the engine is `timed_at` is timed three times, with `count` particles, after a short run
-    from a lattice. `engine` is its name in the table.
+    The reference gas of the engine (`timed_at`) is simulated and timed three times with `count` particles,
+    after a short run from a lattice. `engine` is the engine's name in the table.
     """
     growth = max(1.0, count / _MOST) ** _GROWTH
     count = min(max(count, _LEAST), _MOST)

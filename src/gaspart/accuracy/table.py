@@ -1,13 +1,14 @@
 """Table of measured costs and errors, and interpolation between its points.
 
-Columns: ``dimension``, ``packing_fraction``; ``engine`` (event; step, with its standard four passes and
-rewinding; dsmc and dsmc enskog, by its model), ``precision``, and ``time_step``. The time step is in
-diameters divided by the thermal speed (kT / m)^(1/2). For DSMC it is in units of its default step, a fifth of
-a mean free time; for event it is 0; ``quantity``, its ``value`` and standard ``error``. Quantities:
-``seconds``, the CPU time for one exact contact of two particles; ``bias_<observable>``, relative error;
-``noise_<observable>``, the relative variance of an estimate times the number of its contacts;
-``price_<feature>``, the time per event with a feature divided by the time without it. Observables: Z,
-collision_rate, D. Other errors follow from theory (`gaspart.accuracy.tabulated`).
+Columns: ``dimension``, ``packing_fraction``; ``engine`` is `event`, `step` (four passes and rewinding, the
+standard settings), `dsmc` or `dsmc enskog` (the two models of DSMC). ``precision`` and ``time_step`` are its
+settings. The time step is in diameters divided by the thermal speed (kT / m)^(1/2). For DSMC its unit is the
+default step, a fifth of a mean free time; for `event` it is 0; ``quantity``, its ``value`` and standard
+``error``. Quantities: ``seconds``, the CPU time for one exact contact of two particles;
+``bias_<observable>``, the relative error; ``noise_<observable>``, the relative variance of an estimate
+multiplied by the number of contacts; ``price_<feature>``, the time per event with a feature divided by the
+time without it. Observables: Z, collision_rate, D. Other errors follow from theory
+(`gaspart.accuracy.tabulated`).
 """
 
 from __future__ import annotations
@@ -29,17 +30,19 @@ from gaspart.scene.scene import Scene
 COLUMNS = ("dimension", "packing_fraction", "engine", "precision", "time_step", "quantity", "value", "error")
 PATH = Path(__file__).parent / "data" / "accuracy.csv"
 PRECISIONS = {"4 passes": "float64", "4 passes, float32": "float32"}
-"""The settings of the time-stepped engine that are worth advising, by their names in figures."""
+"""Recommended settings of the time-stepped engine, by their names in figures."""
 EQUILIBRATION = 30.0
-"""Collisions per particle before anything is measured."""
+"""Equilibration before the measurement, in collisions per particle."""
 LEAST = 20.0
-"""Collisions per particle that are measured at least: a shorter run is no average over time."""
+"""Minimum length of a measurement in collisions per particle; a shorter run gives no time average."""
 REFERENCE, STEP = 0.1, 0.08
-"""Packing fraction of the gas by which times are carried over, and the time step with which it is timed."""
-_EXACT = "event"  # the engine by which noise, which is that of a gas with any engine, was measured
+"""Packing fraction and time step of the gas that is timed to compare this machine with the machine of the
+table.
+"""
+_EXACT = "event"  # the noise was measured with this engine; it is the same with all engines
 _PRICE, _BIAS = "price_", "bias_"
-_SAFE = 2.0  # standard errors added to a bias
-_BEYOND = 1.05  # a packing fraction may exceed those of the table by this factor
+_SAFE = 2.0  # number of standard errors added to a bias
+_BEYOND = 1.05  # a packing fraction may exceed the largest in the table by this factor
 
 
 @cache
@@ -55,7 +58,7 @@ def read() -> tuple[dict, ...]:
 
 
 def lowest(dimension: int) -> float:
-    """Return the lowest packing fraction at which an engine was timed, minus 5 %."""
+    """Return the lowest packing fraction at which an engine was timed, reduced by 5 %."""
     timed = (row for row in read() if row["quantity"] == "seconds" and row["dimension"] == dimension)
     return min(float(row["packing_fraction"]) for row in timed) / _BEYOND
 
@@ -68,7 +71,7 @@ def steps(dimension: int, engine: str) -> list[tuple[str, float]]:
 
 
 def has_biases(engine: str) -> bool:
-    """Return True if errors of an engine were measured; otherwise they are computed from theory."""
+    """Return True if the errors of an engine were measured. Otherwise they are computed from theory."""
     return any(row["engine"] == engine and row["quantity"].startswith(_BIAS) for row in read())
 
 
@@ -77,8 +80,9 @@ def bias(
 ) -> float:
     """Return a bound on the relative error of an engine, with two standard errors.
 
-    The default engine is the time-stepped engine. The bound is inf where no error was measured. Between
-    packing fractions the larger error of both neighbours is taken: errors change their sign between them.
+    The default engine is the time-stepped engine. The bound is inf if no error was measured. Between two
+    packing fractions of the table the larger error of the two is used, because errors may change sign between
+    them.
     """
     eta, value, error = _curve(dimension, engine, precision, step, f"{_BIAS}{observable}")
     if not eta.size or not eta[0] / _BEYOND <= fraction <= eta[-1] * _BEYOND:
@@ -94,8 +98,8 @@ def seconds(
 ) -> float:
     """Return the CPU time of one exact contact, on the machine of the table.
 
-    The result is inf if the time was not measured. Outside the gases of the table an engine without steps has
-    the time of the nearest gas.
+    The result is inf if the time was not measured. Outside the packing fractions of the table, an engine
+    without time steps has the time of the nearest gas.
     """
     eta, value, _ = _curve(dimension, engine, precision, step, "seconds")
     if not eta.size or (step and not eta[0] / _BEYOND <= fraction <= eta[-1] * _BEYOND):
@@ -104,16 +108,16 @@ def seconds(
 
 
 def noise(dimension: int, fraction: float, observable: str) -> float:
-    """Return the relative variance of an observable times the number of its contacts.
+    """Return the relative variance of an observable multiplied by the number of contacts.
 
-    The result is inf if the noise was not measured. In a gas more dilute than the gases of the table, the
-    variance of Z decreases as the square of (Z - 1) / Z, since Z - 1 is proportional to the number of
+    The result is inf if the noise was not measured. In a gas more dilute than all gases of the table, the
+    variance of Z decreases as the square of (Z - 1) / Z, because Z - 1 is proportional to the number of
     contacts. The other variances are equal to their values in the most dilute gas of the table.
     """
     eta, value, _ = _curve(dimension, _EXACT, "float64", 0.0, f"noise_{observable}")
     if not eta.size:
         return np.inf
-    # A line through the logarithms: single values come from few blocks.
+    # A straight line is fitted to the logarithms, because single values come from few blocks.
     order = min(2, eta.size - 1)
     fit = np.polyfit(np.log(eta), np.log(value), order)
     variance = float(np.exp(np.polyval(fit, np.log(np.clip(fraction, eta[0], eta[-1])))))
@@ -128,7 +132,7 @@ def noise(dimension: int, fraction: float, observable: str) -> float:
 def prices(engine: str) -> dict[str, float]:
     """Return the time per event with each measured feature, divided by the time without it.
 
-    The features are measured by `price_of_features`.
+    The figure `price_of_features` measures the features.
     """
     rows = (row for row in read() if row["engine"] == engine and row["quantity"].startswith(_PRICE))
     return {row["quantity"].removeprefix(_PRICE): row["value"] for row in rows}
@@ -162,7 +166,7 @@ _NAMES = {
 }
 """Names of the measured features."""
 _MEASURED = ("gravity", "roughness")
-"""Features of `scene.features` among them."""
+"""Measured features that are also in `scene.features`."""
 
 
 @dataclass(frozen=True)
@@ -181,10 +185,10 @@ class Price:
 
 
 def price_of(scene: Scene, engine: Engine, observable: str) -> Price:
-    """Return the price of an observable of a scene with an engine.
+    """Return the cost factors of an observable of a scene with an engine.
 
-    The cost was measured in a gas of 4000 spheres at a packing fraction of 0.2 (figure `price_of_features`).
-    A feature that the scene does not use costs no time.
+    The costs were measured in a gas of 4000 spheres at a packing fraction of 0.2 (figure
+    `price_of_features`). A feature that the scene does not use costs no time.
     """
     has = {
         "walls": not scene.is_periodic,
@@ -203,7 +207,7 @@ def price_of(scene: Scene, engine: Engine, observable: str) -> Price:
 def _single(engine: Engine, dimension: int) -> float | None:
     """Compute the time per contact in single precision divided by the time in double precision.
 
-    The ratio is for the gas in which the engine is timed; None for an engine that was not timed in both
+    The ratio is for the gas with which the engine is timed; None for an engine that was not timed in both
     precisions.
     """
     fraction, step = engine.timed_at

@@ -1,38 +1,37 @@
-"""Options from the table, for fluids and observables whose errors, noise and times were measured.
+"""Options from the table, for fluids and observables with measured errors, noise and CPU times.
 
-A row of the table is a stored pilot: its noise is given per contact instead of per time, and its CPU time is
-for the machine of the table. Nothing is run or compiled for a look-up.
+A row of the table replaces a pilot run. Its noise is per contact instead of per time, and its CPU time is for
+the machine of the table. Looking up a row runs and compiles nothing.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from gaspart import theory
 from gaspart.accuracy import table
-from gaspart.accuracy.estimates import Component
-from gaspart.accuracy.option import Option, sort_by_cost
-from gaspart.accuracy.table import EQUILIBRATION, LEAST
+from gaspart.accuracy.option import Option, fluid_option, sort_by_cost
 from gaspart.accuracy.target import Target
-from gaspart.analysis import bulk
 from gaspart.analysis.observables import OBSERVABLES, observables_with
 from gaspart.engines import Engine
 from gaspart.engines.engine import Candidate
 from gaspart.errors import SceneError
 from gaspart.scene.gas import Gas, plain_gas
 from gaspart.scene.scene import Scene
-from gaspart.theory.dsmc import step_factor
+from gaspart.theory import bulk
 
-# Errors of equations and of steps in a gas in equilibrium, by theory.
+# Errors of a gas in equilibrium due to the kinetic equation and the time step, from theory.
 
 
 def model_error(packing_fraction: float, dimension: int, equation: str, observable: str) -> float:
-    """Return the |error| of an observable due to the equation that an engine solves.
+    """Return the absolute error of an observable due to the kinetic equation that an engine solves.
 
-    The equation is `Engine.equation`. The error is relative to hard spheres or discs. It is inf if one of the
-    two has no value, like D of discs. The Boltzmann equation has a contact value of 1, and no virial. The
-    Enskog model uses the contact value of Carnahan and Starling, in two dimensions the value of Henderson. In
-    neither does D have the memory of correlated collisions [Erpenbeck 1991], whose uncertainty is added.
+    `equation` is `Engine.equation`. The error is relative to hard spheres or discs. It is inf if the
+    observable is undefined in either case, such as D of discs. The Boltzmann equation has a contact value of
+    1 and no virial pressure. The Enskog model uses the contact value of Carnahan and Starling for spheres and
+    of Henderson for discs. Neither equation includes the effect of correlated collisions on D [Erpenbeck
+    1991]; the uncertainty of this effect is added.
     """
     if equation == bulk.EXACT:
         return 0.0
@@ -45,27 +44,17 @@ def model_error(packing_fraction: float, dimension: int, equation: str, observab
     return abs(own / exact - 1.0) + (theory.ERPENBECK_WOOD_UNCERTAINTY if remembers else 0.0)
 
 
-def step_error(packing_fraction: float, step: float) -> float:
-    """Compute the relative error of D of spheres due to steps, which make it too high.
-
-    Steps are in diameters divided by the thermal speed. The law is for a dilute gas. In a dense gas the
-    collision rate is larger by the contact value, as if the free path were shorter by this factor.
-    """
-    path = float(theory.mean_free_path(packing_fraction, 3))
-    return float(step_factor("diffusion", step * math.sqrt(2.0) / path)) - 1.0
-
-
 FEWEST = 64
-"""Minimum number of particles of a gas to which the table applies, to 1 % of Z - 1.
+"""Minimum number of particles of a gas for which the table applies, with an error of at most 1 % of Z - 1.
 
-Smaller gases have pilots of their own.
+For smaller gases pilot runs are made.
 """
 
 
 def fluid_of(scene: Scene) -> Gas:
-    """Return the gas of a scene, a fluid in a periodic container.
+    """Return the gas of a scene: a fluid in a periodic container.
 
-    Raises SceneError for a scene whose errors were not measured.
+    Raises SceneError if the errors of the scene were not measured.
     """
     if not scene.count:
         raise SceneError("count", 0, "advice is for a gas: the scene is empty")
@@ -93,7 +82,7 @@ def fluid_of(scene: Scene) -> Gas:
 def tabulated_target(scene: Scene, observable: str) -> tuple[Gas, Target]:
     """Return the gas of a scene, and the target to measure.
 
-    Raises SceneError for a scene, and an observable, that the table does not cover.
+    Raises SceneError if the table does not cover the scene or the observable.
     """
     if observable not in observables_with(tabulated=True):
         raise SceneError(
@@ -112,7 +101,7 @@ def is_tabulated(scene: Scene, observable: str) -> bool:
 
 
 def options_of(target: Target, engines: list[Engine], accuracy: float, budget: float | None) -> list[Option]:
-    """Return the cheapest option of each engine, of all settings that were measured, the best first."""
+    """Return the cheapest option of each engine over all measured settings, the best first."""
     options = [
         _option(target, engine.at_step(target.scene, step, precision), accuracy, budget, step)
         for engine in engines
@@ -129,31 +118,21 @@ def options_of(target: Target, engines: list[Engine], accuracy: float, budget: f
 def _option(target: Target, engine: Engine, accuracy: float, budget: float | None, step: float) -> Option:
     """Return the option of an engine with the settings of a row of the table.
 
-    `step` is in the unit of the table.
+    `step` has the unit of the table.
     """
     gas = fluid_of(target.scene)
-    frequency = float(theory.collision_rate(**gas.parameters))
-    row = gas.dimension, gas.packing_fraction, engine.timed_as, engine.precision, step
-    each = table.seconds(*row)
-    candidate = _with_bounds(target, engine, gas, step)
-    each_time = 0.5 * gas.count * frequency  # contacts
+    each = table.seconds(gas.dimension, gas.packing_fraction, engine.timed_as, engine.precision, step)
+    noise = table.noise(gas.dimension, gas.packing_fraction, target.observable)
     value = value_of(gas, target.observable)
-    variance = table.noise(gas.dimension, gas.packing_fraction, target.observable) / each_time
-    noise = Component(value, value, LEAST / frequency, variance * value**2, freedom=math.inf)
-    cost = each * each_time
-    return Option(
-        candidate, candidate.bias, noise, cost, accuracy,
-        (EQUILIBRATION + LEAST) / frequency,
-        math.inf if budget is None else budget / cost,
-        EQUILIBRATION / frequency,
-    )  # fmt: skip
+    option = fluid_option(gas, _with_bounds(target, engine, gas, step), each, noise, accuracy, value)
+    return option if budget is None else replace(option, most=budget / option.speed)
 
 
 def _with_bounds(target: Target, engine: Engine, gas: Gas, step: float) -> Candidate:
-    """Return the engine with bounds of its errors, measured or by theory.
+    """Return the engine with bounds on its errors, from measurements or from theory.
 
-    From theory these are the errors of its equation, and the errors of its cells and steps as computed by the
-    engine.
+    In theory these are the errors of the kinetic equation, and the errors of cells and time steps that the
+    engine computes.
     """
     observable, row = target.observable, (gas.dimension, gas.packing_fraction)
     if table.has_biases(engine.timed_as):
@@ -165,5 +144,5 @@ def _with_bounds(target: Target, engine: Engine, gas: Gas, step: float) -> Candi
 
 
 def value_of(gas: Gas, observable: str) -> float:
-    """Compute an observable by theory."""
+    """Compute the value of an observable from theory."""
     return float(getattr(bulk, OBSERVABLES[observable].bulk)(gas, bulk.EXACT))

@@ -1,4 +1,4 @@
-"""Observable to measure in a scene, and the schedule of samples that it needs."""
+"""Observable to measure in a scene, and the sampling schedule that it needs."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from gaspart.accuracy.conditions import Conditions, known_conditions
 from gaspart.analysis.diffusion import LINEAR_FROM
 from gaspart.analysis.impulses import USUAL_BINS, knows_energies, useful_impulses
 from gaspart.analysis.observables import (
@@ -33,32 +32,35 @@ from gaspart.simulation import Simulation
 from gaspart.state.initial import initial_state
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
+from gaspart.theory.conditions import Conditions, known_conditions
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.run_options import required_contents
 
 SEED = 0
 _FRAMES = 48, 512
 _HELD = 20_000_000
-"""Numbers that the frames of a pilot hold, at most, unless there are only few frames."""
+"""Maximum number of values in all frames of a pilot, unless there are only few frames."""
 _PLACED = 100_000
-"""Maximum number of particles in all frames of which pairs are measured, which takes longer than their run.
+"""Maximum number of particles in all frames of an observable of pairs; measuring pairs takes longer than
+simulating.
 """
 _LONGEST_LAG = 10.0
-"""Longest lag of correlations, in collisions of a particle."""
+"""Longest lag of correlations in collisions per particle."""
 _LEAST_FRAMES = 24
-"""Minimum number of frames of a run with correlations: three quarters of them give an error."""
+"""Minimum number of frames of a run with correlations; three quarters of these frames suffice for an error.
+"""
 _FALL = 8.0
-"""Crossings of the container in which particles that start at rest are set in motion."""
+"""Number of container crossings in which particles that start at rest are set in motion."""
 _COLLIDED = 40.0
-"""Collisions of a particle that are enough for that."""
+"""Number of collisions per particle in which particles that start at rest are set in motion."""
 
 
 @dataclass(frozen=True)
 class Target:
-    """Observable of `gaspart measure` of a scene.
+    """Observable of `gaspart measure` in a scene.
 
-    face : for observables of walls, the wall (`x low`), by default all walls.
-    settled : state at which the scene has become steady, if it is known.
+    face : for observables of walls, the wall (`x low`); by default all walls.
+    settled : steady state of the scene, if it is known.
     """
 
     scene: Scene
@@ -68,16 +70,16 @@ class Target:
 
     @classmethod
     def from_name(cls, scene: Scene, name: str) -> Target:
-        """Return the target of a name as on the command line: `Z`, or `pressure:x low`.
+        """Return the target for a name of the command line: `Z`, or `pressure:x low`.
 
-        Raises SceneError for an unknown name, an observable that the scene does not have, and a wall that
-        does not exist.
+        Raises SceneError for an unknown name, for an observable that is undefined in the scene, and for a
+        wall that does not exist.
         """
         observable, colon, face = str(name).partition(":")
         face = wall_of(face)
         observable = observable_name(observable)
         walls = walls_of(observable, scene)
-        if scene.count:  # an empty one has no advice at all
+        if scene.count:  # an empty scene has no plan
             _require_defined(scene, observable, name)
         if colon and face not in walls:
             rule = f"must be one of the walls, {', '.join(walls)}" if walls else "has no walls"
@@ -88,10 +90,10 @@ class Target:
 
     @cached_property
     def start(self) -> State | None:
-        """State from which pilots start; None for the default start.
+        """State from which pilots start; None for the default initial state.
 
-        It is a settled state, or, for particles that are compressed, the state at time 0, because compression
-        takes long.
+        It is a settled state. For particles that are compressed it is the state at time 0, because the
+        compression takes long.
         """
         if self.settled is not None:
             return self.settled
@@ -100,20 +102,21 @@ class Target:
 
     @cached_property
     def initial(self) -> State:
-        """State at the start of pilots; by default the state at time 0 of their seed."""
+        """Initial state of pilots; by default the state at time 0 for their seed."""
         return self.start or initial_state(self.scene, SEED)
 
     @cached_property
     def conditions(self) -> Conditions | None:
-        """The local density and temperature of the steady scene, None where theory does not know them."""
+        """Local density and temperature of the steady scene; None if theory does not cover the scene."""
         return known_conditions(self.scene, self.initial)
 
     @cached_property
     def frequency(self) -> float:
         """Collisions of a particle per time.
 
-        The frequency is computed by theory in a gas as hot as at the start, or in the column that the gas
-        becomes. If the particles start at rest, it is measured in the second half of a short run.
+        The frequency is computed from theory, for a gas at its initial temperature, or for the column that
+        the gas forms under gravity. If the particles start at rest, it is measured in the second half of a
+        short run.
         """
         at_start = rates(self.scene, dense=True).frequency
         if at_start > 0.0:
@@ -150,17 +153,17 @@ class Target:
 
     @property
     def declared(self) -> Named:
-        """Declaration of the observable."""
+        """Entry of the observable in the table of all observables."""
         return OBSERVABLES[self.observable]
 
     @property
     def name(self) -> str:
-        """The observable, with its wall."""
+        """Name of the observable, with its wall."""
         return f"{self.observable}:{self.face}" if self.face else self.observable
 
     @property
     def needs_paths(self) -> bool:
-        """True if frames need displacements."""
+        """True if the observable needs displacements in the frames."""
         return self.declared.needs == "paths"
 
     @property
@@ -169,10 +172,10 @@ class Target:
         return self.declared.lags > 0
 
     def tallies(self, engine: Engine) -> tuple[OptionalTally, ...]:
-        """Return the optional tallies that make the observable more accurate in a run by an engine.
+        """Return the optional tallies with which a run of an engine measures the observable more accurately.
 
-        The tallies are impulses along the last axis. For pressures they are along the only axis across which
-        pressures are requested.
+        The tallies are impulses along the last axis. For pressures on walls across a single axis, the tallies
+        are along this axis.
         """
         if not self.declared.by_impulses:
             return ()
@@ -185,15 +188,14 @@ class Target:
         return useful_impulses(self.scene, engine.tallies, axes.pop(), USUAL_BINS)
 
     def contents(self, engine: Engine) -> dict[str, Any]:
-        """Return the fields of `Contents` that a run of the observable needs, without correlations."""
+        """Return the fields of `Contents` that a run needs for the observable, without correlations."""
         return {**required_contents({self.declared.needs}), "tallies": self.tallies(engine)}
 
     @property
     def span(self) -> tuple[float, float]:
-        """Maximum time between frames and maximum length of a run without loss of accuracy.
+        """Maximum time between frames, and maximum length of a run, that lose no accuracy.
 
-        For diffusion they follow from the lags of its slope, and from the number of frames that are
-        correlated.
+        For diffusion they follow from the lags of the fit, and from the number of correlated frames.
         """
         if self.declared.samples != "paths" or not self.frequency > 0.0:
             return math.inf, math.inf
@@ -201,7 +203,7 @@ class Target:
         return interval, interval * MOST_FRAMES / (1.0 - EQUILIBRATION)
 
     def schedule(self, engine: Engine, length: float) -> tuple[float, float, Correlations | None]:
-        """Return duration, time between frames and correlations of a run of about a length."""
+        """Return duration, time between frames and correlations of a run of about a given length."""
         if self.correlated:
             return self._schedule_correlations(engine, length)
         least, most = _FRAMES
@@ -244,7 +246,7 @@ class Target:
 
 
 def _require_defined(scene: Scene, observable: str, name: str) -> None:
-    """Raise SceneError, with the name on the command line, for an observable that a scene lacks."""
+    """Raise SceneError, with the command line's name, if an observable is undefined in a scene."""
     try:
         require_defined(observable, scene)
         require_steady_value(observable, scene)
@@ -256,5 +258,5 @@ def _require_defined(scene: Scene, observable: str, name: str) -> None:
 
 
 def rounded_to_12_digits(multiple: float) -> float:
-    """Return a multiple without its rounding error, which a command would show."""
+    """Round a multiple to 12 digits, so that commands do not show its rounding error."""
     return float(f"{multiple:.12g}")

@@ -1,8 +1,9 @@
-"""Bond order of particles, by freud, and Fourier modes of discs.
+"""Bond order of particles, computed by freud, and Fourier modes of the density of discs.
 
 Ramasubramani and others, Comput. Phys. Commun. 254, 107275 (2020). In all functions, positions (N, d) are in
-[0, L] of a periodic container of lengths (d,). freud works in single precision. It uses one thread here,
-because a job of the workflow has one. It is an extra: `pip install 'gaspart[order]'`.
+[0, L] of a periodic container with side lengths (d,). freud works in single precision. Here freud uses one
+thread, because a job of the workflow has one thread. freud is an optional dependency: `pip install
+'gaspart[order]'`.
 """
 
 from __future__ import annotations
@@ -46,14 +47,14 @@ def hexatic(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> np.
     Halperin and Nelson, Phys. Rev. Lett. 41, 121 (1978).
     """
     system = _system(positions, lengths)
-    neighbours = _freud().locality.Voronoi().compute(system).nlist  # by default freud takes the 6 nearest
+    neighbours = _freud().locality.Voronoi().compute(system).nlist  # not freud's default of 6
     order = _freud().order.Hexatic(k=6, weighted=False)
     order.compute(system, neighbors=neighbours)
     return order.particle_order
 
 
 def global_steinhardt(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> float:
-    """Compute the order parameter Q_6 of all bonds of spheres to their 12 nearest neighbours.
+    """Compute the order parameter Q_6 of all bonds between spheres and their 12 nearest neighbours.
 
     Q_6 is 0.5745 in a face-centred cubic lattice, about 1 / sqrt(12 N) in a fluid. Steinhardt, Nelson and
     Ronchetti, Phys. Rev. B 28, 784 (1983).
@@ -66,7 +67,7 @@ def global_steinhardt(positions: np.ndarray, lengths: Sequence[float] | np.ndarr
 def local_steinhardt(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> np.ndarray:
     """Compute q_6 of each sphere, averaged over the sphere and its 12 neighbours, shape (N,).
 
-    The value is about 0.48 in a crystal near melting, 0.15 in the fluid. Lechner and Dellago, J. Chem. Phys.
+    The value is about 0.48 in a crystal near melting and 0.15 in a fluid. Lechner and Dellago, J. Chem. Phys.
     129, 114707 (2008).
     """
     order = _freud().order.Steinhardt(l=6, average=True, wl=False, weighted=False, wl_normalize=False)
@@ -79,10 +80,11 @@ def structure_factor(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Compute S(k) = |sum exp(i k.r)|^2 / N of discs on a grid of wave vectors.
 
-    Returns the wave numbers (K,) and (L,) along x and y up to `highest`, and S(k), shape (K, L): the mean
-    over frames (T, N, 2), at the wave vectors that the container permits; S(0) is NaN. Computed here, because
-    the structure factors of freud reject two dimensions, and its diffraction pattern rejects boxes that are
-    not square.
+    Returns the wave numbers (K,) and (L,) along x and y up to `highest`, and S(k) with shape (K, L). S(k) is
+    the mean over frames (T, N, 2) at the wave vectors that the container permits. S(0) is NaN. freud is not
+    used, because its structure factors reject two dimensions, and its diffraction pattern rejects boxes that
+    are not
+    square.
     """
     unit = 2.0 * np.pi / np.asarray(lengths)
     waves = [step * np.arange(-int(highest / step), int(highest / step) + 1) for step in unit]

@@ -1,8 +1,8 @@
-"""Data set of collisions: the particles, the geometry of the contact, the flights before it.
+"""Data set of collisions: the particles, the contact geometry, and the preceding free flights.
 
-These quantities are averaged in kinetic theory. There is one row per collision of two particles: free times
-and free paths since the last event of each particle, the normal at contact, and the speed of approach. Hits
-of walls end flights but are no rows.
+Kinetic theory averages these quantities. Each collision of two particles is a row. It has the free times and
+free paths since the last event of each particle, the normal at contact, and the speed of approach. Wall hits
+end free flights, but they have no rows.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ from gaspart.theory.geometry import unit_sphere_surface
 from gaspart.theory.speeds import mean_speed, mean_speed_factor
 from gaspart.trajectory.provenance import git_revision, versions
 
-_CHUNK = 20_000  # events that are kept at once
-_PATIENCE = 1_000_000  # events without a collision of two particles
+_CHUNK = 20_000  # maximum number of events in memory
+_PATIENCE = 1_000_000  # maximum number of consecutive events without a collision of two particles
 _ABOUT = {
     "time": ("time of the collision", "time"),
     "particles": ("the two particles, the lower index first", "1"),
@@ -60,25 +60,25 @@ def collision_data(
     seed : int or tuple of int, default 0
         Seed of the run.
     equilibration : float, default 0.0, [time]
-        Time before the record.
+        Simulated time before the recording begins.
 
     Returns
     -------
     Dataset
-        Dimensions collision, of (the two particles) and axis. `free_time` and `free_path` are NaN for a
-        particle that had no event before. Attributes: scene, seed, versions, revision.
+        Dimensions: collision, of (the two particles), and axis. `free_time` and `free_path` are NaN for the
+        first event of a particle. Attributes: scene, seed, versions, revision.
 
     Raises
     ------
     SceneError
-        For gravity, under which paths are not straight, fewer than two particles, and a count below 1 or
-        beyond this machine's memory.
+        If the scene has gravity (paths are not straight) or fewer than two particles, or if the count is
+        below 1 or exceeds the memory of this machine.
     SimulationError
         If no collision occurs.
 
     Notes
     -----
-    Memory is bounded by the data themselves.
+    The memory is limited to the size of the data.
 
     Examples
     --------
@@ -105,7 +105,7 @@ def collision_data(
     )  # time and velocity after each particle's last event
     parts, progress, alone = [], 0, 0
     while progress < collisions:
-        simulation.record_events = True  # a new, empty list
+        simulation.record_events = True  # starts a new, empty list
         events = min(_CHUNK, max(collisions - progress, 1))
         simulation.advance(max_events=events)
         part, last = pair_rows(simulation.events, last, scene)
@@ -145,9 +145,9 @@ def record_collisions(
     seed : int or tuple of int, default 0
         Seed of the run.
     equilibration : float, default 0.0, [time]
-        Time before the record.
+        Simulated time before the recording begins.
     overwrite : bool, default False
-        Replace a data set of collisions. Files of other kinds are never replaced.
+        Replace an existing data set of collisions. Files of other kinds are never replaced.
 
     Returns
     -------
@@ -157,14 +157,15 @@ def record_collisions(
     Raises
     ------
     SceneError
-        For a file that is not replaced, or cannot be written, and as `collision_data`.
+        If the file exists and is not replaced, or if it cannot be written; and for the reasons of
+        `collision_data`.
     SimulationError
-        As `collision_data`.
+        For the reasons of `collision_data`.
     """
     with writing(path, COLLISIONS, overwrite) as scratch:
         data = collision_data(scene, collisions, seed, equilibration)
-        # In memory first: the library itself does not report what keeps it from writing. NetCDF-4 made there
-        # has the time of its creation in it, and so never the same bytes.
+        # The file is made in memory first, because the library does not report why it cannot write a file.
+        # NetCDF-4 files made in memory contain their creation time, so their bytes would differ between runs.
         scratch.write_bytes(data.to_netcdf(None, engine="scipy", format="NETCDF3_64BIT"))
     return data
 
@@ -186,7 +187,7 @@ COLLISIONS = FileKind("a data set of collisions written by gaspart", _is_collisi
 
 
 def _check_memory(collisions: int, scene: Scene) -> None:
-    """Raise SceneError for more collisions than the memory can hold twice."""
+    """Raise SceneError if twice the size of the collisions exceeds the memory."""
     required = 16.0 * collisions * (9 + scene.dimension)
     there = memory()
     if there is not None and required > there:
@@ -195,14 +196,14 @@ def _check_memory(collisions: int, scene: Scene) -> None:
 
 
 def contact_value(data: xr.Dataset, blocks: int = 20) -> Estimate:
-    """Measure g at contact of equal particles from their collision rate.
+    """Measure the contact value of g of equal particles from their collision rate.
 
     Parameters
     ----------
     data : Dataset
         Collisions, from `collision_data`.
     blocks : int, default 20
-        Number of blocks whose scatter is the error.
+        Number of blocks; the scatter between blocks gives the error.
 
     Returns
     -------
@@ -253,9 +254,9 @@ def pair_rows(events: dict, last: tuple, scene: Scene) -> tuple[xr.Dataset, tupl
     Parameters
     ----------
     events : dict of str to ndarray
-        The events, from `Simulation.events`.
+        Events from `Simulation.events`.
     last : tuple of ndarray
-        Time and velocity of each particle after its last event before these.
+        Time and velocity of each particle after its last event before these events.
     scene : Scene
         The scene.
 
@@ -268,7 +269,7 @@ def pair_rows(events: dict, last: tuple, scene: Scene) -> tuple[xr.Dataset, tupl
     """
     particles, times, after = events["particles"], events["time"], events["velocities"]
     number_of_particles = len(last[0])
-    # each particle's history in order: its state before, then its part in every event
+    # history of each particle in order: its initial state, then its state after each event
     rows = np.arange(len(times))
     inside = particles >= 0
     index = np.concatenate([np.arange(number_of_particles), particles[inside]])
@@ -278,7 +279,7 @@ def pair_rows(events: dict, last: tuple, scene: Scene) -> tuple[xr.Dataset, tupl
     slot[inside] = number_of_particles + np.arange(inside.sum())
     order = np.argsort(index, kind="stable")
     before = np.empty(len(index), dtype=int)
-    before[order[1:]] = order[:-1]  # not valid for a particle's first entry, which is not used
+    before[order[1:]] = order[:-1]  # invalid for the first entry of a particle, which is not used
     final = order[np.append(np.flatnonzero(np.diff(index[order])), len(index) - 1)]
 
     collided = rows[inside[:, 1]]
@@ -306,15 +307,17 @@ def pair_rows(events: dict, last: tuple, scene: Scene) -> tuple[xr.Dataset, tupl
     return data, (when[final], velocity[final])
 
 
-# Free flights from the recorded events of a run: times and paths between the collisions of a particle.
+# Free times and free paths between the collisions of a particle, from the recorded events of a run.
 
 
 GROUPS = 16
-"""Groups of particles, whose scatter gives the uncertainty."""
+"""Number of groups of particles; their scatter gives the uncertainty."""
 COMPLETE = 16.0
-"""Mean free times before the end of the record: flights that begin later are left out, since the longest of
-these would be missing. Of slow particles exp(-11) are longer."""
-_LONGEST = 5.0  # mean free times that the bins cover
+"""Length of the discarded end of the record, in mean free times. Flights that begin in this part are not
+used, because the longest of them would be missing. A fraction exp(-11) of the flights of slow particles is
+longer.
+"""
+_LONGEST = 5.0  # upper end of the bins in mean free times
 
 
 def free_flight_times(simulation: Simulation, bins: int = 40) -> Observable:
@@ -323,28 +326,30 @@ def free_flight_times(simulation: Simulation, bins: int = 40) -> Observable:
     Parameters
     ----------
     simulation : Simulation
-        Event-driven and periodic; `record_events` was True while it advanced, for at least 32 collisions of a
-        particle.
+        An event-driven, periodic simulation. `record_events` was True while it advanced, for at least 32
+        collisions per particle.
     bins : int, default 40
-        Number of bins, up to five times the mean time.
+        Number of bins between 0 and five mean free times.
 
     Returns
     -------
     Observable
-        Density (free_time,) in [1/time]. The mean time and the mean path of a flight are the variables
-        `mean_free_time` and `mean_free_path`. Each has an _error and, if theory is known, a _theory.
+        Density (free_time,) in [1/time]. The variables `mean_free_time` and `mean_free_path` are the mean
+        time and the mean path of a flight. Each variable has a variable with the suffix _error and, if theory
+        exists, a variable with the suffix _theory.
 
     Raises
     ------
     SceneError
-        If there is no record or the record is too short; also with gravity, with walls, and for fewer than 16
-        moving particles.
+        If the record is missing or too short, with gravity, with walls, or for fewer than 16 moving
+        particles.
 
     Notes
     -----
-    Uncertainties are the scatter of 16 groups of particles, NaN in an empty bin. Theory, for equal particles:
-    `theory.free_time_pdf`, for independent collisions. The means are exact in equilibrium, to the accuracy of
-    the contact value, and corrected for the number of particles.
+    Uncertainties come from the scatter of 16 groups of particles. They are NaN in an empty bin. Theory exists
+    for equal particles. The density is `theory.free_time_pdf`, which assumes independent collisions. The
+    theory of the two means is exact in equilibrium, apart from the uncertainty of the contact value, and
+    includes the correction for the finite number of particles.
 
     Examples
     --------
@@ -402,7 +407,7 @@ def free_flight_times(simulation: Simulation, bins: int = 40) -> Observable:
 def _theory(simulation: Simulation, edges: np.ndarray) -> tuple[np.ndarray, tuple[float, float]] | None:
     """Compute the expected density of free times in each bin, and their mean time and path.
 
-    The density has the shape (bins,). None if there is no theory.
+    The density has shape (bins,); None if there is no theory.
     """
     gas, state = simulation.scene.gas, simulation.state
     if gas is None or gas.packing_fraction > theory.HIGHEST_PACKING_FRACTION[gas.dimension]:
@@ -412,7 +417,7 @@ def _theory(simulation: Simulation, edges: np.ndarray) -> tuple[np.ndarray, tupl
     inner = np.linspace(edges[:-1], edges[1:], 5)  # Boole's rule
     weights = np.array([7.0, 32.0, 12.0, 32.0, 7.0]) / 90.0
     density = weights @ theory.free_time_pdf(inner, **settings)
-    # `collision_rate_finite_size_factor` is relative to a temperature of d N degrees of freedom
+    # `collision_rate_finite_size_factor` refers to a temperature defined with d N degrees of freedom
     fewer = math.sqrt((gas.count - 1) / gas.count)
     shape = gas.packing_fraction, gas.dimension
     rate = float(theory.collision_rate(**settings))

@@ -1,4 +1,4 @@
-"""Replicas: an observable of several independent runs of one scene, with the scatter of the runs."""
+"""Replicas: an observable averaged over independent runs of a scene, with an error from their scatter."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from gaspart.trajectory.run_options import tallies_from_json
 from gaspart.yaml_text import parse_yaml
 
 _ROUNDING = 1e-12
-"""Relative scatter of equal values that are computed in different order."""
+"""Relative scatter of equal values that are computed in a different order."""
 
 
 def replicas(
@@ -40,7 +40,7 @@ def replicas(
     end: float | None = None,
     **selection: Any,
 ) -> Observable:
-    """Measure an observable, by its name, as the mean over independent runs of one scene.
+    """Measure a named observable as the mean over independent runs of one scene.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def replicas(
         At least two runs of different seeds or initial states: paths of trajectories, open trajectories, or
         simulations.
     start : float, [time], optional
-        Frames before this time are discarded, as by the observable's function.
+        Frames before this time are discarded; the default is defined by the observable's function.
     end : float, [time], optional
         Frames after this time are discarded. Default: none.
     **selection
@@ -59,16 +59,16 @@ def replicas(
     Returns
     -------
     Observable
-        The mean with its uncertainty. The variable with the suffix _replicas has the value of each run,
-        (replica, ...). Theory is the mean of the runs' theories.
+        The mean with its uncertainty. The variable with the suffix _replicas contains the value of each run,
+        shape (replica, ...). The theory is the mean over the theories of the runs.
 
     Raises
     ------
     SceneError
         If there are fewer than two runs; if scenes or engines differ (the message names the first
         difference); if two runs are identical (same initial state and same seed, or same initial state in a
-        scene without random numbers); if curves have different positions, such as densities in different bins
-        of impulses; and for the reasons of the observable's function.
+        scene without random numbers); if curves have different coordinates, such as densities in different
+        bins; and for the reasons of the observable's function.
 
     Notes
     -----
@@ -110,7 +110,7 @@ def _open_source(source: Source) -> AbstractContextManager[xr.Dataset | Simulati
 def _in_joint_bins(
     name: str, sources: Sequence[Source], results: list[Observable], start: float | None, end: float | None
 ) -> list[Observable]:
-    """Measure an observable again in the widest of the bins that follow from each run."""
+    """Measure an observable again in the widest bins of any run."""
     declared = OBSERVABLES[name]
     middles = [result[declared.along[-1]].values for result in results]
     widest = max(float(middle[-1] + 0.5 * (middle[1] - middle[0])) for middle in middles)
@@ -123,15 +123,15 @@ def _in_joint_bins(
 
 @dataclass(frozen=True)
 class _Recipe:
-    """Recipe of a run, and its outcome.
+    """Description of a run, to detect equal or incompatible replicas.
 
-    name : name of the run, for its user.
-    settings : scene and engine.
-    seed : seed.
-    draws : True if the seed matters after the start.
-    times : times of its states, or of all states up to the last time if `every`.
-    state : function that returns the bits of the state at a time, as they are in a file.
-    tallies : texts of the optional tallies that it has stored, by their names.
+    name : name of the run in messages.
+    settings : scene and engine of the run.
+    seed : seed of the run.
+    draws : True if the run uses random numbers after the start.
+    times : times at which states are known; if `every`, all times up to the last one.
+    state : function of a time that returns the bytes of the state as they are in a file.
+    tallies : names of the stored optional tallies, with the texts of their options.
     """
 
     name: str
@@ -162,18 +162,18 @@ def _recipe(run: Any, name: str) -> _Recipe:
 
 
 def _texts(tallies: Iterable[OptionalTally]) -> dict[str, str]:
-    """Return the texts of tallies in the words of their options, by name."""
+    """Return the option texts of tallies, by name."""
     return {tally.name: tally.to_text() for tally in tallies if tally.form}
 
 
 def _state_in_frame(frames: dict[str, np.ndarray], time: float) -> bytes:
-    """Return the state of a trajectory in the frame at a time."""
+    """Return the state in the trajectory frame at a given time."""
     number = int(np.searchsorted(frames["time"], time))
     return _bits(*(frames[name][number] for name in ("coordinates", "velocities") if name in frames))
 
 
 def _state_at(simulation: Simulation, time: float) -> bytes:
-    """Return the state of a simulation at a time until the present one.
+    """Return the state of a simulation at a time up to its present time.
 
     For an earlier time the simulation is run again.
     """
@@ -190,9 +190,9 @@ def _bits(*vectors: np.ndarray) -> bytes:
 
 
 def _check_replica(recipe: _Recipe, others: list[_Recipe]) -> None:
-    """Raise SceneError unless a run is a replica of others.
+    """Raise SceneError unless a run is a replica of the other runs.
 
-    Replicas differ only in the seed or in the first state.
+    Replicas differ only in the seed or in the initial state.
     """
     for other in others:
         if difference := _difference(recipe.settings, other.settings):
@@ -203,14 +203,14 @@ def _check_replica(recipe: _Recipe, others: list[_Recipe]) -> None:
         time = _last_common(recipe, other)
         if time is None or recipe.state(0.0) != other.state(0.0):
             continue
-        drawn = recipe.draws and recipe.seed != other.seed  # decides where no later time is common
+        drawn = recipe.draws and recipe.seed != other.seed  # used if the runs have no later time in common
         if not drawn if time == 0.0 else recipe.state(time) == other.state(time):
             rule = f"and the first state give the same run, bit for bit, as {other.name}: no scatter"
             raise SceneError("seed", recipe.seed, rule, recipe.name)
 
 
 def _last_common(recipe: _Recipe, other: _Recipe) -> float | None:
-    """Return the last time at which both runs have a state; None without a common start."""
+    """Return the last time at which both runs have a state; None without common start."""
     if recipe.every and other.every:
         return float(min(recipe.times[-1], other.times[-1]))
     if recipe.every or other.every:
@@ -224,7 +224,7 @@ def _last_common(recipe: _Recipe, other: _Recipe) -> float | None:
 def _difference(first: Any, second: Any, key: str = "") -> tuple[str, Any, Any] | None:
     """Find the first difference of two trees: its dotted key and both values.
 
-    The result is absent if the two are equal.
+    Return None if the two trees are equal.
     """
     if isinstance(first, dict) and isinstance(second, dict):
         pairs = {str(name): (first.get(name), second.get(name)) for name in {**first, **second}}
@@ -239,7 +239,7 @@ def _difference(first: Any, second: Any, key: str = "") -> tuple[str, Any, Any] 
 
 
 def _other_coordinate(result: Observable, other: Observable, name: str, other_name: str) -> SceneError:
-    """Return the error of two results of one observable with different coordinates, which it names."""
+    """Return an error that names the differing coordinate of two results of one observable."""
     for dim in map(str, result.estimate.dims):
         first, second = result[dim].values, other[dim].values
         if not np.array_equal(first, second):
@@ -252,14 +252,14 @@ def _other_coordinate(result: Observable, other: Observable, name: str, other_na
 
 
 def _describe_coordinate(values: np.ndarray) -> str:
-    """Return a coordinate in words."""
+    """Return a coordinate as text."""
     if values.dtype.kind in "US" or not values.size:
         return ", ".join(map(str, values)) or "none"
     return f"{values.size} values from {values[0]:.6g} to {values[-1]:.6g}"
 
 
 def _mean(measurements: list[Observable], recipes: list[_Recipe]) -> Observable:
-    """Average independent measurements of one observable, of runs with these recipes."""
+    """Average independent measurements of one observable over runs with these descriptions."""
     first, quantity = measurements[0], str(measurements[0].attrs["quantity"])
     dims = first.estimate.dims
     for measurement, recipe in zip(measurements[1:], recipes[1:], strict=True):
@@ -277,8 +277,8 @@ def _mean(measurements: list[Observable], recipes: list[_Recipe]) -> Observable:
     values, errors = means_of(each)
     single = np.array([measurement.error.values for measurement in measurements])
     rounding = _ROUNDING * np.abs(values)
-    exact = (single <= rounding).all(axis=0)  # a value that does not scatter within a run either
-    errors = np.where((errors <= rounding) & ~exact, np.nan, errors)  # equal counts by chance
+    exact = (single <= rounding).all(axis=0)  # this value has no scatter within a run either
+    errors = np.where((errors <= rounding) & ~exact, np.nan, errors)  # counts that are equal by chance
     parts = {"": values, "_error": errors}
     if all(measurement.theory is not None for measurement in measurements):
         for part in ("_theory", "_theory_error"):
@@ -291,7 +291,7 @@ def _mean(measurements: list[Observable], recipes: list[_Recipe]) -> Observable:
     result = Observable({quantity + key: value for key, value in data.items()}, coords, attrs)
     result[f"{quantity}_replicas"] = (("replica", *dims), each, first.estimate.attrs)
     result.attrs["freedom"] = len(measurements) - 1
-    if not dims:  # what a plot of a scalar shows
+    if not dims:  # series for the plot of a scalar
         about = {"long_name": "replica", "units": "1"}
         result = result.assign_coords(time=("time", np.arange(len(measurements)), about))
         result["stretches"] = ("time", each, {**first.estimate.attrs, "long_name": "replicas"})

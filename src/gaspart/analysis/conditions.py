@@ -1,7 +1,8 @@
-"""Conditions of a scene under which observables are defined; each raises SceneError with its reason.
+"""Conditions of a scene under which an observable is defined; each function raises SceneError if not.
 
-The conditions are tested before a run and when the run is measured, so both reject the same scenes. A
-selection is the choice of a caller: `species`, `particles`, `axis`, `at`, `lag`, `per_axis`.
+The conditions are tested before a run and again at the measurement, so both reject the same scenes. A
+selection is a keyword argument of the observable's function: `species`, `particles`, `axis`, `at`, `lag`,
+`per_axis`.
 """
 
 from __future__ import annotations
@@ -20,14 +21,14 @@ from gaspart.state.tally import StressTally
 
 Selection = Mapping[str, Any]
 GROUPS = 16
-"""Groups of particles whose scatter is an uncertainty."""
+"""Number of groups of particles; their scatter gives an uncertainty."""
 SLIDING = "this observable is not defined where images of the particles slide"
 VARYING = (
     "lets particles enter and leave, and this observable follows particles that stay; defined here are "
     "number, flux, density, velocity, temperature, pressure and force"
 )
 DISCS = "discs have no diffusion coefficient: their squared displacement grows like t ln t"
-_NEIGHBOURHOOD = {2: 7, 3: 13}  # a particle and those around it in a crystal
+_NEIGHBOURHOOD = {2: 7, 3: 13}  # a particle and its nearest neighbours in a crystal
 
 
 def refuse_shear(scene: Scene, selection: Selection) -> None:
@@ -36,7 +37,7 @@ def refuse_shear(scene: Scene, selection: Selection) -> None:
 
 
 def steady_flow(scene: Scene, selection: Selection) -> None:
-    """No flow that changes with time, unless motion is about rest."""
+    """Require that no flow changes with time, unless motion is relative to rest."""
     if scene.flow_changes and selection.get("about") != "rest":
         faces = [name for name, face in scene.faces.items() if face.moves] or MOVING_WALL
         rule = 'move the gas: motion about a flow that changes is not known from frames; pass about="rest"'
@@ -52,7 +53,10 @@ def require_open_faces(scene: Scene, selection: Selection) -> None:
 
 
 def open_across(scene: Scene, selection: Selection) -> None:
-    """No open face along the selected axis, where particles would pass its plane outside the container."""
+    """Require closed faces along the selected axis.
+
+    Particles would leave the container through open faces along this axis.
+    """
     axis = walled_axis_of(scene, selection.get("axis"))
     for face, _ in scene.faces_of(Open):
         if face // 2 != axis:
@@ -61,12 +65,15 @@ def open_across(scene: Scene, selection: Selection) -> None:
 
 
 def periodic(scene: Scene, selection: Selection) -> None:
-    """No walls of the container."""
+    """Require a container without walls."""
     _periodic(scene, "this observable needs a periodic container; set boundary: periodic")
 
 
 def periodic_virial(scene: Scene, selection: Selection) -> None:
-    """No walls of the container, on which the pressure would be measured instead."""
+    """Require a container without walls.
+
+    With walls the pressure on the walls is measured instead.
+    """
     _periodic(scene, "Z needs a periodic container; between walls measure pressure (wall_pressure)")
 
 
@@ -89,16 +96,16 @@ def thermal_walls(scene: Scene, selection: Selection) -> None:
 
 
 def dragged_walls(scene: Scene, selection: Selection) -> None:
-    """Faces at a temperature that slide, or along which a force drives the gas."""
+    """Require thermal faces that slide, or along which a force drives the gas."""
     if not scene.drags_faces:
         rule = "none is at a temperature and slides, or has a force along it: nothing drags them"
         raise SceneError("faces", list(scene.faces), rule)
 
 
 def walled_axis(scene: Scene, selection: Selection) -> None:
-    """Raise SceneError unless the selected axis, by default any, has walls at both ends.
+    """Raise SceneError unless the selected axis, or any axis by default, has walls at both ends.
 
-    A plane across the axis must be in the container.
+    A selected plane across the axis must lie in the container.
     """
     axis = walled_axis_of(scene, selection.get("axis"))
     at = selection.get("at")
@@ -127,14 +134,14 @@ def walled_axis_of(scene: Scene, name: str | None) -> int:
 
 
 def elastic(scene: Scene, selection: Selection) -> None:
-    """Contacts that conserve energy."""
+    """Require contacts that conserve energy."""
     law = scene.restitution
     if law is not None and law.normal < 1.0:
         raise SceneError("restitution.normal", law.normal, "a gas that loses energy is in no equilibrium")
 
 
 def homogeneous(scene: Scene, selection: Selection) -> None:
-    """No walls, interior walls and fixed particles, so that all positions are equivalent."""
+    """Require equivalent positions: no walls, no interior walls and no fixed particles."""
     _periodic(scene, "this observable needs a periodic container; set boundary: periodic")
     _without_obstacles(
         scene,
@@ -143,7 +150,10 @@ def homogeneous(scene: Scene, selection: Selection) -> None:
 
 
 def without_obstacles(scene: Scene, selection: Selection) -> None:
-    """No interior walls and fixed particles, which would take a part of the pressure."""
+    """Require that there are no interior walls or fixed particles.
+
+    They would carry a part of the pressure.
+    """
     _without_obstacles(scene, "carry a part of the pressure, which the virial of the particles does not have")
 
 
@@ -166,20 +176,20 @@ def _moving(scene: Scene) -> int:
 
 
 def thermal(scene: Scene, selection: Selection) -> None:
-    """More than one particle, in a periodic container that conserves momentum."""
+    """Require more than one particle, in a periodic container that conserves momentum."""
     if scene.dimension * _moving(scene) - sum(scene.conserved_axes) < 1:
         raise SceneError("count", _moving(scene), "too few moving particles for a temperature")
 
 
 def of_species(scene: Scene, selection: Selection) -> None:
-    """All particles belong to species."""
+    """Require that all particles belong to species."""
     if scene.particles:
         rule = "pairs are those of species: there are single particles"
         raise SceneError("particles", len(scene.particles), rule)
 
 
 def one_size_each(scene: Scene, selection: Selection) -> None:
-    """Species of one size each, which all move."""
+    """Require that each species has a single size and that all species move."""
     for n, kind in enumerate(scene.species):
         if not kind.alike:
             rule = "a contact value is that of two sizes; measure pair_collision_rates"
@@ -190,7 +200,7 @@ def one_size_each(scene: Scene, selection: Selection) -> None:
 
 
 def require_particles(scene: Scene, selection: Selection) -> None:
-    """Raise SceneError unless 16 particles move, or any of the selected particles."""
+    """Raise SceneError unless at least 16 particles, or at least one of the selected particles, move."""
     chosen = {key: selection.get(key) for key in ("species", "particles")}
     if all(value is None for value in chosen.values()):
         _enough(scene)
@@ -212,7 +222,7 @@ def _enough(scene: Scene) -> None:
 
 
 def _in_species(scene: Scene, species: Any) -> int:
-    """Count the moving particles of a species, given by the number of the species.
+    """Count the moving particles of a species, identified by its number.
 
     Single particles have the number after the last species.
     """
@@ -239,13 +249,13 @@ def free_axis(scene: Scene, selection: Selection) -> None:
 
 
 def no_lasting_discs(scene: Scene, selection: Selection) -> None:
-    """Spheres, or discs whose momentum decays fast, unless the user gives a lag."""
+    """Require spheres, or discs whose momentum decays fast, unless the user passes a lag."""
     if selection.get("lag") is None and scene.dimension == 2 and any(scene.conserved_axes):
         raise SceneError("container.lengths", scene.container.lengths, DISCS)
 
 
 def two_species(scene: Scene, selection: Selection) -> None:
-    """Two species, which both move, alone."""
+    """Require exactly two species, both of which move."""
     if len(scene.species) != 2 or scene.particles:
         raise SceneError("species", len(scene.kinds), "mutual diffusion is that of two species")
     if any(kind.fixed for kind in scene.species):
@@ -253,26 +263,26 @@ def two_species(scene: Scene, selection: Selection) -> None:
 
 
 def a_pair(scene: Scene, selection: Selection) -> None:
-    """Two particles."""
+    """Require two particles."""
     if scene.count < 2:
         raise SceneError("count", scene.count, "a pair needs two particles")
 
 
 def a_neighbourhood(scene: Scene, selection: Selection) -> None:
-    """7 discs or 13 spheres."""
+    """Require at least 7 discs or 13 spheres."""
     least = _NEIGHBOURHOOD[scene.dimension]
     if scene.count < least:
         raise SceneError("count", scene.count, f"needs {least} particles or more")
 
 
 def smooth_sizes(scene: Scene, selection: Selection) -> None:
-    """Smooth and elastic particles, in a mixture in species of one size each."""
+    """Require smooth and elastic particles; each species of a mixture has a single size."""
     plain_mixture(scene)
     in_species(scene, selection)
 
 
 def in_species(scene: Scene, selection: Selection) -> None:
-    """Equal particles, or species of one size each."""
+    """Require equal particles, or species of a single size each."""
     if scene.alike:
         return
     if scene.particles:
@@ -302,7 +312,10 @@ def shears(scene: Scene, selection: Selection) -> None:
 
 
 def heat_flows(scene: Scene, selection: Selection) -> None:
-    """Raise SceneError unless two temperatures, moving faces, or sources or sinks of energy drive heat."""
+    """Raise SceneError unless heat flows.
+
+    Temperature differences, moving faces, or sources or sinks of energy drive a heat flux.
+    """
     heated = scene.dissipates or scene.thermostat is not None or _flows(scene)
     if (
         len(scene.face_temperatures) < 2
@@ -313,7 +326,7 @@ def heat_flows(scene: Scene, selection: Selection) -> None:
 
 
 def velocity_flows(scene: Scene, selection: Selection) -> None:
-    """Faces that slide, sheared images, a force along faces, or open faces that differ."""
+    """Require sliding faces, sheared images, a force along faces, or different open faces."""
     if not _flows(scene) and not _streams(scene):
         raise SceneError("faces", list(scene.faces), "nothing drives a flow: the mean velocity is 0")
 
@@ -325,7 +338,10 @@ def _flows(scene: Scene) -> bool:
 
 
 def streams(scene: Scene, selection: Selection) -> None:
-    """Open faces that differ, between which particles flow: otherwise nothing flows between walls."""
+    """Require open faces with different states, between which particles flow.
+
+    Otherwise the mean flux between walls is zero.
+    """
     if not _streams(scene):
         rule = "the net flux between walls is 0 in a steady state"
         raise SceneError("container.boundary", scene.container.boundary, rule)

@@ -1,4 +1,4 @@
-"""Observables from the counters of a run: force and pressure on walls, collision rate."""
+"""Observables from the counters of a run: force and pressure on walls, and collision rate."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from gaspart.errors import SceneError
 from gaspart.trajectory.amber import face_names
 
 _BLOCKS = 16
-_SLIGHT = 1e-6  # of the weight: rounding of the momentum of single-precision velocities
+_SLIGHT = 1e-6  # fraction of the weight: rounding of the momentum of single-precision velocities
 
 
 def compressibility_factor(source: Source, start: float | None = None) -> Observable:
@@ -37,15 +37,15 @@ def compressibility_factor(source: Source, start: float | None = None) -> Observ
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
     Observable
-        The compressibility factor Z, dimensionless. Theory is for the fluid, with the correction of first
-        order in 1/N. For mixtures it is an approximation, without an uncertainty.
+        The compressibility factor Z, dimensionless. Theory is for the fluid phase, with the first-order
+        correction in 1/N. For mixtures it is an approximation and has no uncertainty.
 
     Raises
     ------
@@ -55,7 +55,8 @@ def compressibility_factor(source: Source, start: float | None = None) -> Observ
 
     Notes
     -----
-    Z = 1 + sum |dr . dp| / (d N k_B T t), with k_B T = 2 E / (d (N - 1)) relative to the centre of mass.
+    Z = 1 + sum |dr . dp| / (d N k_B T t). The temperature is k_B T = 2 E / (d (N - 1)), with the kinetic
+    energy E relative to the centre of mass.
 
     Examples
     --------
@@ -79,38 +80,39 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
     Observable
-        Pressure (face,) in [energy / length^d], with standard errors. Theory, if known: equal particles
-        between hard walls of one distance (`gaspart.theory.wall_pressure`). NaN where it is not known: on
-        side walls while particles rest, and, of particles of several sizes, on faces whose area changes as
-        others move.
+        Pressure (face,) in [energy / length^d], with standard errors. Theory exists for equal particles
+        between two hard walls a given distance apart (`gaspart.theory.wall_pressure`). The pressure is NaN on
+        side walls while particles rest. For particles of several sizes it is also NaN on faces whose
+        accessible area changes as other faces move.
 
     Raises
     ------
     SceneError
-        If the scene has no walls; for too few frames; if particles rest where obstacles may support them; and
-        for particles of several sizes if the file has no tally per area.
+        If the scene has no walls; if there are too few frames; if particles rest where obstacles may support
+        them; or if there are particles of several sizes and the file has no tally per area.
 
     Notes
     -----
-    The pressure is a sum over sizes a: the force F_a of particles of this size divided by the area A_a of the
-    face that their centres can reach. Areas covered by fixed particles and interior walls are excluded
-    (`gaspart.scene.accessible`). If faces move, the area is the present one. By the contact theorem the
-    pressure is k_B T times the density at contact, summed over sizes. In an ideal gas it is n k_B T with the
-    density in the accessible volume. A particle that never touches the face does not change it. Across the
-    axis of a piston with a load, the force is divided by the area of the container, as the load is defined.
-    So the mean is the load. The force on a face has no such convention: `wall_force`.
+    The pressure is a sum over particle sizes a of F_a / A_a. F_a is the force of particles of this size, and
+    A_a is the area of the face that their centres can reach. Areas covered by fixed particles and interior
+    walls are excluded (`gaspart.scene.accessible`). If faces move, the instantaneous area is used. By the
+    contact theorem, the pressure is k_B T times the density at contact, summed over sizes. In an ideal gas it
+    is n k_B T, with the density n in the accessible volume. Particles that never touch the face do not
+    contribute. Across the axis of a piston with a load, the force is divided by the cross-section of the
+    container, because the load is defined with this area. The mean pressure is then equal to the load. The
+    force on a face (`wall_force`) does not depend on such a convention.
 
-    Contacts of particles at rest are no events: they press a floor with what gravity gives the particles and
-    no event takes. If the run has stored impulses along an axis, the known fluctuations of these impulses are
-    subtracted from the pressures across this axis (`gaspart.analysis.impulses`). The attribute `estimator`
-    names this method.
+    Contacts of particles at rest are not events. Such particles press on a floor with the momentum that they
+    receive from gravity and that no event removes. If the run has stored impulses along an axis, the known
+    fluctuations of these impulses are subtracted from the pressures across this axis
+    (`gaspart.analysis.impulses`). The attribute `estimator` names this method.
 
     Examples
     --------
@@ -132,25 +134,26 @@ def wall_force(source: Source, start: float | None = None) -> Observable:
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
     Observable
-        Force (face,) outwards along the normal, in [energy / length], with standard errors. Side walls have
-        NaN while particles rest.
+        Outward normal force (face,), in [energy / length], with standard errors. Side walls have NaN while
+        particles rest.
 
     Raises
     ------
     SceneError
-        If the scene has no walls; for too few frames; and if particles rest where obstacles may support them.
+        If the scene has no walls; if there are too few frames; or if particles rest where obstacles may
+        support them.
 
     Notes
     -----
-    The force is the momentum given to the face divided by the time. The force does not depend on an area,
-    while the pressure does (`wall_pressure`).
+    The force is the momentum given to the face divided by the time. Unlike the pressure (`wall_pressure`),
+    the force does not depend on an area.
 
     Examples
     --------
@@ -167,9 +170,9 @@ def wall_force(source: Source, start: float | None = None) -> Observable:
 
 @contextmanager
 def _open_walls(source: Source, start: float | None, name: str) -> Iterator[tuple[Run, np.ndarray]]:
-    """Open a run, and return the block ends (K + 1,) of an observable of faces.
+    """Open a run, and return the frames at the ends of its blocks (K + 1,).
 
-    Raises SceneError.
+    Raises SceneError if the observable of faces, `name`, is undefined.
     """
     with open_run(source, start, sheared=True, varying=True) as run:
         require_defined(name, run.scene)
@@ -180,7 +183,7 @@ def _open_walls(source: Source, start: float | None, name: str) -> Iterator[tupl
 
 
 def _of_faces(function: str, run: Run, ends: np.ndarray, about: dict[str, Any]) -> Observable:
-    """Return the result of the function of this name, from blocks of a run."""
+    """Return the result of the named function from blocks of a run."""
     name = name_of(function)
     faces, samples = on_walls(run, ends, name)
     freedoms = np.full(len(faces), len(samples) - 1.0)
@@ -188,7 +191,7 @@ def _of_faces(function: str, run: Run, ends: np.ndarray, about: dict[str, Any]) 
     for index, (_, regressors, each) in improved.items():
         samples[:, index] = series.over(each * time, ends) / series.over(time, ends)
         freedoms[index] -= regressors
-    values, errors = means_of(samples - samples[0])  # no error of rounding at rest
+    values, errors = means_of(samples - samples[0])  # no rounding error at rest
     along = {"face": (faces, {"long_name": "face of the container"})}
     result = observable(function, along, values + samples[0], errors, **about)
     serves = knows_energies(engine_class(run), run.scene)
@@ -211,7 +214,7 @@ def controlled_on_walls(run: Run, name: str) -> dict[int, tuple[str, int, np.nda
     Returns
     -------
     dict of int to tuple
-        By the position among all walls: the name of the wall, the number of controls, and the value in each
+        Keys: index among all walls. Values: name of the wall, number of control variates, and value in each
         interval, shape (T - 1,).
     """
     faces, each = on_walls(run, np.arange(len(run.time)), name)
@@ -246,14 +249,14 @@ def on_walls(run: Run, ends: np.ndarray, name: str) -> tuple[np.ndarray, np.ndar
     Raises
     ------
     SceneError
-        As `wall_pressure`.
+        For the reasons of `wall_pressure`.
     """
     require_defined(name, run.scene)
     time, walls = np.diff(run.time)[:, None], np.repeat(~run.periodic, 2)
     impulses, resting = series.over(series.face_impulses(run), ends), _rest_on_floors(run, ends)
     if name == "force":
         totals = impulses + resting
-    elif run.scene.has_unequal_areas:  # of what rests, the sizes are not known
+    elif run.scene.has_unequal_areas:  # the sizes of resting particles are unknown
         totals = series.over(series.face_pressures(run) * time, ends)
         totals += np.where((np.abs(resting) > _SLIGHT * impulses).any(axis=0), np.nan, 0.0)
     else:
@@ -263,15 +266,15 @@ def on_walls(run: Run, ends: np.ndarray, name: str) -> tuple[np.ndarray, np.ndar
 
 
 def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
-    """Compute the momentum (K, 2d) that contacts at rest give each face between frames.
+    """Compute the momentum (K, 2d) that particles at rest give to each face between frames.
 
-    The frames are `ends` (K + 1,). On a floor it is the difference of both sides in the balance
+    The frames are `ends` (K + 1,). On a floor, this momentum closes the balance
 
-        change of the momentum = its gain by gravity + impulses of the lower face - impulses of the upper one.
+        change of the momentum = momentum from gravity + impulses of the lower face - impulses of the upper
+        face.
 
-    On a ceiling the force is 0. On side walls it is 0, or NaN if the momentum on a floor is more than a
-    millionth of the weight. Raises SceneError if particles rest where something other than a face may support
-    them.
+    On a ceiling the force is 0. On side walls it is 0, or NaN if the momentum on a floor exceeds a millionth
+    of the weight. Raises SceneError if particles rest where something other than a face may support them.
     """
     carried = np.zeros((len(ends) - 1, 2 * run.dimension))
     if not run.has_gravity or (run.is_subset and not run.dissipates):
@@ -282,7 +285,7 @@ def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
     velocities = run.vectors("velocities")[ends].values.astype(float)
     momentum = np.einsum("tnd,n->td", velocities, run.masses)
     weight = run.masses.sum() * np.where(run.periodic, 0.0, np.array(run.scene.gravity))
-    if not weight.any():  # it drives a flow along walls, and presses nothing
+    if not weight.any():  # a force along walls drives a flow and exerts no pressure
         return carried
     gain = weight * np.diff(run.time[ends])[:, None]
     impulse = np.abs(np.diff(run.data["wall_impulse"].values[ends, : 2 * run.dimension], axis=0))
@@ -302,7 +305,7 @@ def refuse_rest(run: Run, rule: str) -> None:
     run : Run
         The run.
     rule : str
-        Rule of the message.
+        Rule for the error message.
 
     Raises
     ------
@@ -325,15 +328,15 @@ def collision_rate(source: Source, start: float | None = None) -> Observable:
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
     Observable
-        The rate, in [1/time]. Theory is exact in equilibrium. It uses the contact value of the equation of
-        state of the fluid, corrected for the number of particles.
+        The rate, in [1/time]. Theory is exact in equilibrium, apart from the contact value. The contact value
+        comes from the equation of state of the fluid, corrected for the number of particles.
 
     Raises
     ------
@@ -343,7 +346,8 @@ def collision_rate(source: Source, start: float | None = None) -> Observable:
     Notes
     -----
     The rate is (2 M + F) / (N t), the mean number of collisions of a particle per time. M is the number of
-    collisions between pairs of the N moving particles, and F the number of collisions with fixed particles.
+    collisions between two moving particles, N the number of moving particles, and F the number of collisions
+    with fixed particles.
 
     Examples
     --------

@@ -1,6 +1,6 @@
-"""Declaration of an observable: its units, its result, its conditions, its transformations.
+"""Declaration of an observable: units, form of the result, conditions, and symmetries.
 
-The declarations are in `observables`.
+The module `observables` contains all declarations.
 """
 
 from __future__ import annotations
@@ -13,10 +13,11 @@ from typing import Any, TypeAlias
 from gaspart.scene.scene import Scene
 
 Condition: TypeAlias = Callable[[Scene, Mapping[str, Any]], None]
-"""Raises SceneError for a scene, and a selection, that an observable is not defined for, however long the
-run."""
+"""Function that raises SceneError if an observable is undefined for a scene and a selection, for runs of any
+length.
+"""
 BASE = {"length": (1, 0, 0), "mass": (0, 1, 0), "time": (0, 0, 1), "energy": (2, 1, -2)}
-"""The powers of length, mass and time of each word in units; k_B = 1."""
+"""Powers of length, mass and time for each word in unit strings; k_B = 1."""
 _FACTOR = re.compile(r"([a-z]+)(?:\^(-?\d+))?")
 _EXPONENT = re.compile(r"\^(?:\((\d*d?)-(\d*d?)\)|d)")
 
@@ -24,7 +25,7 @@ _EXPONENT = re.compile(r"\^(?:\((\d*d?)-(\d*d?)\)|d)")
 def units_in(units: str, dimension: int) -> str:
     """Replace exponents that depend on the dimension d by numbers.
 
-    For example, `mass length^(2-d) / time` is `mass length^-1 / time` in three dimensions.
+    For example, `mass length^(2-d) / time` becomes `mass length^-1 / time` in three dimensions.
     """
 
     def number(match: re.Match[str]) -> str:
@@ -37,9 +38,9 @@ def units_in(units: str, dimension: int) -> str:
 
 
 def powers_of(units: str, dimension: int) -> tuple[int, int, int]:
-    """Return the powers of length, mass and time in declared units.
+    """Return the powers of length, mass and time in the declared units.
 
-    A value grows with these powers if the units become smaller.
+    If the units become smaller, the numerical value grows with these powers.
     """
     total = [0, 0, 0]
     above, _, below = units_in(units, dimension).partition(" / ")
@@ -52,18 +53,18 @@ def powers_of(units: str, dimension: int) -> tuple[int, int, int]:
 
 @dataclass(frozen=True)
 class Along:
-    """Dimension of a result, and the effect of a change of the description on it.
+    """Dimension of a result, and how its values change when the scene is transformed.
 
-    units : units of its coordinate.
-    names : True if its coordinate has names, one value for each.
-    exchanged : effect of an exchange of axes: "" none, "names" the names follow the axes, "chosen" the values
+    units : units of the coordinate.
+    names : True if the coordinate consists of names, one for each value.
+    exchanged : effect of exchanging axes. "": none. "names": the names follow the axes. "chosen": the values
         are those along the other axis.
-    mirrored : effect of a mirror across an axis: "" none, "ends" the low and the high face change places,
-        "reversed" the values along this axis are in reverse order, "signs" a component changes its sign for
-        each time that it names the axis.
-    shifted : effect of a shift of all particles along a periodic axis: "" none, "moved" the values move along
-        the axis.
-    relabelled : True if the names follow the numbers of the species.
+    mirrored : effect of a mirror image across an axis. "": none. "ends": the low and the high face are
+        exchanged. "reversed": the values along this axis are in reverse order. "signs": a component changes
+        its sign once for each occurrence of the axis in its name.
+    shifted : effect of a shift of all particles along a periodic axis. "": none. "moved": the values move
+        along the axis.
+    relabelled : True if the names follow the species numbers.
     """
 
     meaning: str
@@ -86,65 +87,65 @@ DIMENSIONS: dict[str, Along] = {
     "component": Along("component", names=True, exchanged="names", mirrored="signs"),
     "pair": Along("numbers of two species, from 0", names=True, relabelled=True),
 }
-"""All dimensions of results."""
+"""Dimensions of all results, by name."""
 
 
 @dataclass(frozen=True)
 class Named:
-    """Observable that has a name.
+    """Declaration of a named observable.
 
-    Its meaning:
+    Description:
 
-    title : its name in words, and of its values on an axis, with its symbol.
-    definition : a sentence, for a list.
+    title : name in words, and label of its values on an axis, with the symbol.
+    definition : definition in one sentence.
     symbol : the symbol.
-    units : powers of length, mass, time and energy with k_B = 1 (`units_in`).
-    function : function of `gaspart.analysis`, called with `arguments`.
-    along : dimensions of the result, from `DIMENSIONS`; empty for a number.
-    selections : keyword arguments that restrict it, or give it along axes.
+    units : units as powers of length, mass, time and energy with k_B = 1 (`units_in`).
+    function : name of the function in `gaspart.analysis`, and its `arguments`.
+    along : dimensions of the result, names in `DIMENSIONS`; empty for a scalar.
+    selections : keyword arguments that restrict the observable, or resolve it along axes.
 
-    Where it is defined:
+    Conditions of definition:
 
-    needs : data that a run must have stored: "" none, "paths" of particles, "pairs" the collisions of each
-        pair of species, "fluxes" correlations of the stress and the heat flux, or "shear" the momentum along
-        faces, which some engines tally.
-    conditions : conditions of a scene, see `Condition`.
-    needs_all_particles : requirement that the file has all particles: "always", "never", "mixed", if there
-        are several kinds of particles, or "unless fluxes" are stored, which include the temperature.
-    varying : True if it is defined where particles come and go through open faces.
-    ends : keyword argument of the function with the end of its bins, if that follows from the run.
-    nothing : equations that an engine solves (`Engine.equation`) whose runs do not determine it, each with
-        the reason.
+    needs : stored data that the observable needs. "": none. "paths": paths of particles. "pairs": numbers of
+        collisions of each pair of species. "fluxes": correlations of the stress and the heat flux. "shear":
+        momentum along faces, which only some engines tally.
+    conditions : conditions on a scene, see `Condition`.
+    needs_all_particles : when the file must contain all particles. "always", "never", "mixed" (with several
+        kinds of particles), or "unless fluxes" (unless the run stores fluxes, which include the temperature).
+    varying : True if the observable is defined in scenes with open faces.
+    ends : keyword argument of the function for the end of its bins, if this follows from the run.
+    nothing : equations (`Engine.equation`) that do not determine the observable, each with the reason.
 
-    The theory that it is compared with:
+    Theory for comparison:
 
-    theory : function in `analysis.expected`, which knows the equation of the engine.
-    bulk : function of `analysis.bulk`, of an infinite plain gas by each equation.
-    source : origin of its value for particles that touch, with {state} for the equation of state.
-    mixture : function of `gaspart.theory` of a mixture; "" without one.
+    theory : function in `analysis.expected` that computes the theory for the equation of the engine.
+    bulk : function of `theory.bulk` for an infinite plain gas and each equation.
+    source : source of the theoretical value for the exact dynamics; {state} stands for the equation of state.
+    mixture : function of `gaspart.theory` for a mixture; "" without one.
 
-    Its transformations; units and `along` state changes of units, exchanges of axes, mirrors and shifts:
+    Symmetries (units and `along` determine changes of units, exchanges of axes, mirror images and shifts):
 
-    moving : True if it is the same in a frame that moves uniformly.
-    scatter : samples whose scatter is its uncertainty: parts of the "run", or groups of "particles", which
-        other numbers of the particles change.
-    merged : effect of stating one species as two equal ones: "" none, "split" a value for each of their
-        pairs, or "lost" it is not defined for one of the two.
+    moving : True if the observable is the same in a uniformly moving frame of reference.
+    scatter : samples whose scatter gives the uncertainty: parts of the "run", or groups of "particles". The
+        groups depend on the order of the particles.
+    merged : effect of splitting a species into two equal species. "": none. "split": a value for each of
+        their pairs. "lost": undefined for one of the two.
 
-    The planning of runs:
+    Planning of runs:
 
-    power : power of the temperature that it grows with.
-    memory : True if it depends on the memory of collisions, which no kinetic equation has.
-    lags : number of lags of its correlations in a pilot, 0 without.
-    samples : purpose of the spacing of frames: "" a mean over time, "structure" independent positions,
-        "paths" lags.
-    of_impulses : True if it is computed from the impulses that all walls are given.
-    by_impulses : True if impulses that a run stores make it more accurate.
-    ends_runs : True if `--until` may require it.
-    drives : conditions of a scene in whose steady state it is not 0, tested in addition to `conditions`
-        before an accuracy is planned.
-    tabulated : True if costs and errors are in the table.
-    relative_to : reference of its relative accuracy, each "value", or their "norm" if some vanish on average.
+    power : power of the temperature to which the observable is proportional.
+    memory : True if the observable depends on correlated collisions, which no kinetic equation includes.
+    lags : number of lags of its correlations in a pilot run, 0 without correlations.
+    samples : criterion for the time between frames. "": average over time. "structure": independent
+        positions. "paths": lags.
+    of_impulses : True if the observable is computed from the impulses on all walls.
+    by_impulses : True if stored impulses make the observable more accurate.
+    ends_runs : True if `--until` may require an accuracy of the observable.
+    drives : conditions under which the observable is nonzero in the steady state. They are tested in addition
+        to `conditions` before a run is planned.
+    tabulated : True if the table contains costs and errors.
+    relative_to : reference of the relative accuracy: each "value", or the "norm" of all values if some vanish
+        on average.
     """
 
     title: str
@@ -181,19 +182,19 @@ class Named:
 
     @property
     def form(self) -> str:
-        """Form of the result: "number", "names" (a value for each of some names), or "curve"."""
+        """Form of the result: "number", "names" (one value per name), or "curve"."""
         if not self.along:
             return "number"
         return "names" if DIMENSIONS[self.along[-1]].names else "curve"
 
     @property
     def label(self) -> str:
-        """The title with the symbol."""
+        """Title with the symbol."""
         return f"{self.title} {self.symbol}".rstrip()
 
     @property
     def listed(self) -> str:
-        """The definition, with the option of the run that it needs."""
+        """Definition, with the option that the run needs."""
         options = {"pairs": ", of a run with --pairs", "fluxes": ", of a run with --stress"}
         return self.definition + options.get(self.needs, "")
 

@@ -1,7 +1,7 @@
-"""The diffusion coefficient, from the paths of particles.
+"""Diffusion coefficient from the paths of particles.
 
 The uncertainty is the scatter of groups of particles, which are treated as independent. If there are fewer
-particles than groups, it is the scatter of as many blocks of the run.
+particles than groups, it is the scatter of blocks of the run, as many as groups.
 """
 
 from __future__ import annotations
@@ -26,13 +26,15 @@ from gaspart.errors import SceneError
 from gaspart.keys.values import number
 
 LINEAR_FROM = 12.0
-"""Collisions per particle from which on the slope of the mean-squared displacement is examined."""
+"""Collisions per particle after which the slope of the mean-squared displacement is examined."""
 _WITHIN = 2.0
-"""Standard errors of a change of the slope, up to which the slope is constant."""
+"""Maximum change of the slope, in standard errors, at which the slope counts as constant."""
 _SLOW = 0.06
-"""Relative change of the slope, up to which a tail of correlations is all that is missing."""
+"""Maximum relative change of the slope at which only the slow tail of correlations is missing."""
 _TAIL = 1.0 / (math.sqrt(2.0) - 1.0)
-"""Sum of all later changes, divided by the last one, for lags that double: D lacks t^(-1/2) of a tail."""
+"""Sum of all later changes divided by the last change, for lags that double each time. The missing part of D
+decreases as t^(-1/2).
+"""
 
 
 def diffusion_coefficient(
@@ -49,48 +51,50 @@ def diffusion_coefficient(
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
     species : int, optional
-        Only this species, as in `mean_squared_displacement`.
+        Measure only this species, as in `mean_squared_displacement`.
     particles : sequence of int, optional
-        Only these particles, as in `mean_squared_displacement`. For fewer than 16 particles, such as one
-        tracer, each of 16 blocks of the run must be long enough.
+        Measure only these particles, as in `mean_squared_displacement`. For fewer than 16 particles, such as
+        a single tracer, the run is divided into 16 blocks, and each block must be long enough.
     per_axis : bool, default False
-        D along each periodic axis instead of the mean over axes.
+        Measure D along each periodic axis instead of the mean over axes.
     lag : float, [time], optional
-        Take half of the slope of the mean-squared displacement along an axis at this time, from the frames
+        Use half of the slope of the mean-squared displacement along an axis at this time, from the frames
         before and after it.
     about : {"flow", "rest"}, default "flow"
-        Frame of reference, as in `mean_squared_displacement`, also for the condition of zero momentum.
+        Frame of reference, as in `mean_squared_displacement`. It also applies to the condition of zero
+        momentum.
 
     Returns
     -------
     Observable
         D in [length^2/time]. A scalar for a periodic container. For a container with walls, or with
-        `per_axis`, one value along each periodic axis, (axis,). Displacements across walls are limited, so D
-        does not exist there. The variable `lags` has the ends of the lags of the slope.
+        `per_axis`, one value along each periodic axis, (axis,). Across walls displacements are bounded, so D
+        does not exist there. The variable `lags` contains the first and the last lag of the slope.
 
     Raises
     ------
     SceneError
-        If there is no periodic axis, if the run is too short, or if it has too few frames. Without a lag also
-        for discs whose momentum lasts longer than 12 collisions, because their squared displacement grows as
-        t ln t, and if the slope still changes at the longest lags.
+        If there is no periodic axis, if the run is too short, or if it has too few frames. If no lag is
+        passed, also for discs whose momentum lasts longer than 12 collisions, because their squared
+        displacement grows as t ln t, and if the slope still changes at the longest lags.
 
     Notes
     -----
-    Slopes are computed between 6, 12, 24, 48 ... collisions of a particle, as far as the length of the run
-    permits. D is the first slope that equals the previous slope within two standard errors of their
-    difference. If the last slope has changed by less than 6 %, a slow tail is missing, whose size is added to
-    the error.
+    Slopes are computed between 6, 12, 24, 48 ... collisions of a particle, up to the length of the run. D is
+    the first slope that equals the previous slope within two standard errors of their difference. If the last
+    slope has changed by less than 6 %, only a slow tail is missing. The estimated size of the tail is added
+    to the error.
 
-    D at a `lag` is the integral of the velocity autocorrelation until then, which exists where D does not: of
-    discs, and between walls.
+    D at a `lag` is the integral of the velocity autocorrelation up to this lag. It exists even where D does
+    not, for example for discs and between walls.
 
-    Theory: for spheres in a periodic cube, the result of Erpenbeck and Wood with the shift of Yeh and Hummer;
-    the uncertainty is half of the shift. At a given lag, the theory of the mean-squared displacement.
+    Theory for spheres in a periodic cube: the result of Erpenbeck and Wood with the correction of Yeh and
+    Hummer; the uncertainty is half of this correction. Theory at a given lag: the derivative of the
+    theoretical mean-squared displacement.
 
     Examples
     --------
@@ -106,7 +110,7 @@ def diffusion_coefficient(
         require_defined("D", run.scene, species=species, particles=particles, lag=lag, about=about)
         chosen = select_particles(run, species, particles)
         stride = stride_of(run, len(chosen))
-        if lag is not None:  # frames so near that the slope is that at the lag
+        if lag is not None:  # the frames are so close that their slope equals the slope at the lag
             stride = min(stride, max(1, int(number("lag", lag, "must be a time") / (4.0 * run.interval))))
         parts = GROUPS if len(chosen) < GROUPS else 1
         lags = _all_lags(run, stride, parts) if lag is None else _lags_about(run, lag, stride, parts)
@@ -136,23 +140,23 @@ def diffusion_coefficient(
 
 
 def _all_lags(run: Run, stride: int, parts: int) -> tuple[int, ...]:
-    """Return lags in frames, of 6, 12, 24, 48 ... collisions of a particle.
+    """Return lags of 6, 12, 24, 48 ... collisions of a particle, in frames.
 
-    The longest lag is at most half of the frames of each of the parts of a run. Raises SceneError as
-    `lags_of_slopes`.
+    The longest lag is at most half of the frames of each of `parts` equal parts of the run. Raises SceneError
+    for the reasons of `lags_of_slopes`.
     """
     return _extend_lags(lags_of_slopes(run, stride, parts), len(run.time) // (stride * parts))
 
 
 def _extend_lags(lags: tuple[int, ...], frames: int) -> tuple[int, ...]:
-    """Extend lags by doubled lags, up to half of a number of frames."""
+    """Extend lags by doubling, up to half of the number of frames."""
     while 4 * lags[-1] <= frames:
         lags = (*lags, 2 * lags[-1])
     return lags
 
 
 def _with_lags(result: Observable, ends: np.ndarray, rate: float) -> Observable:
-    """Add the ends of the lags of a slope to its result."""
+    """Add the first and the last lag of a slope to its result."""
     collisions = " to ".join(f"{rate * end:.3g}" for end in ends)
     result.attrs["lags"] = ends
     result.attrs["note"] = (
@@ -167,7 +171,7 @@ def _rate(run: Run) -> float:
 
 
 def _lags_about(run: Run, lag: float, stride: int, parts: int) -> tuple[int, ...]:
-    """Return the numbers of frames one below and one above a lag.
+    """Return a lag in frames, rounded down and up.
 
     Raises SceneError for a lag shorter than the time between frames, or longer than half of each of the equal
     parts of a run.
@@ -183,14 +187,14 @@ def _lags_about(run: Run, lag: float, stride: int, parts: int) -> tuple[int, ...
 
 
 def require_spheres(run: Run, lasting: np.ndarray) -> None:
-    """Raise SceneError for discs whose total momentum lasts along an axis.
+    """Raise SceneError for discs whose total momentum persists along an axis.
 
     Parameters
     ----------
     run : Run
         The run.
     lasting : ndarray of bool, shape (d,)
-        True for axes along which momentum lasts.
+        True for axes along which the momentum persists.
 
     Raises
     ------
@@ -202,9 +206,9 @@ def require_spheres(run: Run, lasting: np.ndarray) -> None:
 
 
 def linear_lags(rate: float, interval: float) -> tuple[int, int, int]:
-    """Return the lags, in frames, after which a particle has had 6, 12 and 24 collisions.
+    """Return the lags, in frames, of 6, 12 and 24 collisions of a particle.
 
-    These lags are before the window of D, at its start and at its end.
+    The first lag is before the window of D; the other lags are its start and its end.
 
     Parameters
     ----------
@@ -230,7 +234,7 @@ def lags_of_slopes(run: Run, stride: int = 1, parts: int = 1) -> tuple[int, ...]
     run : Run
         The run.
     stride : int, default 1
-        One of this number of frames is taken.
+        Use every `stride`-th frame.
     parts : int, default 1
         Number of parts of the run; the lags must fit into each part.
 
@@ -260,10 +264,10 @@ def lags_of_slopes(run: Run, stride: int = 1, parts: int = 1) -> tuple[int, ...]
 
 
 def _lasting_momentum(run: Run, lag: int) -> np.ndarray:
-    """Return the axes (d,) along which the momentum of the moving particles persists for `lag` frames.
+    """Return a mask (d,) of axes along which the moving particles' momentum persists for `lag` frames.
 
-    These are the axes along which momentum is conserved, or more than half of it remains, for example with a
-    few obstacles among many particles.
+    Along these axes the momentum is conserved, or more than half of it remains, for example with a few
+    obstacles among many particles.
     """
     masses = run.masses[run.moving]
     if run.flow_axes:
@@ -289,9 +293,9 @@ def _slopes(groups: Groups, lags: tuple[int, ...]) -> np.ndarray:
 
 
 def settled_slope(slopes: np.ndarray, sizes: Sequence[int] | None = None) -> tuple[int, np.ndarray | float]:
-    """Find the slope that no longer changes, among slopes (G, K, ...) at increasing lags.
+    """Find the first slope that no longer changes, among slopes (G, K, ...) at increasing lags.
 
-    Returns the number of the slope and an estimate of the neglected tail. The tail is 0 if the slope equals
+    Returns the index of the slope and an estimate of the neglected tail. The tail is 0 if the slope equals
     the previous slope within its error along every axis. `sizes` (G,) are the numbers of particles in the
     groups. Raises SceneError if the last slopes change by more than a slow tail explains.
     """
@@ -311,44 +315,45 @@ def settled_slope(slopes: np.ndarray, sizes: Sequence[int] | None = None) -> tup
     return k, _TAIL * np.abs(change)
 
 
-# Mutual diffusion: how two species pass through one another.
+# Mutual diffusion: diffusion of two species relative to each other.
 
 
 def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
-    """Measure the coefficient of mutual diffusion of two species by Maxwell and Stefan.
+    """Measure the Maxwell-Stefan coefficient of mutual diffusion of two species.
 
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
     Observable
-        D_12 in [length^2/time]. Theory: Enskog's in the first approximation.
+        D_12 in [length^2/time]. Theory: Enskog's first approximation.
 
     Raises
     ------
     SceneError
-        If there are not two species; with fixed particles, walls or contacts that lose energy; for discs,
-        which have no such coefficient; if frames are too far apart or runs too short; and if the rise still
-        changes at the longest lags.
+        If there are not exactly two species; with fixed particles, walls or contacts that lose energy; for
+        discs, for which the coefficient does not exist; if frames are too far apart or runs too short; or if
+        the slope still changes at the longest lags.
 
     Notes
     -----
-    With X_1 and X_2 the mean displacements of the species, x_1 and x_2 their fractions of N particles, it is
+    X_1 and X_2 are the mean displacements of the species, and x_1 and x_2 their fractions of the N particles.
+    Then
 
         D_12 = x_1 x_2 N / (2 d) d/dt <|X_1(t) - X_2(t)|^2>,
 
-    by the first rise between 6, 12, 24, 48 ... collisions of a particle that equals the previous rise within
-    two standard errors [1]_ [2]_; the attribute `lags` has the two lags. The longest lag is a 32nd of the
-    run, but 24 collisions at least. If the last rise has changed by less than 6 %, a slow tail is missing,
-    whose size is added to the error. Fick's coefficient is D_12 times the thermodynamic factor, which is 1
-    for species of one size. Of species that differ in nothing but their numbers D_12 is the D of a single
-    particle, exactly. X_1 - X_2 is one vector, however many particles there are: only longer runs are more
-    accurate.
+    The derivative is the first slope between 6, 12, 24, 48 ... collisions of a particle that equals the
+    previous slope within two standard errors [1]_ [2]_. The attribute `lags` contains the two lags. The
+    longest lag is a 32nd of the run, but at least 24 collisions. If the last slope has changed by less than 6
+    %, only a slow tail is missing. The estimated size of the tail is added to the error. Fick's coefficient
+    is D_12 times the thermodynamic factor, which is 1 for species of one size. If the species differ only in
+    their numbers, D_12 is exactly the D of a single particle. X_1 - X_2 is a single vector for any number of
+    particles, so only longer runs are more accurate.
 
     References
     ----------
@@ -380,9 +385,9 @@ def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
 
 
 def _rises(path: np.ndarray, lags: tuple[int, ...]) -> Iterator[np.ndarray]:
-    """Generate the rises of the squared change of a path per frame, between consecutive lags.
+    """Yield the slopes of the squared change of a path per frame, between consecutive lags.
 
-    Each has its value from each time on, as far as the longer of the two lags allows.
+    Each slope is a series over the time origins that both lags permit.
     """
     for early, late in itertools.pairwise(lags):
         number = len(path) - late
@@ -390,14 +395,14 @@ def _rises(path: np.ndarray, lags: tuple[int, ...]) -> Iterator[np.ndarray]:
 
 
 def _settled_rise(rises: list[np.ndarray]) -> tuple[int, float]:
-    """Find the rise that no longer changes.
+    """Find the first slope that no longer changes.
 
-    Returned are its number and the size of the tail that it lacks. The limits are as in `settled_slope`.
-    Raises SceneError if the last rises change by more than a slow tail explains.
+    Returns the index of the slope and the estimated size of the neglected tail. The limits are those in
+    `settled_slope`. Raises SceneError if the last slopes change by more than a slow tail explains.
     """
     for k in range(1, len(rises)):
         changes = rises[k] - rises[k - 1][: len(rises[k])]
-        if len(changes) < LEAST_INTERVALS:  # `scalar` rejects the run
+        if len(changes) < LEAST_INTERVALS:  # `scalar` then rejects the run
             return k, 0.0
         change = correlated_mean(changes, LEAST_INTERVALS).estimate
         if abs(change.deviation) <= _WITHIN:
@@ -417,5 +422,5 @@ def _separation(run: Run) -> np.ndarray:
 
 
 def _squares(path: np.ndarray, lag: int) -> np.ndarray:
-    """Compute the squared change over a lag, from each time on, shape (T - lag,)."""
+    """Compute the squared change over a lag for each time origin, shape (T - lag,)."""
     return ((path[lag:] - path[:-lag]) ** 2).sum(axis=1)

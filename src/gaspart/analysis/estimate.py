@@ -7,35 +7,36 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-if TYPE_CHECKING:  # single numbers, as claims have, need no numpy
+if TYPE_CHECKING:  # single numbers, as in claims, do not need numpy
     import numpy as np
     import xarray
 
 Number = Any
-"""A number, or an array of numbers, of any library; kept as a float, or as an array of floats."""
+"""A number or an array of any library; it is stored as a float or an array of floats."""
 
 
 @dataclass(frozen=True, eq=False)
 class Estimate:
-    """Number and its standard uncertainty, 0 where it is exact; or an array of such numbers.
+    """Number with its standard uncertainty (0 if exact), or an array of such numbers.
 
-    `freedom` is the number of degrees of freedom of the uncertainty, if it comes from the scatter of a few
-    samples (their number less one); infinite if it is known otherwise. A deviation is then distributed as
-    Student's t. Sums, products and quotients propagate the uncertainties of independent numbers to first
-    order, and the degrees of freedom by the formula of Welch and Satterthwaite (Biometrics Bulletin 2, 110
-    (1946)).
+    `freedom` is the number of degrees of freedom of the uncertainty if it comes from the scatter of a few
+    samples; it is then their number minus one. Otherwise it is infinite. With a finite `freedom`, a deviation
+    follows
+    Student's t distribution. Sums, products and quotients propagate the uncertainties of independent numbers
+    to first order, and the degrees of freedom by the formula of Welch and Satterthwaite (Biometrics Bulletin
+    2, 110 (1946)).
 
-    In arrays, which broadcast to one shape, every element is a number of its own, and is propagated as a
-    single number: to the last bit. An estimate of an array has a length, can be iterated over along its first
-    axis, and indexed; the array must not be changed. Raises ValueError for a negative uncertainty, for
-    degrees of freedom that are not positive, and for arrays of shapes that do not broadcast.
+    Arrays are broadcast to one shape. Each element is propagated exactly as a single number, to the last bit.
+    An estimate of an array has a length, and can be indexed and iterated over along its first axis. The array
+    must not be changed. Raises ValueError for a negative uncertainty, for degrees of freedom that are not
+    positive, and for arrays of shapes that do not broadcast.
     """
 
     value: Number
     error: Number = 0.0
     freedom: Number = math.inf
 
-    __array_ufunc__ = None  # of an array and an estimate, the estimate does the arithmetic
+    __array_ufunc__ = None  # in an operation of an array and an estimate, the estimate's method is used
 
     def __post_init__(self) -> None:
         parts = [_floats(part) for part in (self.value, self.error, self.freedom)]
@@ -50,35 +51,35 @@ class Estimate:
 
     @classmethod
     def of(cls, dataset: xarray.Dataset, name: str) -> Estimate:
-        """Return the variable `name` of a dataset, with the variable `name`_error as its uncertainty.
+        """Return the variable `name` of a dataset, with `name`_error as its uncertainty.
 
-        The variable `name`_freedom, where it exists and is positive, has its degrees of freedom.
+        If the variable `name`_freedom exists and is positive, it is the number of degrees of freedom.
         """
         column, error = dataset[name], dataset[f"{name}_error"]
         if f"{name}_freedom" not in dataset:
             return cls(column, error)
-        freedom = dataset[f"{name}_freedom"]  # NaN where there is none
+        freedom = dataset[f"{name}_freedom"]  # NaN if there is no uncertainty
         freedom = freedom.where(freedom > 0.0, math.inf).broadcast_like(column).transpose(*column.dims)
         return cls(column, error, freedom)
 
     @classmethod
     def stack(cls, estimates: Sequence[Estimate]) -> Estimate:
-        """Join estimates of one shape along a new first axis; without any, return an empty array."""
+        """Join estimates of one shape along a new first axis; none give an empty array."""
         parts = ([estimate._parts[k] for estimate in estimates] for k in range(3))
         return cls(*parts)
 
     @property
     def deviation(self) -> Number:
-        """Distance from 0 in standard deviations, infinite for an exact number that is not 0.
+        """Distance from 0 in standard deviations; infinite for an exact number other than 0.
 
-        Where the uncertainty comes from a few samples, the Gaussian deviation of the same probability as that
-        of Student's t.
+        If the uncertainty comes from a few samples, the probability by Student's t is converted to the
+        Gaussian deviation of equal probability.
         """
         return _each(_deviation, 1)(self.value, self.error, self.freedom)
 
     @property
     def weights(self) -> np.ndarray:
-        """1 / error^2 of each element of an array, over their sum."""
+        """Normalized weights of the elements of an array, 1 / error^2 divided by their sum."""
         weights: np.ndarray = self.error**-2
         return weights / weights.sum()
 
@@ -97,7 +98,7 @@ class Estimate:
         return all(map(np.array_equal, self._parts, other._parts))
 
     def __hash__(self) -> int:
-        return hash(self._parts)  # TypeError for arrays
+        return hash(self._parts)  # raises TypeError for arrays
 
     @property
     def _parts(self) -> tuple[Number, Number, Number]:
@@ -146,7 +147,7 @@ class Estimate:
 
 
 def concise(value: float, error: float) -> str:
-    """Format a number with its uncertainty in the last two digits, as 1.242(20).
+    """Format a number with its uncertainty in the last two digits, such as 1.242(20).
 
     Without an uncertainty the number has six digits.
     """
@@ -163,7 +164,7 @@ def concise(value: float, error: float) -> str:
 
 
 def as_estimate(number: Estimate | Number) -> Estimate:
-    """Return an estimate unchanged, another number or array as an exact estimate."""
+    """Return an estimate unchanged, or another number or array as an exact estimate."""
     return number if isinstance(number, Estimate) else Estimate(number)
 
 
@@ -192,14 +193,14 @@ def _any(wrong: bool | np.ndarray) -> bool:
 
 
 def _sum(value: Number, *parts: tuple[Number, Number]) -> Estimate:
-    """Return the value with the uncertainty of two parts, each (error, degrees of freedom)."""
+    """Return the value with the combined uncertainty of two contributions (error, degrees of freedom)."""
     return Estimate(value, *_each(_together, 2)(*parts[0], *parts[1]))
 
 
 def _each(function: Callable[..., Any], results: int) -> Callable[..., Any]:
     """Extend a function of floats to arrays.
 
-    Floats are not passed through numpy: math and numpy differ in the last bits.
+    Single floats are not passed through numpy, because math and numpy differ in the last bits.
     """
 
     def of_any(*numbers: Number) -> Any:
@@ -207,7 +208,7 @@ def _each(function: Callable[..., Any], results: int) -> Callable[..., Any]:
             return function(*numbers)
         import numpy as np
 
-        with np.errstate(invalid="ignore"):  # of NaN: NaN, without a word
+        with np.errstate(invalid="ignore"):  # comparison with NaN gives NaN without a warning
             return np.vectorize(function, otypes=[float] * results)(*numbers)
 
     return of_any

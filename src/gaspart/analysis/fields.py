@@ -1,4 +1,4 @@
-"""Fields: density, flow and temperature in cells along one or more axes."""
+"""Fields: density, flow velocity and temperature in cells along one or more axes."""
 
 from __future__ import annotations
 
@@ -32,25 +32,25 @@ def field(
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     of : {"density", "velocity", "temperature"}, default "density"
-        "density": particles per volume of the cell within the container of the moment (faces may move).
-        "velocity": mean velocity. "temperature": twice the kinetic energy per degree of freedom about the
-        local flow of mass.
+        "density": particles per volume of the cell; the volume is the part within the present container
+        (faces may move). "velocity": mean velocity. "temperature": twice the kinetic energy per degree of
+        freedom, relative to the local mass-weighted flow.
     axes : str, optional
         Axes, such as "xy". Default: the first two.
     cells : int or sequence of int, default 20
-        Number of cells, of each axis. Along the other axes a cell is as long as the container.
+        Number of cells along each axis. Along the other axes each cell is as long as the container.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
     species : int, optional
-        Only this species, by its number in the scene.
+        Measure only this species, identified by its number in the scene.
 
     Returns
     -------
     Observable
-        Mean over all frames, ("x", "y"), of the velocity ("component", "x", "y"). NaN in cells that were
-        always empty.
+        Mean over all frames, with dimensions ("x", "y"); a velocity has ("component", "x", "y"). NaN in cells
+        that were always empty.
 
     Raises
     ------
@@ -59,9 +59,10 @@ def field(
 
     Notes
     -----
-    The flow of a temperature is taken in these cells, and across faces that slide; before faces that move
-    along their normal in layers of each frame (see `gaspart.analysis.flow`). Errors are defined as in
-    `profile`, and so is the density along one axis of a run that has stored its impulses.
+    The local flow for the temperature is computed in the same cells, also across sliding faces. With faces
+    that move along their normal it is computed in layers of each frame (see `gaspart.analysis.flow`). Errors
+    are defined as in `profile`. If the run has stored impulses, the density along one axis is also computed
+    as in `profile`.
 
     Examples
     --------
@@ -100,7 +101,7 @@ def field(
 
 
 def _axes(run: Run, axes: str | None) -> list[int]:
-    """Return the numbers of the named axes; raise SceneError for others."""
+    """Return the numbers of the named axes; raise SceneError for unknown axes."""
     names = "xyz"[: run.dimension]
     requested = "xy" if axes is None else axes
     if not requested or len(set(requested)) < len(requested) or not set(requested) <= set(names):
@@ -109,14 +110,14 @@ def _axes(run: Run, axes: str | None) -> list[int]:
 
 
 def _numbers(cells: int | Sequence[int], axes: int) -> list[int]:
-    """Return the number of cells along each axis; raise SceneError for others."""
+    """Return the number of cells along each axis; raise SceneError for invalid numbers."""
     each = [cells] * axes if isinstance(cells, int) else list(cells)
     if len(each) != axes:
         raise SceneError("cells", each, f"must be one number, or {axes}")
     return [count_of("cells", number, least=1) for number in each]
 
 
-# The mean velocity of a gas along an axis.
+# Mean velocity of a gas along an axis.
 
 
 def velocity_profile(
@@ -131,11 +132,11 @@ def velocity_profile(
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     axis : {"x", "y", "z"}, optional
         The axis. Default: the last one.
     species : int, optional
-        Only this species, by its number in the scene.
+        Measure only this species, identified by its number in the scene.
     bins : int, default 40
         Number of bins.
     start : float, [time], optional
@@ -154,12 +155,13 @@ def velocity_profile(
 
     Notes
     -----
-    It is the mean velocity of the particles, not of their mass. Of sheared gases and between sliding walls it
-    is in the scene's frame of reference. Uncertainties are defined as in `field`.
+    It is the mean velocity of particles, not the mass-weighted mean. For sheared gases and between sliding
+    walls it is relative to the scene's frame of reference. Uncertainties are defined as in `field`.
 
-    Theory: the flow of sheared images; between sliding plates free flight above a Knudsen number of 100, and
-    a linear flow with slip below 0.1, and in the same range the parabola of dilute spheres that a force
-    drives along plates; otherwise, in equilibrium, the velocity of the centre of mass everywhere.
+    Theory for sheared images: their linear flow. Theory between sliding plates: free molecular flow above a
+    Knudsen number of 100, and a linear flow with slip below 0.1. Below 0.1 also the parabolic flow of dilute
+    spheres that a force drives along plates. Theory in equilibrium: the velocity of the centre of mass
+    everywhere.
 
     Examples
     --------

@@ -1,24 +1,24 @@
-"""Reference of motion: the flow relative to which velocities, displacements and temperatures are measured.
+"""Reference of motion: the flow to which velocities, displacements and temperatures are relative.
 
-Temperature, speeds, msd, vacf, D and all of `by_species` are about the same local flow, by default; with
-about="rest", about the container at rest, whatever flows.
+By default, temperature, speeds, msd, vacf, D and all results of `by_species` are relative to the same local
+flow. With about="rest" they are relative to the resting container.
 
-In a group of particles in local equilibrium, let u = sum m v / M be their mean velocity, M their mass. A
-component of a particle has <m (v - u)^2> = (1 - m / M) k_B T, exactly, for any u: the part m / M of a degree
-of freedom is spent on u. The group depends on how the gas can move:
+Consider a group of particles in local equilibrium with mean velocity u = sum m v / M and total mass M. For a
+component of a particle's velocity, <m (v - u)^2> = (1 - m / M) k_B T holds exactly for any u. The fraction m
+/ M of a degree of freedom belongs to u. The group depends on how the gas can move:
 
-- as a whole: all particles of a frame, along axes on which their momentum is conserved;
-- between faces that slide, under a force along a periodic axis, or in a `wind`: the particles of a cell in
-  all frames, a steady flow;
-- before faces that move along their normal, and between open ones: the particles of a cell in one frame,
-  since the flow changes.
+- All particles of a frame, along axes on which their total momentum is conserved.
+- All particles of a cell in all frames, if the flow is steady: between sliding faces, under a force along a
+  periodic axis, or in a `wind`.
+- All particles of a cell in one frame, if the flow changes: with faces that move along their normal, and
+  between open faces.
 
-A flow that is known, between sheared faces (`LeesEdwards`), is subtracted before.
+The known flow between sheared faces (`LeesEdwards`) is subtracted first.
 
-A displacement about a steady flow is the displacement of the particle less the time integral of the flow at
-its position, by the trapezoidal rule over frames: <|dr|^2> is then twice the integral of the velocity
-autocorrelation about the flow, without the contribution of a gradient of the flow (Taylor's dispersion).
-About a flow that changes, it is not known from frames.
+A displacement relative to a steady flow is the displacement of the particle minus the time integral of the
+flow at its position. The integral is computed by the trapezoidal rule over frames. Then <|dr|^2> is twice the
+integral of the velocity autocorrelation relative to the flow, without the contribution of a gradient of the
+flow (Taylor dispersion). Relative to a changing flow, displacements cannot be computed from frames.
 """
 
 from __future__ import annotations
@@ -39,22 +39,22 @@ if TYPE_CHECKING:
     from gaspart.analysis.run import Run
 
 
-# The container of the moment: faces that move, and the areas and volumes between them.
+# Present container: moving faces, and the areas and volumes between them.
 
 
 _POINTS = 2**14
 _RATIOS = {2: 1.32471795724474602596, 3: 1.22074408460575947536}
-"""Whose powers give evenly spread points: x^(d + 1) = x + 1 (Roberts 2018)."""
-_INSTANTS = 64, 1024  # of an interval between frames, over which a mean is taken: the least and the most
+"""Ratios whose powers give evenly spread points: x^(d + 1) = x + 1 (Roberts 2018)."""
+_INSTANTS = 64, 1024  # minimum and maximum number of instants per interval for a time average
 _GOLDEN = 0.6180339887498949
-_NUMBERS = 2_000_000  # of all intervals together
+_NUMBERS = 2_000_000  # maximum number of values for all intervals together
 
 
 def sides(run: Run, times: np.ndarray) -> np.ndarray:
-    """Return the lower and the upper end (S, d, 2) of the container along each axis.
+    """Return both ends (S, d, 2) of the container along each axis at given times.
 
-    The times (S,) are times of the run. A piston moves uniformly between frames. Raises SceneError for frames
-    without its position.
+    The times (S,) lie within the run. A piston is assumed to move uniformly between frames. Raises SceneError
+    if the frames do not contain the position of the piston.
     """
     scene = run.scene
     ends = np.zeros((len(times), run.dimension, 2))
@@ -71,9 +71,9 @@ def sides(run: Run, times: np.ndarray) -> np.ndarray:
 
 
 def accessible_lengths(run: Run, times: np.ndarray) -> np.ndarray:
-    """Return the sides (S, d) of the box that centres of moving particles can reach.
+    """Return the side lengths (S, d) of the box that centres of moving particles can reach.
 
-    The times have the shape (S,); the largest moving particles count.
+    The times have the shape (S,). The largest moving particles determine the box.
     """
     lower, upper = run.scene.reach(run.scene.largest_moving_radius)
     margins = np.array(run.scene.container.lengths) - np.subtract(upper, lower)
@@ -81,12 +81,12 @@ def accessible_lengths(run: Run, times: np.ndarray) -> np.ndarray:
 
 
 def face_areas(run: Run) -> np.ndarray:
-    """Compute the area by which a pressure or a flux on each face is divided.
+    """Compute the area of each face that divides a force or a flux.
 
-    The shape is (T - 1, 2d). It is the area that centres can reach, its mean over each interval between
-    frames. Across the axis of a piston with a load it is the area of the container, by which the load is
-    defined. If particles of several sizes reach different areas, it is NaN: the momentum given to faces is
-    then tallied per area. Faces move only where no fixed particle or interior wall is.
+    The shape is (T - 1, 2d). It is the area that centres can reach, averaged over each interval between
+    frames. Across the axis of a piston with a load it is the cross-section of the container, because the load
+    is defined with this area. If particles of several sizes reach different areas, it is NaN. Then the
+    momentum given to faces is tallied per area. Moving faces exclude fixed particles and interior walls.
     """
     scene, intervals = run.scene, len(run.time) - 1
     if scene.has_unequal_areas:
@@ -106,7 +106,7 @@ def face_areas(run: Run) -> np.ndarray:
 def _mean_areas(run: Run) -> np.ndarray:
     """Compute areas (T - 1, 2d) without obstacles, averaged over each interval between frames.
 
-    If a face moves, the mean is over instants that are spread evenly, but not at the period of the face.
+    If a face moves, the mean is over evenly spread instants that do not resonate with the period of the face.
     """
     intervals = len(run.time) - 1
     number = int(np.clip(_NUMBERS // intervals, *_INSTANTS))
@@ -117,12 +117,12 @@ def _mean_areas(run: Run) -> np.ndarray:
 
 
 def per_area(run: Run, amounts: np.ndarray, tallied: str) -> np.ndarray:
-    """Divide the amounts that each face receives per interval by the area that centres reach.
+    """Divide the amounts that each face receives per interval by the accessible area.
 
-    If particles of several sizes reach different areas, it is the sum over sizes of what the particles of
-    each size give divided by their area, from the tally of this name, with the component along the normal
-    where `amounts` has no components. NaN for faces whose area then changes with time. Raises SceneError for
-    a file without that tally.
+    If particles of several sizes reach different areas, the result is a sum over sizes. Each term is the
+    amount from particles of one size divided by their area, and comes from the named tally. If `amounts` has
+    no components, the tally's normal component is used. The result is NaN for faces whose area changes with
+    time in this case. Raises SceneError if the file does not contain the tally.
     """
     areas = face_areas(run)
     fluxes = amounts / areas.reshape(*areas.shape, *[1] * (amounts.ndim - 2))
@@ -139,14 +139,14 @@ def per_area(run: Run, amounts: np.ndarray, tallied: str) -> np.ndarray:
         weighted = weighted[:, faces, faces // 2]
     moved = {number // 2 for number, face in run.scene.numbered_faces if face.moves}
     weighted[:, [bool(moved - {face // 2}) for face in faces]] = np.nan
-    is_known = np.isfinite(areas)  # of a piston with a load
+    is_known = np.isfinite(areas)  # cross-section for a piston with a load
     return np.asarray(
         np.where(is_known.reshape(*is_known.shape, *[1] * (amounts.ndim - 2)), fluxes, weighted)
     )
 
 
 def _across(lengths: np.ndarray) -> np.ndarray:
-    """Compute the product of the other sides for each side (..., d)."""
+    """Compute the product of the other side lengths for each side (..., d)."""
     axes = range(lengths.shape[-1])
     return np.stack([np.delete(lengths, axis, axis=-1).prod(axis=-1) for axis in axes], axis=-1)
 
@@ -154,8 +154,8 @@ def _across(lengths: np.ndarray) -> np.ndarray:
 def accessible_fraction(run: Run, radius: float, axis: int, edges: np.ndarray) -> np.ndarray:
     """Compute the fraction (bins,) of each bin along an axis that is accessible to particle centres.
 
-    Fixed particles exclude the rest for particles of this radius. It is the fraction of `_POINTS` points,
-    spread evenly over the bin.
+    Fixed particles exclude the remaining volume for particles of this radius. The fraction is estimated with
+    `_POINTS` evenly spread points.
     """
     container, fixed = run.scene.container, ~np.isfinite(run.masses)
     lengths, widths = np.array(container.lengths), np.diff(edges)
@@ -179,12 +179,16 @@ def accessible_fraction(run: Run, radius: float, axis: int, edges: np.ndarray) -
     return shares
 
 
-# Equal cells along one or more axes, and sums over particles in them: the one histogram of the analysis.
+# Equal cells along one or more axes, and sums over particles in them; all histograms of the analysis use
+# them.
 
 
 @dataclass(frozen=True)
 class Grid:
-    """Cells between `lower` (A,) and `upper` (A,), as many along each axis as `numbers` (A,) states."""
+    """Equal cells between `lower` (A,) and `upper` (A,).
+
+    `numbers` (A,) are the numbers of cells along the axes.
+    """
 
     lower: tuple[float, ...]
     upper: tuple[float, ...]
@@ -197,7 +201,7 @@ class Grid:
 
     @cached_property
     def size(self) -> int:
-        """The number of cells."""
+        """Total number of cells."""
         return math.prod(self.numbers)
 
     @property
@@ -208,19 +212,19 @@ class Grid:
 
     @property
     def middles(self) -> list[np.ndarray]:
-        """Middles of the cells along each axis, shape (cells,)."""
+        """Centres of the cells along each axis, shape (cells,)."""
         return [0.5 * (edge[1:] + edge[:-1]) for edge in self.edges]
 
     @property
     def volume(self) -> float:
-        """Volume of one cell, along its axes."""
+        """Volume of a cell in the space of its axes."""
         sides = zip(self.lower, self.upper, self.numbers, strict=True)
         return math.prod((high - low) / number for low, high, number in sides)
 
     def cells(self, positions: np.ndarray, inside: bool = False) -> np.ndarray:
-        """Return the number of the cell at each position (..., A); -1 outside and at NaN.
+        """Return the cell number of each position (..., A); -1 outside and for NaN.
 
-        The upper end belongs to the last cell. If `inside`, a position that rounding put outside counts to
+        The upper end belongs to the last cell. If `inside`, a position that rounding moved outside belongs to
         the nearest cell.
         """
         shape = np.shape(positions)[:-1]
@@ -230,7 +234,7 @@ class Grid:
             outside |= np.isnan(x) if inside else ~((x >= low) & (x <= high))
             x -= low
             x *= number / (high - low)
-            np.fmax(x, 0.0, out=x)  # of NaN: 0
+            np.fmax(x, 0.0, out=x)  # NaN becomes 0
             np.fmin(x, number - 1.0, out=x)
             index *= number
             index += x.astype(np.int64)
@@ -246,24 +250,24 @@ class Grid:
     ) -> np.ndarray:
         """Sum weights, or count particles, in each cell, shape (*numbers).
 
-        cells : numbers of cells, from `cells`.
-        weights : array of a shape that extends to the shape of `cells`.
-        blocks : number of the block of each row (T,) of cells (T, ...); the sums are then of each block,
-            (blocks, *numbers).
-        before : sums of the frames before, of the same shape, which these continue: the result has the bits
-            of the sums of all frames in one piece. It has the number of blocks.
+        cells : cell numbers, from `cells`.
+        weights : array that broadcasts to the shape of `cells`.
+        blocks : block number of each row (T,) of cells (T, ...); then the result has one set of sums per
+            block, shape (blocks, *numbers).
+        before : sums over earlier frames, of the same shape, to which the new terms are added. The result has
+            the same bits as a single sum over all frames. It has as many blocks as the result.
         """
         number = 1 if blocks is None else int(blocks.max(initial=-1)) + 1
         shape = self.numbers if blocks is None else (number, *self.numbers)
         if before is not None:
             number, shape = before.size // self.size, before.shape
-        slot = cells + 1  # the first cell of each block has the particles outside
+        slot = cells + 1  # the first cell of each block collects the particles outside
         if blocks is not None:
             slot += (self.size + 1) * blocks.reshape(-1, *[1] * (cells.ndim - 1))
         slot, spread = slot.ravel(), None
         if weights is not None:
             spread = np.broadcast_to(weights, cells.shape).ravel()
-            if before is not None:  # the first number of each sum
+            if before is not None:  # the first entry of each sum
                 first = np.arange(number * (self.size + 1)).reshape(number, -1)[:, 1:]
                 slot = np.concatenate([first.ravel(), slot])
                 spread = np.concatenate([before.ravel(), spread])
@@ -273,26 +277,26 @@ class Grid:
 
 
 ABOUT = FLOW, REST = "flow", "rest"
-"""Frames of reference of motion: the local flow, or rest."""
-_SAMPLES = 500  # particles in frames, in each cell, from which a steady flow is known well enough
-_CELLS = 20  # along an axis, by default
-_CROWD = 8  # particles in a cell whose flow changes, by default
-_BLOWS = 3.0  # standard deviations of equilibrium from which on a mean momentum is a wind
+"""Frames of reference of motion: the local flow, or the container at rest."""
+_SAMPLES = 500  # minimum number of particles in frames per cell for an accurate steady flow
+_CELLS = 20  # default number of cells along an axis
+_CROWD = 8  # default number of particles per cell of a changing flow
+_BLOWS = 3.0  # equilibrium standard deviations above which a mean momentum counts as a wind
 
 
 @dataclass(frozen=True)
 class Peculiar:
-    """Velocities (T, M, d) of the M moving particles about the mean motion.
+    """Velocities (T, M, d) of the M moving particles relative to the mean motion.
 
-    `freedom` are the degrees of freedom of their components, of a shape that extends to this: 1, less the
-    part that is spent on the mean motion.
+    `freedom` is the number of degrees of freedom of each velocity component: 1 minus the fraction that
+    belongs to the mean motion. Its shape broadcasts to (T, M, d).
     """
 
     velocities: np.ndarray
     freedom: np.ndarray
 
     def energies(self, masses: np.ndarray) -> np.ndarray:
-        """Compute twice the kinetic energy (T, M) of each particle of masses (M,)."""
+        """Compute twice the kinetic energy (T, M) of each particle with masses (M,)."""
         return masses * sum_squares(self.velocities)
 
     def freedoms(self) -> np.ndarray:
@@ -305,7 +309,7 @@ class Peculiar:
 def sum_squares(vectors: np.ndarray) -> np.ndarray:
     """Sum the squares of the components of vectors (..., d).
 
-    It sums by axis: a short last axis is slow to sum.
+    The sum is over one axis after another, because numpy sums a short last axis slowly.
     """
     total = vectors[..., 0] ** 2
     for k in range(1, vectors.shape[-1]):
@@ -314,31 +318,31 @@ def sum_squares(vectors: np.ndarray) -> np.ndarray:
 
 
 def about_the_whole(run: Run) -> Peculiar:
-    """Compute velocities about the velocity of the centre of mass in each frame.
+    """Compute velocities relative to the centre of mass in each frame.
 
-    The velocity of the centre of mass is subtracted along the axes on which the total momentum is conserved;
-    of a sheared gas the flow too.
+    The velocity of the centre of mass is subtracted along the axes on which the total momentum is conserved.
+    For a sheared gas, the flow is also subtracted.
     """
     return about_the_mean(_about_known(run), run.masses[run.moving], run.conserved)
 
 
 def about_the_mean(velocities: np.ndarray, masses: np.ndarray, axes: np.ndarray) -> Peculiar:
-    """Compute velocities about the velocity of the centre of mass in each frame.
+    """Compute velocities relative to the centre of mass in each frame.
 
-    Velocities are (T, M, d), masses (M,); the mean is subtracted along axes (d,).
+    Velocities are (T, M, d), masses (M,). The mean is subtracted along the axes of the mask `axes` (d,).
     """
-    total = masses.sum() or 1.0  # of none: nothing
+    total = masses.sum() or 1.0  # no particles: nothing to subtract
     drift = np.einsum("tnd,n->td", velocities, masses) / total
     apart = velocities.copy()
     for k in np.flatnonzero(axes):
         apart[..., k] -= drift[:, k, None]
-    if (masses == masses[:1]).all():  # one number for all particles
+    if (masses == masses[:1]).all():  # one value for all particles
         masses = masses[:1]
     return Peculiar(apart, np.where(axes, 1.0 - masses[:, None] / total, 1.0)[None])
 
 
 def _about_known(run: Run) -> np.ndarray:
-    """Return velocities (T, M, d) of the moving particles, of a sheared gas about its flow."""
+    """Return velocities (T, M, d) of the moving particles, for a sheared gas about its flow."""
     velocities = _chosen(run.velocities, run.moving)
     if run.scene.shear_rate is None:
         return velocities
@@ -346,22 +350,23 @@ def _about_known(run: Run) -> np.ndarray:
 
 
 def flow_axes(run: Run) -> list[int]:
-    """Return the axes along which the velocity of the gas may vary.
+    """Return the axes along which the flow velocity may vary.
 
-    These are the axes of the scene (`Facts.flow_axes`), or the axes of a wind; none if it moves as a whole
-    only.
+    These are the axes of the scene (`Facts.flow_axes`), or the axes of a wind. No axis is returned if the gas
+    only moves as a whole.
     """
     scene = run.scene
     return list(scene.flow_axes or (scene.resolved_axes() if wind(run).any() else ()))
 
 
 def wind(run: Run) -> np.ndarray:
-    """Find the axes (d,) without an end along which a wind blows.
+    """Find the periodic axes along which a wind blows, as a mask (d,).
 
-    Momentum is not conserved along these axes.
+    The momentum is not conserved along these axes.
 
-    The mean of the momentum over the run is more than three times its scatter in equilibrium, sqrt(M k_B T).
-    A weaker wind adds at most 9 / (d N) to the temperature. A single particle has no scatter to compare with.
+    The mean momentum over the run is more than three times its equilibrium scatter sqrt(M k_B T). Neglecting
+    a weaker wind adds at most 9 / (d N) to the relative temperature. A single particle has no scatter for
+    comparison.
     """
     has_flow = np.zeros(run.dimension, dtype=bool)
     masses = run.masses[run.moving]
@@ -381,19 +386,19 @@ def wind(run: Run) -> np.ndarray:
 
 
 def about_the_flow(run: Run) -> Peculiar:
-    """Compute velocities of all frames about the mean motion (see `mean_motion`)."""
+    """Compute velocities in all frames relative to the mean motion (see `mean_motion`)."""
     return mean_motion(run)(run)
 
 
 def mean_motion(
     run: Run, along: Mapping[int, int] | None = None, local: bool = False
 ) -> Callable[[Run], Peculiar]:
-    """Return a function that computes velocities about the mean motion in some frames.
+    """Return a function that computes velocities relative to the mean motion in some frames.
 
-    They are about rest if the run is, about the local flow of mass, in cells along `flow_axes`, if the gas
-    can have one, and otherwise about the whole. `along` maps an axis to its number of cells, where these are
-    not the default ones; further axes are resolved too, if there is a steady flow. If `local`, the motion is
-    about the flow in these cells in any case.
+    They are relative to rest if the run is; otherwise relative to the local mass-weighted flow in cells along
+    `flow_axes` if the gas can flow; otherwise relative to the centre of mass. `along` maps an axis to its
+    number of cells if it is not the default. If the flow is steady, further axes in `along` are resolved too.
+    If `local`, the motion is always relative to the flow in these cells.
     """
     across, stated = run.flow_axes, dict(along or {})
     if not across and local:
@@ -409,7 +414,7 @@ def mean_motion(
 
 
 def _about_rest(run: Run) -> Peculiar:
-    """Return velocities of the moving particles as they are."""
+    """Return unchanged velocities of the moving particles."""
     velocities = _chosen(run.velocities, run.moving)
     return Peculiar(velocities, np.ones((1, velocities.shape[1], 1)))
 
@@ -422,10 +427,10 @@ def _number(run: Run, axes: list[int], changes: bool) -> int:
 
 
 class FlowCells:
-    """Cells of a flow, with the mass and momentum of a steady flow.
+    """Cells of a flow; if the flow is steady, with its mass and momentum.
 
-    `numbers` maps an axis to its number of cells. Without mass and momentum the flow changes: it is the mean
-    of mass in the cells of each frame.
+    `numbers` maps an axis to its number of cells. Without mass and momentum, the flow changes with time; then
+    it is the mass-weighted mean in the cells of each frame.
     """
 
     def __init__(self, run: Run, numbers: Mapping[int, int]) -> None:
@@ -435,7 +440,7 @@ class FlowCells:
         self.sums: list[np.ndarray] | None = None
 
     def cells(self, part: Run) -> np.ndarray:
-        """Return the cell (T, M) of each moving particle."""
+        """Return the cell number (T, M) of each moving particle."""
         return self.grid.cells(_chosen(part.positions, part.moving)[..., self._axes], inside=True)
 
     def sum(
@@ -443,7 +448,7 @@ class FlowCells:
     ) -> list[np.ndarray]:
         """Sum mass and momentum in cells (C,), or in each frame (T, C).
 
-        The sums are of each frame if the flow changes; otherwise they continue the sums of the frames before.
+        If the flow changes, the sums are per frame; otherwise they are added to the sums of earlier frames.
         """
         blocks = np.arange(len(cells)) if before is None else None
         weights = [masses, *(masses * velocities[..., k] for k in range(velocities.shape[-1]))]
@@ -452,7 +457,7 @@ class FlowCells:
 
 
 def steady_cells(run: Run, numbers: Mapping[int, int]) -> FlowCells:
-    """Return cells of a flow with the mass and momentum of all frames."""
+    """Return cells of a steady flow with the mass and momentum of all frames."""
     flow_cells = FlowCells(run, numbers)
     sums = [np.zeros(flow_cells.grid.numbers) for _ in range(1 + run.dimension)]
     for _, part in run.parts():
@@ -462,7 +467,7 @@ def steady_cells(run: Run, numbers: Mapping[int, int]) -> FlowCells:
 
 
 def about_cells(run: Run, cells: FlowCells) -> Peculiar:
-    """Compute velocities about the mean of mass in cells, of a steady flow or per frame."""
+    """Compute velocities relative to the mass-weighted mean in cells, of a steady flow or per frame."""
     numbers, velocities, masses = cells.cells(run), _about_known(run), run.masses[run.moving]
     sums, groups = cells.sums, numbers
     if sums is None:

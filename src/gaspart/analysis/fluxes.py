@@ -1,4 +1,4 @@
-"""Heat and tangential momentum that a gas gives to the thermal walls of its container."""
+"""Heat and tangential momentum transferred from a gas to the thermal walls of its container."""
 
 from __future__ import annotations
 
@@ -23,38 +23,37 @@ _BLOCKS = 256
 
 
 def heat_flux(source: Source, start: float | None = None) -> Observable:
-    """Measure the heat flux into each face at a temperature.
+    """Measure the heat flux into each face that has a temperature.
 
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
     Observable
-        Heat that the face takes per time and per area that centres can reach, (face,), in
-        [energy/(length^(d-1) time)]: positive where the gas warms the wall. Areas are defined by
-        `wall_pressure`.
+        Heat per time and accessible area into each face (face,), in [energy/(length^(d-1) time)]. It is
+        positive if the gas heats the wall. Areas are defined by `wall_pressure`.
 
     Raises
     ------
     SceneError
-        If no face has a temperature, there are too few frames, or nothing hit these faces.
+        If no face has a temperature, if there are too few frames, or if no particle hit these faces.
 
     Notes
     -----
-    It is the energy that particles lose there in the frame of the wall: of a wall that slides, the energy
-    that it is given without the work that it does. The mean is taken in the steady state: the contributions
-    of the changes of the energy of the gas and of its first moment across the walls, which are bounded, are
-    subtracted (`_mean_without_stores`).
+    The heat is the energy that particles lose in the rest frame of the wall. For a sliding wall, it is the
+    energy received minus the work of the wall. The mean is for the steady state: the contributions of changes
+    of two bounded quantities, the energy of the gas and its first moment across the walls, are subtracted
+    (`_mean_without_stores`).
 
-    Theory: 0 in equilibrium; between two plates free flight above a Knudsen number of 100, Fourier's law with
-    Enskog's conductivity and temperature jumps below 0.1, and between these an interpolation, good to 8 %
-    (`gaspart.theory.interpolated_flux`); between sliding plates half the work of their stress. With partial
-    accommodation free flight alone.
+    Theory: 0 in equilibrium. Between two plates, free molecular flow above a Knudsen number of 100, and below
+    0.1 Fourier's law with Enskog's conductivity and temperature jumps. Between these limits it is an
+    interpolation with an accuracy of 8 % (`gaspart.theory.interpolated_flux`). Between sliding plates it is
+    half of the work of the stress. With partial accommodation, theory exists only for free molecular flow.
 
     Examples
     --------
@@ -83,35 +82,35 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
 
 
 def wall_shear(source: Source, start: float | None = None) -> Observable:
-    """Measure the shear stress on each face that draws velocities along itself.
+    """Measure the shear stress on each face that changes tangential velocities.
 
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
     Observable
-        Momentum along each axis that the face is given per time and per area that centres can touch,
-        (face, component), in [energy/length^d]. NaN across the face, where the `wall_pressure` is.
+        Momentum along each axis that the face receives per time and accessible area, (face, component), in
+        [energy/length^d]. The normal component is NaN; see `wall_pressure`.
 
     Raises
     ------
     SceneError
-        If nothing drags faces along themselves, there are too few frames, or nothing hit these faces.
+        If no face exerts a tangential force, if there are too few frames, or if no particle hit these faces.
 
     Notes
     -----
-    It is measured by the engines that tally it, where a face slides or a force drives the gas along it. The
-    mean is taken in the steady state, as in `heat_flux`, by the change of the momentum of the gas.
+    Only some engines tally it, for faces that slide or along which a force drives the gas. The mean is for
+    the steady state, as in `heat_flux`, corrected by the change of the momentum of the gas.
 
-    Theory: half of the weight of a gas that a force drives along two equal faces, exactly; between plates
-    that slide free flight above a Knudsen number of 100, Enskog's viscosity with slip below 0.1, and between
-    these an interpolation, good to 8 % (`gaspart.theory.interpolated_stress`); with partial accommodation
-    free flight alone.
+    Theory: if a force drives a gas along two equal faces, exactly half of the force on the gas. Between
+    sliding plates, free molecular flow above a Knudsen number of 100, Enskog's viscosity with slip below 0.1,
+    and between these limits an interpolation with an accuracy of 8 % (`gaspart.theory.interpolated_stress`).
+    With partial accommodation, only free molecular flow.
 
     Examples
     --------
@@ -144,9 +143,10 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
 
 
 def _amounts_per_area(run: Run, name: str, tallied: str) -> np.ndarray:
-    """Return what each face is given in each interval per accessible area.
+    """Return the amount that each face receives per interval and accessible area.
 
-    The shape is (T - 1, 2d, ...). See `per_area`. Raises SceneError for frames without the sum of this name.
+    The shape is (T - 1, 2d, ...). See `per_area`. Raises SceneError if the frames do not contain the named
+    sum.
     """
     if name not in run.data:
         raise SceneError(name, "missing", "the engine does not tally it, or an older version wrote the file")
@@ -154,12 +154,12 @@ def _amounts_per_area(run: Run, name: str, tallied: str) -> np.ndarray:
 
 
 def _steady(run: Run, faces: np.ndarray, amounts: np.ndarray, stored: list[np.ndarray]) -> Means:
-    """Compute the mean over time of what each face is given, and its error, shape (F,).
+    """Compute the time average of the amount that each face receives, and its error, shape (F,).
 
     amounts : (T - 1, F), amounts in each interval.
-    stored : arrays (T,), bounded sums over the gas; blocks are corrected by their change.
+    stored : arrays (T,) of bounded sums over the gas; blocks are corrected for their changes.
 
-    Raises SceneError for too few frames and for faces that nothing has hit.
+    Raises SceneError for too few frames and for faces that no particle hit.
     """
     intervals = len(run.time) - 1
     if intervals < LEAST_INTERVALS:
@@ -180,9 +180,9 @@ def _steady(run: Run, faces: np.ndarray, amounts: np.ndarray, stored: list[np.nd
 def _mean_without_stores(rates: np.ndarray, changes: list[np.ndarray]) -> Estimate:
     """Compute the mean of rates (K,) in consecutive blocks, corrected for changes of bounded sums.
 
-    The contribution of the changes (K,) is removed by least squares: a gas gives back what it has stored.
-    Blocks may be shorter than the memory of a particle, which in free flight is the time from wall to wall:
-    the error is computed as for a correlated series.
+    A gas later returns the amount that it has stored. The contribution of the changes (K,) is removed by
+    least squares. Blocks may be shorter than the correlation time of a particle, which in free flight is the
+    time from wall to wall. Therefore the error is computed as for a correlated series.
     """
     used = [change / np.abs(change).max() for change in changes if change.any()]
     design = np.stack([np.ones(len(rates)), *used], axis=1)
@@ -191,10 +191,10 @@ def _mean_without_stores(rates: np.ndarray, changes: list[np.ndarray]) -> Estima
 
 
 def _energies(run: Run) -> list[np.ndarray]:
-    """Return the energy about the mean velocity of the faces, and its first moments.
+    """Return the kinetic energy relative to the mean velocity of the faces, and its first moments.
 
-    Each is an array (T,); it is the energy of flight, moments are across the faces. Nothing is returned for a
-    file that lacks some particles.
+    Each result is an array (T,). The energy is translational. The moments are across the faces. The result is
+    empty if the file lacks some particles.
     """
     if run.is_subset:
         return []
@@ -203,9 +203,9 @@ def _energies(run: Run) -> list[np.ndarray]:
 
 
 def _momenta(run: Run, axis: int) -> list[np.ndarray]:
-    """Return the momentum about the mean velocity of the faces, and its first moments.
+    """Return the momentum relative to the mean velocity of the faces, and its first moments.
 
-    Each is an array (T,); the momentum is along an axis, the moments are across the faces.
+    Each result is an array (T,). The momentum is along `axis`; the moments are across the faces.
     """
     if run.is_subset:
         return []
@@ -213,7 +213,7 @@ def _momenta(run: Run, axis: int) -> list[np.ndarray]:
 
 
 def _about_faces(run: Run) -> np.ndarray:
-    """Compute velocities (T, M, d) about the mean velocity of the thermal faces.
+    """Compute velocities (T, M, d) relative to the mean velocity of the thermal faces.
 
     They are the same in any frame of reference.
     """
@@ -224,16 +224,16 @@ def _about_faces(run: Run) -> np.ndarray:
 
 
 def _with_moments(run: Run, carried: np.ndarray) -> list[np.ndarray]:
-    """Sum what particles carry, and its first moments across the thermal faces.
+    """Sum an amount that particles carry, and its first moments across the thermal faces.
 
-    The amounts are (T, M), each sum is (T,); moments are about the middle.
+    The amounts are (T, M), each sum is (T,). Moments are relative to the middle.
     """
     positions = run.positions[:, run.moving] - 0.5 * np.array(run.scene.container.lengths)
     across = sorted({number // 2 for number in run.scene.thermal_numbers})
     return [carried.sum(axis=1), *((carried * positions[..., axis]).sum(axis=1) for axis in across)]
 
 
-# Particles that pass a plane in the container, or an opening of interior walls in it.
+# Particles that cross a plane in the container, or an opening between interior walls in the plane.
 
 
 def particle_flux(
@@ -243,21 +243,21 @@ def particle_flux(
     species: int | None = None,
     start: float | None = None,
 ) -> Observable:
-    """Measure the net number of particles that pass a plane across an axis per time.
+    """Measure the net number of particles per time that cross a plane across an axis.
 
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     axis : {"x", "y", "z"}, optional
-        The axis. Default: the last one with open faces, or else with walls.
+        The axis. Default: the last axis with open faces, otherwise the last axis with walls.
     at : float, [length], optional
         Position of the plane along the axis. Default: the middle.
     species : int, optional
-        Only this species, by its number in the scene.
+        Measure only this species, identified by its number in the scene.
     start : float, [time], optional
-        Frames before this time are discarded; 0 for a gas that streams out from the start. Default: a quarter
-        of the run.
+        Frames before this time are discarded; use 0 for a gas that flows out from the start. Default: a
+        quarter of the run.
 
     Returns
     -------
@@ -267,18 +267,18 @@ def particle_flux(
     Raises
     ------
     SceneError
-        If the axis is periodic, which images pass, or is not the axis of open faces, the plane is
-        outside the container, the file lacks particles, or there are too few frames.
+        If the axis is periodic, so that images cross it, or is not the axis of open faces; if the plane is
+        outside the container; if the file lacks particles; or if there are too few frames.
 
     Notes
     -----
-    The flux is the change of the number of particles beyond the plane, exactly, however often each particle
-    has passed between frames: particles that come back do not count, nor do those that come and go through an
-    open face beyond. The plane crosses the whole container; where interior walls lie in it, all pass their
-    openings.
+    The flux is exactly the change of the number of particles beyond the plane, however often particles cross
+    it between frames. Particles that return do not count, nor do particles that enter or leave through an
+    open face beyond the plane. The plane crosses the whole container. If interior walls lie in the plane, all
+    particles pass through their openings.
 
-    Theory: 0 in a steady state without interior walls; of free flight through openings of walls in the plane
-    n sqrt(k_B T / 2 pi m) times their area, with the density on both sides.
+    Theory: 0 in a steady state without interior walls. For free molecular flow through openings between walls
+    in the plane it is n sqrt(k_B T / 2 pi m) times their area, with the density n on both sides.
 
     Examples
     --------
@@ -319,9 +319,9 @@ def _entered_beyond(run: Run, axis: int) -> np.ndarray | int:
 
 
 def particle_numbers(scene: Scene, data: xr.Dataset) -> np.ndarray:
-    """Return the number of particles inside in each frame.
+    """Return the number of particles in the container in each frame.
 
-    It is the number at the start, plus all that have entered since, minus those that have left.
+    It is the initial number plus the particles that have entered minus the particles that have left.
 
     Parameters
     ----------
@@ -346,7 +346,7 @@ def particle_number(source: Source, start: float | None = None) -> Observable:
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
 
@@ -362,7 +362,7 @@ def particle_number(source: Source, start: float | None = None) -> Observable:
 
     Notes
     -----
-    Without collisions, correlations fall as slowly as 1/t: the error is computed by
+    Without collisions, correlations decay as slowly as 1/t. Therefore the error is computed by
     `gaspart.analysis.statistics.slow_mean`.
 
     Examples

@@ -1,10 +1,10 @@
-"""Density along an axis from the momentum that particles carry through planes across it.
+"""Density along an axis from the momentum that particles carry through planes across the axis.
 
-That momentum follows from impulses without the noise of counting (`Tally.momentum_flux_sum`;
-docs/estimators.md has the derivation). Its rate at a plane is A rho <m v^2>, and in equilibrium <m v^2> of a
-particle at the plane is known: rho follows. Counting has more noise in a dilute gas and in narrow bins, and
-less for long waves of a dense gas. So both are mixed, each bin with its weight, which comes from the other
-half of the run than that in which it is used, so that it depends on no noise that it acts on.
+This momentum follows from impulses without counting noise (`Tally.momentum_flux_sum`; docs/estimators.md has
+the derivation). Its rate at a plane is A rho <m v^2>. In equilibrium <m v^2> of a particle at the plane is
+known, so the density rho follows. In a dilute gas and in narrow bins, counting has more noise. For long waves
+of a dense gas, counting has less noise. So both estimates are averaged with weights in each bin. The weights
+in one half of the run come from the other half, so that they are independent of the noise that they multiply.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.tally import ImpulseTally
 from gaspart.trajectory.run_options import stored_tally
 
-# How an observable was estimated, and what a run must keep for a better estimate.
+# How an observable was estimated, and which data a run must store for a better estimate.
 
 
 def engine_class(run: Run) -> type[Engine]:
     """Return the class of the engine of a run.
 
-    A file that does not state it has the base class, which can do nothing.
+    If the file does not name the engine, return the base class, which has no capabilities.
     """
     return ENGINES.get(json.loads(run.data.attrs.get("engine", "{}")).get("name"), Engine)
 
@@ -43,10 +43,10 @@ def engine_tallies(run: Run) -> frozenset[str]:
 
 
 def knows_energies(engine: Engine | type[Engine], scene: Scene) -> bool:
-    """Return True if the mean energy of motion along each axis is known exactly.
+    """Return True if the mean kinetic energy along each axis is known exactly.
 
-    This needs an engine without a systematic error, and a scene that shares the energy evenly. Time steps
-    take some of the energy across a wall, near the wall.
+    This requires an engine without a systematic error, and a scene in which the energy is equally shared
+    among axes. Time steps carry some of the energy across a wall, near the wall.
     """
     return engine.reference and shares_energy_evenly(scene)
 
@@ -56,9 +56,9 @@ def estimator(
 ) -> dict[str, str]:
     """Return the attributes that state from which data an observable was estimated.
 
-    It is `usual`, or `better` if that was `used`. With the former, where the scene and the engine allow a run
-    to store `tally`, a note states the option that does so, or else `lacks`, what the tally of this run
-    lacks.
+    The estimator is `better` if it was `used`, otherwise `usual`. In the latter case, if the scene and the
+    engine allow a run to store `tally`, a note recommends the option. If `lacks` is not empty, the note
+    instead states what the existing tally lacks.
     """
     if used:
         return {"estimator": better}
@@ -74,28 +74,30 @@ def estimator(
 
 
 USUAL_BINS = 40
-"""Number of bins of a profile, unless others are requested or the run has stored impulses."""
+"""Default number of bins of a profile, unless the run has stored impulses."""
 _ROUNDING = 1e-10
-"""Part of the highest density that is attributed to rounding."""
+"""Fraction of the highest density that is attributed to rounding."""
 _GROUPS = 16
-"""Parts of half a run from which a weight is estimated: each longer than the correlation, in a long run."""
+"""Number of parts of half a run from which a weight is estimated. In a long run each part is longer than the
+correlation time.
+"""
 _NEIGHBOURS = 0.02
-"""Reach of the bins, on both sides, that share a weight, as a fraction of the length."""
+"""Bins within this distance on both sides share a weight; it is a fraction of the length."""
 
 
 @dataclass(frozen=True)
 class MomentumFlux:
-    """Momentum of one species that has flown through the planes of bins, in M intervals.
+    """Momentum of one species carried through the planes of bins, in M intervals.
 
     flux : (M, bins), see `Tally.momentum_flux_sum`.
     time : (M,), durations of the intervals.
     count : number of particles.
     spread : (bins,), <m v^2> of a particle in each bin.
-    above : (bins,), mean fraction of a bin that is above a particle in it.
-    reached : (bins,), True if any particle can be there.
+    above : (bins,), mean distance from a particle to the upper end of its bin, as a fraction of the bin.
+    reached : (bins,), True if particles can be in the bin.
     width : width of a bin.
     pull : force on a particle along the axis.
-    walled : True if faces close the axis.
+    walled : True if faces bound the axis.
     """
 
     flux: np.ndarray
@@ -109,11 +111,11 @@ class MomentumFlux:
     walled: bool
 
     def numbers(self) -> np.ndarray:
-        """Compute the number of particles in each bin times the time, shape (M, bins).
+        """Compute the number of particles in each bin multiplied by the time, shape (M, bins).
 
-        In each interval their sum over the bins is exact: the number of particles times the time.
+        In each interval, the sum over the bins is exact: the number of particles times the time.
         """
-        if self.pull > 0.0:  # from the face to which they fall, so that no error grows with the density
+        if self.pull > 0.0:  # start at the lower side, so that no error grows with the density
             below = self.pull * self.count * self.time[:, None]
             flipped = MomentumFlux(
                 (self.flux + below)[:, ::-1],
@@ -133,7 +135,7 @@ class MomentumFlux:
         if self.walled:
             content *= (
                 total.sum() / content.sum()
-            )  # what is missing then is missing in proportion to the density
+            )  # a missing number is then distributed in proportion to the density
             shares = content.sum(axis=0) / total.sum()
         else:
             shares = np.full(content.shape[1], 1.0 / content.shape[1])
@@ -142,7 +144,8 @@ class MomentumFlux:
     def _fallen(self) -> np.ndarray:
         """Compute the numbers under gravity, which gives momentum to all particles below a plane.
 
-        These are the particles in lower bins, and a part of its own bin, on average over its planes.
+        For the planes of one bin these are all particles in lower bins, and on average a fraction of the
+        particles in the bin itself.
         """
         numbers, below = np.empty(self.flux.shape), np.zeros(len(self.flux))
         shares = self.spread / self.width - self.pull * self.above
@@ -153,7 +156,7 @@ class MomentumFlux:
 
 
 def useful_impulses(scene: Scene, tallies: Collection[str], axis: int, bins: int) -> tuple[ImpulseTally, ...]:
-    """Return the impulse tally along an axis, if it gives the density of a scene.
+    """Return the impulse tally along an axis, if it determines the density of a scene.
 
     tallies : names of the tallies that the engine can make
     """
@@ -169,7 +172,7 @@ def useful_impulses(scene: Scene, tallies: Collection[str], axis: int, bins: int
 
 
 def usual_tally(axis: str) -> ImpulseTally:
-    """Return the impulse tally along an axis in `USUAL_BINS`."""
+    """Return the impulse tally along an axis with `USUAL_BINS` bins."""
     return ImpulseTally(axis, USUAL_BINS)
 
 
@@ -181,7 +184,7 @@ def read_impulses(data: xr.Dataset) -> ImpulseTally | None:
 def numbers_by_impulses(run: Run, axis: int, bins: int, species: int | None) -> np.ndarray | None:
     """Compute the moving particles in each bin times the time, in each interval between frames.
 
-    The shape is (T - 1, bins). None if the run has not stored the required data.
+    The shape is (T - 1, bins). Return None if the run has not stored the required data.
     """
     has = read_impulses(run.data)
     if has is None or has.axis != "xyz"[axis] or has.bins % bins:
@@ -195,10 +198,10 @@ def numbers_by_impulses(run: Run, axis: int, bins: int, species: int | None) -> 
 
 
 def _momentum_flux(run: Run, axis: int, bins: int, row: int) -> MomentumFlux | None:
-    """Return the momentum carried in one row of the tally.
+    """Return the momentum flux in one row of the tally.
 
-    None for particles of several masses if the result would depend on these, and for a file that lacks the
-    particles that determine a temperature.
+    Return None if the result would depend on several masses, or if the file lacks particles that determine
+    the temperature.
     """
     members = run.species == row
     masses = run.masses[members]
@@ -221,22 +224,22 @@ def _momentum_flux(run: Run, axis: int, bins: int, row: int) -> MomentumFlux | N
 
 
 def _uniform(run: Run, walled: bool) -> bool:
-    """Return True if the density is proportional to the momentum at any temperature."""
+    """Return True if the density is proportional to the momentum flux at any temperature."""
     return walled and not _has_potential(run)
 
 
 def _has_potential(run: Run) -> bool:
-    """Return True if gravity or wells act."""
+    """Return True if gravity or potential wells act."""
     return run.has_gravity or any(face.kind == "well" for face in run.scene.faces.values())
 
 
 def _spread(run: Run, axis: int, bins: int, members: np.ndarray) -> np.ndarray:
-    """Compute <m v^2> along an axis of a particle in each bin, shape (bins,).
+    """Compute <m v^2> along an axis for a particle in each bin, shape (bins,).
 
-    The particles, `members` (N,), have one mass. Faces at a temperature set it. If the energy of the gas is
-    constant, the energy of motion is what the potential has left of it, and the temperature at a position is
-    the mean over the states with a particle there. If a momentum is conserved, each particle has its part of
-    it.
+    All particles in `members` (N,) have the same mass. If faces have a temperature, it determines the result.
+    If the energy of the gas is constant, the kinetic energy is the energy minus the potential energy. The
+    temperature at a position is then the mean over the states with a particle at this position. If a momentum
+    is conserved, the fraction of each particle in the motion of the whole is included.
     """
     hot = run.scene.face_temperatures
     spread = np.full(bins, min(hot) if hot else run.temperature)
@@ -251,9 +254,9 @@ def _spread(run: Run, axis: int, bins: int, members: np.ndarray) -> np.ndarray:
 
 
 def _above(run: Run, axis: int, bins: int, members: np.ndarray) -> np.ndarray:
-    """Compute the mean fraction of each bin that is above a particle in it, shape (bins,).
+    """Compute the mean distance from a particle to the upper end of its bin, shape (bins,).
 
-    It is one half if no particle was in the bin.
+    The unit is the bin width. The value is one half if no particle was in the bin.
     """
     positions, cells = _places(run, axis, bins, members)
     return _mean_in(cells, cells + 1.0 - positions, np.full(bins, 0.5))
@@ -266,17 +269,18 @@ def _places(run: Run, axis: int, bins: int, members: np.ndarray) -> tuple[np.nda
 
 
 def _mean_in(cells: np.ndarray, values: np.ndarray, default: np.ndarray) -> np.ndarray:
-    """Average values (T, n) in each bin, shape (bins,); a bin without any has the default."""
+    """Average values (T, n) in each bin, shape (bins,); an empty bin has the default value."""
     number = np.bincount(cells.ravel(), minlength=len(default))
     total = np.bincount(cells.ravel(), values.ravel(), minlength=len(default))
     return np.divide(total, number, out=default, where=number > 0)
 
 
 def mixture(counted: np.ndarray, impulses: np.ndarray, periodic: bool) -> np.ndarray:
-    """Compute the weights (K, bins) of impulses in their mixture with counts.
+    """Compute the weights (K, bins) of the impulse estimate in its mixture with counts.
 
-    `counted` and `impulses` are of blocks (K, bins). The weights of each half of the blocks come from the
-    other half; they are from 0 to 1. If `periodic`, the first bin is next to the last one.
+    `counted` and `impulses` are the estimates in blocks (K, bins). The weights in each half of the blocks are
+    computed from the other half. They are between 0 and 1. If `periodic`, the first bin is a neighbour of the
+    last one.
     """
     half = len(counted) // 2
     first = _weights(counted[:half], impulses[:half], periodic)
@@ -285,7 +289,7 @@ def mixture(counted: np.ndarray, impulses: np.ndarray, periodic: bool) -> np.nda
 
 
 def _weights(counted: np.ndarray, impulses: np.ndarray, periodic: bool) -> np.ndarray:
-    """Compute the weights (bins,) with which the means of these blocks have the least variance.
+    """Compute the weights (bins,) that minimize the variance of the mixed mean over these blocks.
 
     Neighbouring bins share a weight.
     """
@@ -308,9 +312,9 @@ def _near(values: np.ndarray, reach: int, periodic: bool) -> np.ndarray:
 
 
 def mixed_density(run: Run, axis: int, bins: int, species: int | None) -> Means | None:
-    """Compute the density along an axis from counts and impulses, of all particles or one species.
+    """Compute the density along an axis from counts and impulses, for all particles or one species.
 
-    None if the run has not stored what the impulses need.
+    Return None if the run has not stored the required impulses.
     """
     frames = len(run.time)
     if run.is_subset and len(run.scene.kinds) > 1:
@@ -332,14 +336,14 @@ def mixed_density(run: Run, axis: int, bins: int, species: int | None) -> Means 
     weights = mixture(counted, impulses, run.periodic[axis])
     mixed = counted + weights * (impulses - counted)
     shares = mixed.mean(axis=0) / mixed.mean(axis=0).sum()
-    mixed += (len(members) / volume - mixed.sum(axis=1))[:, None] * shares  # weights differ from bin to bin
+    mixed += (len(members) / volume - mixed.sum(axis=1))[:, None] * shares  # weights differ between bins
     return ratio(mixed * time, np.broadcast_to(time, mixed.shape))
 
 
 def default_bins(run: Run, axis: int, of: str) -> int:
     """Return the default number of bins along an axis.
 
-    A density has the bins of the impulses that the run has stored.
+    For a density it is the number of bins of the stored impulses.
     """
     has = read_impulses(run.data)
     return has.bins if of == "density" and has is not None and has.axis == "xyz"[axis] else USUAL_BINS
@@ -348,7 +352,7 @@ def default_bins(run: Run, axis: int, of: str) -> int:
 def described_density(run: Run, axis: int, bins: int, by_impulses: bool) -> dict[str, str]:
     """Return the attributes of a density: see `estimator`.
 
-    If the bins of a run do not serve, they say so.
+    If the stored bins of a run cannot be used, a note states it.
     """
     has, tallies = read_impulses(run.data), useful_impulses(run.scene, engine_tallies(run), axis, 200)
     lacks = ""
@@ -358,33 +362,38 @@ def described_density(run: Run, axis: int, bins: int, by_impulses: bool) -> dict
     return estimator(run, *of, by_impulses, tallies[0] if tallies else None, lacks)
 
 
-# Control variates: what fluctuates with a mean over time, and has itself a mean that is known exactly.
+# Control variates: quantities that fluctuate together with a mean over time and whose own mean is known
+# exactly.
 #
-# A wall is given what particles carry to it. By the virial theorem along its normal, of particles of one
-# size between two walls whose centres can move a distance h,
+# A wall receives the momentum that particles carry to it. The virial theorem along its normal applies, for
+# particles of one size between two walls, whose centres can move a distance h:
 #
 #     (I_low + I_high) h / 2 = int dt sum m v^2 + sum of r dp over contacts - change of sum m x v,
 #
-# with x from the middle, and I_low - I_high is the change of the momentum. Of the right-hand side all but
-# the collisional part has a known mean: both changes 0, and sum m v^2 that of an energy which all
-# directions share evenly. So their deviations from these are taken off, as much as a regression says
-# (docs/estimators.md).
+# x is measured from the middle, and I_low - I_high is the change of the momentum. On the right-hand side, all
+# terms except the collisional one have known means: both changes have the mean 0, and sum m v^2 has the mean
+# that follows from equal sharing of the energy among directions. Their deviations from these means are
+# subtracted, multiplied by regression coefficients (docs/estimators.md).
 
 
 _LEAST, _MOST = 32, 128
-"""Groups of a run, from half of which coefficients are estimated: with fewer they are not, with more no
-better. In each a particle collides once or more, so that its energy turns to other directions."""
+"""Minimum and maximum number of groups of a run, from half of which coefficients are estimated. With fewer
+groups no coefficients are estimated; more groups give no improvement. In each group a particle collides at
+least once, so that its energy is redistributed among directions.
+"""
 FEWEST = 10
-"""Moving particles without which pressures have no controls: fewer share their energy among directions too
-slowly for coefficients of a regression. Of two discs in 2.6 x 2.9, 52 of 60 values were within two errors."""
+"""Minimum number of moving particles for control variates of pressures. Fewer particles redistribute their
+energy among directions too slowly for a regression. For two discs in 2.6 x 2.9, only 52 of 60 values were
+within two errors.
+"""
 
 
 def wall_controls(run: Run, axis: int) -> np.ndarray | None:
     """Compute control variates (T - 1, 3) of the impulses across an axis, per time.
 
-    They are sum m v^2 of the velocities along the axis less its known mean, and the changes of the momentum
-    and of sum m x v along it. None unless the run has stored impulses along this axis and the states of all
-    particles, and is in equilibrium at a constant kinetic energy.
+    They are the deviation of sum m v^2 along the axis from its known mean, and the changes of the momentum
+    and of sum m x v along the axis. Return None unless the run has stored impulses along this axis and the
+    states of all particles, and is in equilibrium at a constant kinetic energy.
     """
     has = read_impulses(run.data)
     if has is None or has.axis != "xyz"[axis] or not run.has_states:
@@ -399,9 +408,9 @@ def wall_controls(run: Run, axis: int) -> np.ndarray | None:
 
 
 def stores(run: Run) -> np.ndarray:
-    """Compute the total momentum and sum m x v of the moving particles by axis.
+    """Compute the total momentum and sum m x v of the moving particles along each axis.
 
-    The shape is (d, T, 2), for each frame; x counts from the middle. It is (d, T, 0) for a file that lacks
+    The shape is (d, T, 2), for each frame; x is measured from the middle. It is (d, T, 0) if the file lacks
     some particles.
     """
     if not run.has_states:
@@ -413,7 +422,7 @@ def stores(run: Run) -> np.ndarray:
 
 
 def group_count(run: Run) -> int:
-    """Return the number of groups of the intervals of a run for a regression.
+    """Return the number of groups of intervals of a run for a regression.
 
     It is 0 if the intervals or the particles are too few.
     """
@@ -425,11 +434,11 @@ def group_count(run: Run) -> int:
 
 
 def subtract_controls(series: np.ndarray, controls: np.ndarray, groups: int) -> np.ndarray:
-    """Subtract from a series (K,) its part in common with controls (K, R).
+    """Subtract from a series (K,) its correlated part with controls (K, R).
 
-    The controls have the mean 0. The coefficients for each half come from a regression of the other half, in
-    `groups` / 2 groups of consecutive values: they depend on no noise that they multiply, so that the mean is
-    unbiased.
+    The controls have the mean 0. The coefficients for each half of the series come from a regression of the
+    other half, in `groups` / 2 groups of consecutive values. So they are independent of the noise that they
+    multiply, and the mean is unbiased.
     """
     half, residual = len(series) // 2, series.copy()
     first, second = slice(None, half), slice(half, None)

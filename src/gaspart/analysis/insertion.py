@@ -1,14 +1,14 @@
 r"""Chemical potential by insertion of a test particle.
 
-The chance that a particle at a random place in a fluid of N overlaps none is
-:math:`P_N = Q_{N+1}/Q_N`, Q the configuration integral over :math:`V^N` (source C, Eq. 46), so that
-:math:`\mu_\mathrm{excess}/k_B T = -\ln P_N` (Widom, J. Chem. Phys. 39, 2808 (1963)).
+P_N is the probability that a particle at a random position in a fluid of N particles overlaps with none of
+them. It is :math:`P_N = Q_{N+1}/Q_N`, with the configuration integral Q over :math:`V^N` (source C, Eq. 46),
+so that :math:`\mu_\mathrm{excess}/k_B T = -\ln P_N` (Widom, J. Chem. Phys. 39, 2808 (1963)).
 
-In a dense fluid hardly any place is free, and of random places nearly all fail. Most of the container is
-known to be covered: a cell all of which is nearer than a diameter to one particle, in a mixture than the sum
-of their radii. The covered cells of a grid are left out, the others are divided while they are few, and
-places are drawn in what remains. With the share of the container that it has as their weight, this is the
-same average, exactly.
+In a dense fluid, nearly all random positions overlap with a particle. Most of the container is known to be
+covered. A cell is covered if all its points are closer to one particle than the contact distance. The covered
+cells of a grid are excluded. The other cells are subdivided while they are few, and positions are drawn at
+random in the remaining cells. Each trial is weighted by the fraction of the container that remains, so the
+average is exactly the same.
 """
 
 from __future__ import annotations
@@ -31,26 +31,27 @@ from gaspart.errors import SceneError
 from gaspart.keys.values import count_of
 
 TRIALS = 512
-"""Places that are tried in each frame, by default."""
+"""Default number of positions tried in each frame."""
 MOST_FRAMES = 2048
-"""Frames, evenly spaced, in which they are tried."""
+"""Maximum number of frames in which positions are tried; the frames are evenly spaced."""
 _CELLS = 65536
 """Maximum number of cells of the first grid."""
 _PER_DISTANCE = 8
-"""Cells of that grid in the distance within which a particle covers, at most."""
-_MOST_CELLS = 2048  # after a division
+"""Maximum number of cells of this grid per contact distance."""
+_MOST_CELLS = 2048  # after a subdivision
 _MARGIN = 1.5
-"""Minimum number of standard deviations of ln P, by frame, between the frames that contribute most to the
-mean of P and the best frame, for an error."""
+"""Margin for an error estimate, in standard deviations of ln P between frames. The best frame must exceed the
+frames that contribute most to the mean of P by this margin.
+"""
 _TWO_SIGMA = 0.9772
 """Probability that a normal variable is at most two standard deviations above its mean."""
 _WORTH = 0.6
-"""Fraction of cells left by a division above which no further division follows."""
+"""Fraction of uncovered cells above which no further subdivision follows."""
 
 
 @dataclass(frozen=True)
 class Insertions:
-    """Trials of positions in T frames.
+    """Results of trial insertions in T frames.
 
     Attributes
     ----------
@@ -59,7 +60,7 @@ class Insertions:
     successes : ndarray of int, shape (T,)
         Number of free positions.
     trials : int
-        Number of positions in each frame whose fraction is not 0.
+        Number of trials in each frame whose uncovered fraction is not 0.
     """
 
     share: np.ndarray
@@ -68,21 +69,22 @@ class Insertions:
 
     @property
     def probability(self) -> np.ndarray:
-        """(T,) chance that a random place is free, by frame."""
+        """Probability (T,) that a random position is free, by frame."""
         return self.share * self.successes / self.trials
 
     @property
     def resolution(self) -> float:
-        """Probability of a single success.
+        """Probability that corresponds to a single free position.
 
-        It is one over the number of random positions, drawn in the whole container, which these trials stand
-        for.
+        It is one divided by the equivalent number of random positions in the whole container.
         """
         return float(self.share.mean() / (self.trials * len(self.share)))
 
 
 Hosts: TypeAlias = Sequence[tuple[np.ndarray | slice, float]]
-"""Groups of the particles in the fluid: their numbers, and how near a place may be to none of them."""
+"""Groups of particles in the fluid: their numbers, and the contact distance of each group with the inserted
+particle.
+"""
 
 
 def insertions(
@@ -101,7 +103,7 @@ def insertions(
     lengths : sequence of float, shape (d,), [length]
         Side lengths of the container.
     hosts : Hosts
-        The particles inside and the particle to insert.
+        The particles in the fluid, with their contact distances to the inserted particle.
     trials : int
         Number of positions in each frame.
     seed : int or sequence of int, default 0
@@ -124,10 +126,10 @@ def insertions(
 def _try(
     groups: list[tuple[np.ndarray, float]], lengths: np.ndarray, number: int, generator: np.random.Generator
 ) -> tuple[float, int]:
-    """Count free trials in the region that cells do not show to be covered.
+    """Count free trials in the region that is not covered by single particles.
 
-    Returned are the fraction of the container in this region, and the count. `groups` are positions with the
-    distance below which a trial overlaps.
+    Returns the fraction of the container in this region, and the count. `groups` are positions with the
+    contact distance.
     """
     from scipy.spatial import cKDTree
 
@@ -142,7 +144,7 @@ def _try(
 
 
 def _apart(trees: list[tuple[Any, float]], positions: np.ndarray, less: float) -> np.ndarray:
-    """Find positions (M, d) that are farther from every particle than its distance less a length."""
+    """Find positions (M, d) that are farther from every particle than its distance minus a length."""
     is_free = np.ones(len(positions), dtype=bool)
     for tree, distance in trees:
         if distance > less:
@@ -155,7 +157,7 @@ def _apart(trees: list[tuple[Any, float]], positions: np.ndarray, less: float) -
 def _remaining(
     groups: list[tuple[np.ndarray, float]], trees: list[tuple[Any, float]], lengths: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return centres (M, d) and sides (d,) of the cells that no single particle covers."""
+    """Return centres (M, d) and side lengths (d,) of the cells that no single particle covers."""
     dimension = len(lengths)
     narrowest = max(distance for _, distance in groups) / _PER_DISTANCE
     width = max(narrowest, (np.prod(lengths) / _CELLS) ** (1.0 / dimension))
@@ -167,7 +169,7 @@ def _remaining(
     while 0 < len(cells) * len(corners) <= _MOST_CELLS:
         cells = (cells[:, None] + corners * sides).reshape(-1, dimension)
         sides, before = 0.5 * sides, len(cells)
-        cells = cells[_apart(trees, cells, 0.5 * float(np.linalg.norm(sides)))]  # covered to its corners
+        cells = cells[_apart(trees, cells, 0.5 * float(np.linalg.norm(sides)))]  # covered up to its corners
         if len(cells) > _WORTH * before:
             break
     return cells, sides
@@ -176,12 +178,12 @@ def _remaining(
 def _find_covered_cells(
     groups: list[tuple[np.ndarray, float]], sides: np.ndarray, number: np.ndarray
 ) -> np.ndarray:
-    """Find the cells (cells,) of a grid that lie within the distance of one particle.
+    """Find the cells (cells,) of a grid that lie completely within the distance of one particle.
 
-    The grid has the shape (*number); a cell must lie within the distance completely. The cells that differ in
-    the last axis only are a strip. A particle covers those between two ends of each strip that is near: at
-    the ends 1 is added and subtracted, and the sum along the strip is the number of particles that cover a
-    cell. What passes the last cell goes on at the first.
+    The grid has the shape (*number). Cells that differ only in the last axis form a strip. In each nearby
+    strip, a particle covers an interval of cells. 1 is added at its first cell and subtracted after its last
+    cell. The cumulative sum along the strip is then the number of particles that cover each cell. Intervals
+    continue periodically from the last to the first cell.
     """
     last, strips = int(number[-1]), int(np.prod(number[:-1]))
     ends = np.zeros(strips * last, dtype=int)
@@ -212,33 +214,35 @@ def chemical_potential(source: Source, trials: int = TRIALS, start: float | None
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     trials : int, default 512
-        Number of random positions that are tried in each of up to 2048 frames, where a particle may fit.
+        Number of random positions that are tried in each of up to 2048 frames, in the region where a particle
+        may fit.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
     Observable
-        Chemical potential relative to an ideal gas, dimensionless: a scalar, of a mixture (species,).
-        Variables: `probability`, that a random position is free, with its error; `successes`, the number of
-        free positions; `frames_with_success`, the number of frames that have any; `resolution`, the
-        probability that corresponds to a single success.
+        Chemical potential relative to an ideal gas, dimensionless: a scalar, or (species,) for a mixture.
+        Variables: `probability`, the probability that a random position is free, with its error; `successes`,
+        the number of free positions; `frames_with_success`, the number of frames with at least one free
+        position; `resolution`, the probability that corresponds to a single success.
 
     Raises
     ------
     SceneError
-        For anything but smooth elastic particles in a periodic container, mixtures with single particles or a
-        polydisperse species, too few frames, and if no position was free.
+        If the scene is not a periodic container of smooth elastic particles, or is a mixture with single
+        particles or a polydisperse species; if there are too few frames; or if no position was free.
 
     Notes
     -----
-    The error applies to the mean over frames, to first order. In a dense fluid ln P of a frame has a large
-    standard deviation s: the frames around s deviations above the median contribute most to P. Among n
-    independent frames the best one is about sqrt(2 ln n) deviations above the median. If this is not s + 1.5
-    at least, the frames that contribute most are missing: the result is too large, its error is NaN, and a
-    note states it. Theory: by the equation of state, for these numbers of particles.
+    The error refers to the mean over frames, to first order. In a dense fluid ln P has a large standard
+    deviation s between frames. Frames about s standard deviations above the median contribute most to the
+    mean of P. Among n independent frames, the best frame is about sqrt(2 ln n) standard deviations above the
+    median. If this is less than s + 1.5, the frames that contribute most are missing. Then the result is too
+    large, its error is NaN, and a note states this. Theory: the equation of state, for the same numbers of
+    particles.
 
     Examples
     --------
@@ -274,9 +278,9 @@ def chemical_potential(source: Source, trials: int = TRIALS, start: float | None
 
 
 def _hosts(run: Run) -> list[Hosts]:
-    """Return the distances below which an inserted particle overlaps, for each species.
+    """Return the contact distances of an inserted particle, for each species.
 
-    Equal particles have one such list.
+    For equal particles there is one list for all.
     """
     radii = [kind.radius for kind in run.scene.kinds if kind.count]
     if run.scene.alike:
@@ -286,7 +290,7 @@ def _hosts(run: Run) -> list[Hosts]:
 
 
 def _insert(run: Run, frames: slice, hosts: Hosts, trials: int) -> tuple[np.ndarray, dict[str, float]]:
-    """Compute the series (T,) of the chemical potential, and the counts of insertions."""
+    """Compute the series (T,) of the chemical potential, and the counts of trial insertions."""
     result = insertions(
         run.vectors("coordinates")[frames].values.astype(float), run.scene.container.lengths, hosts, trials
     )
@@ -294,7 +298,7 @@ def _insert(run: Run, frames: slice, hosts: Hosts, trials: int) -> tuple[np.ndar
     if chance == 0.0:
         rule = f"of {trials} places in each of {len(result.share)} frames none was free: a fluid too dense"
         raise SceneError("packing_fraction", run.scene.packing_fraction, rule)
-    series = -np.log(chance) - (result.probability / chance - 1.0)  # to first order
+    series = -np.log(chance) - (result.probability / chance - 1.0)  # first-order expansion
     error = correlated_mean(series, LEAST_INTERVALS).estimate.error
     if not _is_sampled(result.probability, error):
         error = np.nan
@@ -309,9 +313,9 @@ def _insert(run: Run, frames: slice, hosts: Hosts, trials: int) -> tuple[np.ndar
 
 
 def _is_sampled(probability: np.ndarray, error: float) -> bool:
-    """Return True if the frames that contribute most to the mean probability (T,) are known.
+    """Return True if the frames that contribute most to the mean probability (T,) were sampled.
 
-    error : standard error of the mean over the mean, with the correlation of the frames.
+    error : relative standard error of the mean, with the correlation between frames.
     """
     free = probability[probability > 0.0]
     if error == 0.0:
@@ -324,7 +328,7 @@ def _is_sampled(probability: np.ndarray, error: float) -> bool:
 
 
 def _with_note(result: Observable) -> Observable:
-    """Add a note to a result whose error is not known."""
+    """Add a note to a result whose error is unknown."""
     if np.isnan(result.error).any():
         frames = int(np.min(result["frames_with_success"].values))
         result.attrs["note"] = (
@@ -335,7 +339,7 @@ def _with_note(result: Observable) -> Observable:
 
 
 def _of_species(run: Run, tried: list[tuple[np.ndarray, dict[str, float]]], about: dict) -> Observable:
-    """Return the result of a mixture."""
+    """Return the result for a mixture."""
     means = [correlated_mean(series, LEAST_INTERVALS).estimate for series, _ in tried]
     values, errors, freedoms = np.array([[mean.value, mean.error, mean.freedom] for mean in means]).T
     errors[[np.isnan(each["probability_error"]) for _, each in tried]] = np.nan
@@ -356,5 +360,5 @@ _MEANINGS = {
 
 
 def _variables(dims: tuple[str, ...], counts: dict[str, Any]) -> dict[str, tuple]:
-    """Return the variables that state how well insertion worked."""
+    """Return the variables that state how successful the insertions were."""
     return {name: (dims, counts[name], {"units": "1", "long_name": _MEANINGS[name]}) for name in counts}

@@ -1,8 +1,8 @@
-"""Largest Lyapunov exponent: the rate at which neighbouring runs separate, from the events of one run.
+"""Largest Lyapunov exponent, the rate at which neighbouring runs separate, from the events of one run.
 
-A small deviation of the initial state is carried along by the linearised dynamics (tangent space), so that it
-never saturates and no second run is needed. Free flight adds the deviation of the velocity times the time to
-the deviation of the position; a contact maps both (Dellago, Posch & Hoover, Phys. Rev. E 53, 1485 (1996)).
+The linearised dynamics (tangent space) propagates a small deviation of the initial state. So the deviation
+never saturates, and no second run is needed. In free flight, the velocity deviation times the time is added
+to the position deviation; a contact maps both (Dellago, Posch & Hoover, Phys. Rev. E 53, 1485 (1996)).
 """
 
 from __future__ import annotations
@@ -20,14 +20,15 @@ from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 
 ALIGNMENT = 0.25
-"""The part of the events in which the deviation turns to the direction of fastest growth, not measured."""
+"""Fraction of the events in which the deviation aligns with the direction of fastest growth; it is discarded.
+"""
 
 
 class Deviation:
-    """An infinitesimal deviation of a state.
+    """Infinitesimal deviation of a state.
 
-    It has the deviations of positions and velocities, lists of N vectors, and the time of each particle's,
-    since a particle is brought up to date only at its own events.
+    It contains the deviations of positions and velocities, lists of N vectors, and a time for each particle,
+    because a particle is advanced only at its own events.
     """
 
     def __init__(self, positions: np.ndarray, velocities: np.ndarray, time: float) -> None:
@@ -47,11 +48,12 @@ class Deviation:
         self.velocities[n][axis] = -self.velocities[n][axis]
 
     def collide(self, i: int, j: int, away: list[float], parting: list[float], share: float) -> None:
-        """Map the deviations of particles i and j at a contact, smooth and elastic.
+        """Map the deviations of particles i and j at a smooth elastic contact.
 
-        Both deviations are up to date. The arguments are `away` = x_i - x_j, `parting` = v_i - v_j just
-        after, and `share` = m_j / (m_i + m_j). With n = away / sigma, and g the relative velocity before, a
-        relative deviation (r, u) becomes r - 2 (r.n) n and u - 2 (u.n) n - 2 (g.m) n - 2 (g.n) m. Here m = (r
+        Both deviations must be advanced to the time of the contact. The arguments are `away` = x_i - x_j,
+        `parting` = v_i - v_j just after the contact, and `share` = m_j / (m_i + m_j). With n = away / sigma
+        and the relative velocity g before the contact, a relative deviation (r, u) becomes r - 2 (r.n) n and
+        u - 2 (u.n) n - 2 (g.m) n - 2 (g.n) m. Here m = (r
         + g t) / sigma is the deviation of n, and t = -(r.n) / (g.n) the deviation of the time of contact.
         """
         axes = range(len(away))
@@ -73,7 +75,7 @@ class Deviation:
             vj[a] -= (1.0 - share) * pushed
 
     def rescale(self, time: float) -> float:
-        """Advance all particles to `time` and divide by the length of the deviation, which is returned."""
+        """Advance all particles to `time`, divide by the length of the deviation, and return this length."""
         for n in range(len(self.times)):
             self.advance(n, time)
         both = np.array(self.positions), np.array(self.velocities)
@@ -83,7 +85,7 @@ class Deviation:
 
 
 def follow(deviation: Deviation, scene: Scene, masses: np.ndarray, events: Mapping[str, np.ndarray]) -> None:
-    """Carry a deviation along a run's events, in their order (see `Simulation.events`).
+    """Propagate a deviation through the events of a run, in their order (see `Simulation.events`).
 
     Parameters
     ----------
@@ -99,7 +101,7 @@ def follow(deviation: Deviation, scene: Scene, masses: np.ndarray, events: Mappi
     Raises
     ------
     SceneError
-        If the scene has more than smooth elastic contacts.
+        If the scene has contacts other than smooth elastic ones.
     """
     _require_plain(scene)
     lengths, weights = np.array(scene.container.lengths), masses.tolist()
@@ -122,12 +124,12 @@ def lyapunov_exponent(simulation: Simulation, start: float | None = None, seed: 
     Parameters
     ----------
     simulation : Simulation
-        `record_events` was True while it advanced.
+        A simulation for which `record_events` was True while it advanced.
     start : float, [time], optional
-        Time from which growth is measured. Default: a quarter of the recorded part is discarded, in which the
-        deviation turns to the direction of fastest growth.
+        Time from which growth is measured. Default: a quarter of the record is discarded, in which the
+        deviation aligns with the direction of fastest growth.
     seed : int, default 0
-        Seed of the initial deviation, which is random.
+        Seed of the random initial deviation.
 
     Returns
     -------
@@ -137,13 +139,13 @@ def lyapunov_exponent(simulation: Simulation, start: float | None = None, seed: 
     Raises
     ------
     SceneError
-        If there is no record or it has too few events, or the scene has more than smooth elastic contacts of
-        moving particles and hard faces.
+        If there is no record or it has too few events, or if the scene has anything but smooth elastic
+        contacts of moving particles and hard faces.
 
     Notes
     -----
-    The uncertainty is the error of the mean of a correlated series, the growth in equal intervals. It takes
-    some 10 microseconds for each event.
+    The uncertainty is the error of the mean of a correlated series: the growth rate in equal intervals. The
+    computation takes about 10 microseconds per event.
 
     Examples
     --------
@@ -167,7 +169,7 @@ def lyapunov_exponent(simulation: Simulation, start: float | None = None, seed: 
         raise SceneError(
             "start", start, f"must be from {first:g} to below {last:g}, where events are recorded"
         )
-    # Rescaled often enough not to overflow, some once in N events, while it turns too.
+    # The deviation is rescaled often enough to avoid overflow, about once in N events, also during alignment.
     intervals = max(2 * LEAST_INTERVALS, number_of_events // state.count)
     turning = math.ceil(intervals * (begin - first) / (last - begin))
     edges = np.concatenate(
@@ -190,7 +192,7 @@ def lyapunov_exponent(simulation: Simulation, start: float | None = None, seed: 
 
 
 def _require_plain(scene: Scene) -> None:
-    """Raise SceneError for what `Deviation` does not carry a deviation through."""
+    """Raise SceneError for features through which `Deviation` cannot be propagated."""
     law = scene.restitution
     present = {
         "gravity": scene.gravity is not None and any(scene.gravity),

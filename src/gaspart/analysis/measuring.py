@@ -1,4 +1,4 @@
-"""Observables of a trajectory, by name, and the part of a run until a time."""
+"""Measurement of observables by name, and restriction of a run to an end time."""
 
 from __future__ import annotations
 
@@ -41,12 +41,12 @@ def measure(
     end: float | None = None,
     **selection: Any,
 ) -> Observable | dict[str, Observable]:
-    """Measure an observable of a trajectory or a simulation, or several, by name.
+    """Measure one or several observables of a trajectory or a simulation by name.
 
     Parameters
     ----------
     source : path, xarray.Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     observable : str or sequence of str
         Names as in `gaspart measure`, such as "pressure"; aliases are accepted, such as "viscosity".
     start : float, [time], optional
@@ -54,18 +54,18 @@ def measure(
     end : float, [time], optional
         Frames after this time are discarded. Default: none.
     **selection
-        Selections that the observables have, such as species=1 or axis="x".
+        Selections that the observables accept, such as species=1 or axis="x".
 
     Returns
     -------
     Observable or dict
-        The measured quantity with its uncertainty; of several names {name: Observable}.
+        The measured quantity with its uncertainty; for several names a dict {name: Observable}.
 
     Raises
     ------
     SceneError
-        If a name is unknown, the observable does not have a selection, fewer than two frames are left,
-        or the scene or the run does not have what the observable needs.
+        If a name is unknown, if the observable does not accept a selection, if fewer than two frames remain,
+        or if the scene or the run lacks data that the observable needs.
 
     Examples
     --------
@@ -95,12 +95,10 @@ def measure(
 
 @contextmanager
 def until_time(source: Source, end: float | None, pairs: bool = False) -> Iterator[Source]:
-    """Return the frames of a source until a time, which may be None.
+    """Return the frames of a source up to a time; None returns the source itself.
 
-    For None it is the source itself.
-
-    If `pairs`, the frames of a simulation count the collisions of each pair of species. Raises SceneError for
-    fewer than two frames.
+    If `pairs`, the frames of a simulation include the numbers of collisions of each pair of species. Raises
+    SceneError for fewer than two frames.
     """
     if end is None:
         yield source
@@ -119,19 +117,19 @@ def until_time(source: Source, end: float | None, pairs: bool = False) -> Iterat
 
 @contextmanager
 def open_frames(source: Source, pairs: bool = False) -> Iterator[xr.Dataset]:
-    """Yield the frames of a source, which are read or made once.
+    """Yield the frames of a source, which are read or computed once.
 
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     pairs : bool, default False
         Count the collisions of each pair of species of a simulation.
 
     Yields
     ------
     Dataset
-        The frames. A file is closed after the block.
+        The frames. A file is closed at the end of the block.
     """
     from gaspart.analysis.run import repeat_run
     from gaspart.simulation import Simulation

@@ -1,8 +1,8 @@
-"""Observables from the paths and velocities of particles: displacement and velocity correlation.
+"""Observables from paths and velocities of particles: displacement and velocity correlation.
 
-Of a run with correlations they are what it has accumulated from all its samples, with the scatter of parts of
-the run as the uncertainty. Otherwise frames are correlated, and the uncertainty is the scatter of groups of
-particles, which are taken as independent.
+For a run with correlations, they are averages over all samples, and the scatter of parts of the run is the
+uncertainty. Otherwise they are computed from frames, and the scatter of groups of particles, which are
+treated as independent, is the uncertainty.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ from gaspart.trajectory.correlator import SUMS
 
 # Time correlations of paths and velocities, averaged over particles and time origins.
 #
-# Sums over all pairs of frames are made by fast Fourier transforms [1]_, in blocks of particles: they take
-# the memory of a block, and their time grows as T log T for T frames. A squared displacement at a short
-# lag is a small difference of such sums where particles move far. It is summed directly where that would
-# cost digits.
+# Sums over all pairs of frames are computed by fast Fourier transforms [1]_, in blocks of particles. The
+# memory is that of one block, and the time grows as T log T for T frames. If particles move far, a squared
+# displacement at a short lag is a small difference of such sums. It is then summed directly, to avoid a loss
+# of digits.
 #
 # References
 # ----------
@@ -39,18 +39,19 @@ from gaspart.trajectory.correlator import SUMS
 
 
 _BLOCK = 256
-"""Number of coordinates whose transforms are made at once."""
+"""Number of coordinates that are transformed at once."""
 _DIRECT = 1e-4
-"""A squared displacement divided by the mean square of coordinates, below which it is summed directly: the
-transforms would lose 4 digits or more of 16."""
+"""Squared displacement divided by the mean square of coordinates, below which it is summed directly. The
+transforms would lose at least 4 of 16 digits.
+"""
 
 
 @dataclass(frozen=True)
 class Curves:
-    """Time correlations of one replica at L lags, in reduced units, (L,) each.
+    """Time correlations of one replica at L lags, in reduced units, shape (L,) each.
 
-    time; msd <|r(t) - r(0)|^2>; correlation <v(0).v(t)> / d; running, the msd's derivative over 2d, from
-    <(r(t) - r(0)).(v(t) + v(0))> / 2d, which holds at every lag.
+    `time`, lags. `msd`, <|r(t) - r(0)|^2>. `correlation`, <v(0).v(t)> / d. `running`, derivative of msd
+    divided by 2d, from <(r(t) - r(0)).(v(t) + v(0))> / 2d, which is exact at every lag.
     """
 
     time: np.ndarray
@@ -85,9 +86,9 @@ def squared_displacement(paths: np.ndarray, lags: int) -> np.ndarray:
     Parameters
     ----------
     paths : ndarray, shape (T, N, d), [length]
-        Continued positions at even times.
+        Unwrapped positions at equally spaced times.
     lags : int
-        Number of lags, in frames, from 0 on.
+        Number of lags, in frames, starting with 0.
 
     Returns
     -------
@@ -96,7 +97,7 @@ def squared_displacement(paths: np.ndarray, lags: int) -> np.ndarray:
     """
     frames, count, _ = paths.shape
     r = _columns(paths)
-    r = r - r.mean(axis=0)  # from the middle of each path: the digits of the differences are kept
+    r = r - r.mean(axis=0)  # relative to the middle of each path, to keep the digits of the differences
     squares = np.einsum("tc,tc->t", r, r)
     before = np.concatenate([[0.0], np.cumsum(squares)])
     lag = np.arange(lags)
@@ -115,9 +116,9 @@ def autocorrelation(values: np.ndarray, lags: int) -> np.ndarray:
     Parameters
     ----------
     values : ndarray, shape (T, N, d)
-        Values at even times.
+        Values at equally spaced times.
     lags : int
-        Number of lags, in frames, from 0 on.
+        Number of lags, in frames, starting with 0.
 
     Returns
     -------
@@ -134,10 +135,10 @@ def _columns(values: np.ndarray) -> np.ndarray:
 
 
 def _products(columns: np.ndarray, others: np.ndarray | None = None) -> np.ndarray:
-    """Return sums of products of series at a distance in time t.
+    """Return sums of products of series with a time difference t.
 
-    The sums are over columns (T, C) and times s, of a(s + t) a(s), or of a(s + t) b(s), at t = 0,
-    1 ... T - 1. Negative t are counted from the end.
+    The products are a(s + t) a(s) or a(s + t) b(s). They are summed over columns (T, C) and times s, for t =
+    0, 1 ... T - 1. Negative t are at the end of the result.
     """
     from scipy.fft import irfft, next_fast_len, rfft
 
@@ -153,19 +154,20 @@ def _products(columns: np.ndarray, others: np.ndarray | None = None) -> np.ndarr
     return np.asarray(irfft(power, length))
 
 
-# Time correlations that a run has accumulated.
+# Time correlations accumulated during a run.
 
 
 _PARTS = 16, 32
-"""Minimum and maximum number of parts of a run, whose scatter gives an uncertainty."""
+"""Minimum and maximum number of parts of a run; the scatter of the parts gives an uncertainty."""
 _PART = 4.0
-"""The length of one in longest lags, so that few pairs of samples are on both sides of an edge."""
+"""Minimum length of a part in longest lags, so that few pairs of samples extend over two parts."""
 
 
 def average_correlations(trajectory: xr.Dataset) -> Curves:
-    """Return the averages that a run with correlations has accumulated to its last frame.
+    """Return the averages that a run with correlations has accumulated up to its last frame.
 
-    At lags in the scene's time, with velocities as they are; msd and running are NaN without displacements.
+    Lags are in the time units of the scene, and velocities are not shifted; msd and running are NaN without
+    displacements.
     """
     last, dimension = trajectory.isel(frame=-1), trajectory.sizes["spatial"]
     lags = trajectory.sizes["lag"]
@@ -177,15 +179,16 @@ def average_correlations(trajectory: xr.Dataset) -> Curves:
 
 
 def accumulated_mean(run: Run, name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
-    """Compute the mean of one of `SUMS` of a run's correlations, and its error, by lag.
+    """Compute the mean of a correlation sum in `SUMS` and its error, by lag.
 
-    Returned are the lags, the mean and its standard error, (lags,), and the error's degrees of freedom.
+    Returns the lags, the mean, its standard error, and the degrees of freedom of the error, each of shape
+    (lags,).
 
-    The mean is over pairs of samples of which the later one is in the measured part; the error is the scatter
-    of 16 to 32 consecutive parts of it, of four times the longest lag if it is long enough. It holds for
-    freely moving particles: where the velocity of the centre of mass, which is subtracted, is conserved, it
-    is multiplied by N / (N - 1). Raises SceneError for fewer frames, and a single particle that keeps its
-    velocity.
+    The mean is over pairs of samples whose later sample is in the measured part. The error is the scatter of
+    16 to 32 consecutive parts; in a long run, each part is at least four times the longest lag. The result
+    holds for freely moving particles. Along axes on which the momentum is conserved, the velocity of the
+    centre of mass is subtracted, and the result is multiplied by N / (N - 1). Raises SceneError for too few
+    frames, and for a single particle with a constant velocity.
     """
     samples, lags = run.data["correlated_samples"].values, np.arange(run.data.sizes["lag"])
     pairs = np.maximum(samples[:, None] - lags, 0.0)
@@ -205,10 +208,7 @@ def accumulated_mean(run: Run, name: str) -> tuple[np.ndarray, np.ndarray, np.nd
 
 
 def _of_free_particles(run: Run) -> float:
-    """Return the square of velocities of free particles relative to the centre of mass's frame.
-
-    It is the ratio of both squares.
-    """
+    """Return the ratio of squared velocities of free particles and relative to the centre of mass."""
     if not run.conserved.any():
         return 1.0
     count = int(np.isfinite(run.masses).sum())
@@ -218,12 +218,12 @@ def _of_free_particles(run: Run) -> float:
 
 
 def mask_between(time: np.ndarray, start: float, stop: float) -> np.ndarray:
-    """Mask of the times from `start` to `stop`, both included."""
+    """Return a mask of the times from `start` to `stop`, both included."""
     return (time >= start * (1.0 - 1e-9)) & (time <= stop * (1.0 + 1e-9))
 
 
 def line(x: np.ndarray, y: np.ndarray) -> float:
-    """Fit the slope of a line by least squares; NaN through fewer than four points."""
+    """Fit the slope of a line by least squares; NaN for fewer than four points."""
     return float(np.polyfit(x, y, 1)[0]) if len(x) >= 4 else math.nan
 
 
@@ -244,21 +244,23 @@ def mean_squared_displacement(
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     lags : int, optional
         Number of lags, in frames. Default: half of the frames.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
     species : int, optional
-        Only this species, by its number in the scene. Single particles have the number after the last.
+        Measure only this species, identified by its number in the scene. Single particles have the number
+        after the last species.
     particles : sequence of int, optional
-        Only these particles. Of fewer than 16 the error is the scatter of as many blocks of the run.
+        Measure only these particles. For fewer than 16 particles the error is the scatter of blocks of the
+        run.
     per_axis : bool, default False
-        Along each axis, (axis, lag), instead of the sum.
+        Return the displacement along each axis, (axis, lag), instead of the sum.
     about : {"flow", "rest"}, default "flow"
-        Frame of reference. "flow": about the local flow where the gas flows; otherwise, along axes on which
-        the total momentum is conserved, about the centre of mass, times N / (N - 1). "rest": about the
-        container.
+        Frame of reference. "flow": relative to the local flow if the gas flows; otherwise relative to the
+        centre of mass along axes on which the total momentum is conserved, multiplied by N / (N - 1). "rest":
+        relative to the container.
 
     Returns
     -------
@@ -268,14 +270,15 @@ def mean_squared_displacement(
     Raises
     ------
     SceneError
-        If there are fewer than 16 moving particles, unless they are selected, the flow changes with time,
-        frames are at uneven times, or frames are too far apart to follow particles across periodic faces.
+        If there are fewer than 16 moving particles and none are selected; if the flow changes with time; if
+        frames are unevenly spaced; or if frames are too far apart to follow particles across periodic faces.
 
     Notes
     -----
-    A run with correlations and displacements has the lags of the correlations, and all samples
-    count, unless lags, species, particles or per_axis are given. About the flow: see `gaspart.analysis.flow`.
-    Theory: Enskog's diffusion coefficient and the linear Boltzmann equation.
+    For a run with correlations and displacements, the result has the lags of the correlations, and all
+    samples are
+    used, unless lags, species, particles or per_axis are passed. `gaspart.analysis.flow` defines the local
+    flow. Theory: Enskog's diffusion coefficient and the linear Boltzmann equation.
 
     Examples
     --------
@@ -315,15 +318,15 @@ def velocity_autocorrelation(
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     lags : int, optional
         Number of lags, in frames. Default: half of the frames.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
     species : int, optional
-        Only this species, as in `mean_squared_displacement`.
+        Measure only this species, as in `mean_squared_displacement`.
     particles : sequence of int, optional
-        Only these particles, as in `mean_squared_displacement`.
+        Measure only these particles, as in `mean_squared_displacement`.
     about : {"flow", "rest"}, default "flow"
         Frame of reference, as in `mean_squared_displacement`.
 
@@ -335,13 +338,13 @@ def velocity_autocorrelation(
     Raises
     ------
     SceneError
-        If there are fewer than 16 moving particles, or frames are at uneven times.
+        If there are fewer than 16 moving particles, or if frames are unevenly spaced.
 
     Notes
     -----
-    Of a run with correlations, which needs no displacements, all samples count, as in
-    `mean_squared_displacement`. Theory: (k_B T / m) exp(-2 nu t / d), with the collision rate nu: exact at
-    short times, without the long-time tail.
+    For a run with correlations all samples are used, as in `mean_squared_displacement`. Displacements are not
+    needed. Theory: (k_B T / m) exp(-2 nu t / d), with the collision rate nu: exact at short times, without
+    the long-time tail.
 
     Examples
     --------
@@ -368,20 +371,20 @@ def velocity_autocorrelation(
 def _accumulates(
     run: Run, name: str, lags: int | None, species: int | None, particles: Sequence[int] | None
 ) -> bool:
-    """Return True if a run has accumulated the requested curve, under a name of `SUMS`.
+    """Return True if a run has accumulated the requested curve (a name in `SUMS`).
 
-    The gas must not flow.
+    This requires a gas that does not flow.
     """
     covers_all = lags is None and species is None and particles is None
     if not (name in run.data and covers_all and run.about == FLOW):
         return False
-    return not (run.scene.flow_axes if run.is_subset else run.flow_axes)  # some particles show no wind
+    return not (run.scene.flow_axes if run.is_subset else run.flow_axes)  # a subset shows no wind
 
 
 def _displacement(
     run: Run, time: np.ndarray, values: np.ndarray, errors: np.ndarray, freedom: float
 ) -> Observable:
-    """Return the mean-squared displacement (lag,) or (axis, lag), with theory."""
+    """Return the mean-squared displacement, (lag,) or (axis, lag), with theory."""
     attributes = describe("msd", run, time, axes=values.ndim > 1)
     along = {**(axes_of(run) if values.ndim > 1 else {}), **_lag(time)}
     result = observable("mean_squared_displacement", along, values, errors, **attributes)
@@ -398,7 +401,7 @@ def _autocorrelation(
 
 
 def axes_of(run: Run, chosen: np.ndarray | slice = slice(None)) -> dict[str, Any]:
-    """Return the dimension of an observable along the chosen axes.
+    """Return the dimension of an observable along chosen axes.
 
     Parameters
     ----------

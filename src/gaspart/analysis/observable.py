@@ -1,4 +1,4 @@
-"""A measured quantity: an xarray.Dataset with uncertainties, units and theory, which plots itself."""
+"""Measured quantity: an xarray.Dataset with uncertainties, units, theory and a plot."""
 
 from __future__ import annotations
 
@@ -21,25 +21,25 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 LEAST_INTERVALS = 16
-"""Between frames: fewer allow no uncertainty of a mean."""
+"""Minimum number of intervals between frames; fewer intervals do not determine the uncertainty of a mean."""
 _ROUNDING = 1e-12
-"""Relative scatter of a series that does not change."""
-_LONG = 32  # characters of a label, from which on it has two lines
+"""Relative scatter below which a series counts as constant."""
+_LONG = 32  # number of characters above which a label has two lines
 _FEW = 12
-"""Values up to which all are written out."""
+"""Maximum number of values that are all written out."""
 _PLANE = 2
-"""Axes of a field that a plot has."""
+"""Number of axes of a field that can be plotted."""
 STRETCHES = 20
-"""Number of stretches of a run, whose means a plot of a scalar shows."""
+"""Number of blocks of a run whose means are plotted for a scalar."""
 
 
 class ByFace(xr.Dataset):
-    """A Dataset that may have the dimension `face`, of names such as `x low`."""
+    """Dataset that may have the dimension `face` with names such as `x low`."""
 
     __slots__ = ()
 
     def sel(self, *indexers: Any, **named: Any) -> Self:
-        """Select as from a Dataset, a face by either of its names, `x_low` or `x low`.
+        """Select as from a Dataset; a face has two names, `x_low` and `x low`.
 
         Parameters
         ----------
@@ -61,7 +61,7 @@ class ByFace(xr.Dataset):
 
 @with_guidance
 class Observable(ByFace):
-    """The result of a function of `gaspart.analysis`, a Dataset.
+    """Result of a function of `gaspart.analysis`, a Dataset.
 
     Parameters
     ----------
@@ -74,11 +74,11 @@ class Observable(ByFace):
 
     Notes
     -----
-    Variables: the quantity, by the name in the attribute `quantity`; the same with the suffix _error, one
-    standard deviation; where theory exists, with the suffixes _theory and _theory_error (NaN if the
-    uncertainty is not known, as for an approximation). A scalar also has `stretches` (time), its means over
-    consecutive blocks of the run, and the degrees of freedom of its error as the attribute `freedom`. Every
-    variable has `units`.
+    Variables: the quantity has the name in the attribute `quantity`. Its standard deviation has the suffix
+    _error. If theory exists, it has the suffixes _theory and _theory_error (NaN if the uncertainty is
+    unknown, for example for an approximation). A scalar also has the variable `stretches` (time), the means
+    over consecutive blocks of the run, and the attribute `freedom`, the degrees of freedom of its error.
+    Every variable has `units`.
 
     Examples
     --------
@@ -128,7 +128,7 @@ class Observable(ByFace):
 
     @property
     def theory(self) -> xr.DataArray | None:
-        """Values of theory; None if there is no theory for this scene.
+        """Theoretical values; None if there is no theory for this scene.
 
         Examples
         --------
@@ -144,10 +144,10 @@ class Observable(ByFace):
 
     @property
     def deviation(self) -> xr.DataArray | None:
-        """Measured minus theory, in standard deviations of the difference; None without theory.
+        """Measured value minus theory, in standard deviations of the difference; None without theory.
 
-        NaN where the standard deviation is 0, as for a quantity that does not change: nothing states how
-        likely a difference is.
+        It is NaN if the standard deviation is 0, for example for a constant quantity, because the probability
+        of a difference is then unknown.
 
         Examples
         --------
@@ -167,10 +167,10 @@ class Observable(ByFace):
 
     @property
     def summary(self) -> str:
-        """The result in words: a number as `Z = 1.242(20), theory 1.227`.
+        """Result as text: a number is written as `Z = 1.242(20), theory 1.227`.
 
-        It has the short name of the quantity, if there is one. Of several values it has each; of a curve, the
-        number of values and the axis.
+        The short name of the quantity is used if it exists. For several values, each value is listed; for a
+        curve, only the number of values and the axis are given.
 
         Examples
         --------
@@ -194,22 +194,22 @@ class Observable(ByFace):
         return self.summary if self.estimate.size <= _FEW else f"{self.summary}\n{super().__repr__()}"
 
     def _repr_html_(self) -> str:
-        """Return the `summary`, a plot of a curve, and the data set, folded."""
+        """Return HTML with the `summary`, a plot of a curve, and the folded data set."""
         text = html.escape(self.summary).replace("\n", "<br>")
         is_plotted = self.estimate.size > _FEW and len(_cells(self)) <= _PLANE
         drawn = f'<br><img src="{_embed_plot(self)}" alt="{text}">' if is_plotted else ""
         return f"<b>{text}</b>{drawn}<details><summary>data set</summary>{super()._repr_html_()}</details>"
 
     def plot(self, theory: bool = False, axis: Axes | None = None) -> Axes:  # type: ignore[override]
-        """Draw the values with bars of one standard deviation.
+        """Plot the values with error bars of one standard deviation.
 
-        A scalar is drawn as the means of consecutive blocks of the run, a field as a map of colours or as
+        For a scalar, the means of consecutive blocks of the run are plotted; for a field, a colour map or
         arrows.
 
         Parameters
         ----------
         theory : bool, default False
-            Also draw the curve of theory; if it does not exist for this scene, the legend says so.
+            Also draw the theoretical curve; if no theory exists for this scene, the legend says so.
         axis : matplotlib Axes, optional
             Axes to draw in. Default: a new one.
 
@@ -221,12 +221,12 @@ class Observable(ByFace):
         Raises
         ------
         SceneError
-            For a field along three axes.
+            If the field has three axes.
 
         Notes
         -----
-        A notebook shows the Axes. A script writes them by ``plot().figure.savefig("z.png")``, or opens a
-        window by ``matplotlib.pyplot.show()``.
+        A notebook displays the Axes. In a script, use ``plot().figure.savefig("z.png")`` to write a file, or
+        ``matplotlib.pyplot.show()`` to open a window.
 
         Examples
         --------
@@ -259,7 +259,7 @@ class Observable(ByFace):
 
 
 def _values(result: Observable, name: str) -> list[str]:
-    """Return each value with its uncertainty and, where it is known, theory."""
+    """Return each value with its uncertainty and, if it exists, its theory."""
     estimate, lines = result.estimate, []
     errors = np.broadcast_to(result.error.values, estimate.shape)
     theory = np.full(estimate.shape, np.nan) if result.theory is None else result.theory.values
@@ -273,7 +273,7 @@ def _values(result: Observable, name: str) -> list[str]:
 
 
 def _embed_plot(result: Observable) -> str:
-    """Return a plot of a curve as the address of a picture that contains it."""
+    """Return a plot of a curve as a data URL of the image."""
     from matplotlib.figure import Figure
 
     figure, content = Figure(figsize=(4.8, 3.0), layout="constrained"), io.BytesIO()
@@ -307,20 +307,20 @@ def _plot_curve(result: Observable, axis: Axes, theory: bool) -> None:
     if theory:
         assert result.theory is not None
         positions = np.arange(x.size) if x.dtype.kind in "US" else x
-        marker = "" if result.theory.notnull().sum() > 2 else "x"  # of few values, as at contact
-        curves = np.unique(result.theory.values.reshape(-1, x.size), axis=0).T  # one, where all have the same
+        marker = "" if result.theory.notnull().sum() > 2 else "x"  # for few values, such as contact values
+        curves = np.unique(result.theory.values.reshape(-1, x.size), axis=0).T  # one curve if all are equal
         lines = axis.plot(positions, curves, color="black", marker=marker, zorder=3)
         lines[0].set_label("theory")
     axis.set_xlabel(label_of(x))
 
 
 def _cells(result: Observable) -> list[str]:
-    """Return the axes of a field."""
+    """Return the axes of a field; () for other results."""
     return [name for name in result.estimate.dims if name in ("x", "y", "z")]
 
 
 def _plot_field(result: Observable, axis: Axes, cells: list[str]) -> None:
-    """Draw a scalar field as a map of colours, a flow as arrows along both axes."""
+    """Draw a scalar field as a colour map, or a flow as arrows along both axes."""
     if len(cells) > _PLANE:
         raise SceneError("axes", "".join(cells), "a plot has two; choose a layer: .isel(z=0)")
     x, y = (result[name] for name in cells)
@@ -335,7 +335,7 @@ def _plot_field(result: Observable, axis: Axes, cells: list[str]) -> None:
 
 
 def label_of(values: xr.DataArray) -> str:
-    """Return the label of an axis: the meaning of a variable, with its unit if any.
+    """Return the label of an axis: the meaning and the unit of a variable.
 
     Parameters
     ----------
@@ -358,10 +358,10 @@ def scalar(
 ) -> Observable:
     """Return the mean of a correlated series over the intervals between frames, with its error.
 
-    series : (M,).
+    series : (M,), the values in the intervals.
     edges : (M + 1,), the times of the frames.
-    slow : True if correlations may fall as slowly as 1 / t.
-    about : `units`, `long_name`, and perhaps `theory`, a value and its uncertainty, and its `source`.
+    slow : True if correlations may decay as slowly as 1 / t.
+    about : `units`, `long_name`, and optionally `theory` (a value and its uncertainty) and its `source`.
 
     Raises SceneError for fewer values than `LEAST_INTERVALS`.
     """
@@ -392,7 +392,7 @@ def observable(
 ) -> Observable:
     """Build a result from its parts.
 
-    `along` maps a dimension to its coordinate and the attributes of the coordinate.
+    `along` maps each dimension to its coordinate and the attributes of the coordinate.
     """
     dims = tuple(along)
     parts = {name: (values, long_name), f"{name}_error": (errors, "standard uncertainty")}
@@ -408,9 +408,9 @@ def observable(
 
 
 def with_freedom(result: Observable, freedom: np.ndarray | float) -> Observable:
-    """Add the degrees of freedom of its errors to a result, by the suffix _freedom.
+    """Add the degrees of freedom of the errors to a result, with the suffix _freedom.
 
-    freedom : of each value, or of all values with a known error.
+    freedom : degrees of freedom of each value, or one number for all values with a known error.
     """
     if not isinstance(freedom, np.ndarray):
         freedom = np.where(np.isnan(result.error), np.nan, freedom)

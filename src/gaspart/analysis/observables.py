@@ -1,8 +1,8 @@
-"""The observables that have a name, each declared once.
+"""Declarations of all named observables.
 
-`gaspart measure`, `sweep`, `advise`, `--until`, `check`, `info` and `theory`, figures of one's own, the
-reference page and the completion of a shell read these declarations, and no other list of names exists
-(`tests/workflow/test_observables.py`). The form of a declaration is in `declaration`.
+All users of observables read these declarations, and no other list of names exists: `gaspart measure`,
+`sweep`, `advise`, `--until`, `check`, `info` and `theory`, figures of users, the reference page and shell
+completion (`tests/workflow/test_observables.py`). The module `declaration` defines their form.
 """
 
 from __future__ import annotations
@@ -30,15 +30,15 @@ KEPT: dict[str, tuple[str, Any, str]] = {
     ),
     "pairs": ("pairs", False, "the run must count collisions by pairs: run with --pairs"),
 }
-"""Data that a run stores only on request: key, value and rule of the error without them."""
+"""Data that a run stores only on request: key, value and rule of the error message without them."""
 _SAMPLED = "is of the positions of pairs, which DSMC does not have"
 _OF_PAIRS: dict[str, Any] = {
     "samples": "structure",
     "nothing": dict.fromkeys(("boltzmann", "enskog"), _SAMPLED),
 }
-"""Traits of what the positions of particles relative to each other give."""
+"""Properties of observables that follow from the relative positions of particles."""
 _FLUX: dict[str, Any] = {"needs": "fluxes", "lags": 100}
-"""Traits of what correlations of the stress and the heat flux give."""
+"""Properties of observables that follow from correlations of the stress and the heat flux."""
 
 OBSERVABLES: dict[str, Named] = {
     "Z": Named(
@@ -447,7 +447,7 @@ OBSERVABLES: dict[str, Named] = {
 
 
 TOO_SHORT = ("frames", "duration", "collisions", "wall_hits", "start", "D", "mutual_diffusion")
-"""Keys of the errors of an analysis that a longer run may not have."""
+"""Keys of errors that may disappear in a longer run."""
 
 
 ALIASES: dict[str, str] = {
@@ -466,7 +466,7 @@ ALIASES: dict[str, str] = {
 
 
 def observable_name(name: object) -> str:
-    """Return the name of an observable that is given by its name or an alias.
+    """Return the name of an observable, from its name or an alias.
 
     Raises SceneError for other values.
     """
@@ -480,7 +480,7 @@ def observable_name(name: object) -> str:
 
 
 def observables_with(**traits: Any) -> tuple[str, ...]:
-    """Return the names of the observables whose traits have these values."""
+    """Return the names of the observables whose properties have these values."""
     return tuple(
         name
         for name, declared in OBSERVABLES.items()
@@ -489,17 +489,17 @@ def observables_with(**traits: Any) -> tuple[str, ...]:
 
 
 def selecting(key: str) -> tuple[str, ...]:
-    """Return the names of the observables that have a selection."""
+    """Return the names of the observables that accept a selection."""
     return tuple(name for name, declared in OBSERVABLES.items() if key in declared.selections)
 
 
 def selections() -> tuple[str, ...]:
-    """Return all keys of selections."""
+    """Return the keys of all selections."""
     return tuple(dict.fromkeys(key for declared in OBSERVABLES.values() for key in declared.selections))
 
 
 def about(name: str, dimension: int) -> dict[str, str]:
-    """Return units and label of an observable, the attributes of the variable that holds it."""
+    """Return the units and the label of an observable, as attributes of its variable."""
     declared = OBSERVABLES[name]
     return {"units": units_in(declared.units, dimension), "long_name": declared.label}
 
@@ -507,13 +507,13 @@ def about(name: str, dimension: int) -> dict[str, str]:
 def name_of(function: str) -> str:
     """Return the name of the observable that a function of `gaspart.analysis` measures.
 
-    A function without one has its own name.
+    A function that measures no named observable has its own name.
     """
     return next((name for name, declared in OBSERVABLES.items() if declared.function == function), function)
 
 
 def require_selection(name: str, selection: Mapping[str, Any]) -> None:
-    """Raise SceneError for a selection that an observable does not have."""
+    """Raise SceneError for a selection that an observable does not accept."""
     for key, value in selection.items():
         if value is not None and key not in OBSERVABLES[name].selections:
             able = selecting(key)
@@ -522,10 +522,10 @@ def require_selection(name: str, selection: Mapping[str, Any]) -> None:
 
 
 def require_defined(name: str, scene: Scene, **selection: Any) -> None:
-    """Raise SceneError, with the reason, for an observable that a scene does not have.
+    """Raise SceneError, with the reason, if an observable is undefined for a scene.
 
-    No run of the scene has it, however long. Raises SceneError too for a selection that the observable or the
-    scene does not have.
+    It is then undefined for runs of any length. Also raises SceneError for a selection that the observable or
+    the scene does not allow.
     """
     declared = OBSERVABLES[observable_name(name)]
     require_selection(name, selection)
@@ -536,7 +536,7 @@ def require_defined(name: str, scene: Scene, **selection: Any) -> None:
 
 
 def require_run(name: str, scene: Scene, kept: Collection[str] = (), follow: int | None = None) -> None:
-    """Raise SceneError for an observable that no run of a scene has, however long it is.
+    """Raise SceneError if no run of a scene, of any length, can measure an observable.
 
     kept : see `require_kept`.
     follow : number of particles in the file, the argument of `gaspart.run`; None for all.
@@ -555,8 +555,8 @@ def require_run(name: str, scene: Scene, kept: Collection[str] = (), follow: int
 def walls_of(name: str, scene: Scene) -> tuple[str, ...]:
     """Return the walls, named like `x low`, for which an observable may have a value.
 
-    An observable of faces has all walls for a pressure, the faces at a temperature otherwise; another
-    observable has no walls.
+    For a pressure or force these are all walls; for other observables of faces, the faces with a temperature.
+    All other observables have no walls.
     """
     if "face" not in OBSERVABLES[name].along:
         return ()
@@ -566,10 +566,10 @@ def walls_of(name: str, scene: Scene) -> tuple[str, ...]:
 
 
 def require_steady_value(name: str, scene: Scene) -> None:
-    """Raise SceneError for an observable that is 0 on average in a steady state.
+    """Raise SceneError, with the reason, if an observable is 0 on average in the steady state.
 
-    The error has the reason. No run makes such an observable relatively accurate. In a container that is open
-    to a vacuum alone all observables are 0.
+    A relative accuracy of such an observable is undefined. In a container that is open only to a vacuum, all
+    observables are 0.
     """
     if scene.is_open and not any(face.temperatures for _, face in scene.faces_of(Open)):
         refuse_open(scene, "has no reservoir: all particles leave, and nothing is steady; give a duration")
@@ -578,10 +578,10 @@ def require_steady_value(name: str, scene: Scene) -> None:
 
 
 def require_modelled(name: str, scene: Scene, engine: Engine) -> None:
-    """Raise SceneError, with the reason, if a run by an engine does not determine an observable.
+    """Raise SceneError, with the reason, if runs of an engine do not determine an observable.
 
-    Its equation does not have the observable, or has one value of it in any case, or the engine does not
-    store the required data.
+    The equation of the engine does not determine the observable or gives a trivial value, or the engine does
+    not store the required data.
     """
     declared = OBSERVABLES[observable_name(name)]
     if engine.equation in declared.nothing:
@@ -595,9 +595,12 @@ def require_modelled(name: str, scene: Scene, engine: Engine) -> None:
 
 
 def require_kept(name: str, kept: Collection[str]) -> None:
-    """Raise SceneError, with the option to set, if a run lacks what an observable needs.
+    """Raise SceneError if a run lacks the data that an observable needs.
 
-    `kept` has the stored data, "fluxes" or "pairs". Paths also follow from frames that are close enough.
+    The message names the option to set.
+
+    `kept` contains the names of stored data, "fluxes" or "pairs". Paths can also be reconstructed from frames
+    that are close enough.
     """
     needs = OBSERVABLES[observable_name(name)].needs
     if needs in KEPT and needs not in kept:

@@ -1,6 +1,6 @@
 """Pairs of particles: the radial distribution function.
 
-Uncertainties are the scatter of consecutive blocks of the run.
+Uncertainties come from the scatter of consecutive blocks of the run.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from gaspart.analysis.bulk import EXACT
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.expected.equilibrium import describe, equation_of
 from gaspart.analysis.impulses import estimator, mixture
@@ -21,18 +20,19 @@ from gaspart.analysis.statistics import correlated_mean, histogram_means
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number
 from gaspart.state.tally import FURTHEST, PairImpulseTally
+from gaspart.theory.bulk import EXACT
 from gaspart.theory.geometry import unit_sphere_surface
 from gaspart.theory.speeds import mean_speed_factor
 from gaspart.trajectory.pairs import pair_names, pairs_of
 from gaspart.trajectory.run_options import stored_tally
 from gaspart.workers import in_threads
 
-# Pairs of a periodic container, counted by their distance.
+# Pairs in a periodic container, counted by their distance.
 
 _COLUMNS, _BOXES = 2, 8
-"""Columns and boxes of `count_pairs` in the largest distance, where particles are not farther apart."""
+"""Numbers of columns and boxes per largest distance in `count_pairs`, unless the density is low."""
 _MOST_BOXES = 4
-"""Boxes for each particle, at most."""
+"""Maximum number of boxes per particle."""
 
 
 def pair_counts(
@@ -53,7 +53,7 @@ def pair_counts(
     furthest : float, [length]
         Largest distance.
     threads : int, default 1
-        Number of threads, each of which counts whole frames; the counts do not depend on it.
+        Number of threads. Each thread counts whole frames, so the counts do not depend on the number.
 
     Returns
     -------
@@ -63,9 +63,9 @@ def pair_counts(
     Raises
     ------
     ValueError
-        If the distance exceeds half of the shortest side, where a pair has several images.
+        If the distance exceeds half of the shortest side, because a pair then has several images.
     """
-    from gaspart.kernels.analysis.pairs import MARGIN, count_pairs  # .4 s of numba
+    from gaspart.kernels.analysis.pairs import MARGIN, count_pairs  # importing numba takes 0.4 s
 
     sides = np.asarray(lengths, dtype=float)
     if not 0.0 < furthest <= 0.5 * sides.min():
@@ -73,7 +73,7 @@ def pair_counts(
     _, count, dimension = np.shape(frames)
     if count < 2:
         return np.zeros(bins, dtype=np.int64)
-    size, first = np.ones(3), 3 - dimension  # of discs: one column wide along the first of three axes
+    size, first = np.ones(3), 3 - dimension  # discs: a first axis with a single column is added
     size[first:] = sides
     numbers = _boxes(size, count, furthest, first)
     spans = np.ceil(MARGIN * furthest * numbers / size).astype(np.int64)[:2]
@@ -106,9 +106,9 @@ def _boxes(size: np.ndarray, count: int, furthest: float, first: int) -> np.ndar
 def radial_distribution(
     frames: np.ndarray, lengths: Sequence[float] | np.ndarray, bins: int, furthest: float, threads: int = 1
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the centres (bins,) of shells and g(r) there, the mean over frames (T, N, d).
+    """Return the centres (bins,) of shells and g(r), averaged over frames (T, N, d).
 
-    Pairs are compared with the N (N - 1) / 2 pairs of an ideal gas.
+    The counts are divided by the counts of an ideal gas with N (N - 1) / 2 pairs.
     """
     count = np.shape(frames)[1]
     counts = pair_counts(frames, lengths, bins, furthest, threads)
@@ -143,35 +143,36 @@ def ideal_counts(count: int, lengths: Sequence[float] | np.ndarray, bins: int, f
 
 # g(r) from the momentum that pairs of particles gain along their separation.
 #
-# In equilibrium this gives k_B T g(r) without the noise of counting, but for what all distances share
-# (`Tally.contact_impulse_sum`; docs/estimators.md has the derivation). That follows from the number of
-# pairs within the furthest distance, which is counted. Counts have less noise in wide shells of a dense
-# fluid, so both are mixed, as densities are (`gaspart.analysis.impulses`).
+# In equilibrium this determines k_B T g(r) without counting noise, apart from a constant that is common to
+# all distances (`Tally.contact_impulse_sum`; docs/estimators.md has the derivation). The constant follows
+# from the counted number of pairs within the largest distance. In wide shells of a dense fluid counts have
+# less noise. So both estimates are averaged with weights, as densities are (`gaspart.analysis.impulses`).
 
 
 _ALIKE = 1e-9
-"""Relative difference of two thicknesses of shells that is rounding."""
+"""Relative difference of two shell thicknesses that is attributed to rounding."""
 
 
 def read_pair_impulses(run: Run) -> PairImpulseTally | None:
-    """Return the stored impulses of pairs of a run, or None.
+    """Return the stored pair impulses of a run, or None.
 
-    Without them nothing is returned, nor if the file lacks particles, from which the temperature follows.
+    None is also returned if the file lacks particles, because the temperature is then unknown.
     """
     return None if run.is_subset else stored_tally(run.data.attrs, PairImpulseTally)
 
 
 def shell_volumes(bins: int, dimension: int) -> np.ndarray:
-    """Compute the volumes (bins,) of shells of equal thickness, in units of the first one."""
+    """Compute the volumes (bins,) of shells of equal thickness, in units of the first shell."""
     return np.diff(np.arange(bins + 1.0) ** dimension)
 
 
 def g_by_impulses(run: Run, starts: np.ndarray, bins: int, furthest: float) -> np.ndarray | None:
-    """Compute the parts (2, S, bins) of g(r) due to colliding pairs and to all others.
+    """Compute two contributions (2, S, bins) to g(r): of colliding pairs and of all other pairs.
 
-    They are in S blocks of a run that begin at the frames `starts` (S,). None if the run has not stored them,
-    or not in parts of these shells, if a block takes no time, and if no pair has collided: then impulses do
-    not determine g(r), which is not 0.
+    The contributions are for S blocks of a run that begin at the frames `starts` (S,). Return None if the run
+    has not stored pair impulses, if the shells are not multiples of the stored shells, if a block has no
+    duration, or if no pair has collided. In the last case impulses do not determine g(r), although it is not
+    0.
     """
     has = read_pair_impulses(run)
     if has is None or starts[-1] == len(run.time) - 1 or furthest > has.furthest * (1.0 + _ALIKE):
@@ -193,7 +194,7 @@ def g_by_impulses(run: Run, starts: np.ndarray, bins: int, furthest: float) -> n
 def mixed_g(counted: np.ndarray, parts: np.ndarray, volumes: np.ndarray) -> np.ndarray:
     """Compute g(r) (S, bins) in S blocks from counts (S, bins) and impulses (2, S, bins).
 
-    The shells have these volumes (bins,).
+    `volumes` (bins,) are the volumes of the shells.
     """
     contacts, total = parts[0].mean(axis=0), parts.sum(axis=0)
     missing = ((counted - total) @ volumes) / (contacts @ volumes)
@@ -204,7 +205,7 @@ def mixed_g(counted: np.ndarray, parts: np.ndarray, volumes: np.ndarray) -> np.n
 STRETCHES = 16
 _BINS = 100
 MOST_FRAMES = 320
-"""Frames, evenly spaced, that are searched for pairs of particles."""
+"""Maximum number of evenly spaced frames in which pairs are counted."""
 
 
 def rdf(
@@ -215,35 +216,36 @@ def rdf(
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     bins : int, optional
-        Number of bins. Default: 100, or as the impulses of pairs that the run has stored.
+        Number of bins. Default: 100, or the bins of the stored pair impulses.
     furthest : float, [length], optional
-        Largest distance. Default: five of the largest diameters, or just below half of the shortest side; or
-        as the impulses of pairs that the run has stored.
+        Largest distance. Default: five of the largest diameters or just below half of the shortest side; or
+        the largest distance of the stored pair impulses.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
     Observable
-        The function (distance,), dimensionless, mean over up to 320 frames.
+        The function (distance,), dimensionless, averaged over up to 320 frames.
 
     Raises
     ------
     SceneError
-        For walls, fewer than two particles, too few frames and too large a distance.
+        If the scene has walls or fewer than two particles, if there are too few frames, or if the distance is
+        too large.
 
     Notes
     -----
-    g(r) is the number of pairs divided by the number for N particles that are independent of one another, N
-    (N - 1) / 2 pairs in the volume: 1 at every distance in an ideal gas of any number. Of a fluid it tends to
-    1 + (1 - S(0)) / N at large distances, S(0) its reduced compressibility [1]_.
+    g(r) is the number of pairs divided by the number for N independent particles, with N (N - 1) / 2 pairs in
+    the volume. So it is 1 at all distances in an ideal gas of any N. In a fluid it tends to 1 + (1 - S(0)) /
+    N at large distances; S(0) is the reduced compressibility [1]_.
 
-    Impulses of pairs, in shells of which each bin has as many, make g(r) more accurate than counts
-    (`gaspart.analysis.pairs`); the attribute `estimator` says so. Theory: the value at contact that
-    belongs to the pressure of N particles, at the first bins beyond the diameter only. The error of an empty
-    bin is NaN, but 0 where hard particles would overlap.
+    Stored pair impulses make g(r) more accurate than counts, if each bin consists of an equal number of
+    stored shells (`gaspart.analysis.pairs`). The attribute `estimator` names the method. Theory: only in the
+    first bins beyond the diameter, the contact value that corresponds to the pressure of N particles. The
+    error of an empty bin is NaN, or 0 at distances at which hard particles would overlap.
 
     References
     ----------
@@ -282,7 +284,7 @@ def rdf(
             each = mixed_g(each, parts, shell_volumes(bins, run.dimension))
         values, errors = histogram_means(each)
         distance = (np.arange(bins) + 0.5) * (end / bins)
-        if equation_of(run) == EXACT:  # the centres of hard particles are never nearer than this
+        if equation_of(run) == EXACT:  # centres of hard particles are never closer than this
             within = distance + 0.5 * end / bins <= 2.0 * run.radii[:stored].min()
             errors[within & (values == 0.0)] = 0.0
         along = {"distance": (distance, {"units": "length", "long_name": "distance"})}
@@ -294,14 +296,14 @@ def rdf(
 
 
 def chosen_frames(run: Run, values: np.ndarray) -> np.ndarray:
-    """Return the values of up to `MOST_FRAMES` frames, evenly spaced.
+    """Return the values in up to `MOST_FRAMES` evenly spaced frames.
 
     Parameters
     ----------
     run : Run
         The run.
     values : ndarray, shape (T, ...)
-        Values of all frames.
+        Values in all frames.
 
     Returns
     -------
@@ -319,7 +321,7 @@ def chosen_frames(run: Run, values: np.ndarray) -> np.ndarray:
 
 
 def stretches_of(run: Run) -> list[slice]:
-    """Return the `chosen_frames` of 16 consecutive stretches of a run.
+    """Return the `chosen_frames` of 16 consecutive blocks of a run.
 
     Parameters
     ----------
@@ -329,7 +331,7 @@ def stretches_of(run: Run) -> list[slice]:
     Returns
     -------
     list of slice
-        The frames of each stretch.
+        The frames of each block.
 
     Raises
     ------
@@ -345,30 +347,33 @@ def stretches_of(run: Run) -> list[slice]:
 
 
 def pair_collision_rates(source: Source, start: float | None = None) -> Observable:
-    """Measure the collision rate of a particle of one species with all particles of another one.
+    """Measure the collision rate of a particle of one species with all particles of another species.
 
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory of a run with `pairs`, by its path or open, or a simulation, which is run again.
+        A trajectory of a run with `pairs` (a path or an open trajectory), or a simulation, which is run
+        again.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
     Observable
-        Collisions per time of one particle of the first species of each pair with all of the second, (pair,),
-        in [1/time].
+        Collisions per time of one particle of the first species of each pair with all particles of the second
+        species, (pair,), in [1/time].
 
     Raises
     ------
     SceneError
-        For single particles, too few frames, and a run without `pairs`.
+        If the scene has single particles, if there are too few frames, or if the run was made without
+        `pairs`.
 
     Notes
     -----
-    Theory: exact except for the contact values, which hold for an infinite mixture. A particle of N_i has
-    N_i - 1 partners of its own species, and the mean speed holds for a finite number at fixed energy.
+    Theory is exact except for the contact values, which are for an infinite mixture. A particle has N_i - 1
+    partners of its own species i, and the mean speed is that for a finite number of particles at fixed
+    energy.
 
     Examples
     --------
@@ -392,7 +397,8 @@ def contact_values(source: Source, start: float | None = None) -> Observable:
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory of a run with `pairs`, by its path or open, or a simulation, which is run again.
+        A trajectory of a run with `pairs` (a path or an open trajectory), or a simulation, which is run
+        again.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
 
@@ -404,17 +410,17 @@ def contact_values(source: Source, start: float | None = None) -> Observable:
     Raises
     ------
     SceneError
-        As `pair_collision_rates`, for a scene with walls or contacts that lose energy, and for a polydisperse
-        species.
+        For the reasons of `pair_collision_rates`, and for a scene with walls, contacts that lose energy, or a
+        polydisperse species.
 
     Notes
     -----
-    A number N_ij of collisions in the time t is
+    The number N_ij of collisions in the time t is
 
         n_ij S sigma_ij^(d-1) g_ij sqrt(k_B T / (2 pi mu_ij)) t / V,
 
-    with n_ij = N_i N_j or N_i (N_i - 1) / 2 pairs of particles, S = 2 pi (2D) or 4 pi (3D), and mu_ij the
-    reduced mass. This is exact in equilibrium [1]_, with the mean speed of a finite number of particles at
+    with n_ij = N_i N_j or N_i (N_i - 1) / 2 pairs of particles, S = 2 pi (2D) or 4 pi (3D), and the reduced
+    mass mu_ij. This is exact in equilibrium [1]_, with the mean speed of a finite number of particles at
     fixed energy.
 
     References
@@ -438,9 +444,9 @@ def contact_values(source: Source, start: float | None = None) -> Observable:
 
 
 def rate_scales(run: Run) -> np.ndarray:
-    """Compute the ratio of the collision rates of a pair of species and of a particle.
+    """Compute the number of collisions of a pair of species per collision of a particle.
 
-    The particle is of the first species of the pair.
+    The particle belongs to the first species of the pair.
 
     Parameters
     ----------
@@ -473,7 +479,7 @@ def contact_scales(run: Run) -> np.ndarray:
     Raises
     ------
     SceneError
-        As `contact_values`.
+        For the reasons of `contact_values`.
     """
     require_defined("contact_values", run.scene)
     scene, d = run.scene, run.dimension
@@ -495,7 +501,7 @@ def estimates_of(run: Run, scales: np.ndarray) -> list[Estimate]:
     run : Run
         The run.
     scales : ndarray, shape (pairs,)
-        The scales.
+        Scales of the pairs.
 
     Returns
     -------
@@ -505,7 +511,7 @@ def estimates_of(run: Run, scales: np.ndarray) -> list[Estimate]:
     Raises
     ------
     SceneError
-        If there are too few frames, or the run has no counts or no collisions.
+        If there are too few frames, or if the run has no counts or no collisions.
     """
     if "pair_collisions" not in run.data:
         raise SceneError(*KEPT["pairs"])
@@ -513,7 +519,7 @@ def estimates_of(run: Run, scales: np.ndarray) -> list[Estimate]:
         raise SceneError("frames", len(run.time), f"an error needs {LEAST_INTERVALS + 1} or more")
     require_collisions(run)
     rates = run.increments("pair_collisions") / np.diff(run.time)[:, None]
-    with np.errstate(divide="ignore", invalid="ignore"):  # of a single particle with its like: no pair
+    with np.errstate(divide="ignore", invalid="ignore"):  # a species with a single particle has no pair
         series = (rates / scales).T
     nothing = Estimate(math.nan, math.nan)
     return [
@@ -523,7 +529,7 @@ def estimates_of(run: Run, scales: np.ndarray) -> list[Estimate]:
 
 
 def _of_pairs(observed: str, name: str, run: Run, estimates: list[Estimate]) -> Observable:
-    """Return the result of an observable of pairs, `observed`, whose variable has a name."""
+    """Return an observable of pairs, `observed`, as a result with a named variable."""
     along = {"pair": (np.array(pair_names(run.scene)), {"long_name": "numbers of two species, from 0"})}
     values, errors = np.array([[estimate.value, estimate.error] for estimate in estimates]).T
     return observable(name, along, values, errors, **describe(observed, run))

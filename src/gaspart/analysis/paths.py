@@ -1,7 +1,7 @@
 """Paths and velocities of groups of moving particles, read in blocks of particles.
 
-Memory does not grow with the number of particles: of a run that is larger than a block, the velocity of the
-centre of mass is summed in a first reading, and the particles are measured in a second one.
+The memory does not depend on the number of particles. A run that is larger than a block is read twice: first
+the velocity of the centre of mass is summed, then the particles are measured.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from gaspart.analysis.run import Run, divide_frames
 from gaspart.errors import SceneError
 
 MOST_FRAMES = 1000
-"""Maximum number of frames that are correlated of each group; a longer run has every second or third ..."""
-_FARTHEST = 0.45  # of a side: the longest way between frames by which a particle is followed
+"""Maximum number of correlated frames per group; of a longer run every second or third frame ... is used."""
+_FARTHEST = 0.45  # maximum displacement between frames, as a fraction of a side
 _WHOLE = 5_000_000
-"""Numbers of all particles that are held at once, up to which a run is read once."""
+"""Maximum number of values for which a run is read at once."""
 _BLOCK = 1_000_000
-"""Numbers of a block of particles of a larger run."""
+"""Number of values in a block of particles of a larger run."""
 
 
 @dataclass(frozen=True)
@@ -31,14 +31,14 @@ class Groups:
     Parameters
     ----------
     sizes : list of int
-        Numbers of particles of the groups.
+        Numbers of particles in the groups.
     frames : int
         Number of frames.
     interval : float, [time]
         Time between frames.
     blocks : callable
-        Function that yields the number of a group with values (T, n, d) of some of its particles, until all
-        particles have appeared.
+        Generator of the number of a group with values (T, n, d) of some of its particles, until all particles
+        have been read.
     """
 
     sizes: list[int]
@@ -52,7 +52,7 @@ class Groups:
         Parameters
         ----------
         function : callable
-            Function of values (T, n, d) that is a mean over the n particles.
+            Function of values (T, n, d) that averages over the n particles.
 
         Returns
         -------
@@ -73,25 +73,25 @@ def groups_of(
     chosen: np.ndarray | None = None,
     stride: int | None = None,
 ) -> Groups:
-    """Return the moving particles in groups, about the centre of mass or the local flow.
+    """Return the moving particles in groups, relative to the centre of mass or the local flow.
 
-    Of fewer than `GROUPS` particles the groups are as many blocks of the run. About the centre of mass, the
-    square of a velocity of a particle of mass m is 1 - m / M of its value without this condition, M the mass
-    of all. Where the gas flows it is about the local flow (`analysis.flow`).
+    For fewer than `GROUPS` particles, the groups are blocks of the run. Relative to the centre of mass, the
+    mean squared velocity of a particle of mass m is reduced by the factor 1 - m / M, where M is the total
+    mass. If the gas flows, values are relative to the local flow (`analysis.flow`).
 
     Parameters
     ----------
     run : Run
         The run.
     paths : bool, default True
-        Paths; otherwise velocities.
+        Return paths; otherwise velocities.
     about : ndarray of bool, shape (d,), optional
-        Axes along which values are about the centre of mass. Default: those along which its velocity is
+        Axes along which values are relative to the centre of mass. Default: axes along which its velocity is
         conserved.
     chosen : ndarray, optional
-        The chosen ones of the moving particles.
+        Selected moving particles.
     stride : int, optional
-        One of this number of frames is taken. Default: `stride_of`.
+        Use every `stride`-th frame. Default: `stride_of`.
 
     Returns
     -------
@@ -136,7 +136,7 @@ def groups_of(
 def _groups_of_particles(
     motion: Callable[[slice], np.ndarray], values: _Values, numbers: np.ndarray, interval: float
 ) -> Groups:
-    """Return groups of particles (M,) by the number of the group of each."""
+    """Return groups of particles, from the group number of each particle (M,)."""
 
     def blocks() -> Iterator[tuple[int, np.ndarray]]:
         for members in values.blocks(len(numbers)):
@@ -150,7 +150,7 @@ def _groups_of_particles(
 class _Values:
     """Paths or velocities (T, M, d) of the moving particles in every `stride`-th frame.
 
-    Where the gas flows they are about the local flow, and all in memory.
+    If the gas flows, they are relative to the local flow, and all in memory.
     """
 
     def __init__(self, run: Run, paths: bool, stride: int) -> None:
@@ -195,7 +195,7 @@ class _Values:
 
 
 def _about_flow(run: Run, paths: bool, stride: int) -> np.ndarray:
-    """Return paths or velocities (T, M, d) of the moving particles about the local flow."""
+    """Return paths or velocities (T, M, d) of the moving particles relative to the local flow."""
     moving, peculiar, free_part = run.moving, run.motion.velocities, run.motion.freedom
     if paths:
         from scipy.integrate import cumulative_trapezoid
@@ -207,10 +207,10 @@ def _about_flow(run: Run, paths: bool, stride: int) -> np.ndarray:
 
 
 def _group_numbers(species: np.ndarray) -> np.ndarray:
-    """Return the number of the group of each particle of these species (M,).
+    """Return the group number of each particle, from its species (M,).
 
-    Groups of a mixture have the same composition: else the difference between species, which no longer run
-    reduces, would be their scatter.
+    All groups of a mixture have the same composition. Otherwise the difference between species would
+    contribute to their scatter, and longer runs would not reduce it.
     """
     if np.ptp(species) == 0:
         return np.repeat(np.arange(GROUPS), [len(part) for part in np.array_split(species, GROUPS)])
@@ -220,9 +220,9 @@ def _group_numbers(species: np.ndarray) -> np.ndarray:
 
 
 def stride_of(run: Run, count: int = GROUPS) -> int:
-    """Return the number of frames of which one is taken, for a number of particles.
+    """Return the stride between the frames that are used, for a number of particles.
 
-    Of fewer than `GROUPS` particles each block of the run is a group.
+    For fewer than `GROUPS` particles, each block of the run is a group.
 
     Parameters
     ----------
@@ -234,33 +234,33 @@ def stride_of(run: Run, count: int = GROUPS) -> int:
     Returns
     -------
     int
-        The number of frames.
+        The stride.
     """
     return -(-len(run.time) // (MOST_FRAMES * (GROUPS if count < GROUPS else 1)))
 
 
 def unwrap_positions(run: Run, particles: np.ndarray | None = None, stride: int = 1) -> Iterator[np.ndarray]:
-    """Continue positions across periodic faces, from the file or by the nearest image.
+    """Yield positions that continue across periodic faces, from the file or by the nearest image.
 
     Parameters
     ----------
     run : Run
         The run.
     particles : ndarray, optional
-        Increasing numbers of particles (n,). Default: all.
+        Numbers of particles (n,) in increasing order. Default: all.
     stride : int, default 1
-        One of this number of frames is returned.
+        Yield every `stride`-th frame.
 
     Yields
     ------
     ndarray, shape (n, d)
-        The positions in the next frame.
+        Positions in the next frame.
     """
     particles = np.arange(run.data.sizes["atom"]) if particles is None else particles
     if "displacements" in run.data:
         yield from _read_vectors(run, "displacements", particles, stride)
         return
-    shape = len(particles), run.dimension  # rows of it, since an axis of 3 is slow to broadcast
+    shape = len(particles), run.dimension  # one row per axis: numpy broadcasts an axis of length 3 slowly
     lengths = np.broadcast_to(np.where(run.periodic, run.scene.container.lengths, 1.0), shape).copy()
     wraps = np.broadcast_to(run.periodic, shape).copy()
     path, last = np.zeros(shape), np.zeros(0)

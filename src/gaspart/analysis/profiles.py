@@ -1,9 +1,8 @@
 """Sums in cells, frame by frame: density, flow and temperature, and the errors of their means.
 
-The content of a cell is correlated over many frames, near the top of a bed of grains for tens of its
-collision times. So the frames are joined to blocks, at most 256, and the error of a ratio of two sums over
-the run, R = sum A / sum B, is the error of the mean of the correlated series (A - R B) / mean B, for each
-cell separately.
+The content of a cell is correlated over many frames; near the top of a granular bed, for tens of its
+collision times. So the frames are joined into at most 256 blocks. The error of a ratio R = sum A / sum B over
+the run is the error of the mean of the correlated series (A - R B) / mean B, for each cell separately.
 """
 
 from __future__ import annotations
@@ -20,22 +19,25 @@ from gaspart.analysis.statistics import common_freedom, correlated_mean
 from gaspart.errors import SceneError
 
 LEAST_FRAMES = 16
-"""Frames that an error needs."""
+"""Minimum number of frames for an error."""
 BLOCKS = 256
-"""Blocks of frames: more would cost memory, and their correlation is allowed for."""
+"""Maximum number of blocks of frames. More blocks would cost memory; the correlation between blocks is taken
+into account.
+"""
 _LEAST_FREEDOM = 2.0
-"""Degrees of freedom of an error, below which it is not known: the run is too short for the correlation, or
-the cell was filled in too few blocks."""
-_ROUNDING = 1e-12  # relative scatter of what does not change
+"""Minimum number of degrees of freedom of a known error. With fewer, the run is too short for the
+correlation, or the cell was occupied in too few blocks.
+"""
+_ROUNDING = 1e-12  # relative scatter of a constant value
 
 
 @dataclass(frozen=True)
 class Means:
     """Values in cells, their standard errors, and the degrees of freedom of these errors.
 
-    All have one shape. A value is NaN in an empty cell. An error is NaN if it has fewer than two degrees of
-    freedom, or if the values do not change in a cell, for example the velocity where one particle passes: it
-    is 0 if nothing moves, or all cells have one value.
+    All arrays have one shape. A value is NaN in an empty cell. An error is NaN if it has fewer than two
+    degrees of freedom, or if the value of the cell does not change, for example a velocity if a single
+    particle crosses the cell. It is 0 if nothing moves, or if all cells have one value.
     """
 
     values: np.ndarray
@@ -48,10 +50,10 @@ class Means:
 
 
 def ratio(above: np.ndarray, below: np.ndarray, still: bool = False) -> Means:
-    """Compute sum A / sum B of series (K, ...) of K consecutive blocks.
+    """Compute sum A / sum B for series (K, ...) of K consecutive blocks.
 
-    There are at least 16 blocks. `still` states that nothing moves. No cell has more degrees of freedom than
-    the correlation of all cells together allows.
+    At least 16 blocks are required. `still` is True if nothing moves. The degrees of freedom of a cell are at
+    most the number that the correlation of all cells together allows.
     """
     total = below.sum(axis=0)
     values = np.divide(above.sum(axis=0), total, out=np.full(total.shape, np.nan), where=total > 0.0)
@@ -78,7 +80,7 @@ def ratio(above: np.ndarray, below: np.ndarray, still: bool = False) -> Means:
 class Cells:
     """Cells of a run along some axes, as long as the container along the others.
 
-    members : numbers (n,) of the particles that count, all of them moving.
+    members : numbers (n,) of the particles that are measured, all of them moving.
     axes : axes of the grid.
     """
 
@@ -89,24 +91,24 @@ class Cells:
 
     @cached_property
     def grid(self) -> Grid:
-        """The cells, of the container at rest."""
+        """Cells of the container at its initial size."""
         lengths = [float(self.run.scene.container.lengths[axis]) for axis in self.axes]
         return Grid((0.0,) * len(lengths), tuple(lengths), self.numbers)
 
     @cached_property
     def blocks(self) -> np.ndarray:
-        """(T,) the block of each frame. Raises SceneError for too few frames."""
+        """Block number (T,) of each frame. Raises SceneError for too few frames."""
         frames = len(self.run.time)
         if frames < LEAST_FRAMES:
             raise SceneError("frames", frames, f"an error needs {LEAST_FRAMES} or more")
         return np.arange(frames) * min(BLOCKS, frames) // frames
 
     def cells_of(self, part: Run) -> np.ndarray:
-        """Return the cell (T, n) of each particle in a part of the run."""
+        """Return the cell number (T, n) of each particle in a part of the run."""
         return self.grid.cells(self._values(part.positions)[..., self.axes], inside=True)
 
     def _values(self, values: np.ndarray) -> np.ndarray:
-        """Return the values (T, n, ...) of the particles that count."""
+        """Return the values (T, n, ...) of the measured particles."""
         return values if len(self.members) == values.shape[1] else values[:, self.members]
 
     @cached_property
@@ -117,8 +119,8 @@ class Cells:
     def sums(self, weigh: Callable[[Run, np.ndarray], Sequence[np.ndarray | None]]) -> list[np.ndarray]:
         """Sum weights in each cell over the frames of each block.
 
-        The frames are read in parts. `weigh` returns arrays of weights (T, n) for a part and the cells of
-        the particles there, or None to count. The shape of each sum is (K, *cells).
+        The frames are read in parts. `weigh` is called with a part and the cell numbers of its particles. It
+        returns arrays of weights (T, n), or None to count particles. Each sum has shape (K, *cells).
         """
         shape = int(self.blocks[-1]) + 1, *self.numbers
         sums: list[np.ndarray] = []
@@ -145,7 +147,7 @@ class Cells:
         return self._changing_room(across)
 
     def _changing_room(self, across: Sequence[int]) -> np.ndarray:
-        """Compute `room` where faces move."""
+        """Compute `room` if faces move."""
         ends = sides(self.run, self.run.time)
         wide = np.diff(ends[:, across], axis=2)[..., 0].prod(axis=1)
         parts = []
@@ -161,7 +163,7 @@ class Cells:
         return np.array(total)
 
     def density(self, weigh: Callable[[np.ndarray], np.ndarray] | None = None) -> Means:
-        """Compute the number of particles, or weights (T, n) by cells, per volume."""
+        """Compute the number of particles, or the sum of weights (T, n), per volume."""
         (sums,) = self.sums(lambda part, cells: [None if weigh is None else weigh(cells)])
         return ratio(sums, self.room(), self._still)
 
@@ -178,9 +180,9 @@ class Cells:
         return Means(*(np.stack([getattr(part, name) for part in parts]) for name in vars(parts[0])))
 
     def temperature(self, local: bool) -> Means:
-        """Compute k_B T: twice the kinetic energy about the mean motion per degree of freedom.
+        """Compute k_B T, twice the kinetic energy relative to the mean motion per degree of freedom.
 
-        If `local`, the motion is about the flow in these cells in any case; otherwise only if the gas flows,
+        If `local`, the motion is always relative to the flow in these cells; otherwise only if the gas flows,
         see `flow.about_the_flow`.
         """
         about = mean_motion(self.run, dict(zip(self.axes, self.numbers, strict=True)), local)

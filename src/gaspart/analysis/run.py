@@ -1,4 +1,4 @@
-"""Measured part of a run: of a trajectory, by its path or open, or a simulation."""
+"""Measured part of a run, from a trajectory or a simulation."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ from gaspart.yaml_text import dump_yaml, parse_yaml
 Source: TypeAlias = str | Path | xr.Dataset | Simulation
 
 EQUILIBRATION = 0.25
-"""The part of a run that is not measured, unless the caller states a time."""
+"""Fraction of a run that is discarded, unless the caller passes a time."""
 REPEATED = 129
-"""Frames of a simulation, which is run again to measure it; fewer of many particles."""
-_AT_REST = 1e-24  # of a kinetic energy: a rounding error, squared
-_MOST = 20_000_000  # numbers that such frames hold
-_BLOCK = 500_000  # numbers of a block of frames that are read at once; of one frame, if it has more
+"""Number of frames when a simulation is run again to be measured; fewer if there are many particles."""
+_AT_REST = 1e-24  # fraction of a kinetic energy: the square of a rounding error
+_MOST = 20_000_000  # maximum number of values in these frames
+_BLOCK = 500_000  # number of values that are read at once; more if a single frame has more
 
 
 @dataclass(frozen=True)
@@ -49,9 +49,9 @@ class Run:
     """Measured part of a run: T frames of N particles in d dimensions.
 
     time : (T,), times of the frames.
-    data : the frames, with cumulative counters (T,) or (T, walls).
-    centred : True if the total momentum is known to be zero along the axes on which it is conserved; a file
-        that lacks particles, or their velocities, then has a temperature too.
+    data : frames with cumulative counters (T,) or (T, walls).
+    centred : True if the total momentum is known to be zero along the axes on which it is conserved. Then a
+        temperature is defined even if the file lacks particles or their velocities.
     about : reference of velocities and displacements (`analysis.flow`): the local "flow" of the gas, or
         "rest".
     """
@@ -64,17 +64,17 @@ class Run:
 
     @property
     def count(self) -> int:
-        """N, of the scene; with open faces of all numbers that particles may have."""
+        """Number of particles N in the scene; with open faces, of all particle numbers in use."""
         return self.scene.capacity
 
     @property
     def dimension(self) -> int:
-        """2 or 3."""
+        """Dimension, 2 or 3."""
         return self.scene.dimension
 
     @property
     def periodic(self) -> np.ndarray:
-        """(d,) whether each axis is periodic."""
+        """Mask (d,) of periodic axes."""
         return np.array(self.scene.container.periodic)
 
     @property
@@ -92,9 +92,9 @@ class Run:
         return (last - first) / (self.time[-1] - self.time[0])
 
     def block_length(self, blocks: int) -> int:
-        """Return the number of frames, after the first one, in each of `blocks` of equal length.
+        """Return the number of frames in each of `blocks` equal blocks, after the first frame.
 
-        A remainder is in no block. Raises ValueError for too few frames.
+        Remaining frames belong to no block. Raises ValueError for too few frames.
         """
         length = (len(self.time) - 1) // blocks
         if length < 1:
@@ -103,21 +103,21 @@ class Run:
 
     @cached_property
     def positions(self) -> np.ndarray:
-        """(T, N, d); NaN where faces are open, of numbers that no particle has."""
+        """Positions (T, N, d). With open faces, unused particle numbers have NaN."""
         return self.vectors("coordinates").values.astype(float)
 
     @cached_property
     def velocities(self) -> np.ndarray:
-        """(T, N, d)."""
+        """Velocities (T, N, d)."""
         return self.vectors("velocities").values.astype(float)
 
     def vectors(self, name: str) -> xr.DataArray:
-        """Return the vectors of all frames, which are read as they are used.
+        """Return the vectors of all frames, which are read when they are used.
 
         Parameters
         ----------
         name : {"coordinates", "velocities"}
-            Their name in the file.
+            Name of the vectors in the file.
 
         Returns
         -------
@@ -145,14 +145,14 @@ class Run:
         Parameters
         ----------
         name : {"coordinates", "velocities"}
-            Their name in the file.
+            Name of the vectors in the file.
         frames : slice
             The frames.
 
         Yields
         ------
         ndarray, shape (T, N, d)
-            The vectors of the next frames.
+            Vectors of the next frames.
         """
         values = self.vectors(name)[frames]
         for part in divide_frames(len(values), self._numbers):
@@ -160,49 +160,49 @@ class Run:
 
     @property
     def _numbers(self) -> int:
-        """Numbers of the vectors of a frame."""
+        """Number of values in the vectors of a frame."""
         return self.data.sizes["atom"] * self.dimension
 
     def parts(self) -> Iterator[tuple[slice, Run]]:
-        """Divide the run into parts of limited memory, which are read as they are used.
+        """Divide the run into parts of limited memory, which are read when they are used.
 
         Yields
         ------
         frames : slice
             Frames of the part.
-        part : Run
-            These frames. Properties that depend on all frames, such as `flow_axes`, hold for the part only.
+        part : Run These frames. In a part, properties that depend on all frames, such as `flow_axes`, hold
+            for this part only.
         """
         for frames in divide_frames(len(self.time), self._numbers):
             yield frames, replace(self, time=self.time[frames], data=self.data.isel(frame=frames))
 
     @cached_property
     def masses(self) -> np.ndarray:
-        """(N,), infinite for fixed particles; single particles come before species."""
+        """Masses (N,), infinite for fixed particles; single particles come before species."""
         fixed = self._each(per_particle(self.scene, "fixed")).astype(bool)
         return np.where(fixed, np.inf, self._each(per_particle(self.scene, "mass")).astype(float))
 
     @cached_property
     def radii(self) -> np.ndarray:
-        """(N,)."""
+        """Radii (N,)."""
         return self._each(per_particle(self.scene, "radius")).astype(float)
 
     def _each(self, values: np.ndarray) -> np.ndarray:
-        """Repeat values of the particles at the start to the shape (N,).
+        """Extend values of the initial particles to the shape (N,).
 
-        The particles that enter later are equal to the particles at the start.
+        Particles that enter later are equal to the initial particles.
         """
         return np.resize(values, self.count)
 
     @cached_property
     def species(self) -> np.ndarray:
-        """(N,) numbers of species, as in the scene; single particles have the number after the last."""
+        """Species number (N,) of each particle, as in the scene; single particles have the last number."""
         counts = [len(self.scene.particles), *(kind.count for kind in self.scene.species)]
         return self._each(np.repeat([len(self.scene.species), *range(len(self.scene.species))], counts))
 
     @cached_property
     def moving(self) -> np.ndarray:
-        """Particles (N,) that are not fixed, as a mask.
+        """Mask (N,) of particles that are not fixed.
 
         Raises SceneError if the file lacks some particles, unless the run is centred.
         """
@@ -212,17 +212,17 @@ class Run:
 
     @property
     def conserved(self) -> np.ndarray:
-        """Axes (d,) along which the total momentum is conserved, as a mask; none about rest.
+        """Mask (d,) of axes along which the total momentum is conserved; all False relative to rest.
 
-        Motions along these axes are about the mean.
+        Motion along these axes is measured relative to the mean.
         """
         return np.array(self.scene.conserved_axes) & (self.about == FLOW)
 
     @cached_property
     def accessible(self) -> Accessible:
-        """Volume and areas that centres can reach around the fixed particles of the run.
+        """Volume and areas accessible to centres, excluding the fixed particles of the run.
 
-        Raises SceneError if fixed species are not in the file.
+        Raises SceneError if the file lacks fixed species.
         """
         if not any(kind.fixed and kind.count for kind in self.scene.species):
             return Accessible(self.scene)
@@ -231,28 +231,28 @@ class Run:
 
     @cached_property
     def motion(self) -> Peculiar:
-        """Velocities of the moving particles about the local flow, or about their centre of mass.
+        """Velocities of the moving particles relative to the local flow or the centre of mass.
 
-        The former if the gas flows, the latter along axes on which its momentum is conserved (see `flow`).
+        They are relative to the local flow if the gas flows, otherwise relative to the centre of mass along
+        axes on which the momentum is conserved (see `flow`).
         """
         return about_the_flow(self)
 
     @cached_property
     def flow_axes(self) -> list[int]:
-        """The axes along which the velocity of the gas may vary (see `flow.flow_axes`): none about rest."""
+        """Axes along which the flow velocity may vary (see `flow.flow_axes`); none relative to rest."""
         return flow_axes(self) if self.about == FLOW else []
 
     @property
     def peculiar(self) -> np.ndarray:
-        """(T, M, d) the velocities of `motion`."""
+        """Velocities (T, M, d) of `motion`."""
         return self.motion.velocities
 
     @cached_property
     def freedoms(self) -> np.ndarray:
-        """Number of degrees of freedom of flight in each frame, shape (T,).
+        """Number of translational degrees of freedom in each frame, shape (T,).
 
-        Raises SceneError if there is no degree of freedom, for example for one particle in a periodic
-        container.
+        Raises SceneError without any degree of freedom, for example for one particle in a periodic container.
         """
         moving = int(self.moving.sum())
         values = np.full(len(self.time), self.dimension * moving - int(self.conserved.sum()), dtype=float)
@@ -264,16 +264,16 @@ class Run:
 
     @property
     def freedom(self) -> float:
-        """Mean number of degrees of freedom over the frames: an integer unless the gas flows."""
+        """Mean number of degrees of freedom over the frames; an integer unless the gas flows."""
         return float(self.freedoms.mean())
 
     @cached_property
     def temperatures(self) -> np.ndarray:
         """Temperature k_B T of each frame, shape (T,).
 
-        It is twice the kinetic energy of flight about the mean motion (see `motion`) per degree of freedom; 0
-        if this energy is only rounding of the velocity of the centre of mass. For a file that lacks
-        particles, see `_of_all`. Raises SceneError as `freedoms`.
+        It is twice the translational kinetic energy relative to the mean motion (see `motion`) per degree of
+        freedom. It is 0 if this energy is only a rounding error of the centre-of-mass velocity. If the file
+        lacks particles, see `_of_all`. Raises SceneError for the reasons of `freedoms`.
         """
         refuse_open(self.scene, "changes the particles: there is no temperature of the whole run")
         lacking = self.is_subset or "velocities" not in self.data
@@ -282,7 +282,7 @@ class Run:
         freedoms, masses, scene = self.freedoms, self.masses[self.moving], self.scene
         if self.flow_axes or scene.rough or scene.thermostat or scene.shear_rate is not None:
             energies, total, _ = self._energies
-        else:  # the energy is in double precision, and the momentum that of any frame
+        else:  # the energy has double precision, and the momentum is the same in all frames
             total = 2.0 * self.data["kinetic_energy"].values
             first = self.frame("velocities", 0)[self.moving]
             momentum = np.where(self.conserved, masses @ first, 0.0)
@@ -292,7 +292,10 @@ class Run:
 
     @cached_property
     def _energies(self) -> np.ndarray:
-        """Twice the kinetic energy about the flow and about rest, and degrees of freedom (3, T)."""
+        """Kinetic energies relative to the flow and to rest, and degrees of freedom.
+
+        The shape is (3, T); each energy is multiplied by 2.
+        """
         masses, about, rows = self.masses[self.moving], mean_motion(self), []
         for _, part in self.parts():
             motion = about(part)
@@ -303,10 +306,10 @@ class Run:
 
     @property
     def _of_all(self) -> np.ndarray:
-        """Temperature k_B T of each frame, from the energy of all particles, shape (T,).
+        """Temperature k_B T (T,) of each frame, from the energy of all particles.
 
-        The run is centred or has the tally of the stress. The energy, of flight and spin, is about the centre
-        of mass, whichever of its particles are in the file.
+        The run must be centred or contain the tally of the stress. The energy includes rotation and is
+        relative to the centre of mass of all particles, even if the file contains only some of them.
         """
         d, count = self.dimension, self.count
         freedom = d * count - int(self.conserved.sum()) + self.scene.rough * count * (d * (d - 1) // 2)
@@ -319,7 +322,7 @@ class Run:
 
     @cached_property
     def temperature(self) -> float:
-        """k_B T, the mean of `temperatures`."""
+        """Mean of `temperatures`, k_B T."""
         return float(self.temperatures.mean())
 
     @property
@@ -329,7 +332,7 @@ class Run:
 
     @property
     def is_subset(self) -> bool:
-        """True if only some of the particles are in the file."""
+        """True if the file contains only some of the particles."""
         return self.data.sizes["atom"] < self.count
 
     @property
@@ -350,9 +353,9 @@ class Run:
 
     @property
     def fluid(self) -> Gas | None:
-        """Gas of the scene, if it has two particles or more in a periodic container.
+        """Gas of the scene, if it has at least two particles in a periodic container.
 
-        Outside the range of the equation of state of the fluid, the result is absent. None.
+        None outside the density range of the equation of state of the fluid.
         """
         gas = self.scene.gas
         if gas is None or gas.count < 2 or not self.periodic.all():
@@ -373,28 +376,29 @@ class Run:
 
     @property
     def moving_fluid(self) -> Gas | None:
-        """The `fluid` at the temperature of the run; None if it is at rest.
+        """The `fluid` at the temperature of the run; None if nothing moves.
 
-        Raises SceneError as `moving`.
+        Raises SceneError for the reasons of `moving`.
         """
         gas = self.fluid
         return replace(gas, temperature=self.temperature) if gas and self.temperature > 0.0 else None
 
 
 def divide_frames(frames: int, numbers: int) -> Iterator[slice]:
-    """Divide frames into blocks of limited memory, for frames of this many numbers."""
+    """Divide frames into blocks of limited memory, from the number of values per frame."""
     length = max(1, _BLOCK // max(1, numbers))
     for first in range(0, frames, length):
         yield slice(first, min(first + length, frames))
 
 
 def select_particles(run: Run, species: int | None, particles: Sequence[int] | None) -> np.ndarray:
-    """Return the indices of the selected particles among the moving ones (M,); by default all.
+    """Return indices of the selected particles among the moving particles (M,); by default all.
 
-    species : number of the species, as in `Run.species`.
-    particles : numbers of particles, as in the file.
+    species : species number, as in `Run.species`.
+    particles : particle numbers, as in the file.
 
-    Raises SceneError for both arguments, for numbers that do not exist, and if no particle moves.
+    Raises SceneError if both arguments are passed, for numbers that do not exist, and if no selected particle
+    moves.
     """
     moving = np.flatnonzero(run.moving)
     if species is not None and particles is not None:
@@ -417,9 +421,9 @@ def select_particles(run: Run, species: int | None, particles: Sequence[int] | N
 
 
 def require_collisions(run: Run) -> None:
-    """Raise SceneError for a run without collisions in its measured part.
+    """Raise SceneError if no collision occurred in the measured part of a run.
 
-    The scatter of the observable is then unknown.
+    The scatter of the observable would then be unknown.
     """
     if not run.increments("collisions").any():
         raise SceneError("collisions", 0, "none happened in the measured part; make a longer run")
@@ -434,17 +438,17 @@ def open_run(
     varying: bool = False,
     about: str = FLOW,
 ) -> Iterator[Run]:
-    """Open the part of a source from the time `start` on.
+    """Open the part of a source after the time `start`.
 
-    The default is the run without its first quarter. A simulation is run again, from its start to the present
-    time; with `pairs`, the collisions of each pair of species are counted then.
+    By default the first quarter of the run is discarded. A simulation is run again from its start to its
+    present time. With `pairs`, the collisions of each pair of species are counted.
 
-    sheared : True if the observable has a meaning in a sheared gas.
-    varying : True if it has a meaning where faces are open.
+    sheared : True if the observable is defined in a sheared gas.
+    varying : True if the observable is defined with open faces.
     about : see `Run`.
 
-    Raises SceneError where it has no meaning, for fewer than two frames, and for input that `open_trajectory`
-    rejects.
+    Raises SceneError if the observable is undefined, for fewer than two frames, and for input that
+    `open_trajectory` rejects.
     """
     one_of("about", about, ABOUT)
     if isinstance(source, Simulation):
@@ -474,7 +478,7 @@ def open_run(
 
 
 def repeat_run(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
-    """Run a simulation again from its start and return its frames, at even times.
+    """Run a simulation again from its start, and return its frames at equally spaced times.
 
     Raises SceneError for a simulation that has not advanced.
     """
@@ -483,7 +487,7 @@ def repeat_run(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
         raise SceneError("simulation", "at time 0", "has not advanced; call advance(duration=...) first")
     frames = int(np.clip(_MOST // (3 * max(1, scene.count) * scene.dimension), 33, REPEATED))
     times = np.linspace(0.0, simulation.time, frames)
-    if step := engine.quantum:  # half a step more, so that rounding does not cost one
+    if step := engine.quantum:  # half a step more, so that rounding does not lose a step
         steps = max(1, round(simulation.time / step) // (frames - 1))
         times = np.append(0.0, (steps * np.arange(1, frames) + 0.5) * step)
         times = times[times < simulation.time + step]
@@ -500,7 +504,7 @@ def repeat_run(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
 
 
 def frame_of(simulation: Simulation) -> dict[str, Any]:
-    """Return the variables of a frame from the present state of a simulation."""
+    """Return the variables of a frame for the present state of a simulation."""
     state, scene = simulation.state, simulation.scene
     vectors = {"coordinates": state.positions, "velocities": state.velocities}
     vectors["displacements"] = state.unwrapped
@@ -512,12 +516,12 @@ def frame_of(simulation: Simulation) -> dict[str, Any]:
 
 
 def with_frames(simulation: Simulation, rows: Sequence[dict[str, Any]]) -> xr.Dataset:
-    """Return frames of a simulation as a trajectory has them."""
+    """Return the frames of a simulation in the form of a trajectory."""
     scene, engine = simulation.scene, simulation.engine
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     columns["displacements"] = columns["displacements"] - columns["displacements"][0]
     if scene.is_open:
-        del columns["displacements"]  # from no place from which all have started
+        del columns["displacements"]  # displacements have no common initial position
     sums = {field.name: field.metadata.get("along", ()) for field in fields(Tally)}
     along = {**dict.fromkeys(("coordinates", "displacements", "velocities"), ("atom", "spatial")), **sums}
     along["pair_collisions"] = ("pair",)

@@ -1,7 +1,7 @@
-"""Values of a run in each interval between its frames, and in blocks of intervals.
+"""Values of a run in each interval between frames, and in blocks of intervals.
 
-Z, the rate of collisions and the pressures on faces are computed only here: `gaspart.analysis` reduces these
-to a value with an uncertainty, the measurements of figures combine them in their own ways.
+Z, the collision rate and the pressures on faces are computed only in this module. `gaspart.analysis` reduces
+these values to a mean with an uncertainty; figures combine them in their own ways.
 """
 
 from __future__ import annotations
@@ -21,18 +21,19 @@ from gaspart.state.tally import compressibility_factor
 
 
 def compressibility(run: Run) -> np.ndarray:
-    r"""Compute Z in each interval, by the virial theorem, shape (T - 1,).
+    r"""Compute Z in each interval by the virial theorem, shape (T - 1,).
 
     With impulses dp exchanged at the distance dr,
 
         Z = P V / (N k_B T) = 1 + sum |dr . dp| / (d N k_B T t).
 
-    The temperature is defined by the motion about the centre of mass, k_B T = 2 E' / (d (N - 1)). In a pair
-    collision |dp| and the collision rate are both proportional to |v_n|, where v_n is the normal component of
-    v_1 - v_2. So the sum is proportional to <v_n^2>. This mean is linear in the energy, so a fixed energy
-    changes nothing. With zero total momentum <v_1 . v_2> = -<v^2> / (N - 1), hence <v_n^2> = 2 k_B T / m with
-    this T. So Z - 1 is the value of the canonical ensemble of N particles. Its difference from the infinite
-    system is known to first order in 1/N (`theory.finite_size_correction(..., ensemble="canonical")`).
+    The temperature is defined by the motion relative to the centre of mass, k_B T = 2 E' / (d (N - 1)). In a
+    pair collision |dp| and the collision rate are both proportional to |v_n|, where v_n is the normal
+    component of v_1 - v_2. So the sum is proportional to <v_n^2>. This mean is linear in the energy, so a
+    fixed energy changes nothing. With zero total momentum <v_1 . v_2> = -<v^2> / (N - 1), hence <v_n^2> = 2
+    k_B T / m with this T. So Z - 1 is the value of the canonical ensemble of N particles. Its difference from
+    the infinite system is known to first order in 1/N (`theory.finite_size_correction(...,
+    ensemble="canonical")`).
     """
     return compressibility_factor(
         run.increments("virial_sum"), run.count, run.dimension, run.temperature, np.diff(run.time)
@@ -42,8 +43,8 @@ def compressibility(run: Run) -> np.ndarray:
 def collisions(run: Run) -> np.ndarray:
     """Compute the collisions of one moving particle in each interval, shape (T - 1,).
 
-    Each collision counts for both particles, if both move. Raises SceneError for a file that does not count
-    the collisions with fixed particles, or lacks particles.
+    A collision of two moving particles counts for both. Raises SceneError if the file lacks particles, or
+    does not count the collisions with fixed particles.
     """
     scene, met, count = run.scene, run.increments("collisions"), int(run.moving.sum())
     if count == 1:
@@ -63,22 +64,22 @@ def collision_rate(run: Run) -> np.ndarray:
 def face_impulses(run: Run) -> np.ndarray:
     """Compute the momentum (T - 1, 2d) given to each face in each interval.
 
-    It is 0 on an axis without walls.
+    It is 0 along axes without walls.
     """
     return np.asarray(np.abs(run.increments("wall_impulse")[:, : 2 * run.dimension]))
 
 
 def face_pressures(run: Run) -> np.ndarray:
-    """Compute the pressure on each face in each interval, as `analysis.wall_pressure` defines it.
+    """Compute the pressure on each face in each interval, as defined by `analysis.wall_pressure`.
 
-    The shape is (T - 1, 2d); NaN where the pressure is not known.
+    The shape is (T - 1, 2d). Unknown pressures are NaN.
     """
     return per_area(run, face_impulses(run), "momentum_per_area") / np.diff(run.time)[:, None]
 
 
 @dataclass(frozen=True)
 class Blocks:
-    """K blocks of equal length of a run; the remainder of the run is not used.
+    """K blocks of equal length of a run; the remaining frames are not used.
 
     Neighbouring blocks share the frame at which counters are read. Averages over frames exclude the first
     frame of the run. Raises ValueError for more blocks than intervals.
@@ -89,12 +90,12 @@ class Blocks:
 
     @property
     def length(self) -> int:
-        """Intervals, and frames, of each."""
+        """Number of intervals, and of frames, in each block."""
         return self.run.block_length(self.number)
 
     @property
     def ends(self) -> slice:
-        """The K + 1 frames at their ends."""
+        """Indices (K + 1,) of the frames at the ends of the blocks."""
         return slice(None, self.number * self.length + 1, self.length)
 
     @property
@@ -104,7 +105,7 @@ class Blocks:
 
     @property
     def durations(self) -> np.ndarray:
-        """(K,)."""
+        """Duration (K,) of each block."""
         return np.diff(self.run.time[self.ends])
 
     def growth(self, name: str) -> np.ndarray:
@@ -134,33 +135,33 @@ class Blocks:
 def over(values: np.ndarray, ends: np.ndarray) -> np.ndarray:
     """Sum values (T - 1, ...) of intervals between the frames `ends` (K + 1,).
 
-    The sums have the shape (K, ...).
+    The sums have shape (K, ...).
     """
     return np.add.reduceat(values[: ends[-1]], ends[:-1], axis=0)
 
 
-# The pressure at which two phases coexist, from a loop of P against volume: Maxwell's equal areas.
+# Pressure at which two phases coexist, from a loop of P against volume: Maxwell's equal-area construction.
 
 
 REPEATS = 100
-"""Number of redrawn loops, whose scatter gives the error."""
+"""Number of bootstrap samples of the loop; their scatter gives the error."""
 _FINE = 2000
 
 
 def plateau(
     volume: np.ndarray, pressure: np.ndarray, error: np.ndarray
 ) -> tuple[float, float, tuple[float, float]]:
-    """Compute the pressure of the line that cuts off equal areas of the loop of p(V).
+    """Compute the pressure of the line that cuts off equal areas of p(V).
 
-    Returned are the pressure, its error, and the volumes at the ends of the line.
+    Returns the pressure, its error, and the volumes at the ends of the line.
 
-    The arguments `volume` (per particle, any order), `pressure` and its standard errors have the shape (P,).
-    A finite system in the coexistence region has a loop (Mayer and Wood, J. Chem. Phys. 42, 4268 (1965))
-    because the interface of the finite system costs free energy. The area between the ends is the difference
-    in free energy, so at the line both phases have the same chemical potential. The loop is interpolated
-    monotonically between points (Fritsch and Carlson). The error is half of the width of the middle 68 % of
-    loops redrawn from the points' errors. Without a loop, or if less than half of the bootstrap samples have
-    a loop: NaN, NaN, (NaN, NaN).
+    The arguments `volume` (per particle, in any order), `pressure` and its standard errors have the shape
+    (P,). A finite system in the coexistence region has a loop (Mayer and Wood, J. Chem. Phys. 42, 4268
+    (1965)) because the interface of the finite system costs free energy. The area between the ends is the
+    difference in free energy, so at equal areas both phases have the same chemical potential. The loop is
+    interpolated monotonically between the points (Fritsch and Carlson). The error is half of the width of the
+    central 68 % of loops that are redrawn from the errors of the points. Without a loop, or if less than half
+    of the bootstrap samples have a loop, the result is NaN, NaN, (NaN, NaN).
     """
     order = np.argsort(volume)
     volume, pressure, error = (np.asarray(values, dtype=float)[order] for values in (volume, pressure, error))
@@ -174,7 +175,7 @@ def plateau(
 
 
 def _equal_areas(volume: np.ndarray, pressure: np.ndarray) -> tuple[float, tuple[float, float]]:
-    """Return the height of the line and its ends, largest volume first."""
+    """Return the height of the line and the volumes at its ends, the largest volume first."""
     from scipy.interpolate import PchipInterpolator
     from scipy.optimize import brentq
 
@@ -205,28 +206,28 @@ def _equal_areas(volume: np.ndarray, pressure: np.ndarray) -> tuple[float, tuple
     return float(level), (float(v[last]), float(v[first]))
 
 
-# Drift of a run: change between both halves of its measured part beyond the noise.
+# Drift of a run: change between both halves of its measured part that exceeds the noise.
 #
-# A line is fitted to a series of n values. Its rise over the run has the variance 12 S / n, with S the
-# spectrum at frequency 0 of the series without its cubic part, from `statistics.correlated_mean`: the
-# drift itself is not in its error, as it is in the error of the mean.
+# A line is fitted to a series of n values. Its rise over the run has the variance 12 S / n. S is the spectrum
+# at frequency 0 of the series after subtraction of a cubic polynomial, from `statistics.correlated_mean`. So
+# the drift itself does not contribute to this error, as it would to the error of the mean.
 
 
 LEAST_FRAMES = 32
-"""Frames without which no drift is looked for."""
+"""Minimum number of frames for a test of drift."""
 SIGNIFICANT = 4.0
-"""Standard errors of a rise that is a drift: by chance once in 16 000 series."""
+"""Rise in standard errors that counts as a drift; by chance it occurs once in 16 000 series."""
 _DEGREE = 3
 """Degree of the polynomial that follows a drift."""
 _CONSTANT = 1e-6
-"""Relative scatter of what does not change but for rounding."""
+"""Relative scatter below which a series counts as constant."""
 
 
 def drift_of(data: Source, start: float | None = None, positions: bool = False) -> str:
-    """Describe what drifts in the measured part of an open trajectory; "" if nothing does.
+    """Describe the drifting quantities in the measured part of an open trajectory; "" if none drifts.
 
-    The number of particles is examined where faces are open, the kinetic energy of a particle, and, with
-    `positions`, the mean position of the particles along axes with walls.
+    The tested quantities are the number of particles with open faces, the kinetic energy per particle, and,
+    with `positions`, the mean position of the particles along axes with walls.
     """
     with open_run(data, start, sheared=True, varying=True) as run:
         if len(run.time) < LEAST_FRAMES:
@@ -236,7 +237,7 @@ def drift_of(data: Source, start: float | None = None, positions: bool = False) 
 
 
 def _series(run: Run, positions: bool) -> dict[str, np.ndarray]:
-    """Return the series (T,) that are examined, by their names."""
+    """Return the tested series (T,) by name."""
     numbers, series = np.full(len(run.time), max(1, run.scene.moving_count), dtype=float), {}
     if run.scene.is_open:
         numbers = series["the number of particles"] = particle_numbers(run.scene, run.data).astype(float)
@@ -250,7 +251,7 @@ def _series(run: Run, positions: bool) -> dict[str, np.ndarray]:
 
 
 def _drift(name: str, series: np.ndarray) -> str:
-    """Describe the drift of a series (T,); "" if it has none."""
+    """Describe the drift of a series (T,); "" without a drift."""
     if not np.isfinite(series).all() or np.ptp(series) <= _CONSTANT * np.abs(series).max():
         return ""
     time = np.linspace(-0.5, 0.5, len(series))

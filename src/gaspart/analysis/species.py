@@ -1,4 +1,4 @@
-"""A table of the properties of each species of a run."""
+"""Table of the properties of each species of a run."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from gaspart.trajectory.reading import open_trajectory
 
 
 def by_species(source: Source, start: float | None = None, about: str = FLOW) -> xr.Dataset:
-    """Measure the properties of each species that moves.
+    """Measure the properties of each moving species.
 
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
     about : {"flow", "rest"}, default "flow"
@@ -42,8 +42,8 @@ def by_species(source: Source, start: float | None = None, about: str = FLOW) ->
         - `temperature` [energy], twice the mean translational energy per degree of freedom;
         - `mean_speed` [length/time];
         - `D` [length^2/time], and the curves `msd` and `vacf` (species, lag), as by `gaspart measure` with a
-          species. NaN if a quantity is not defined for a species, such as D between walls, and if the species
-          has fewer lags than others. The attribute `not_measured` has the reason.
+          species. NaN if a quantity is undefined for a species, such as D between walls, or if the species
+          has fewer lags than others. The attribute `not_measured` states the reason.
 
     Raises
     ------
@@ -52,10 +52,10 @@ def by_species(source: Source, start: float | None = None, about: str = FLOW) ->
 
     Notes
     -----
-    Relative to the centre of mass the mean square of a particle of mass m is 1 - m / M of its value without
-    this condition. M is the mass of all particles whose mean is subtracted. This is exact in equilibrium.
-    Temperatures and speeds are corrected for this. `to_dataframe` of the variables without lags is a table
-    with a row for each species.
+    Relative to the centre of mass, the mean squared velocity of a particle of mass m is reduced by the factor
+    1 - m / M. M is the total mass of the particles whose mean is subtracted. This is exact in equilibrium.
+    Temperatures and speeds are corrected for this. `to_dataframe` of the variables without lags gives a table
+    with one row per species.
 
     Examples
     --------
@@ -92,7 +92,7 @@ def by_species(source: Source, start: float | None = None, about: str = FLOW) ->
 
 
 def _of_motion() -> tuple[str, ...]:
-    """Return the observables of the motion of particles that can be measured by species."""
+    """Return the observables of motion that can be measured for each species."""
     return tuple(name for name in selecting("species") if name in observables_with(scatter="particles"))
 
 
@@ -103,10 +103,10 @@ def _of_velocities(run: Run, kind: int) -> dict[str, Observable]:
     for _, part in run.parts():
         motion = peculiar(part)
         free = np.broadcast_to(motion.freedom, motion.velocities.shape)
-        # in the order of C, in which sums have the same bits for any number of frames
+        # C order, in which sums have the same bits for any number of frames
         velocities, free = (each.take(chosen, axis=1) for each in (motion.velocities, free))
         energies = (masses[chosen] * (velocities**2).sum(axis=2)).sum(axis=1)
-        is_known = (free > 0.0).all(axis=2)  # not alone in its cell of a flow
+        is_known = (free > 0.0).all(axis=2)  # not alone in its flow cell
         squares = np.divide(velocities**2, free, out=np.zeros(free.shape), where=free > 0.0).sum(axis=2)
         speeds = (np.sqrt(squares) * is_known).sum(axis=1)
         rows.append([energies, free.sum(axis=(1, 2)), speeds, is_known.sum(axis=1)])
@@ -126,9 +126,9 @@ def _of_velocities(run: Run, kind: int) -> dict[str, Observable]:
 
 
 def _column(name: str, results: list[Observable | None]) -> xr.Dataset:
-    """Join one observable of all species with its uncertainty.
+    """Join the values of one observable for all species, with uncertainties.
 
-    The result is empty if it was measured for no species.
+    The result is empty if the observable was measured for no species.
     """
     available = [result for result in results if result is not None]
     if not available:
@@ -141,7 +141,7 @@ def _column(name: str, results: list[Observable | None]) -> xr.Dataset:
     columns = {}
     for key, values in parts.items():
         plain = [value.drop_vars("time", errors="ignore") for value in values]
-        column = xr.concat(plain, "species", join="outer", compat="equals")  # few particles have fewer lags
+        column = xr.concat(plain, "species", join="outer", compat="equals")  # fewer particles give fewer lags
         columns[key] = column.rename(key).assign_attrs(values[0].attrs)
     columns[name].attrs.update(available[0].estimate.attrs)
     columns[f"{name}_error"].attrs.update(available[0].error.attrs)

@@ -1,6 +1,6 @@
 """Observables from positions and speeds: distributions, profiles and order.
 
-Uncertainties are the scatter of consecutive blocks of the run, or of groups of particles.
+Uncertainties come from the scatter of consecutive blocks of the run, or of groups of particles.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from gaspart.keys.values import count_of, number, one_of
 
 _CONSTANT = 1e-5  # relative change of an energy that is attributed to rounding
 FASTEST = 4.0
-"""The histogram of speeds ends at this many thermal speeds sqrt(k_B T / m)."""
+"""Upper end of the histogram of speeds, in thermal speeds sqrt(k_B T / m)."""
 
 
 def speed_distribution(
@@ -38,7 +38,7 @@ def speed_distribution(
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     bins : int, default 40
         Number of bins.
     start : float, [time], optional
@@ -46,8 +46,8 @@ def speed_distribution(
     fastest : float, [length/time], optional
         Upper end of the bins. Default: four thermal speeds.
     about : {"flow", "rest"}, default "flow"
-        Frame of reference. "flow": about the local flow where the gas flows, otherwise about the centre of
-        mass where its velocity is conserved. "rest": the container.
+        Frame of reference. "flow": relative to the local flow if the gas flows, otherwise relative to the
+        centre of mass if its velocity is conserved. "rest": relative to the container.
 
     Returns
     -------
@@ -61,11 +61,11 @@ def speed_distribution(
 
     Notes
     -----
-    Velocities about the flow (see `gaspart.analysis.flow`) are multiplied by sqrt(M / (M - m)), M the mass of
-    the particles whose mean is subtracted. The error is the scatter of groups of particles, NaN in an empty
-    bin. Theory: Maxwell's distribution at the temperature of the run. For one species at a constant kinetic
-    energy, the exact distribution for the number of particles. No theory if the gas flows and has no single
-    temperature.
+    Velocities relative to the flow (see `gaspart.analysis.flow`) are multiplied by sqrt(M / (M - m)). M is
+    the mass of the particles whose mean is subtracted. The error is the scatter of groups of particles. It is
+    NaN in an empty bin. Theory: Maxwell's distribution at the temperature of the run. For one species at a
+    constant kinetic energy, the exact distribution for the number of particles. There is no theory if the gas
+    flows and has no single temperature.
 
     Examples
     --------
@@ -103,21 +103,21 @@ def speed_distribution(
 def _speeds(run: Run, grid: Grid) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Count speeds in bins, reading the frames in parts.
 
-    Returns the counts (groups, bins) and the numbers (groups,) of speeds of each group of particles, and the
-    sum of squares of velocities in each frame (T,).
+    Returns the counts (groups, bins), the numbers of speeds (groups,), and the sum of squared velocities in
+    each frame (T,).
     """
     about, energy = mean_motion(run), np.zeros(len(run.time))
-    # every group has a share of each species, which come one after the other
+    # every group contains a fraction of each species; the species are stored one after the other
     group = np.arange(int(run.moving.sum())) % STRETCHES
     counts, sizes = np.zeros((STRETCHES, grid.size), dtype=int), np.zeros(STRETCHES, dtype=int)
     for frames, part in run.parts():
         motion = about(part)
         squares, free = motion.velocities**2, motion.freedom
-        is_known = np.broadcast_to((free > 0.0).all(axis=2), squares.shape[:2])  # not alone in its cell
+        is_known = np.broadcast_to((free > 0.0).all(axis=2), squares.shape[:2])  # not alone in its flow cell
         energy[frames] = squares.sum(axis=(1, 2))
         free = np.broadcast_to(np.where(free > 0.0, free, 1.0), (*free.shape[:2], run.dimension))
         total = np.zeros(squares.shape[:2])
-        for k in range(run.dimension):  # by axis: a short last axis is slow to sum
+        for k in range(run.dimension):  # one axis after another, because numpy sums a short last axis slowly
             total += squares[..., k] / free[..., k]
         speeds = np.sqrt(total)
         cells = np.where(is_known, grid.cells(speeds[..., None]), -1).T
@@ -140,30 +140,29 @@ def profile(
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     of : {"density", "temperature"}, default "density"
-        "density": moving particles per volume within the present container (faces may move), without the
-        volume from which fixed particles exclude centres (NaN if no volume is left). "temperature" of the
-        moving particles (NaN if there are no particles).
+        "density": moving particles per volume within the present container (faces may move). The volume from
+        which fixed particles exclude centres does not count (NaN if no volume is left). "temperature":
+        temperature of the moving particles (NaN if there are no particles).
     axis : {"x", "y", "z"}, optional
         The axis. Default: the last one.
     bins : int, optional
-        Number of bins. Default: 40. For a density, the number of bins of the impulses that the run has stored
+        Default: 40. For a density, the default is the number of bins of the impulses that the run has stored
         along the axis.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
     species : int, optional
-        Only this species, by its number in the scene.
+        Measure only this species, identified by its number in the scene.
     about : {"flow", "rest"}, default "flow"
-        Frame of reference of a temperature. "flow": relative to the local flow between faces that slide,
-        under a force along a periodic axis, in a uniform wind and before faces that move; otherwise relative
-        to the velocity of the centre of mass if it is conserved (see `gaspart.analysis.flow`). "rest":
-        relative to the container.
+        Frame of reference of a temperature. "flow": relative to the local flow if there are sliding or moving
+        faces, a force along a periodic axis, or a uniform wind; otherwise relative to the centre of mass if
+        its velocity is conserved (see `gaspart.analysis.flow`). "rest": relative to the container.
 
     Returns
     -------
     Observable
-        The profile (position,). The variable with the suffix _freedom has the degrees of freedom of the
+        The profile (position,). The variable with the suffix _freedom contains the degrees of freedom of the
         errors.
 
     Raises
@@ -173,16 +172,16 @@ def profile(
 
     Notes
     -----
-    Errors are valid for correlated series, for each bin separately. An error is NaN if it has fewer than two
+    Errors include time correlations, for each bin separately. An error is NaN if it has fewer than two
     degrees of freedom, because the run is too short for the correlation in this bin. It is also NaN if the
     value of a bin does not change (0 if nothing moves, or if all bins have one value).
 
-    If the run has stored impulses along the axis, and each bin contains an integer number of their bins, the
-    density is computed from them, which is more accurate than counts (`gaspart.analysis.impulses`). The
-    attribute `estimator` names this method.
+    If the run has stored impulses along the axis, and each bin consists of an integer number of stored bins,
+    the density is computed from impulses. This is more accurate than counting (`gaspart.analysis.impulses`).
+    The attribute `estimator` names this method.
 
-    Theory: the density of equal particles under gravity along this axis, from hydrostatics with the equation
-    of state of the fluid. In equilibrium, a uniform temperature.
+    Theory of the density: hydrostatics of equal particles under gravity along this axis, with the equation of
+    state of the fluid. Theory of the temperature: uniform in equilibrium.
 
     Examples
     --------
@@ -222,7 +221,7 @@ def density(source: Source, start: float | None = None, **selection: Any) -> Obs
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
     **selection
@@ -254,7 +253,7 @@ def temperature(source: Source, start: float | None = None, **selection: Any) ->
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
     **selection
@@ -286,7 +285,7 @@ def order_parameter(source: Source, start: float | None = None) -> Observable:
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
 
@@ -334,7 +333,7 @@ def order_parameter(source: Source, start: float | None = None) -> Observable:
 
 
 def _density(run: Run, axis: int, bins: int, species: int | None) -> Means:
-    """Compute the density of the moving particles, or one species.
+    """Compute the density of the moving particles, or of one species.
 
     The density is NaN where fixed particles exclude centres. Raises SceneError for a file that contains only
     the first particles of several kinds.
@@ -347,7 +346,7 @@ def _density(run: Run, axis: int, bins: int, species: int | None) -> Means:
     cells = Cells(run, members, (axis,), (bins,))
     if np.isfinite(run.masses).all():
         return cells.density().times(run.count / stored)
-    edges, radii = cells.grid.edges[0], run.radii[members]  # fixed particles leave less room to larger ones
+    edges, radii = cells.grid.edges[0], run.radii[members]  # the accessible volume depends on the radius
     fractions = {radius: accessible_fraction(run, radius, axis, edges) for radius in np.unique(radii)}
     shares = np.array([fractions[radius] for radius in radii])  # (n, bins)
 

@@ -1,6 +1,6 @@
-"""Static structure factors, of all particles and of each pair of species.
+"""Static structure factors of all particles and of each pair of species.
 
-Uncertainties are the scatter of consecutive blocks of the run.
+Uncertainties come from the scatter of consecutive blocks of the run.
 """
 
 from __future__ import annotations
@@ -20,12 +20,13 @@ from gaspart.keys.values import count_of, number
 from gaspart.trajectory.pairs import pair_names, pairs_of
 from gaspart.workers import in_threads
 
-# Density waves of a periodic container: the wave vectors that it admits, and their amplitudes.
+# Density waves of a periodic container: the permitted wave vectors, and their amplitudes.
 
 
 _FEW = 24
-"""Waves along the longest side, up to which all wave vectors of a shell are candidates; up to twice as many
-every second one along each axis, and so on."""
+"""Number of waves along the longest side, up to which all wave vectors of a shell are candidates. Up to twice
+this number, every second wave along each axis is a candidate, and so on.
+"""
 
 
 def wave_vectors(lengths: Sequence[float] | np.ndarray, highest: float) -> tuple[np.ndarray, np.ndarray]:
@@ -33,8 +34,8 @@ def wave_vectors(lengths: Sequence[float] | np.ndarray, highest: float) -> tuple
 
     The wave vectors are k = 2 pi n / L.
 
-    Both vectors of a pair k, -k have the same S. The lengths have the shape (d,). Returns the integers n (M,
-    d) and |k| (M,), by ascending |k|.
+    Both vectors of a pair k, -k have the same S. `lengths` has shape (d,). Returns the integers n (M, d) and
+    |k| (M,), by ascending |k|.
     """
     unit = 2.0 * np.pi / np.asarray(lengths, dtype=float)
     most = (highest / unit).astype(int)
@@ -51,13 +52,13 @@ def wave_vectors(lengths: Sequence[float] | np.ndarray, highest: float) -> tuple
 def shells_of(
     lengths: Sequence[float] | np.ndarray, highest: float, bins: int, most: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Select up to `most` of the `wave_vectors` of each interval of |k|.
+    """Select up to `most` wave vectors (see `wave_vectors`) in each interval of |k|.
 
-    There are `bins` equal intervals.
+    `bins` is the number of equal intervals.
 
-    The vectors are chosen evenly. If there are many, they are taken from every second (fourth, ...) wave
-    along each axis. Returns n (M, d), the number of the shell of each (M,), and the mean |k| of each of the S
-    shells that are not empty (S,).
+    The vectors are evenly distributed among the candidates. If there are many, the candidates are every
+    second (fourth, ...) wave along each axis. Returns n (M, d), the shell number of each vector (M,), and the
+    mean |k| (S,) of the S nonempty shells.
     """
     parts, low, step = [], 0.0, 1
     while low < highest:
@@ -77,7 +78,7 @@ def shells_of(
 
 
 def in_shells(values: np.ndarray, shell: np.ndarray) -> np.ndarray:
-    """Average the values (M,) of each shell, shape (S,)."""
+    """Average the values (M,) in each shell, shape (S,)."""
     return np.bincount(shell, values) / np.bincount(shell)
 
 
@@ -111,7 +112,7 @@ def amplitudes(
     ndarray of complex, shape (T, M)
         The sums.
     """
-    from gaspart.kernels.analysis.waves import sum_waves  # .4 s of numba
+    from gaspart.kernels.analysis.waves import sum_waves  # importing numba takes 0.4 s
 
     base = 2.0 * np.pi / np.asarray(lengths, dtype=float)
     products, rows = _factor_rows(waves)
@@ -126,11 +127,11 @@ def amplitudes(
 
 
 def _factor_rows(waves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the products that make all factors, and the rows of each wave.
+    """Return the products from which all factors are computed, and the rows of each wave.
 
     The factors are exp(2 pi i n x / L).
 
-    As `sum_waves` takes them: (R, 2) and (M, d), for waves (M, d).
+    For waves (M, d), `sum_waves` takes them as arrays (R, 2) and (M, d).
     """
     from gaspart.kernels.analysis.waves import CONJUGATE
 
@@ -153,11 +154,13 @@ def _factor_rows(waves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 _HIGHEST = 20.0
-"""Wave number times the diameter up to which S(k) is measured: the first three maxima."""
+"""Maximum wave number of S(k), in units of 1 / diameter; it includes the first three maxima."""
 _WAVES = 24
-"""Wave vectors of each bin of S(k) that are used, evenly chosen among those that the container admits."""
+"""Maximum number of wave vectors per bin of S(k); they are evenly distributed among those that the container
+permits.
+"""
 _WORK = 2**35
-"""Terms of all sums over particles, above which fewer frames are used."""
+"""Maximum number of terms in all sums over particles; beyond this number fewer frames are used."""
 
 
 def structure_factor(
@@ -168,7 +171,7 @@ def structure_factor(
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     bins : int, default 60
         Number of equal intervals of |k|.
     highest : float, [1/length], optional
@@ -179,20 +182,22 @@ def structure_factor(
     Returns
     -------
     Observable
-        S (wave_number,), dimensionless, mean over up to 320 frames, fewer of many particles. The coordinate
-        is the mean |k| of an interval.
+        S (wave_number,), dimensionless, averaged over up to 320 frames; fewer if there are many particles.
+        The coordinate is the mean |k| in each interval.
 
     Raises
     ------
     SceneError
-        For walls, followed particles, too few frames, and a wave number below the longest wave's.
+        If the scene has walls, if the file contains only some of the particles, if there are too few frames,
+        or if `highest` is below the smallest wave number.
 
     Notes
     -----
-    Exact sums, at wave vectors that the container admits: k = 2 pi (n_x / L_x, ...), without 0, where S is N,
-    of any number. The values are averaged in intervals, with up to 24 vectors in each interval. An interval
-    without vectors is omitted. S(k) of a fluid tends to its reduced compressibility k_B T d rho / dP at small
-    k, and to 1 at large k. Theory: of equal spheres Verlet and Weis's, an approximation.
+    The sums are exact, at the wave vectors that the container permits: k = 2 pi (n_x / L_x, ...). k = 0 is
+    excluded, because S is N there. The values are averaged in intervals, with up to 24 vectors in each
+    interval. An interval without vectors is omitted. In a fluid, S(k) tends to the reduced compressibility
+    k_B T d rho / dP at small k, and to 1 at large k. Theory for equal spheres: the approximation of Verlet
+    and Weis.
 
     Examples
     --------
@@ -218,12 +223,12 @@ def structure_factor(
 def partial_structure_factors(
     source: Source, bins: int = 60, highest: float | None = None, start: float | None = None
 ) -> Observable:
-    """Measure the partial structure factors of a periodic mixture by Ashcroft and Langreth.
+    """Measure the Ashcroft-Langreth partial structure factors of a periodic mixture.
 
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (a path or an open trajectory), or a simulation.
     bins : int, default 60
         Number of equal intervals of |k|, as in `structure_factor`.
     highest : float, [1/length], optional
@@ -239,7 +244,8 @@ def partial_structure_factors(
     Raises
     ------
     SceneError
-        As for `structure_factor`; also for single particles, which do not belong to a species.
+        For the reasons of `structure_factor`; also if the scene has single particles, because these do not
+        belong to a species.
 
     Notes
     -----
@@ -247,10 +253,10 @@ def partial_structure_factors(
 
         S_ab(k) = <rho_a(k) rho_b(-k)> / sqrt(N_a N_b),    rho_a(k) = sum over species a of exp(i k.r).
 
-    At large k, and for an ideal mixture, the values are 1 for equal and 0 for different species. With the
-    fractions x the sum over all a and b of sqrt(x_a x_b) S_ab is the `structure_factor`, exactly. Wave
-    vectors and errors are the same as in `structure_factor`. Theory: of spheres of one size Verlet and
-    Weis's, of a mixture Percus and Yevick's, both approximations.
+    At large k, and for an ideal mixture, the values are 1 for equal species and 0 for different species. With
+    the number fractions x, the sum of sqrt(x_a x_b) S_ab over all a and b is exactly the `structure_factor`.
+    Wave vectors and errors are the same as in `structure_factor`. Theory for spheres of one size: the
+    approximation of Verlet and Weis. Theory for a mixture: the approximation of Percus and Yevick.
 
     References
     ----------
@@ -293,10 +299,10 @@ def _average_products(
     highest: float | None,
     products: Callable[[np.ndarray, np.ndarray], np.ndarray],
 ) -> tuple[np.ndarray, dict[str, Any]]:
-    """Return means of `products` over 16 stretches of the run, in intervals of |k|.
+    """Return means of `products` over 16 blocks of the run, in intervals of |k|.
 
-    products(frames, waves): (T, ..., M). Returns (16, ..., wave_number), and the coordinate. Raises
-    SceneError; see `structure_factor`.
+    `products` is a function of (frames, waves) that returns an array (T, ..., M). Returns an array
+    (16, ..., wave_number), and the coordinate. Raises SceneError for the reasons of `structure_factor`.
     """
     bins = count_of("bins", bins, least=2)
     lengths = run.scene.container.lengths

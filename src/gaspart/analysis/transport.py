@@ -1,15 +1,16 @@
-"""Viscosities, thermal conductivity and pressure tensor, from the tally of the stress and the heat flux.
+"""Viscosities, thermal conductivity and pressure tensor, from tallies of the stress and the heat flux.
 
-A run with `Correlations(stress=True)` has summed products of these fluxes relative to the velocity of the
-centre of mass, J, each averaged over an interval h between two samples. It has also summed squared
-differences of their time integrals, G = V int J dt (Helfand, Phys. Rev. 119, 1 (1960)). A transport
-coefficient is the limit at long times of
+A run with `Correlations(stress=True)` sums products of these fluxes J, relative to the velocity of the centre
+of mass. Each flux is averaged over an interval h between two samples. The run also sums squared differences
+of their time integrals, G = V int J dt (Helfand, Phys. Rev. 119, 1 (1960)). A transport coefficient is the
+limit at long times of the expression
 
     <(G(t) - G(0))^2> / (2 V t x)  and of its derivative  h [C(0)/2 + C(h) + C(2h) + ... ] / (V x),
 
-with C the correlation of V J. x = k_B T for the viscosities, and k_B T^2 for the conductivity of a gas of one
-species. These are the forms of Helfand and of Green and Kubo. If means over intervals replace instantaneous
-values, the second form is still exact, including the impulses at collisions, at the times between two lags.
+where C is the correlation of V J. x = k_B T for the viscosities, and k_B T^2 for the conductivity of a gas of
+one species. These are the formulas of Helfand and of Green and Kubo. With means over intervals instead of
+instantaneous values, the second formula is still exact at the times between two lags. It includes the
+impulses at collisions.
 """
 
 from __future__ import annotations
@@ -34,30 +35,30 @@ from gaspart.state.state import State, drift_of
 from gaspart.trajectory.amber import INITIAL
 from gaspart.trajectory.correlator import Correlations
 
-# The conductivity of heat of a mixture.
+# Thermal conductivity of a mixture.
 #
-# In a mixture the flux of energy depends on what is counted as heat: with the species their enthalpies
-# diffuse. By linear irreversible thermodynamics (de Groot and Mazur, Non-equilibrium thermodynamics
-# (1962), chapter XI) a gradient of the temperature drives the flux of energy J_q and those of the species
-# J_a about the centre of mass by L_qq and L_aq, gradients of the chemical potentials by L_qa and L_ab. The
-# conductivity is that without diffusion, as in a steady state between walls, J_a = 0:
+# In a mixture the heat flux depends on its definition, because diffusing species carry enthalpy. In linear
+# irreversible thermodynamics (de Groot and Mazur, Non-equilibrium thermodynamics (1962), chapter XI), J_q is
+# the flux of energy, and J_a are the fluxes of the species relative to the centre of mass. A temperature
+# gradient drives them with the coefficients L_qq and L_aq, and gradients of the chemical potentials with L_qa
+# and L_ab. The conductivity is defined without diffusion, J_a = 0, as in a steady state between walls:
 #
 #     kappa = (L_qq - sum_ab L_qa (L^-1)_ab L_bq) / (k_B T^2),    L_xy = (1 / V) integral of <J_x(0)
 #     J_y(t)> dt,
 #
-# each J times the volume, along one axis. Whatever multiples of the J_a are added to J_q, this is the same:
-# no enthalpies are needed. It is the coefficient of J_q - sum_a b_a J_a with the b_a for which it is
-# least, so that the uncertainty of these does not matter to first order.
+# each J is multiplied by the volume, along one axis. The conductivity does not change if any multiples of the
+# J_a are added to J_q, so the enthalpies are not needed. It is the minimum over b_a of the coefficient of J_q
+# - sum_a b_a J_a. So the uncertainty of the b_a does not matter to first order.
 #
-# J_q is tallied with the stress; time integrals of J_a are displacements of particles, relative to the
-# centre of mass. Fluxes are here the means over the intervals between frames, for which the forms of Green
-# and Kubo are exact as in `transport`.
+# J_q is tallied with the stress. The time integrals of J_a are displacements of particles relative to the
+# centre of mass. The fluxes here are means over the intervals between frames. The Green-Kubo formulas are
+# exact for such means, as in `transport`.
 
 
 def conductivity_without_diffusion(run: Run, lag: float) -> Observable:
-    """Measure the thermal conductivity of a mixture, from correlations until a lag, a time.
+    """Measure the thermal conductivity of a mixture, from correlations up to a lag in time units.
 
-    Raises SceneError for frames at uneven times, too far apart, or too few, and for a run that lacks some
+    Raises SceneError if frames are unevenly spaced, too far apart, or too few, and if the file lacks some
     particles.
     """
     steps = np.diff(run.time)
@@ -85,11 +86,11 @@ def conductivity_without_diffusion(run: Run, lag: float) -> Observable:
 
 
 def _sum_displacements(run: Run) -> np.ndarray:
-    """Sum displacements about the centre of mass over the particles of each species.
+    """Sum displacements relative to the centre of mass over the particles of each species.
 
-    The shape is (S - 1, T, d): the sum of the last species follows from the others.
+    The shape is (S - 1, T, d), because the sum of the last species follows from the others.
     """
-    moving, masses = run.moving, run.masses  # raises SceneError if some are not in the file
+    moving, masses = run.moving, run.masses  # raises SceneError if the file lacks particles
     members = [run.species == kind for kind in np.unique(run.species)[:-1]]
     sums = []
     for path in unwrap_positions(run, np.flatnonzero(moving)):
@@ -99,7 +100,7 @@ def _sum_displacements(run: Run) -> np.ndarray:
 
 
 def _products(flux: np.ndarray, other_flux: np.ndarray, lags: int) -> np.ndarray:
-    """Compute products of changes of two sets of time integrals of fluxes.
+    """Compute products of changes of two sets of time-integrated fluxes.
 
     The integrals have the shapes (A, T, d) and (B, T, d), the products (A, B, T - 1 - lags). The change of
     one quantity over an interval is multiplied by the change of the other: half of the change over the same
@@ -116,7 +117,7 @@ def _products(flux: np.ndarray, other_flux: np.ndarray, lags: int) -> np.ndarray
     return 0.5 * (half(flux, other_flux) + half(other_flux, flux).swapaxes(0, 1))
 
 
-_SLIGHT = 1e-6  # of k_B T: an energy of the motion as a whole that changes no coefficient
+_SLIGHT = 1e-6  # fraction of k_B T: energy of the motion of the whole gas that changes no coefficient
 
 
 def shear_viscosity(source: Source, lag: float | None = None, start: float | None = None) -> Observable:
@@ -125,9 +126,9 @@ def shear_viscosity(source: Source, lag: float | None = None, start: float | Non
     Parameters
     ----------
     source : str, Path or Dataset
-        A trajectory with correlations of the stress, by its path or open.
+        A trajectory with correlations of the stress (a path or an open trajectory).
     lag : float, [time], optional
-        Time until which correlations count. Default: the longest lag.
+        Longest time difference of the correlations that are summed. Default: the longest lag.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
 
@@ -139,14 +140,14 @@ def shear_viscosity(source: Source, lag: float | None = None, start: float | Non
     Raises
     ------
     SceneError
-        For a run without correlations of the stress, a lag that is longer than theirs, fewer than 17 frames,
-        and a shear rate of 0.
+        If the run has no correlations of the stress, if the lag exceeds their longest lag, if there are fewer
+        than 17 frames, or if the shear rate is 0.
 
     Notes
     -----
-    Between sheared faces (`LeesEdwards`) it is the response -P_yx / shear_rate instead, without a lag and
-    without these curves. The antisymmetric part of the stress is included, which is zero unless collisions do
-    not conserve angular momentum, as in the cells of DSMC. Theory: Enskog's.
+    Between sheared faces (`LeesEdwards`) it is the response -P_yx / shear_rate instead; this needs no lag and
+    gives no curves. The antisymmetric part of the stress is included. It is zero unless collisions do not
+    conserve angular momentum, as in the cells of DSMC. Theory: Enskog's viscosity.
 
     Examples
     --------
@@ -166,14 +167,14 @@ def shear_viscosity(source: Source, lag: float | None = None, start: float | Non
 
 
 def bulk_viscosity(source: Source, lag: float | None = None, start: float | None = None) -> Observable:
-    """Measure the bulk viscosity from the fluctuations of the pressure about its mean.
+    """Measure the bulk viscosity from fluctuations of the pressure relative to its mean.
 
     Parameters
     ----------
     source : str, Path or Dataset
-        A trajectory with correlations of the stress, by its path or open.
+        A trajectory with correlations of the stress (a path or an open trajectory).
     lag : float, [time], optional
-        Time until which correlations count. Default: the longest lag.
+        Longest time difference of the correlations that are summed. Default: the longest lag.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
 
@@ -185,12 +186,12 @@ def bulk_viscosity(source: Source, lag: float | None = None, start: float | None
     Raises
     ------
     SceneError
-        As `shear_viscosity`.
+        For the reasons of `shear_viscosity`.
 
     Notes
     -----
-    The mean is computed over the run, of duration T. This makes the value too low by about the fraction 2 lag
-    / T. Theory as for `shear_viscosity`.
+    The mean is computed over the run, which has the duration T. This makes the value too low by about the
+    fraction 2 lag / T. Theory as for `shear_viscosity`.
 
     Examples
     --------
@@ -212,9 +213,9 @@ def thermal_conductivity(source: Source, lag: float | None = None, start: float 
     Parameters
     ----------
     source : str, Path or Dataset
-        A trajectory with correlations of the stress, by its path or open.
+        A trajectory with correlations of the stress (a path or an open trajectory).
     lag : float, [time], optional
-        Time until which correlations count. Default: the longest lag.
+        Longest time difference of the correlations that are summed. Default: the longest lag.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
 
@@ -226,12 +227,13 @@ def thermal_conductivity(source: Source, lag: float | None = None, start: float 
     Raises
     ------
     SceneError
-        As for `shear_viscosity`; also for particles of many sizes and single particles in a mixture.
+        For the reasons of `shear_viscosity`; also for particles of many sizes, and for single particles in a
+        mixture.
 
     Notes
     -----
     For a mixture it is the conductivity without diffusion (see `conduction`). It is computed from the fluxes
-    between frames, without the curves; the interval of frames may not be longer than the lag. Theory as for
+    between frames, without the curves. The time between frames must not exceed the lag. Theory as for
     `shear_viscosity`.
 
     Examples
@@ -260,7 +262,7 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
     Parameters
     ----------
     source : str, Path or Dataset
-        A trajectory with correlations of the stress, by its path or open.
+        A trajectory with correlations of the stress (a path or an open trajectory).
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
 
@@ -272,12 +274,11 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
     Raises
     ------
     SceneError
-        For other trajectories, and fewer than 17 frames.
+        If the run has no correlations of the stress, or if there are fewer than 17 frames.
 
     Notes
     -----
-    In a sheared gas it is computed from velocities relative to the flow. Theory: the equation of state, for a
-    gas at rest.
+    In a sheared gas, velocities are relative to the flow. Theory: the equation of state, for a gas at rest.
 
     Examples
     --------
@@ -309,10 +310,10 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
 
 
 def _read_settings(run: Run) -> Correlations:
-    """Return the settings of a run's correlations of the stress.
+    """Return the settings of the stress correlations of a run.
 
-    Raises SceneError for a run without them. An older version stored fluxes of absolute velocities. Such a
-    run is rejected if the gas moves as a whole.
+    Raises SceneError if the run has none. Older versions stored fluxes of absolute velocities. A run of such
+    a version is rejected if the gas moves as a whole.
     """
     text = run.data.attrs.get("correlations")
     settings = Correlations.from_json(text) if text else None
@@ -326,7 +327,7 @@ def _read_settings(run: Run) -> Correlations:
 
 
 def _moves(scene: Scene, state: State) -> bool:
-    """Return True if a gas moves as a whole with enough energy to change a coefficient."""
+    """Return True if the motion of the whole gas has enough energy to change a coefficient."""
     squares = (state.velocities - flow(scene, state.positions)) ** 2
     thermal = float((state.masses[:, None] * squares).mean())
     return float(state.masses.sum() * (drift_of(scene, state) ** 2).sum()) > _SLIGHT * thermal
@@ -342,7 +343,7 @@ def _initial(run: Run) -> State:
 
 
 def _response(run: Run, lag: float | None) -> Observable:
-    """Measure the shear viscosity of a sheared gas from the momentum transported across the flow."""
+    """Measure the shear viscosity of a sheared gas from the transverse momentum flux."""
     _read_settings(run)
     scene, rate = run.scene, run.scene.shear_rate
     if lag is not None:
@@ -358,7 +359,7 @@ def _response(run: Run, lag: float | None) -> Observable:
 def _coefficient(run: Run, public: str, name: str, lag: float | None) -> Observable:
     """Measure a transport coefficient from the correlations of a flux.
 
-    The flux is `name` in `trajectory.correlator.STRESS`.
+    `name` is the name of the flux in `trajectory.correlator.STRESS`.
     """
     require_defined(public, run.scene)
     settings = _read_settings(run)
@@ -384,7 +385,7 @@ _PARTS = {"shear": ("shear", "rotational")}
 
 
 def _lags_until(settings: Correlations, lag: float | None) -> int:
-    """Return the number of the lag until which correlations count."""
+    """Return the number of the longest lag whose correlations are summed."""
     if lag is None:
         return settings.lags
     number = round(lag / settings.interval)
@@ -395,16 +396,16 @@ def _lags_until(settings: Correlations, lag: float | None) -> int:
 
 
 def green_kubo(run: Run, name: str) -> np.ndarray:
-    """Compute a coefficient from the correlation until each lag, by blocks.
+    """Compute a coefficient from the correlation up to each lag, in each block.
 
-    Blocks are the intervals between frames in which samples end pairs of all lags.
+    Blocks are the intervals between frames in which pairs of samples of all lags end.
 
     Parameters
     ----------
     run : Run
         The run.
     name : str
-        Name of the flux, of `trajectory.correlator.STRESS`.
+        Name of the flux in `trajectory.correlator.STRESS`.
 
     Returns
     -------
@@ -422,19 +423,19 @@ def green_kubo(run: Run, name: str) -> np.ndarray:
 
 
 def helfand(run: Run, name: str) -> np.ndarray:
-    """Compute a coefficient from the squared change of G over each lag, by blocks as `green_kubo`.
+    """Compute a coefficient from the squared change of G over each lag, in each block.
 
     Parameters
     ----------
     run : Run
         The run.
     name : str
-        Name of the flux, of `trajectory.correlator.STRESS`.
+        Name of the flux in `trajectory.correlator.STRESS`.
 
     Returns
     -------
     ndarray, shape (B, lags)
-        The coefficient; NaN at the lag 0.
+        The coefficient; NaN at lag 0.
     """
     interval = _read_settings(run).interval
     _, squares = _blocks(run, name)
@@ -450,9 +451,11 @@ def _scale(run: Run, name: str) -> float:
 
 
 def _blocks(run: Run, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return the correlation of V J and the squared change of G, each (B, lags).
+    """Return the correlation of V J and the squared change of G by block.
 
-    The results are given by blocks. The mean of the flux is subtracted where it is not zero.
+    Each has the shape (B, lags).
+
+    A nonzero mean of the flux is subtracted.
     """
     data: xr.Dataset = run.data
     samples = data["correlated_samples"].values
@@ -463,7 +466,7 @@ def _blocks(run: Run, name: str) -> tuple[np.ndarray, np.ndarray]:
     products, squares = (
         run.increments(f"{name}_{kind}_sum")[complete] / pairs for kind in ("product", "square")
     )
-    if name == "bulk":  # of the very same pairs: the mean is much larger than what fluctuates
+    if name == "bulk":  # same pairs: the mean is much larger than the fluctuations
         ends, change = (run.increments(f"bulk_{kind}_sum")[complete] / pairs for kind in ("ends", "change"))
         stress, time = data["stress_sum"].values, float(data["lag"][1]) * lags
         mean = np.trace(stress[-1] - stress[0]) / (run.dimension * (run.time[-1] - run.time[0]))

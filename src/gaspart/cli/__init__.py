@@ -1,7 +1,8 @@
-"""The command line: a module for each command, with its arguments and its function.
+"""Command line: a module for each command, with its arguments and its function.
 
-A user's mistake is one line on stderr and exit code 2. A run that breaks an invariant, a failure of a file or
-of memory, or an error found by `check`: 1. An interruption: 130 (SIGINT) or 143 (SIGTERM).
+A user's mistake is reported by one line on stderr and exit code 2. The exit code is 1 if a run violates an
+invariant, if a file or memory fails, or if `check` finds an error. After an interruption it is 130 (SIGINT)
+or 143 (SIGTERM).
 """
 
 from __future__ import annotations
@@ -42,8 +43,8 @@ _COMMANDS = {
     "verify": ("archive", "digests of an archive, and points simulated again"),
     "completion": ("completion", "let a shell complete commands, options and names"),
 }
-"""Name -> module, which has a function add_<name>, and the line in the list of commands."""
-_WRITE_FILES = ("new", "resume")  # as commands with an option `output` do
+"""Commands by name: the module, which has a function add_<name>, and the line in the list of commands."""
+_WRITE_FILES = ("new", "resume")  # commands with an option `output` do this
 _EXAMPLES = """examples:
   gaspart new gas.yaml
   gaspart run gas.yaml -o gas.nc --duration 40 --sample-interval 0.4
@@ -59,8 +60,8 @@ def lines() -> dict[str, str]:
 def main(arguments: Sequence[str] | None = None, without_output: bool = False) -> int:
     """Execute a command line, and return the exit code.
 
-    If `without_output`, the standard output is closed. A command that would print its result there has then
-    failed.
+    If `without_output` is True, the standard output is closed. A command that prints its result there then
+    fails.
     """
     options: argparse.Namespace | None = None
     try:
@@ -74,7 +75,7 @@ def main(arguments: Sequence[str] | None = None, without_output: bool = False) -
                 raise OSError(errno.EBADF, os.strerror(errno.EBADF))
             options.command(options)
         finally:
-            sys.stdout.flush()  # here, where a full disk can still be reported
+            sys.stdout.flush()  # flushed here, because a full disk can still be reported here
     except (SceneError, UsageError) as error:
         return _complain(f"error: {_for_command(error, options)}", 2)
     except CheckFailed:
@@ -85,7 +86,7 @@ def main(arguments: Sequence[str] | None = None, without_output: bool = False) -
         return _complain(describe_interruption(), 130)
     except MemoryError:
         return _complain("error: there is not enough memory for this", 1)
-    except BrokenPipeError:  # the reader of the output has ended, as `head` does
+    except BrokenPipeError:  # the program that reads the output has ended, such as `head`
         _discard(sys.stdout)
     except OSError as error:
         where = error.filename or "a file or the standard output"
@@ -96,7 +97,7 @@ def main(arguments: Sequence[str] | None = None, without_output: bool = False) -
 def _for_command(error: Exception, options: argparse.Namespace | None) -> str:
     """Return the text of an error for the given command.
 
-    The text names the file of the scene, and the option in place of Python's `overwrite`.
+    The text names the file of the scene. It names the option of the command instead of Python's `overwrite`.
     """
     if (
         isinstance(error, SceneError)
@@ -111,7 +112,7 @@ def _for_command(error: Exception, options: argparse.Namespace | None) -> str:
 
 
 def _scene_keys() -> set[str]:
-    """Return the keys of a scene file, and of quantities that follow from them."""
+    """Return the keys of a scene file, and names of quantities derived from them."""
     from dataclasses import fields
 
     from gaspart.scene.container import Container
@@ -122,7 +123,7 @@ def _scene_keys() -> set[str]:
 
 
 def _complain(text: str, code: int) -> int:
-    """Print one line on stderr and return the exit code."""
+    """Print one line on stderr, and return the exit code."""
     for stream, line in (
         (sys.stdout, ""),
         (sys.stderr, f"{clear_line()}gaspart: {visible(' '.join(text.split()))}\n"),
@@ -130,13 +131,13 @@ def _complain(text: str, code: int) -> int:
         try:
             stream.write(line)
             stream.flush()
-        except OSError:  # full or closed: only the exit code is left
+        except OSError:  # stderr is full or closed: only the exit code remains
             _discard(stream)
     return code
 
 
 def show_warnings_in_a_line() -> None:
-    """Print the warnings of gaspart without the line of Python, until the process ends."""
+    """Print warnings of gaspart in one line, without Python's source line, until the process ends."""
     print_with_place = warnings.showwarning
 
     def show(message: Warning | str, *location: object, **more: object) -> None:
@@ -150,14 +151,14 @@ def show_warnings_in_a_line() -> None:
 
 
 def _discard(stream: TextIO) -> None:
-    """Redirect a stream to the null device, where the interpreter can flush it."""
+    """Redirect a stream to the null device, so that the interpreter can flush it."""
     null = os.open(os.devnull, os.O_WRONLY)
     os.dup2(null, stream.fileno())
     os.close(null)
 
 
 def _describe_unrecognised(words: list[str], parser: Parser) -> str:
-    """Return the message for words of a command line that its command does not accept."""
+    """Return the message about words of a command line that its command does not accept."""
     options = [argument.partition("=")[0] for argument in words if argument.startswith("-")]
     if options:
         return f"{options[0]}: {unknown_word(options[0], parser.options(), 'option')}"
@@ -168,7 +169,7 @@ def _parser(words: Sequence[str]) -> Parser:
     """Return the parser of a command line.
 
     The parser contains only the command at the beginning of the line, or a list of all commands. Only the
-    named command is imported; `completion` needs all.
+    module of this command is imported; `completion` imports all modules.
     """
     parser = Parser(
         prog="gaspart",
@@ -185,7 +186,7 @@ def _parser(words: Sequence[str]) -> Parser:
 
 
 def _add_commands(parser: Parser, names: Iterable[str], complete: Iterable[str]) -> dict[str, Parser]:
-    """Add commands; commands that are not in `complete` have only their name and a brief description."""
+    """Add commands; commands outside of `complete` have only a name and a brief description."""
     added = parser.add_subparsers(required=True, metavar="COMMAND", title="commands", parser_class=Parser)
     for name in names:
         module, brief = _COMMANDS[name]

@@ -81,13 +81,13 @@ def _advise(options: argparse.Namespace) -> None:
 
     scene, request = Scene.from_file(options.scene), (options.observable, options.accuracy, options.budget)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of coarse settings, whose error is stated in the table
+        warnings.simplefilter("ignore")  # coarse settings, whose error is stated in the table
         advice = plan(scene, *request, options.pilot, announce)
     print_lines(_lines(advice, options.scene))
 
 
 def _lines(plan: Plan, file: str) -> list[str]:
-    """Return the advice as text; `file` is the scene's, for the command."""
+    """Return the advice as text; `file` is the scene file, which the advised command names."""
     best, target = plan.best, plan.target
     notes = best.engine.notes(target.scene, target.observable, target.declared.memory)
     lines = [_line("engine", best.engine.describe()), *(_line(*note) for note in notes.items())]
@@ -118,7 +118,7 @@ def _line(title: str, text: str) -> str:
 
 
 def _run(plan: Plan, file: str) -> list[str]:
-    """Return lines on the run to make, its cost and its accuracy."""
+    """Return lines on the recommended run, its cost and its accuracy."""
     best, recipe, lines = plan.best, plan.recipe, []
     if gas := plan.gas:
         length = f"{plan.collisions_per_particle:.3g} measured collisions per particle"
@@ -152,14 +152,14 @@ def _run(plan: Plan, file: str) -> list[str]:
 
 
 def _bulk(plan: Plan, count: int) -> str:
-    """Describe the effect of the finite size."""
+    """Describe the effect of the finite size of the container."""
     differing, bulk_count = plan.finite_size
     text = f"; {plan.target.name} differs by {100.0 * differing:+.2g} % from an infinite gas"
     return text + (f": correct for it, or take {bulk_count:.2g}" if bulk_count > count else "")
 
 
 def _rarely_visited(plan: Plan) -> list[str]:
-    """Describe the part of a curve to which the accuracy refers."""
+    """Describe the range of a curve for which the accuracy holds."""
     visited, total = plan.points
     if visited == total:
         return []
@@ -170,7 +170,7 @@ def _rarely_visited(plan: Plan) -> list[str]:
 
 
 def _energy_scatter(plan: Plan, scatter: Scatter) -> list[str]:
-    """Return lines on what the energies of starts add to the error."""
+    """Return lines on the error due to different initial energies."""
     if not scatter.value:
         return []
     of_mean = f", {scatter.value / math.sqrt(plan.replicas):.2g} of their mean" if plan.replicas > 1 else ""
@@ -187,7 +187,10 @@ def _energy_scatter(plan: Plan, scatter: Scatter) -> list[str]:
 
 
 def _differences(plan: Plan) -> list[str]:
-    """Describe pilots that disagree beyond their bounds, and name the exact engine, whose pilot is used."""
+    """Describe pilot runs that disagree beyond their bounds, and name the exact engine.
+
+    The pilot run of the exact engine is used.
+    """
     lines = []
     for pilot in plan.differing:
         exact = plan.pilots[0]
@@ -210,7 +213,7 @@ def _extra_cost(plan: Plan) -> str:
 
 
 def _components(option: Option) -> str:
-    """Describe the parts of the error of an option."""
+    """Describe the parts of an option's error."""
     noise = option.error - option.bias
     of = option.candidate
     parts = {"noise": noise, "model": of.model, "steps and cells": of.discretisation}
@@ -224,7 +227,10 @@ def _components(option: Option) -> str:
 
 
 def _shortfall(plan: Plan) -> str:
-    """Return what would reach an accuracy that the budget, a single run or no engine reaches."""
+    """Return the requirements for an accuracy that is out of reach.
+
+    The limit may be the budget, the single run, or the engines.
+    """
     able = [option for option in plan.options if option.bias < plan.accuracy]
     if not able:
         return f"no engine is known to be as accurate as {plan.accuracy:g}"

@@ -49,7 +49,7 @@ def _archive(options: argparse.Namespace) -> None:
     print_line(line)
 
 
-# `gaspart verify`: whether an archive is what it was, and simulates to the same bits.
+# `gaspart verify`: checks that an archive is unchanged, and that simulations reproduce its bits.
 
 
 _EXAMPLES_OF_VERIFY = """examples:
@@ -89,7 +89,7 @@ def _verify(options: argparse.Namespace) -> None:
         raise CheckFailed
 
 
-# `gaspart budget`: where the time of a finished run of the workflow went, and which length would suffice.
+# `gaspart budget`: time used by a finished run of the workflow, and sufficient run lengths.
 
 
 _EXAMPLES_OF_BUDGET = """examples:

@@ -15,26 +15,26 @@ from gaspart.keys.values import number
 
 T = TypeVar("T")
 WIDTH = 78
-"""Width of the help in characters, for a terminal of 80 columns."""
+"""Width of the help text in characters, for a terminal of 80 columns."""
 
 
 class UsageError(Exception):
-    """An invalid command line, with the message of argparse."""
+    """Invalid command line, with the message of argparse."""
 
 
 class CheckFailed(Exception):
-    """A check has failed, and its line is already printed."""
+    """Failed check, whose line has already been printed."""
 
 
 class Suggested(tuple):
-    """Words that a shell completes. Other words are accepted, too."""
+    """Words that a shell completes; other words are accepted, too."""
 
     def __contains__(self, name: object) -> bool:
         return True
 
 
 class Parser(argparse.ArgumentParser):
-    """Parser that raises UsageError, accepts only complete options, and preserves line breaks."""
+    """Parser that raises UsageError, accepts only unabbreviated options, and preserves line breaks."""
 
     def __init__(self, **settings: Any) -> None:
         super().__init__(allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter, **settings)
@@ -48,7 +48,7 @@ class Parser(argparse.ArgumentParser):
         return [option for action in self._actions for option in action.option_strings]
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
-        """Refuse a word that is no choice, with the most similar one."""
+        """Reject a word that is no choice, and suggest the most similar choice."""
         if action.choices is not None and value not in action.choices:
             kind = "command" if action.nargs == argparse.PARSER else "name"
             option = f"{action.option_strings[0]}: " if action.option_strings else ""
@@ -56,15 +56,15 @@ class Parser(argparse.ArgumentParser):
 
 
 def real(**limits: float) -> Callable[[str], float]:
-    """Return a reader of a finite number within the limits of `gaspart.keys.values.number`.
+    """Return a reader of a finite number within limits.
 
-    The limits are above, least, most.
+    The limits above, least and most are explained in `gaspart.keys.values.number`.
     """
     return _reader(float, "a finite number", limits)
 
 
 def integer(**limits: float) -> Callable[[str], int]:
-    """Return a reader of an integer within such limits."""
+    """Return a reader of an integer within limits, as for `real`."""
     return _reader(int, "a whole number", limits)
 
 
@@ -98,15 +98,15 @@ def set_command(
     description: str,
     examples: str | None = None,
 ) -> None:
-    """Describe a command in its parser; `run` is the function that executes it."""
+    """Describe a command in its parser, with the function `run` that executes it."""
     parser.description, parser.epilog = fill(description, width=WIDTH), examples
     parser.set_defaults(command=run, parser=parser)
 
 
 def list_names(meanings: dict[str, str]) -> str:
-    """List names with a line for each, in the layout of options.
+    """Return a list of names, a line for each, in the layout of options.
 
-    A line that is too long is continued.
+    Long lines are wrapped.
     """
     column = 24
     lines = []
@@ -118,7 +118,7 @@ def list_names(meanings: dict[str, str]) -> str:
 
 
 def add_output(parser: argparse.ArgumentParser, meaning: str, overwrite: str) -> None:
-    """Add the options of a command that writes a result: `-o`, and `--force` to replace one."""
+    """Add the options of a command that writes a file: `-o` and `--force`."""
     parser.add_argument("-o", "--output", required=True, metavar="FILE", help=meaning)
     parser.add_argument("--force", action="store_true", help=f"replace {overwrite}")
 
@@ -143,17 +143,17 @@ def run_files(name: str) -> list[str]:
 def config_command(command: str) -> Callable:
     """Return the function of a command for a config of the workflow, or its results.
 
-    The command is an entry point, since the library does not import the reproduction. An entry point of
-    another package is not used.
+    The function is found by an entry point, because the library does not import the reproduction. Entry
+    points of other packages are ignored.
     """
     ours = [entry for entry in entry_points_of("gaspart.configs") if entry.value.startswith("gaspart.")]
     return next(entry for entry in ours if entry.name == command).load()
 
 
 def print_line(text: object) -> None:
-    """Print one line of any text (`visible`).
+    """Print a text as one line (see `visible`).
 
-    If the standard output cannot encode it, for example some file names, characters are escaped.
+    Characters that the standard output cannot encode, for example in file names, are escaped.
     """
     line = visible(text, names=True)
     try:
@@ -164,14 +164,14 @@ def print_line(text: object) -> None:
 
 
 def print_lines(lines: Iterable[object]) -> None:
-    """Print several lines; a line break within one of them is escaped."""
+    """Print several lines; line breaks inside a line are escaped."""
     for line in lines:
         print_line(line)
 
 
 def print_note(text: str) -> None:
-    """Print one line on stderr, where it is no part of a result that scripts read."""
-    with suppress(OSError):  # full or closed
+    """Print one line on stderr, so that it is not part of a result for scripts."""
+    with suppress(OSError):  # stderr is full or closed
         print(f"gaspart: {visible(text)}", file=sys.stderr, flush=True)
 
 
@@ -191,5 +191,5 @@ def several(kind: Callable[[str], T]) -> Callable[[str], tuple[T, ...]]:
 
 
 def alone(numbers: tuple[int, ...]) -> int | tuple[int, ...]:
-    """Return a single number by itself, several numbers as a tuple."""
+    """Return a single number without a tuple, several numbers as a tuple."""
     return numbers[0] if len(numbers) == 1 else numbers

@@ -57,13 +57,16 @@ def add_check(parser: Parser) -> None:
 
 
 def _words(text: str) -> str | tuple[str, ...]:
-    """Return a word, or several words separated by commas; `Container` rejects invalid words."""
+    """Return a word, or several words separated by commas.
+
+    `Container` rejects invalid words.
+    """
     words = tuple(text.split(","))
     return words[0] if len(words) == 1 else words
 
 
 def _corner(text: str) -> str | tuple[float, ...]:
-    """Return a word, or numbers with commas between."""
+    """Return a word, or numbers separated by commas."""
     return text if text.isalpha() else tuple(several(real())(text))
 
 
@@ -74,7 +77,7 @@ def _check(options: argparse.Namespace) -> None:
 
 
 def _is_healthy(options: argparse.Namespace, file: str) -> bool:
-    """Print the checks of a file; return False if one fails."""
+    """Print the checks of a file; return False if a check fails."""
     if Path(file).suffix in (".yaml", ".yml"):
         for key in ("radius", "lengths", "boundary", "origin", "time_step"):
             if getattr(options, key) is not None:
@@ -92,7 +95,10 @@ def _is_healthy(options: argparse.Namespace, file: str) -> bool:
 
 
 def _check_frames(file: str, options: argparse.Namespace) -> tuple[str, list]:
-    """Check a trajectory. Returns a line that names its particles, and the checks."""
+    """Check a trajectory.
+
+    Returns a line on its particles, and the checks.
+    """
     from gaspart.inspection.checks import judge, judge_open
     from gaspart.inspection.readers import is_open_run, read_frames
 
@@ -109,7 +115,7 @@ def _check_frames(file: str, options: argparse.Namespace) -> tuple[str, list]:
 
 
 def _written(file: str, tolerance: float | None) -> tuple[list, list[str]]:
-    """Check a YAML file: a scene, with the lines of its scales, or a config."""
+    """Check a YAML file: a scene (with its scales) or a config."""
     from gaspart.accuracy.scales import scales
     from gaspart.inspection.checks import judge_scene
 

@@ -1,4 +1,4 @@
-"""`gaspart collisions`: a data set of the collisions of a scene."""
+"""`gaspart collisions`: data set of the collisions of a scene."""
 
 from __future__ import annotations
 

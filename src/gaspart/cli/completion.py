@@ -1,4 +1,4 @@
-"""`gaspart completion`: what a shell needs to complete commands, options and names."""
+"""`gaspart completion`: shell script that completes commands, options and names."""
 
 from __future__ import annotations
 

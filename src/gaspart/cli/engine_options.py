@@ -1,4 +1,4 @@
-"""Options of the command line for declared settings of engines and of files of runs."""
+"""Options of the command line for declared settings of engines and of trajectory files."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from gaspart.keys import Kind, describe, schema_of
 
 @cache
 def engine_settings() -> dict[str, Kind]:
-    """Return the settings of all engines, by name; each meaning states its engines."""
+    """Return the settings of all engines by name; each description lists the engines."""
     settings: dict[str, Kind] = {}
     for name, engine in ENGINES.items():
         for key, kind in schema_of(engine)["properties"].items():
@@ -28,7 +28,7 @@ def engine_settings() -> dict[str, Kind]:
 def add_setting(group: argparse._ArgumentGroup, name: str, kind: Kind) -> None:
     """Add the option of a setting: a number, a word, a text, or a flag.
 
-    A flag changes the default.
+    A flag inverts the default.
     """
     option, meaning, default = name.replace("_", "-"), kind["description"], kind.get("default")
     usual = "" if default is None else f"; default: {default}"
@@ -54,13 +54,13 @@ def _sides(text: str) -> int | tuple[int, ...]:
 
 
 def one_of(words: Iterable[str]) -> str:
-    """Join words to "a, b or c"."""
+    """Join words to a text such as "a, b or c"."""
     *first, last = words
     return f"{', '.join(first)} or {last}" if first else last
 
 
 def as_option(error: SceneError, engine: str) -> str:
-    """Describe an error of the engine's settings by the options that set them."""
+    """Return an error of the engine's settings, with the options that set them."""
     name = error.key.removeprefix("engine.")
     option = {"name": "--engine", "rewind": "--no-rewind"}.get(name, f"--{name.replace('_', '-')}")
     rule = f"has no meaning with --engine {engine}" if "unknown key" in error.rule else error.rule
@@ -68,9 +68,9 @@ def as_option(error: SceneError, engine: str) -> str:
 
 
 def changed_options(kinds: Mapping[str, Kind], settings: Mapping[str, Any]) -> list[str]:
-    """Return the options for settings of these kinds that differ from their defaults.
+    """Return the options for those settings that differ from their defaults.
 
-    Settings without a default have options too.
+    `kinds` are the kinds of the settings. Settings without a default have options too.
     """
     options: list[str] = []
     for name, kind in kinds.items():
@@ -84,5 +84,5 @@ def changed_options(kinds: Mapping[str, Kind], settings: Mapping[str, Any]) -> l
 
 
 def join_numbers(numbers: float | tuple[int, ...] | list[int]) -> str:
-    """Format numbers as an option accepts them."""
+    """Format numbers in the form that an option accepts."""
     return ",".join(map(repr, numbers)) if isinstance(numbers, tuple | list) else repr(numbers)

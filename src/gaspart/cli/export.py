@@ -35,7 +35,7 @@ def add_export(parser: Parser) -> None:
 
 
 def _frame(text: str) -> int | str:
-    """Read a number, or the word all."""
+    """Read a frame number, or the word "all"."""
     return text if text == "all" else integer()(text)
 
 
@@ -48,16 +48,15 @@ def _export(options: argparse.Namespace) -> None:
     print_note(conventions(read_recipe(options.trajectory).scene, path.suffix))
 
 
-# Conventions of other programs for files of scenes, in a line of `info` and `export`.
-#
-# Each statement stands in docs/tools.md or docs/conventions.md, which the referees repeat.
+# Remarks on conventions of other programs for files of a scene, in a line of `info` and `export`. Each
+# statement is documented in docs/tools.md or docs/conventions.md, and tested by the referees.
 
 
 _SLAB = "g(r) of discs is theirs times 2 r / L_z, that of a slab"
 
 
 def conventions(scene: Scene, suffix: str) -> str:
-    """Return a remark on a scene's file for other programs; "" without one.
+    """Return a remark on a scene's file for other programs, or "".
 
     The suffix is .nc for a trajectory, or the suffix of an exported file.
     """
@@ -67,7 +66,7 @@ def conventions(scene: Scene, suffix: str) -> str:
 
 
 def _as_periodic(scene: Scene) -> list[str]:
-    """Describe the axes whose walls a format lacks."""
+    """Describe the axes whose walls a format cannot represent."""
     axes = zip("xyz", scene.container.periodic, strict=False)
     walled = ", ".join(axis for axis, periodic in axes if not periodic)
     return [f"walls across {walled} are read as periodic"] if walled else []

@@ -78,7 +78,7 @@ def _info(options: argparse.Namespace) -> None:
 
 
 def _unfinished_state(path: Path, recipe: Recipe) -> str:
-    """State how a run that was cut short goes on."""
+    """Describe how an interrupted run can be continued."""
     from gaspart.trajectory.recipe import begun_as
 
     if begun_as(path, recipe):
@@ -87,14 +87,14 @@ def _unfinished_state(path: Path, recipe: Recipe) -> str:
 
 
 def _lines_of(scene: str) -> list[str]:
-    """Return the lines of a scene as in its file."""
+    """Return the lines of a scene, as in its file."""
     return scene.rstrip("\n").split("\n")
 
 
 def _measurable(recipe: Recipe) -> list[str]:
-    """Describe the observables that a run has, and those that require another run.
+    """Describe the observables of a run, and observables that require another run.
 
-    An observable can be measured if it is defined for the scene and if the run has stored its data.
+    An observable can be measured if it is defined for the scene, and if the run has stored its data.
     """
     from gaspart.analysis.observables import OBSERVABLES, require_defined, require_kept
 
@@ -114,7 +114,7 @@ def _measurable(recipe: Recipe) -> list[str]:
 
 
 def _request(recipe: Recipe, path: Path, frames: int) -> list[str]:
-    """Describe the accuracies that end a run, and the accuracies reached so far."""
+    """Describe the accuracies that end a run, and the accuracies that it has reached."""
     from gaspart.cli.stated_run import accuracy_lines
 
     if recipe.until is None:

@@ -33,12 +33,12 @@ if TYPE_CHECKING:
     from gaspart.analysis.observable import Observable
 
 _FIELD = "field"
-"""The name by which a property in cells is asked for, which is not one observable."""
+"""Word that requests a property in cells; it is not the name of an observable."""
 _SEEDS = "seeds"
-"""Attribute of an observable of a single run with the remark on its energy."""
+"""Attribute with the remark on the energy of a single run."""
 _DRIFT = "drift"
-"""Attribute of an observable of a single run with the remark that the run is not steady."""
-_ROWS = 12  # of a curve that are printed
+"""Attribute with the remark that a single run is not steady."""
+_ROWS = 12  # maximum number of printed points of a curve
 _TITLE = "# gaspart measure"
 _TABLE = FileKind("a table written by gaspart measure", begins_with(_TITLE.encode()))
 _EXAMPLES = """examples:
@@ -97,7 +97,7 @@ def add_measure(parser: Parser) -> None:
 
 
 class _Words(tuple):
-    """Names of observables, which a shell completes. Names of files are accepted, too."""
+    """Names of observables, which a shell completes; names of files are accepted, too."""
 
     def __contains__(self, argument: object) -> bool:
         return super().__contains__(argument) or argument in ALIASES or _is_file(str(argument))
@@ -106,15 +106,15 @@ class _Words(tuple):
 def _is_file(argument: str) -> bool:
     """Return True if a word with a suffix or a folder names a file.
 
-    Names of observables have neither.
+    Names of observables have neither a suffix nor a folder.
     """
     return "." in argument or os.sep in argument
 
 
 def _split_words(options: argparse.Namespace) -> tuple[list[str], list[str]]:
-    """Return the files and the names of observables of a command line; raise UsageError.
+    """Return the files and the names of observables of a command line.
 
-    Files must precede the names.
+    Files must precede the names. Raises UsageError.
     """
     names = list(options.words)
     files = [options.trajectory]
@@ -150,7 +150,10 @@ def _measure(options: argparse.Namespace) -> None:
 
 
 def _field_of(options: argparse.Namespace) -> dict[str, Any]:
-    """Return the arguments of a field; raise UsageError for arguments without a field."""
+    """Return the arguments of a field.
+
+    Raises UsageError for arguments without a field.
+    """
     stated = {
         key: getattr(options, key) for key in ("of", "axes", "cells") if getattr(options, key) is not None
     }
@@ -170,7 +173,7 @@ def _measure_each(
 ) -> Iterator[tuple[str, Observable]]:
     """Measure each observable in one file, or as the mean over several files.
 
-    times : start and end of the frames that count.
+    times : start and end of the frames that are used.
     field : arguments of a field.
     """
     from gaspart.analysis.combination import replicas
@@ -196,7 +199,7 @@ def _measure_each(
 
 
 def _of_drift(trajectory: Any, name: str, times: tuple[float | None, float | None]) -> dict[str, str]:
-    """Return the remark that the measured part of a run drifts, if it does."""
+    """Return the remark that the measured part of a run drifts, if it drifts."""
     from gaspart.analysis.series import drift_of
 
     with until_time(trajectory, times[1]) as part:
@@ -205,7 +208,7 @@ def _of_drift(trajectory: Any, name: str, times: tuple[float | None, float | Non
 
 
 def _of_seeds(trajectory: Any, name: str) -> dict[str, str]:
-    """Return the remark that other seeds have other energies, if they have."""
+    """Return the remark that runs with other seeds have other energies, if so."""
     from gaspart.accuracy.scatter import scatter_of_run
     from gaspart.cli.stated_run import other_seeds
 
@@ -220,7 +223,7 @@ def _measure_field(
 ) -> Observable:
     """Measure a field.
 
-    Raises SceneError for a selection that fields do not have, and as `gaspart.analysis.field` does.
+    Raises SceneError for a selection that fields do not have, and like `gaspart.analysis.field`.
     """
     from gaspart.analysis.fields import field
 
@@ -287,7 +290,7 @@ def _print_curve(name: str, observable: Observable) -> None:
 
 
 def _parts(observable: Observable) -> list[tuple[str, Observable]]:
-    """Return the curves of an observable with their names. A single curve has no name."""
+    """Return the curves of an observable with their names; a single curve has no name."""
     if observable.estimate.ndim == 1:
         return [("", observable)]
     over = observable.estimate.dims[0]
@@ -295,7 +298,7 @@ def _parts(observable: Observable) -> list[tuple[str, Observable]]:
 
 
 def _writer(options: argparse.Namespace, names: list[str]) -> Callable[[Observable], None]:
-    """Return the function that writes the result, after a check of the arguments."""
+    """Check the arguments, and return the function that writes the result."""
     if options.output is None:
         return lambda observable: None
     path = output_path(options.output)
@@ -318,11 +321,11 @@ def _write_table(path: Any, overwrite: bool, observable: Observable) -> None:
 
 
 def _with_columns(observable: Observable) -> Observable:
-    """Convert the values of each replica, if there are several, to variables."""
+    """Convert values of replicas, if there are several, to variables."""
     each = f"{observable.attrs['quantity']}_replicas"
     if each not in observable:
         return observable
-    if not observable.estimate.ndim:  # which has them as `stretches`
+    if not observable.estimate.ndim:  # stored there as `stretches`
         return observable.drop_vars(each).rename(time="replica")
     columns = {f"{each}_{n}": replica for n, replica in enumerate(observable[each], 1)}
     return observable.drop_vars(each).assign(columns)

@@ -1,7 +1,7 @@
 """`gaspart new`: a scene file from a template.
 
-The templates are files of this package. Comments at the beginning of a template contain the title, a
-description, the command that runs the scene, and the figure of the workflow that measures it.
+The templates are files of this package. Comments at the start of a template have the title, a description,
+the command that runs the scene, and the figure of the workflow that measures it.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ _CHAPTERS = {
     "Crystals and packings": ("crystal", "melting", "packing"),
     "Grains": ("cooling", "hourglass", "shaken", "sheared", "incline"),
 }
-"""All templates, in each chapter from the simple to the special."""
+"""All templates by chapter; in a chapter, simple scenes come first."""
 _EXAMPLES = """examples:
   gaspart new gas.yaml
   gaspart new hot.yaml --template heat
@@ -57,8 +57,8 @@ _SCENE = FileKind("a scene file", _is_scene)
 class Template:
     """Template of a scene.
 
-    A template has a name, the chapter of the gallery, a title and a description, the command that runs it,
-    the figure of the workflow (None without a figure), and the text of the file.
+    A template has a name, the chapter of the gallery, a title, a description, the command that runs it, the
+    figure of the workflow (or None), and the text of the file.
     """
 
     name: str
@@ -116,9 +116,9 @@ def _new(options: argparse.Namespace) -> None:
 
 
 def named_command(template: Template, path: Path) -> str:
-    """Return the command that runs the scene, with the names of its two files.
+    """Return the command that runs the scene, with the names of two files.
 
-    The names are the file of the scene and its trajectory.
+    These are the file of the scene, and its trajectory.
     """
     scene, trajectory = shlex.quote(str(path)), shlex.quote(str(path.with_suffix(".nc")))
     command = template.command.replace(f"{template.name}.yaml", scene)

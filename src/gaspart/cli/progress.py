@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 
 _PATIENCE = 2.0
-"""Seconds without a word before `waiting` shows what the program does."""
+"""Seconds without output before `waiting` shows the present work."""
 
 
 @contextmanager
 def waiting(text: str, quiet: bool = False) -> Iterator[Callable[[], None]]:
-    """Show `text` and the elapsed time within the `with` block, if it lasts over 2 s.
+    """Show `text` and the elapsed time during the `with` block, if it lasts over 2 s.
 
-    Yields a function that ends the display, for a block that then reports its progress itself.
+    Yields a function that ends the display, for a block that reports its own progress afterwards.
     """
     ended = threading.Event()
     if quiet or not sys.stderr.isatty():
@@ -51,9 +51,9 @@ def waiting(text: str, quiet: bool = False) -> Iterator[Callable[[], None]]:
 
 
 def picture_progress() -> Callable[[int, int], None] | None:
-    """Return a function that shows the number of pictures done and the time left.
+    """Return a function that shows the number of finished pictures and the remaining time.
 
-    Without a terminal there is no line (None).
+    Returns None without a terminal.
     """
     if not sys.stderr.isatty():
         return None
@@ -72,10 +72,10 @@ def progress(
 ) -> Progress | None:
     """Return a function that shows the progress of a run.
 
-    Without a terminal, or if `quiet`, there is no line (None).
+    Returns None without a terminal, or if `quiet` is True.
 
-    started : function that is called first.
-    remark : function that returns the end of the line.
+    started : function that is called at the first report.
+    remark : function that returns text for the end of the line.
     """
     if quiet or not sys.stderr.isatty():
         return None
@@ -86,7 +86,7 @@ def progress(
         if started is not None:
             started()
         now = time.monotonic()
-        if begun is None:  # a resumed run begins in the middle
+        if begun is None:  # a resumed run starts in the middle
             begun = now, reached, collisions
             return
         took = now - begun[0]
@@ -99,17 +99,17 @@ def progress(
 
 
 def show_line(text: str) -> None:
-    """Replace the line of progress."""
+    """Replace the progress line."""
     print(f"{clear_line()}{visible(text)}", end="", file=sys.stderr, flush=True)
 
 
 def clear_line() -> str:
-    """Return control characters that clear the line of progress; empty without a terminal."""
+    """Return control characters that clear the progress line; "" without a terminal."""
     return "\r\033[K" if sys.stderr.isatty() else ""
 
 
 def clock(seconds: float) -> str:
-    """Format hours, minutes and seconds."""
+    """Format a time as hours, minutes and seconds."""
     minutes, seconds = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
     return f"{hours}:{minutes:02d}:{seconds:02d}"

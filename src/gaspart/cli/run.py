@@ -184,12 +184,12 @@ def _run(options: argparse.Namespace) -> None:
 
 
 def _values(arguments: argparse.Namespace, names: Iterable[str]) -> dict[str, Any]:
-    """Return the values of the declared options that the command line states."""
+    """Return the values of the declared options in a command line."""
     return {name: value for name in names if (value := getattr(arguments, name)) is not None}
 
 
 def _requests(text: str) -> list[tuple[str, float]]:
-    """Read observable, perhaps with a face, and accuracy, of each NAME=X between commas."""
+    """Read observable, optional face, and accuracy from each NAME=X, separated by commas."""
     requests = []
     for part in text.split(","):
         name, _, accuracy = part.partition("=")
@@ -204,8 +204,8 @@ def _requests(text: str) -> list[tuple[str, float]]:
 def _until(options: argparse.Namespace, scene: Scene) -> list[Accuracy] | None:
     """Return the accuracies of --until.
 
-    Raises UsageError for options that exclude or need each other; without a duration it suggests one for the
-    scene.
+    Raises UsageError for options that exclude or require each other. Without a duration, the message suggests
+    a duration for the scene.
     """
     if options.until is not None:
         if options.duration is not None:
@@ -233,17 +233,17 @@ def _until(options: argparse.Namespace, scene: Scene) -> list[Accuracy] | None:
 
 
 class _Status:
-    """The last examination of a run with --until, for the line of progress."""
+    """Last test of a run with --until, for the progress line."""
 
     def __init__(self) -> None:
         self._reached: list[AccuracyStatus] = []
 
     def update(self, reached: list[AccuracyStatus]) -> None:
-        """Take the result of an examination."""
+        """Store the result of a test."""
         self._reached = reached
 
     def remark(self) -> str:
-        """Return the error that is largest relative to the required one."""
+        """Return the error that is largest relative to the required error."""
         finite = [status for status in self._reached if status.accuracy < math.inf]
         if not finite:
             return ""
@@ -279,7 +279,7 @@ def _resume(options: argparse.Namespace) -> None:
 
 
 def _report(path: Path) -> None:
-    if wiped := clear_line():  # even an empty line fails where stderr is full
+    if wiped := clear_line():  # even an empty line fails if stderr is full
         print(wiped, end="", file=sys.stderr)
     from gaspart.trajectory.replicas import files_of
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def accuracy_lines(path: Path) -> list[str]:
-    """Describe the required accuracies of a run with --until, and the accuracies reached."""
+    """Describe the required and the reached accuracies of a run with --until."""
     from gaspart.accuracy.reached import reached_accuracy
     from gaspart.trajectory.opening import PARTIAL
 
@@ -39,12 +39,12 @@ def accuracy_lines(path: Path) -> list[str]:
 
 
 def other_seeds(scatter: float) -> str:
-    """Return the remark on the interval of a single run that keeps its initial energy."""
+    """Return the remark that the interval of a single run excludes the scatter of initial energies."""
     return f"for the energy of this run; other seeds scatter by {100.0 * scatter:.2g} %"
 
 
 def _starts(reached: AccuracyStatus) -> str:
-    """Return a remark on the energies of the starts; "" if they do not scatter."""
+    """Return a remark on the initial energies of runs; "" if they do not scatter."""
     if not reached.scatter:
         return ""
     if reached.replicas == 1:
@@ -66,7 +66,10 @@ def _why_ended(path: Path, reached: list[AccuracyStatus]) -> str:
 
 
 def run_options(path: Path, recipe: Recipe) -> list[str]:
-    """Return the options of `gaspart run` for a recipe; for a replica, options of all replicas."""
+    """Return the options of `gaspart run` for a recipe.
+
+    For a replica, the options start all replicas.
+    """
     from gaspart.trajectory.replicas import of_all, path_of_all
 
     path, (recipe, replicas) = path_of_all(path, recipe), of_all(recipe)
@@ -83,7 +86,7 @@ def run_options(path: Path, recipe: Recipe) -> list[str]:
     options += ["--replicas", str(replicas)] if replicas > 1 else []
     options += changed_options(engine_settings(), settings)
     if recipe.initial is not None:
-        options += ["--from", "OTHER.nc"]  # whose last state the file holds
+        options += ["--from", "OTHER.nc"]  # the file has the final state of this run
     options += changed_options(OPTIONS, stated_options(recipe))
     if recipe.correlations is not None:
         correlations = recipe.correlations

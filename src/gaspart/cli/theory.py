@@ -26,10 +26,10 @@ _FLUID = {2: "the fluid of discs", 3: "the fluid of spheres (metastable from 0.4
 
 @dataclass(frozen=True)
 class _Quantity:
-    """Value of theory of a `Gas` by an equation.
+    """Theoretical value for a `Gas`, by an equation.
 
-    takes : properties of the particle that it depends on.
-    mixture : function of gaspart.theory of a mixture.
+    takes : properties of the particle on which the value depends.
+    mixture : function of gaspart.theory for mixtures.
     """
 
     value: Callable[[Gas, str], float]
@@ -40,7 +40,7 @@ class _Quantity:
 
 
 def _formula(name: str, takes: tuple[str, ...]) -> Callable[[Gas, str], float]:
-    """Return a function of gaspart.theory, of particles that touch."""
+    """Return a function of gaspart.theory for touching particles."""
 
     def value(gas: Gas, equation: str) -> float:
         from gaspart import theory
@@ -54,10 +54,10 @@ def _formula(name: str, takes: tuple[str, ...]) -> Callable[[Gas, str], float]:
 
 
 def _observable(name: str) -> Callable[[Gas, str], float]:
-    """Return a function of `gaspart.analysis.bulk`."""
+    """Return a function of `gaspart.theory.bulk`."""
 
     def value(gas: Gas, equation: str) -> float:
-        from gaspart.analysis import bulk
+        from gaspart.theory import bulk
 
         return float(getattr(bulk, name)(gas, equation))
 
@@ -96,7 +96,7 @@ _QUANTITIES |= {
     ),
     "viscosity": _Quantity(_formula("enskog_viscosity", _PARTICLE), _PARTICLE, "shear viscosity", _ENSKOG),
 }
-"""The observables that have a value in an infinite gas, and formulas."""
+"""Observables that have a value in an infinite gas, and formulas."""
 _MIXTURE_SOURCES = {
     "boublik": "Boublik 1970, Mansoori and others 1971",
     "linear": "Santos, Yuste and Lopez de Haro 1999",
@@ -150,7 +150,8 @@ def _theory(options: argparse.Namespace) -> None:
         if key not in quantity.takes:
             raise SceneError(key, properties[key], f"{options.quantity} does not depend on it")
     for eta in options.eta:
-        spread = theory.compressibility_uncertainty(eta, dimension)  # first: it refuses any other eta
+        # first, because it rejects any other packing fraction eta
+        spread = theory.compressibility_uncertainty(eta, dimension)
         gas = Gas(dimension, eta, 1, **{key: properties.get(key, 1.0) for key in _PARTICLE})
         value = quantity.value(gas, options.equation)
         if math.isnan(value):
@@ -166,7 +167,10 @@ def _theory(options: argparse.Namespace) -> None:
 
 
 def _of_mixture(options: argparse.Namespace) -> None:
-    """Print a line for each theory, density and, for properties of pairs, pair of species."""
+    """Print a line for each theory and density.
+
+    Properties of pairs have a line for each pair of species.
+    """
     from gaspart import theory
 
     name = _QUANTITIES[options.quantity].mixture

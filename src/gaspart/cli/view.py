@@ -158,17 +158,17 @@ def _picture(trajectory: str, output: Path, options: dict, overwrite: bool) -> N
     from gaspart.rendering.pictures import PICTURE
 
     with writing(output, PICTURE, overwrite) as scratch:
-        picture = io.BytesIO()  # first, because Pillow does not report what keeps it from writing
+        picture = io.BytesIO()  # first, because Pillow does not report why it cannot write
         Image.fromarray(render(trajectory, **options)).save(picture, "PNG")
         scratch.write_bytes(picture.getvalue())
 
 
-# `gaspart films`: films of the scenes of the gallery, such as for slides.
+# `gaspart films`: films of the scenes in the gallery, for example for slides.
 
 
-_SIZE = 1280, 720  # of slides, 16:9
+_SIZE = 1280, 720  # format 16:9 of slides
 _BY_SPECIES = ("separation", "brownian", "hourglass", "shaken", "slit", "packing")
-"""Templates whose species are seen better than speeds."""
+"""Templates whose species are more instructive than speeds."""
 _EXAMPLES_OF_GALLERY = """examples:
   gaspart films slides              # of all scenes of `gaspart new --list`
   gaspart films slides shaken hourglass --gif --size 640x360"""
@@ -189,14 +189,14 @@ def add_films(parser: Parser) -> None:
 
 
 def colour_of(template: Template) -> str:
-    """Return the property by which the particles of a template are coloured."""
+    """Return the property that colours the particles of a template."""
     return "species" if template.name in _BY_SPECIES else "speed"
 
 
 def run_template(template: Template, folder: Path) -> Path:
     """Make the trajectory of a template in a folder by its own command.
 
-    Raises as `gaspart run` does.
+    Raises the errors of `gaspart run`.
     """
     from gaspart.cli import commands
 

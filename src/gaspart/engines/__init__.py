@@ -1,4 +1,4 @@
-"""Engines that advance a state, with a common interface (`engine`)."""
+"""Engines that advance a state, with a common interface (module `engine`)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Interface of a scene in progress, and what all engines share: events, checkpoints, optional tallies."""
+"""Interface of a running scene, and code shared by all engines: events, checkpoints, optional tallies."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from gaspart.state.tally import Tally
 # Record of the events of a run.
 
 
-_ROOM = 4096  # capacity of the record, in events
+_ROOM = 4096  # capacity of the record in events
 
 
 class EventLog:
-    """Record of events: particles, and positions, velocities and optionally spins just after them."""
+    """Record of events: particles, with positions, velocities and optionally spins after the event."""
 
     def __init__(self, dimension: int, spins: bool = False) -> None:
         from gaspart.kernels.event.pair_contact import Record
@@ -43,14 +43,14 @@ class EventLog:
         )
 
     def _copy(self, count: int) -> tuple[np.ndarray, ...]:
-        """Copy the first events of the kernel's record; in 2D, spins are normal components."""
+        """Copy the first events of the kernel's record. In 2D, spins have only a normal component."""
         record = {key: getattr(self.room, key)[:count] for key in self._keys}
         if "spins" in record and self._dimension == 2:
             record["spins"] = record["spins"][..., 2]
         return tuple(array.copy() for array in record.values())
 
     def take(self, start: float) -> None:
-        """Empty the kernel's record, whose times count from `start`."""
+        """Empty the kernel's record, whose times are relative to `start`."""
         n = int(self.room.filled[0])
         self.room.filled[0] = 0
         if n:
@@ -59,28 +59,28 @@ class EventLog:
 
     @property
     def events(self) -> dict[str, np.ndarray]:
-        """Recorded events, as arrays by name.
+        """Recorded events as arrays, by name.
 
         time : (M,)
-        particles : (M, 2); the second entry is -1 - face for a hit at a wall
-        positions, velocities : (M, 2, d); the second entry is NaN for a hit at a wall
+        particles : (M, 2); for a wall hit the second entry is -1 - face
+        positions, velocities : (M, 2, d); for a wall hit the second entry is NaN
         spins : (M, 2) or (M, 2, 3)
         """
         parts = zip(*(self._parts or [self._copy(0)]), strict=True)
         return dict(zip(self._keys, map(np.concatenate, parts), strict=True))
 
 
-# Identity of a checkpoint: the simulation to which it belongs.
+# Identity of a checkpoint, which tells to which simulation it belongs.
 #
-# It decides whether the checkpoint may be restored.
+# A checkpoint may be restored only in this simulation.
 
 
 def checkpoint_identity(
     scene: Scene, engine: Engine, seed: int | tuple[int, ...], initial: State | None = None
 ) -> dict[str, np.ndarray]:
-    """Return texts of all that the results of a simulation depend on, by checkpoint keys.
+    """Return texts of everything that determines the results of a simulation, by checkpoint keys.
 
-    initial : state at time 0, unless it follows from the scene and the seed
+    initial : initial state, unless it follows from the scene and the seed
     """
     settings = {key: x for key, x in engine_to_dict(engine).items() if key not in engine.neutral_settings}
     texts = {
@@ -103,11 +103,11 @@ def _digest(state: State | None) -> str:
 
 
 def _text(value: object) -> str:
-    return json.dumps(value, sort_keys=True, default=int)  # a seed may be an integer of numpy
+    return json.dumps(value, sort_keys=True, default=int)  # the seed may be a numpy integer
 
 
 def check_identity(checkpoint: Any, identity: Mapping[str, np.ndarray]) -> None:
-    """Raise SceneError, which names the difference, unless a checkpoint has this `identity`."""
+    """Raise SceneError, naming the difference, unless a checkpoint has this `identity`."""
     if not isinstance(checkpoint, Mapping) or not all(key in checkpoint for key in identity):
         raise SceneError("checkpoint", checkpoint, "must be what Simulation.checkpoint has returned")
     for key, text in identity.items():
@@ -119,9 +119,9 @@ def check_identity(checkpoint: Any, identity: Mapping[str, np.ndarray]) -> None:
 
 
 def check_parts(parts: Mapping[str, np.ndarray], expected: Mapping[str, np.ndarray]) -> None:
-    """Raise SceneError unless a checkpoint has all `expected` arrays.
+    """Raise SceneError unless a checkpoint contains all `expected` arrays.
 
-    Each array must have the shape and the kind of number of the expected array.
+    Each array must have the shape and the kind of data type of the expected array.
     """
     for key, array in expected.items():
         value = parts.get(key)
@@ -131,9 +131,10 @@ def check_parts(parts: Mapping[str, np.ndarray], expected: Mapping[str, np.ndarr
 
 
 class Dynamics(ABC):
-    """Scene in progress under an engine.
+    """Running scene under an engine.
 
-    numbers : names of the plain numbers in a checkpoint; the attributes have an underscore before these names
+    numbers : names of the scalar attributes in a checkpoint; the attributes themselves begin with an
+        underscore
     """
 
     numbers: ClassVar[tuple[str, ...]]
@@ -143,7 +144,7 @@ class Dynamics(ABC):
     @property
     @abstractmethod
     def time(self) -> float:
-        """Time reached."""
+        """Present simulation time."""
 
     @property
     @abstractmethod
@@ -158,7 +159,7 @@ class Dynamics(ABC):
     @property
     @abstractmethod
     def dissipated(self) -> float:
-        """Energy taken by contacts and thermal walls since time 0, minus the energy of kicks."""
+        """Energy removed by contacts and thermal walls since time 0, minus the energy added by kicks."""
 
     @property
     @abstractmethod
@@ -173,15 +174,15 @@ class Dynamics(ABC):
         log: EventLog | None = None,
         max_work: int | None = None,
     ) -> None:
-        """Advance to the time `until`, or by a number of events or of work.
+        """Advance to the time `until`, or by a number of events or an amount of work.
 
-        Events are recorded in `log`. Raises SceneError for a limit that the engine does not support, and
+        Events are recorded in `log`. Raises SceneError for a limit that the engine does not support. Raises
         SimulationError, with the state saved, for a run that cannot continue.
         """
 
     @abstractmethod
     def reset_tally(self) -> None:
-        """Begin to count from zero."""
+        """Reset all counters to zero."""
 
     def _tally_part(self, name: str) -> TallyPart | None:
         """Return the part of an optional tally, or None if it was not requested."""
@@ -199,14 +200,14 @@ class Dynamics(ABC):
         return part.read(self._clock)
 
     def checkpoint(self) -> dict[str, np.ndarray]:
-        """Return copies of all data needed to continue to the same bits."""
+        """Return copies of all data needed to continue bitwise identically."""
         return {key: np.array(value) for key, value in self._checkpoint_data().items()}
 
     def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Continue from a checkpoint of the same scene and engine, to the same bits.
+        """Continue bitwise identically from a checkpoint of the same scene and engine.
 
-        Settings that change no bit may differ. Raises SceneError, with nothing changed, for a checkpoint that
-        lacks an array.
+        Settings that do not change results may differ. Raises SceneError for a checkpoint that lacks an
+        array; nothing is then changed.
         """
         required = self._required_arrays(checkpoint)
         check_parts(checkpoint, required)
@@ -218,7 +219,7 @@ class Dynamics(ABC):
         self._go_on(checkpoint)
 
     def _arrays(self) -> dict[str, np.ndarray]:
-        """Return the arrays, by name, that a run changes and that a checkpoint stores unchanged."""
+        """Return the arrays, by name, that change during a run and are stored as they are."""
         return arrays_of(self._parts)
 
     def _checkpoint_data(self) -> dict[str, Any]:
@@ -226,7 +227,7 @@ class Dynamics(ABC):
         return {**{key: getattr(self, f"_{key}") for key in self.numbers}, **self._arrays()}
 
     def _required_arrays(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """Return arrays of the shapes that `restore` needs from this checkpoint.
+        """Return arrays with the shapes that `restore` requires from this checkpoint.
 
         Raises SceneError for a damaged checkpoint.
         """
@@ -234,7 +235,7 @@ class Dynamics(ABC):
 
     @abstractmethod
     def _go_on(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Restore everything that follows from the arrays and numbers of a checkpoint.
+        """Restore all data that follow from the arrays and numbers of a checkpoint.
 
-        The arrays and numbers are already in place.
+        The arrays and numbers have been restored before.
         """

@@ -1,8 +1,8 @@
-"""Engines: settings with which a scene can be started, and the resulting dynamics.
+"""Engines: settings with which a scene is started, and the running scene that results.
 
 An engine is a frozen dataclass derived from `Engine`. Each field defines its type and its description
-(`gaspart.keys`). The options of the command line, the keys of a config and the reference page are derived
-from the fields. `register` makes an engine known by its name.
+(`gaspart.keys`). Command-line options, config keys and the reference page are derived from the fields.
+`register` makes an engine available under its name.
 """
 
 from __future__ import annotations
@@ -17,44 +17,40 @@ from gaspart.keys.values import one_of
 from gaspart.scene.features import FEATURES
 
 if TYPE_CHECKING:
-    from gaspart.engines.conditions import Layers
     from gaspart.engines.dynamics import Dynamics
     from gaspart.scene.scene import Scene
     from gaspart.state.optional_tallies import OptionalTally
     from gaspart.state.state import State
+    from gaspart.theory.conditions import Conditions
 
 
-# Accuracy requests to engines, and their answers.
+# Accuracy requests to engines, and the answers.
 
 
 @dataclass(frozen=True)
 class AccuracyRequest:
     """Observable of a steady scene, and its requested relative accuracy.
 
-    The accuracy is a standard error with the bias.
+    The relative accuracy combines the standard error and the bias.
 
     Attributes
     ----------
     conditions : local conditions of the scene
-    face : wall of a pressure
-    transported : whether transport coefficients govern the observable
-    initial : state at time 0, None if only the errors of models are requested
-    memory : relative change of transport by correlated collisions
-    points : relative deviation of the observable of points, None if theory does not know it
+    face : wall on which a pressure acts
+    transported : True if the observable depends on transport coefficients
+    initial : initial state, or None if only the errors of models are requested
     """
 
     observable: str
     accuracy: float
-    conditions: Layers
+    conditions: Conditions
     face: str | None = None
     transported: bool = False
     initial: State | None = None
-    memory: float = 0.0
-    points: float | None = None
 
     @property
     def scene(self) -> Scene:
-        """Scene of the conditions."""
+        """Scene for which the conditions hold."""
         return self.conditions.scene
 
 
@@ -64,9 +60,9 @@ class Candidate:
 
     Attributes
     ----------
-    engine : engine with settings
-    model : bound on the error of the equation that it solves
-    discretisation : bound on the error due to steps and cells
+    engine : engine with its settings
+    model : bound on the error of the kinetic equation that it solves
+    discretisation : bound on the error due to time steps and cells
     """
 
     engine: Engine
@@ -75,7 +71,7 @@ class Candidate:
 
     @property
     def bias(self) -> float:
-        """Bound on the systematic error."""
+        """Bound on the total systematic error."""
         return self.model + self.discretisation
 
 
@@ -90,19 +86,19 @@ class Engine:
     ----------
     name : name in files, configs and on the command line
     title : name in messages and captions
-    records_events : whether its events can be recorded and counted
-    counters : fields of `Tally` that only such an engine fills
-    models : names of the `scene.features` that it models
-    excludes : pairs of features that it does not model together
-    neutral_settings : settings that change no bit of its results
-    forbids_overlap : whether particles never overlap
+    records_events : True if its events can be recorded and counted
+    counters : fields of `Tally` that only this engine fills
+    models : names of the `scene.features` that it supports
+    excludes : pairs of features that it does not support together
+    neutral_settings : settings that do not change its results
+    forbids_overlap : True if particles never overlap
     tallies : names of the optional tallies (`state.tally`) that it supports
-    first_segment : work, in events or steps, of the first part of a run, after which the clock is read for
-        the first time
-    reference : True if the engine has no systematic error, so that other engines are compared with it
-    timed_at : packing fraction and time step in the table of costs, used to transfer its times to another
+    first_segment : work, in events or steps, before the first check of the wall-clock time
+    reference : True if the engine has no systematic error and is the reference for other engines
+    timed_at : packing fraction and time step in the table of costs, with which its times are converted to
+        another
     machine
-    advised : settings that `engine: auto` of a config contains
+    advised : settings that `engine: auto` in a config may specify
     """
 
     name: ClassVar[str]
@@ -124,46 +120,46 @@ class Engine:
 
     @property
     def equation(self) -> str:
-        """Law of its particles: "exact" for hard particles, or the kinetic equation of its partners.
+        """Dynamics that the engine simulates: "exact" for hard particles, or a kinetic equation.
 
-        The kinetic equation is "boltzmann" or "enskog". Collision partners are drawn according to it. A run
-        is compared with the theory of this equation.
+        The kinetic equation is "boltzmann" or "enskog". It determines how collision partners are drawn. A run
+        is compared with the theory for this equation.
         """
         return "exact"
 
     @property
     def quantum(self) -> float | None:
-        """Smallest time interval, of which all times are multiples; None without it."""
+        """Smallest time interval, of which all times are multiples; None without time steps."""
         return None
 
     def for_scene(self, scene: Scene, interval: float | None = None) -> Engine:
-        """Return these settings completed for a scene.
+        """Return a copy with settings completed for a scene.
 
-        If `interval` is given, it becomes a multiple of the quantum. Raises SceneError.
+        If `interval` is passed, it is an integer multiple of the quantum. Raises SceneError if the settings
+        do not fit the scene.
         """
         return self
 
     def predictions(self, scene: Scene) -> dict[str, float]:
-        """Return errors that are known beforehand, by name."""
+        """Return errors that are known in advance, by name."""
         return {}
 
     def bias(self, scene: Scene, kind: str) -> float:
         """Bound the known relative error of a quantity due to the settings.
 
-        kind : what the quantity depends on, "rates" of collisions, "paths" of particles, or "fluxes" of
-            momentum and heat
+        kind : kind of quantity: "rates" of collisions, "paths" of particles, or "fluxes" of momentum and heat
         """
         return 0.0
 
     @classmethod
     def variants(cls) -> tuple[Engine, ...]:
-        """Return the engines among which advice chooses: one for each model."""
+        """Return the candidates of a plan for this engine, one per model."""
         return (cls(),)
 
     def candidate(self, request: AccuracyRequest) -> Candidate:
         """Return the engine with settings that fit a request, and bounds on its errors.
 
-        Raises SceneError if it is no candidate.
+        Raises SceneError if the engine is not suitable.
         """
         return Candidate(self)
 
@@ -178,44 +174,44 @@ class Engine:
         return "float64"
 
     def timed_step(self, scene: Scene) -> float:
-        """Return the time step in its unit of the table of costs, 0 without steps."""
+        """Return the time step in the unit of the table of costs; 0 without steps."""
         return 0.0
 
     def at_step(self, scene: Scene, step: float, precision: str) -> Engine:
         """Return the engine with the settings of a row of the table of costs.
 
-        step : time step in the unit of the table
+        step : time step in the unit of the table of costs
         """
         return self
 
     def advised_settings(self) -> dict[str, Any]:
-        """Return the settings `advised`, by name."""
+        """Return the settings in `advised`, by name."""
         return {name: getattr(self, name) for name in self.advised}
 
     @property
     def limitations(self) -> str:
-        """Features that it lacks, in words."""
+        """Limitations in words."""
         return "nothing"
 
     def describe(self) -> str:
-        """Return its name with the settings that matter, in words."""
+        """Return the name with the relevant settings, in words."""
         return self.name
 
     def notes(self, scene: Scene, observable: str, paths: bool) -> dict[str, str]:
-        """Return further remarks of advice on the engine, by title.
+        """Return remarks about the engine for a plan, by title.
 
         paths : True if the observable depends on the paths of particles
         """
         return {}
 
     def cells_along(self, scene: Scene) -> int:
-        """Return the largest number of cells along an axis, in which partners are drawn, or 0."""
+        """Return the largest number of cells along an axis in which partners are drawn, or 0."""
         return 0
 
     def check_features(self, scene: Scene) -> None:
-        """Raise SceneError for features of a scene that this engine does not model.
+        """Raise SceneError for features of a scene that this engine does not support.
 
-        The message names the engines that model them.
+        The message names the engines that support them.
         """
         present = scene.features
         missing = [(name, "none") for name in FEATURES if name in present - self.models]
@@ -234,26 +230,26 @@ class Engine:
             )
 
     def draws(self, scene: Scene) -> bool:
-        """Return True if random numbers are drawn after the start.
+        """Return True if a run uses random numbers after the start.
 
         Random numbers are used by the kinetic equation, by faces or by the thermostat. Without random
-        numbers, all runs from one state are identical for all seeds.
+        numbers, all runs from one state are identical, whatever their seeds.
         """
         return self.equation != "exact" or bool(scene.face_temperatures) or scene.thermostat is not None
 
     def variant(self, scene: Scene) -> str:
-        """Return the name of its compiled kernels for a scene.
+        """Return the name of the compiled kernel variant for a scene.
 
-        The name does not contain the scene's features.
+        The name does not depend on the features of the scene.
         """
         raise NotImplementedError
 
     def for_small_scene(self, scene: Scene) -> Engine:
-        """Return settings with which a scene of few particles needs the same kernels as this scene."""
+        """Return settings with which a scene of few particles uses the same kernels as this scene."""
         return self
 
     def check_tally(self, tally: OptionalTally, scene: Scene) -> None:
-        """Raise SceneError if this engine cannot make an optional tally of a scene."""
+        """Raise SceneError if this engine does not support an optional tally for a scene."""
         if tally.name not in self.tallies:
             able = " or ".join(
                 f'"{engine.name}"' for engine in ENGINES.values() if tally.name in engine.tallies
@@ -270,10 +266,10 @@ class Engine:
     ) -> Dynamics:
         """Prepare the engine for a scene in an initial state.
 
-        Raises SceneError for features that the engine does not model.
+        Raises SceneError for features that the engine does not support.
 
         seed : seed of thermal walls and kicks
-        tallies : optional tallies in addition to the counts of every run, each as `check_tally` allows
+        tallies : optional tallies in addition to the counters of every run; `check_tally` must accept them
         """
         raise NotImplementedError
 
@@ -294,10 +290,10 @@ def reference_engine() -> Engine:
 
 
 def resolve_engine(engine: Engine | str | None) -> Engine:
-    """Return the engine that a user gives, or the reference engine for None.
+    """Return the engine that a user passes, or the reference engine for None.
 
-    A name gives the engine with default settings. Raises SceneError for other values, and for an engine that
-    needs settings.
+    A name gives the engine with default settings. Raises SceneError for other values, and for the name of an
+    engine with required settings.
     """
     if engine is None:
         return reference_engine()
@@ -309,7 +305,7 @@ def resolve_engine(engine: Engine | str | None) -> Engine:
 
 
 def candidate_engines() -> list[Engine]:
-    """Return the engines among which advice chooses, the reference first."""
+    """Return the candidate engines of a plan, the reference first."""
     return sorted(
         (variant for engine in ENGINES.values() for variant in engine.variants()),
         key=lambda variant: not variant.reference,
@@ -317,14 +313,14 @@ def candidate_engines() -> list[Engine]:
 
 
 def required_settings(engine: type[Engine]) -> list[str]:
-    """Return the names of the settings without default."""
+    """Return the names of settings without a default."""
     return [item.name for item in fields(engine) if item.default is MISSING]
 
 
 def constructors() -> str:
-    """Return the calls that make an engine of each kind, for messages.
+    """Return constructor calls of all engines, for messages.
 
-    They include the settings that have no default.
+    The calls include settings without a default.
     """
     *others, last = (
         f"{engine.__name__}({', '.join(required_settings(engine))})" for engine in ENGINES.values()
@@ -374,7 +370,7 @@ def engine_to_dict(engine: Engine) -> dict:
     Returns
     -------
     dict
-        Name and settings, without settings of value None.
+        Name and settings; settings with the value None are omitted.
 
     Examples
     --------

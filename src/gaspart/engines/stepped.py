@@ -1,4 +1,4 @@
-"""Base of engines that make steps: particles by slots, tallies by threads, whole steps."""
+"""Base of engines with time steps: particles in slots, counters per thread, whole steps."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 from gaspart.state.tally import Tally
 
-_MOST_STEPS = 2.0**53  # above, float64 does not distinguish their numbers
+_MOST_STEPS = 2.0**53  # above this number of steps, float64 does not distinguish consecutive integers
 _PLACED = ("slots", "positions", "velocities", "images")
 
 
 class SteppedDynamics(Dynamics):
-    """Scene in progress by steps.
+    """Running scene under an engine with time steps.
 
-    A *slot* is a particle's present position in memory. An engine also sets `_parts`, and places the
+    A *slot* is the present position of a particle in memory. A subclass also sets `_parts`, and places the
     particles into their slots before the first step.
 
     time_step : length of a step
-    reference : state of the same particles at the start time
-    unit_mass : unit of mass of the sums of energies
+    reference : initial state of the same particles
+    unit_mass : unit of mass in sums of energies
     """
 
     numbers: ClassVar[tuple[str, ...]] = ("steps", "since")
@@ -41,7 +41,7 @@ class SteppedDynamics(Dynamics):
         self.time_step = time_step
         self._scene, self._reference, self._unit_mass = scene, reference, unit_mass
         self._threads = threads if threads > 1 else None
-        self._lost = np.zeros(2)  # net and gross, before the tally began
+        self._lost = np.zeros(2)  # net and absolute energy before the last reset
         self._start, self._steps, self._since = reference.time, 0, 0
 
     @abstractmethod
@@ -50,14 +50,14 @@ class SteppedDynamics(Dynamics):
     ) -> None:
         """Place the particles into their slots.
 
-        slots : (N,), number of the particle in each slot
+        slots : (N,), particle number in each slot
         positions, velocities, images : (N, d)
         """
 
     @property
     @abstractmethod
     def _slots(self) -> np.ndarray:
-        """Number of the particle in each slot, shape (N,)."""
+        """Particle number in each slot, shape (N,)."""
 
     @property
     @abstractmethod
@@ -76,31 +76,34 @@ class SteppedDynamics(Dynamics):
 
     @abstractmethod
     def _advance_to(self, step: int) -> None:
-        """Make all steps up to this one, at least one, and count them. Raises SimulationError."""
+        """Perform and count all steps up to this one, at least one.
+
+        Raises SimulationError if the run cannot continue.
+        """
 
     @abstractmethod
     def _sums(self) -> dict[str, np.ndarray]:
-        """Return the arrays (threads, ...) with counts by their names in a checkpoint."""
+        """Return the arrays (threads, ...) of counters, by their names in a checkpoint."""
 
     @abstractmethod
     def _counts(self) -> dict[str, Any]:
-        """Return the values of these sums by the fields of `Tally`.
+        """Return the values of these counters under the names of fields of `Tally`.
 
-        Time, steps and the energy of faces are left out.
+        Time, steps and the energy of faces are not included.
         """
 
     @property
     @abstractmethod
     def _loss(self) -> np.ndarray:
-        """Energy taken by contacts since the tally began, in parts (K, 2).
+        """Energy removed by contacts since the last reset, in parts (K, 2).
 
-        The unit contains the unit mass.
+        The unit includes the unit of mass.
         """
 
     @property
     @abstractmethod
     def _heat(self) -> np.ndarray:
-        """Energy given to each face by particles that left the face thermally, shape (2d, 2).
+        """Energy given to each face by particles that left it thermally, shape (2d, 2).
 
         The unit is the same as for `_loss`.
         """
@@ -112,7 +115,7 @@ class SteppedDynamics(Dynamics):
 
     @property
     def _progress(self) -> float:
-        """Number of steps made, including parts of a step."""
+        """Number of completed steps, including parts of a step."""
         return self._steps
 
     def _by_particle(self, values: np.ndarray, dtype: DTypeLike | None = None) -> np.ndarray:
@@ -133,10 +136,10 @@ class SteppedDynamics(Dynamics):
         log: EventLog | None = None,
         max_work: int | None = None,
     ) -> None:
-        """Step to the last whole step not after `until` (to within 1e-9 of a step).
+        """Advance to the last complete step not after `until` (within 1e-9 of a step).
 
-        Raises SceneError for limits or records of events, which require the event-driven engine, and for a
-        time beyond 2^53 steps; SimulationError if the particles are too fast for a step.
+        Raises SceneError for a time beyond 2^53 steps, and for limits or records of events, which require the
+        event-driven engine. Raises SimulationError if the particles are too fast for a step.
         """
         limits = {
             "max_events": max_events,
@@ -169,7 +172,7 @@ class SteppedDynamics(Dynamics):
 
     @property
     def dissipated(self) -> float:
-        """Energy taken by contacts and thermal walls since time 0, minus the energy of kicks."""
+        """Energy removed by contacts and thermal walls since time 0, minus the energy added by kicks."""
         return float(self._lost[0]) + net(self._loss, self._heat, -self._given) * self._unit_mass
 
     @property
@@ -180,7 +183,7 @@ class SteppedDynamics(Dynamics):
 
     @property
     def state(self) -> State:
-        """State of all particles at the present time, in float64 for any precision."""
+        """State of all particles at the present time, in float64 for either precision."""
         state = replace(
             self._reference,
             time=self.time,
@@ -209,11 +212,11 @@ class SteppedDynamics(Dynamics):
         return {**super()._arrays(), "lost": self._lost}
 
     def _all_sums(self) -> dict[str, np.ndarray]:
-        """Return the arrays (threads, ...) with counts, including the arrays of parts."""
+        """Return all arrays (threads, ...) of counters, including the arrays of parts."""
         return {**self._sums(), **sums_of(self._parts)}
 
     def _sum_threads(self, sums: np.ndarray) -> np.ndarray:
-        """Return the sum over threads of an array (threads, ...) with counts."""
+        """Return the sum over threads of an array (threads, ...) of counters."""
         return np.asarray(sums.sum(axis=0))
 
     def _checkpoint_data(self) -> dict[str, Any]:
@@ -233,5 +236,5 @@ class SteppedDynamics(Dynamics):
             sums[0] = checkpoint[key]
 
     def _place_again(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Place the particles in their slots of a checkpoint. Counts of this work are overwritten."""
+        """Place the particles into the slots of a checkpoint. Counters of this work are overwritten."""
         self._place(*(checkpoint[key] for key in _PLACED))

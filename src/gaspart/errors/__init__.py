@@ -1,6 +1,6 @@
-"""Errors that gaspart raises for its user, and the form of values in messages.
+"""Exceptions for users of gaspart, and the format of values in messages.
 
-There are two kinds, `SceneError` and `SimulationError`.
+There are two exceptions, `SceneError` and `SimulationError`.
 """
 
 from __future__ import annotations
@@ -11,16 +11,16 @@ from itertools import islice
 from types import ModuleType
 
 TYPE_CHECKING = False
-if TYPE_CHECKING:  # this module is imported before signals are handled: no slow imports
+if TYPE_CHECKING:  # this module is imported before signals are handled, so it must not import slowly
     from importlib.metadata import EntryPoint
 
 _LONGEST = {"value": 120, "key": 200, "rule": 2000, "file": 1000}
-_FIRST_BYTE, _LAST_BYTE = "\udca0", "\udcff"  # as Python reads 0xa0 to 0xff in a name that is not UTF-8
-_ITEMS, _DEPTH, _BITS = 12, 4, 256  # shown of a collection; of nested ones; of an integer
+_FIRST_BYTE, _LAST_BYTE = "\udca0", "\udcff"  # bytes 0xa0 to 0xff of a name that is not UTF-8
+_ITEMS, _DEPTH, _BITS = 12, 4, 256  # limits in messages: items, nesting, bits of an integer
 
 
 class OneLine(Exception):
-    """Exception whose message says all that its user needs."""
+    """Exception whose one-line message is complete for its user."""
 
     def _render_traceback_(self) -> list[str]:
         """Return the lines that IPython and notebooks print instead of a traceback."""
@@ -28,20 +28,20 @@ class OneLine(Exception):
 
 
 class SceneError(OneLine, ValueError):
-    """Input that cannot be used: one line with the key, the value and the violated rule.
+    """Invalid input: one line with the key, the value and the violated rule.
 
-    The line is printable and of bounded length for any value.
+    The line is printable and of limited length for any value.
 
     Parameters
     ----------
     key : str
-        Key of the value, with the keys of the enclosing mappings, such as "species[1].radius".
+        Key of the value, preceded by the keys of the enclosing mappings, such as "species[1].radius".
     value : object
         The value.
     rule : str
         The rule that the value violates.
     file : str, optional
-        File in which the value stands.
+        File that contains the value.
 
     Examples
     --------
@@ -63,14 +63,14 @@ class SceneError(OneLine, ValueError):
         return (type(self), (self.key, self.value, self.rule, self.file))
 
     def inside(self, prefix: str, file: str | None = None) -> SceneError:
-        """Return this error with the key of the enclosing mapping, or with its file.
+        """Return this error with the key of the enclosing mapping added, or with its file.
 
         Parameters
         ----------
         prefix : str
             Key of the enclosing mapping, such as "species[1]"; "" without one.
         file : str, optional
-            File in which the value stands. Default: the file of this error.
+            File that contains the value. Default: the file of this error.
 
         Returns
         -------
@@ -88,9 +88,10 @@ class SceneError(OneLine, ValueError):
 
 
 def unknown_word(name: object, candidates: Iterable[str], kind: str = "key") -> str:
-    """Return the rule for a word that is not among the known ones.
+    """Return the rule for a word that is not a known word.
 
-    It states its new name, its meaning in other programs, the most similar known word, or all known words.
+    The rule states the new name of the word, its meaning in other programs, the most similar known word, or
+    all known words.
     """
     from difflib import get_close_matches
 
@@ -107,14 +108,14 @@ def unknown_word(name: object, candidates: Iterable[str], kind: str = "key") -> 
 
 
 def optional(module: str, extra: str, purpose: str) -> ModuleType:
-    """Import a package that serves one purpose only, and belongs to an `extra` of pyproject.toml.
+    """Import a package that serves a single purpose and belongs to an `extra` of pyproject.toml.
 
-    Raises SceneError, with the command that installs it, if it is missing.
+    If it is missing, raise SceneError with the command that installs it.
     """
     try:
         return import_module(module)
     except ModuleNotFoundError as error:
-        if error.name not in (module, module.partition(".")[0]):  # it is installed; something else is missing
+        if error.name not in (module, module.partition(".")[0]):  # one of its imports is missing
             raise
         rule = f"is needed for {purpose} and not installed: pip install 'gaspart[{extra}]'"
         raise SceneError("package", module.partition(".")[0], rule) from None
@@ -123,10 +124,10 @@ def optional(module: str, extra: str, purpose: str) -> ModuleType:
 def entry_points_of(group: str) -> list[EntryPoint]:
     """Return the entry points of a group, in the order of the search path.
 
-    A package whose list of entry points cannot be read is left out; `importlib.metadata.entry_points` fails
-    then, for all packages.
+    A package whose list of entry points cannot be read is ignored. `importlib.metadata.entry_points` would
+    fail for all packages in this case.
     """
-    from importlib.metadata import distributions  # 0.02 s
+    from importlib.metadata import distributions  # takes 0.02 s
 
     entry_points: list[EntryPoint] = []
     for distribution in distributions():
@@ -134,7 +135,7 @@ def entry_points_of(group: str) -> list[EntryPoint]:
             entry_points += [
                 entry_point for entry_point in distribution.entry_points if entry_point.group == group
             ]
-        except Exception:  # text of others may be anything
+        except Exception:  # a text from another package may be any object
             continue
     return entry_points
 
@@ -142,7 +143,7 @@ def entry_points_of(group: str) -> list[EntryPoint]:
 class SimulationError(OneLine, RuntimeError):
     """Violation of an invariant during a run, or a run that cannot continue.
 
-    The last good state is kept by the caller.
+    The caller keeps the last valid state.
 
     Examples
     --------
@@ -155,13 +156,13 @@ class SimulationError(OneLine, RuntimeError):
 def short_repr(value: object) -> str:
     """Format a value as one printable line of at most 120 characters.
 
-    The time does not grow with the size of the value.
+    The time is limited for values of any size.
     """
     return visible(_repr(value, _DEPTH), _LONGEST["value"])
 
 
 def _repr(value: object, depth: int) -> str:
-    """Format a value like repr(), but only its first items, and without any error."""
+    """Format the first items of a value like repr(), without raising any error."""
     kind = type(value)
     if kind is str or kind is bytes:
         assert isinstance(value, str | bytes)
@@ -182,7 +183,7 @@ def _repr(value: object, depth: int) -> str:
         return f"({inner},)" if len(value) == 1 else f"({inner})"
     try:
         return repr(value)
-    except Exception:  # an object of the user's own, whose repr may raise anything
+    except Exception:  # repr of a user's object may raise any exception
         return f"<{kind.__name__}>"
 
 
@@ -193,15 +194,14 @@ def _join_items(items: Iterable[str], count: int, depth: int) -> str:
 
 
 def visible(text: object, longest: int | None = None, names: bool = False) -> str:
-    """Return a text as one line without characters that a terminal would obey or hide.
+    """Return a text as one line without characters that a terminal would interpret or hide.
 
-    Line breaks, control and formatting characters are escaped, including those that reverse the direction of
-    writing. Everything that a command prints passes through this function, since files may contain text by
-    strangers.
+    Line breaks, control characters and formatting characters are escaped, including those that reverse the
+    writing direction. All printed text passes through this function, because files may contain text from
+    unknown sources.
 
-    longest : maximum number of characters; the middle of a longer text is left out.
-    names : True to leave bytes of file names that are not UTF-8, unless a byte is a control character by
-        itself.
+    longest : maximum number of characters; the middle of a longer text is omitted.
+    names : True to keep bytes of file names that are not UTF-8, unless a byte alone is a control character.
     """
     line = str(text)
     if longest is not None and len(line) > longest:

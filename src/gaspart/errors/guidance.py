@@ -1,8 +1,8 @@
-"""Answers to mistakes in Python, in one line that names the remedy.
+"""Answers to mistakes in Python calls, in one line that names the remedy.
 
-Mistakes are calls with wrong arguments, names that do not exist, and changes of constant values. Public
-classes are declared with the decorator `with_guidance`; public functions are given by `gaspart.public.attach`
-with the call checks. Files and command lines have the same answers by `unknown_word`.
+Mistakes are calls with wrong arguments, names that do not exist, and changes of constant values. The
+decorator `with_guidance` applies to public classes. `gaspart.public.attach` wraps public functions with call
+checks. For files and command lines, `unknown_word` gives the same answers.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ T = TypeVar("T")
 
 
 class MissingName(OneLine, AttributeError):
-    """A name that a package or an object does not have, with what was probably meant."""
+    """Missing name of a package or object, with the name that was probably meant."""
 
     def __init__(self, owner: ModuleType | type, name: str, names: Iterable[str] = ()) -> None:
         super().__init__(name)
@@ -33,7 +33,7 @@ class MissingName(OneLine, AttributeError):
     def __reduce__(self) -> tuple:
         return (AttributeError, (str(self),))
 
-    def __str__(self) -> str:  # when it is shown: most of them are not, as those of hasattr
+    def __str__(self) -> str:  # most of these errors are never shown (hasattr)
         name = repr(self._owner.__name__)
         kind = f"module {name}" if isinstance(self._owner, ModuleType) else f"{name} object"
         message = f"{kind} has no attribute {self._name!r}"
@@ -42,7 +42,7 @@ class MissingName(OneLine, AttributeError):
 
 
 class FixedValue(OneLine, FrozenInstanceError):
-    """An attempt to change a part of what cannot change."""
+    """Attempt to change an object that is constant."""
 
     def __init__(self, owner: type, name: str) -> None:
         replacement = f"dataclasses.replace({owner.__name__.lower()}, {name}=...)"
@@ -53,9 +53,9 @@ class FixedValue(OneLine, FrozenInstanceError):
 
 
 def _remedy(owner: ModuleType | type, name: str, names: tuple[str, ...]) -> str:
-    """Return the name that was probably meant; "" if no known name is like it.
+    """Return the name that was probably meant, or "" if no known name is similar.
 
-    names : variables of the owner; the nearest of these is preferred to an attribute
+    names : variables of the owner; they are preferred to other attributes
     """
     from difflib import get_close_matches
 
@@ -78,9 +78,9 @@ def _remedy(owner: ModuleType | type, name: str, names: tuple[str, ...]) -> str:
 
 
 def _parts(owner: ModuleType | type) -> Iterable[tuple[str, ModuleType | type]]:
-    """Return the parts of an owner that have names of their own.
+    """Return the named parts of an owner that have names of their own.
 
-    These are packages within a package, and attributes whose type is a public class.
+    These are subpackages, and attributes whose type is a public class.
     """
     if isinstance(owner, ModuleType):
         within = ((f"{owner.__name__}.{name}", getattr(owner, name)) for name in ("analysis", "theory"))
@@ -97,8 +97,8 @@ def _parts(owner: ModuleType | type) -> Iterable[tuple[str, ModuleType | type]]:
 
 
 def with_guidance(cls: type[T]) -> type[T]:
-    """Decorate a public class: wrong calls, missing names and fixed values are answered with a remedy."""
-    kind: Any = cls  # whose methods a type checker would not replace
+    """Decorate a public class, so that its errors for mistakes name a remedy."""
+    kind: Any = cls  # a type checker must see the methods unchanged
     for name, member in list(vars(cls).items()):
         title = f"{cls.__name__}.{name}"
         if isinstance(member, FunctionType) and not name.startswith("_"):
@@ -142,7 +142,7 @@ def with_call_checks(function: Callable, title: str) -> Callable:
 def _mistake(function: Callable, title: str, arguments: tuple, named: dict[str, Any]) -> SceneError | None:
     """Return the mistake in the arguments of a call.
 
-    None if the arguments are right, so that its error is one of the function itself.
+    Return None if the arguments are correct; the error then comes from the function itself.
     """
     form = signature(function)
     try:

@@ -1,4 +1,4 @@
-"""Words of other programs and textbooks, and what they are called here."""
+"""Terms of other programs and textbooks, and the corresponding names in gaspart."""
 
 from __future__ import annotations
 
@@ -96,12 +96,13 @@ SYNONYMS: dict[str, str | tuple[str, ...]] = {
     "parameters": "over",
     "grid": "over",
 }
-"""Name by the other word, with a remark behind a comma; several names have a comma or "or" between. Of
-several meanings the first that is known applies."""
+"""Names by the other term. A remark follows a comma; several names are separated by a comma or "or". If a
+term has several meanings, the first known name is used.
+"""
 
 
 def meant(term: str, candidates: list[str]) -> str | None:
-    """Return the meaning of another word if its names are known, or None."""
+    """Return the meaning of another term if its names are known, or None."""
     meanings = SYNONYMS.get(term, ())
     for meaning in (meanings,) if isinstance(meanings, str) else meanings:
         if any(name in candidates for name in meaning.replace(",", " ").split()):
@@ -194,4 +195,4 @@ ELSEWHERE: dict[str, dict[str, str]] = {
     },
     "Tally": {"events": "collisions and wall_hits count them"},
 }
-"""Location of a missing name, by package or class and by the name."""
+"""Location of a missing name, by package or class and by name."""

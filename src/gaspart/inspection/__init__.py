@@ -1,1 +1,1 @@
-"""Validation of trajectories of any program, of scenes and configs; the certificate of a run."""
+"""Validation of trajectories of any program, of scenes and of configs; certificate of a run."""

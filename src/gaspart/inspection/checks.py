@@ -1,4 +1,4 @@
-"""Checks of a trajectory of hard particles. The result of each check is one line."""
+"""Checks of a trajectory of hard particles. The result of each check is a single line."""
 
 from __future__ import annotations
 
@@ -42,31 +42,34 @@ from gaspart.scene.scene import Scene
 from gaspart.state.boxes import deepest_overlap
 from gaspart.state.initial import initial_state
 from gaspart.trajectory.reading import open_trajectory
-from gaspart.trajectory.recipe import read_recipe
+from gaspart.trajectory.recipe import Recipe, read_recipe
 
 __all__ = ["Check", "judge", "judge_places"]
 
 TOUCH = 1e-7
-"""Overlap, over the diameter, that is attributed to rounding; more if the file's numbers are coarser."""
+"""Overlap divided by the diameter that is attributed to rounding; the limit is larger if the numbers in the
+file are coarser.
+"""
 COARSEST = 0.1
-"""Overlap, over the diameter, beyond which it is no rounding, however coarse the file is."""
+"""Overlap divided by the diameter that is never attributed to rounding, even in a file with coarse numbers.
+"""
 MOST_FRAMES = 200
-"""Number of frames, evenly spaced, that are searched for overlaps and contact values."""
-_MANY = 100_000  # particles in these frames, from which on loading numba to count pairs pays
-_BINS = 2**20  # of the distance up to contact, at most, in which pairs are counted
-_MARGIN = 1e-9  # of a diameter, by which rounding may change a distance between images
+"""Number of evenly spaced frames that are tested for overlaps and contact values."""
+_MANY = 100_000  # number of particles in these frames above which importing numba to count pairs saves time
+_BINS = 2**20  # maximum bin width for counting pairs, as a fraction of the contact distance
+_MARGIN = 1e-9  # possible rounding error of a distance between images, in diameters
 _LEAST_FRAMES = 16
 _PRESSURE, _DIFFUSION = "pressure Z", "diffusion coefficient D"
 
 
 def judge(frames: Frames, tolerance: float | None = None) -> list[Check]:
-    """Return all checks of a trajectory.
+    """Perform all checks of a trajectory.
 
     `tolerance` is the allowed overlap, as a fraction of a diameter.
     """
     checks = [*judge_places(frames, tolerance), *judge_conserved(frames)]
     reason, acting = frames.no_identity, [check.name for check in checks if check.acts]
-    if acting and not reason:  # more than elastic contacts: nothing is known of equilibrium
+    if acting and not reason:  # more than elastic contacts: the equilibrium is unknown
         reason = f"something acts on the particles (see {' and '.join(acting)})"
     if reason:
         return [*checks, *(Check(name, None, reason) for name in (*SPEEDS, _PRESSURE, _DIFFUSION))]
@@ -86,7 +89,7 @@ def _allowed_overlap(frames: Frames, tolerance: float | None) -> float:
 
 
 def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Check:
-    """Check the deepest overlap of two particles, as a fraction of their contact distance."""
+    """Return the deepest overlap of two particles as a check, in units of their contact distance."""
     if frames.sampled:
         return Check("overlaps", None, "contacts are sampled, so that particles may overlap")
     if frames.no_identity and frames.diameter is None and frames.radii_by_frame is None:
@@ -113,7 +116,8 @@ def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Chec
 def _overlap_bounds(frame: Frames) -> tuple[float, float]:
     """Return bounds on the deepest overlap of equal particles, as a fraction of the contact distance.
 
-    Pairs are counted by distance, in a tenth of the time of `deepest_overlap`. Without a bound, (0, inf).
+    Pairs are counted by distance, which takes a tenth of the time of `deepest_overlap`. If there are no
+    bounds, return (0, inf).
     """
     if frame.diameter is None or not np.isfinite(frame.positions).all():
         return 0.0, math.inf
@@ -123,7 +127,7 @@ def _overlap_bounds(frame: Frames) -> tuple[float, float]:
         x = frame.positions[..., k]
         if x.min(initial=0.0) < 0.0 or x.max(initial=0.0) > sides[k]:
             return 0.0, math.inf
-        sides[k] += 2.0 * reach  # no pair is near through the walls
+        sides[k] += 2.0 * reach  # no pair is near across a wall
     if reach > 0.5 * float(sides.min()):
         return 0.0, math.inf
     bins = min(8 * frame.count, _BINS)
@@ -152,12 +156,12 @@ def _inside(frames: Frames, tolerance: float | None) -> Check:
 
 
 def _pressure(frames: Frames) -> Check:
-    """Check Z against the equation of state, corrected for the finite number of particles.
+    """Check Z against the equation of state, with a correction for the finite number of particles.
 
-    Z follows from the collisions of a file that counts them, otherwise from the pair distribution at contact.
-    Two conditions select frames. Particles must have moved by the distance of neighbours since the start, so
-    that no order of a lattice is left (its order decays by exp(-k^2 <r^2> / 2d)). Between two frames,
-    particles must have moved across the shells in which pairs are counted.
+    Z is computed from collisions if the file counts them, otherwise from the pair distribution at contact.
+    Two conditions select the frames that are used. Since the start, particles must have moved by the distance
+    between neighbours, so that no order of a lattice remains (it decays as exp(-k^2 <r^2> / 2d)). Between two
+    frames, particles must have moved across the shells in which pairs are counted.
     """
     name = _PRESSURE
     if reason := _no_pressure(frames):
@@ -196,7 +200,7 @@ def _pressure(frames: Frames) -> Check:
 
 
 def _by_collisions(path: Path, start: float) -> Check:
-    """Compare Z by the collisions of a run of gaspart from a time on with theory."""
+    """Compare Z from the collisions of a gaspart run after a time with theory."""
     factor = compressibility_factor(path, start=start)
     if factor.theory is None:
         return Check(_PRESSURE, None, "there is no theory of it for this scene")
@@ -207,7 +211,7 @@ def _by_collisions(path: Path, start: float) -> Check:
 
 
 def _no_pressure(frames: Frames) -> str | None:
-    """Return the reason why the pressure cannot be checked; None if it can be checked."""
+    """Return the reason why the pressure cannot be checked, or None."""
     gas = frames.gas
     if not all(frames.periodic) or gas is None:
         return "needs equal particles in a periodic container, moved by elastic contacts alone"
@@ -225,7 +229,7 @@ def _no_pressure(frames: Frames) -> str | None:
 
 
 def _diffusion(frames: Frames) -> Check:
-    """Check D of spheres, from their mean-squared displacement, against theory."""
+    """Check D of spheres from their mean-squared displacement against theory."""
     name = _DIFFUSION
     if reason := why_not_speeds(frames) or why_not(frames):
         return Check(name, None, reason)
@@ -254,21 +258,22 @@ def _diffusion(frames: Frames) -> Check:
     return compare_with_theory(name, coefficient, Estimate(value, error), basis)
 
 
-# Checks of a run of gaspart with open faces, in which the number of particles changes.
+# Checks of a gaspart run with open faces, in which the number of particles changes.
 
 
 ENERGY_DRIFT = 1e-9
-"""Largest drift of the energy, relative to the energy that particles have had and have carried."""
+"""Largest drift of the energy, relative to the energy that particles had and carried."""
 _CHANGING = "particles come and go: its theory is of those that stay"
 
 
 def judge_open(path: Path, tolerance: float | None = None) -> tuple[str, list[Check]]:
     """Check a trajectory with open faces.
 
-    Returns a line that names its particles, and the checks of positions, of the books of particles and of
-    energy, and of flights. `tolerance` is the allowed overlap, as a fraction of a diameter.
+    Returns a line that states the numbers of particles, and the checks of positions, of the balances of
+    particles and energy, and of flights. `tolerance` is the allowed overlap, as a fraction of a diameter.
     """
-    scene = read_recipe(path).scene
+    recipe = read_recipe(path)
+    scene = recipe.scene
     with open_trajectory(path) as data:
         data.load()
     counts = particle_numbers(scene, data)
@@ -276,14 +281,15 @@ def judge_open(path: Path, tolerance: float | None = None) -> tuple[str, list[Ch
     title = f"{path}: {counts.min()} to {counts.max()} {kind} in {len(counts)} frames"
     checks = [_particles(data, counts), _energy(scene, data)]
     if "keep" not in data.attrs:
-        frames = _frames(scene, data)
+        frames = _frames(recipe, data)
         checks = [*judge_places(frames, tolerance), *checks, judge_flights(frames)]
     unknown = "speed law", "pressure Z", "diffusion coefficient D"
     return title, [*checks, *(Check(name, None, _CHANGING) for name in unknown)]
 
 
-def _frames(scene: Scene, data: xr.Dataset) -> Frames:
-    """Return the frames of a run. Absent particles have no position (NaN) and are at rest."""
+def _frames(recipe: Recipe, data: xr.Dataset) -> Frames:
+    """Return the frames of a run. Absent particles have NaN positions and zero velocities."""
+    scene = recipe.scene
     lengths = np.array(scene.container.lengths)
     positions, velocities = (data[name].values.astype(float) for name in ("coordinates", "velocities"))
     return Frames(
@@ -294,12 +300,14 @@ def _frames(scene: Scene, data: xr.Dataset) -> Frames:
         velocities=np.nan_to_num(velocities),
         time=data["time"].values,
         resolution=float(np.finfo(np.float32).eps * lengths.max()),
+        sampled=not recipe.engine.forbids_overlap,
+        engine=recipe.engine,
         scene=scene,
     )
 
 
 def _particles(data: xr.Dataset, counts: np.ndarray) -> Check:
-    """Compare the particles in each frame with the counted entries and exits."""
+    """Compare the number of particles in each frame with the counted entries and exits."""
     stored = data["coordinates"] if "coordinates" in data else data["velocities"]
     there = np.isfinite(stored.values[..., 0]).sum(axis=1)
     wrong = int(np.abs(there - counts).argmax())
@@ -311,7 +319,7 @@ def _particles(data: xr.Dataset, counts: np.ndarray) -> Check:
 
 
 def _energy(scene: Scene, data: xr.Dataset) -> Check:
-    """Compare the energy in each frame with what particles and faces have brought and taken."""
+    """Compare the energy in each frame with the energy exchanged by particles and faces."""
     total = conserved_energy(scene, data)
     carried = np.abs(data["wall_energy"].values).sum(axis=1)
     scale = max(float((data["kinetic_energy"].values + carried).max()), np.finfo(float).tiny)

@@ -1,4 +1,4 @@
-"""Checks without statistics: conserved energy and momentum, flights between frames, continuity."""
+"""Checks without statistics: conserved energy and momentum, flights between frames, and continuity."""
 
 from __future__ import annotations
 
@@ -13,17 +13,20 @@ from gaspart.inspection.frames import Frames
 from gaspart.inspection.statistics import why_not_speeds
 from gaspart.inspection.verdict import Check
 
-# Flights between frames: a particle that keeps its velocity moves by this velocity times the time.
+# Flights between frames: a particle with a constant velocity moves by this velocity times the time.
 
 
 WRONG = 1e-3
-"""Error of a flight beyond the resolution of the numbers, relative to its length, that is no rounding."""
+"""Relative error of a flight, beyond the resolution of the numbers, that is not attributed to rounding."""
 _SINGLE = float(np.finfo(np.float32).eps)
-_DIGITS = 12  # after the point, at which decimals differ from binary numbers
+_DIGITS = 12  # decimal places at which decimal and binary numbers differ
 
 
 class Flights(NamedTuple):
-    """Number of flights without a collision, their largest relative error, and the frame at its end."""
+    """Number of flights without a collision, and their largest relative error.
+
+    The frame is the end of the flight with the largest error.
+    """
 
     number: int
     worst: float
@@ -31,7 +34,7 @@ class Flights(NamedTuple):
 
 
 def flights(frames: Frames) -> Flights:
-    """Compare displacements with velocities of particles whose velocity is the same in two frames."""
+    """Compare displacements with velocities, for particles with the same velocity in two frames."""
     assert frames.velocities is not None and frames.time is not None, "requires velocities and times"
     squares = frames.squares
     root = float(np.sqrt(squares.sum() / max(np.count_nonzero(squares), 1)))
@@ -43,7 +46,7 @@ def flights(frames: Frames) -> Flights:
         free, moves = np.ones(frames.count, dtype=bool), np.zeros(frames.count, dtype=bool)
         for v, after, side in zip(velocity.T, frames.velocities[n + 1].T, sides, strict=True):
             free &= v == after
-            free &= np.abs(v) * interval < side  # back and forth between two walls, v is the same too
+            free &= np.abs(v) * interval < side  # after two wall hits the velocity is the same, too
             moves |= v != 0.0
         free &= moves
         way = velocity[free] * interval
@@ -58,8 +61,8 @@ def flights(frames: Frames) -> Flights:
 
 
 def resolution(values: np.ndarray) -> float:
-    """Return the rounding error of numbers in single precision, or with a few decimals."""
-    frames = values if values.ndim == 3 else [values]  # each fits the cache of the processor
+    """Return the rounding error of numbers in single precision, or with few decimal places."""
+    frames = values if values.ndim == 3 else [values]  # a block fits into the processor cache
     if all(np.array_equal(frame, frame.astype(np.float32)) for frame in frames):
         return _SINGLE * float(max(values.max(initial=0.0), -values.min(initial=0.0)))
     sample = values.reshape(-1)[:1000]
@@ -70,7 +73,7 @@ def resolution(values: np.ndarray) -> float:
 
 
 DRIFT = 1e-6
-"""Relative change from frame to frame that is attributed to rounding in the program that made the file."""
+"""Relative change between frames that is attributed to rounding in the program that wrote the file."""
 
 
 def judge_conserved(frames: Frames) -> list[Check]:
@@ -96,10 +99,10 @@ def judge_conserved(frames: Frames) -> list[Check]:
 
 
 def _steady(name: str, changes: np.ndarray, allowed: float, isolated: bool) -> Check:
-    """Check that a quantity stays constant from frame to frame.
+    """Check that a quantity is constant from frame to frame.
 
-    The `changes` (T - 1,) are relative to the quantity of all particles together. If it changes most of the
-    time, it is conserved only if the file excludes forces on the particles.
+    The `changes` (T - 1,) are relative to the total of all particles. If the quantity changes in most frames,
+    it must be conserved only if the file excludes forces on the particles.
     """
     worst = int(np.argmax(changes))
     text = f"changes by {changes[worst]:.2g} of it at most, before frame {worst + 1} (up to {allowed:.1g})"
@@ -110,7 +113,7 @@ def _steady(name: str, changes: np.ndarray, allowed: float, isolated: bool) -> C
 
 
 def judge_flights(frames: Frames) -> Check:
-    """Compare the way of a particle whose velocity stays with velocity times time."""
+    """Compare the displacements of particles with constant velocities with velocity times time."""
     if reason := frames.no_identity:
         return Check("flights", None, reason)
     if frames.time is None or not (np.diff(frames.time) > 0.0).all():
@@ -124,29 +127,31 @@ def judge_flights(frames: Frames) -> Check:
     return Check("flights", not wrong, text + (f", before frame {deviation.frame}" if wrong else ""))
 
 
-# Continuity of a trajectory of another program: velocities of their frames, rows in one order.
+# Continuity of a trajectory of another program: velocities belong to their frames, and rows keep their order.
 #
-# Between collisions a particle moves by its velocity times the time. Velocities that were copied from one
-# frame into all, and rows in another order in each frame, break this for nearly all particles at once.
+# Between collisions a particle moves by its velocity times the time. Two faults break this for nearly all
+# particles at once: velocities copied from one frame into all frames, and rows in a different order in each
+# frame.
 
 
 _MOST = 0.5
-"""Fraction of the particles from which on a finding is no coincidence."""
+"""Fraction of the particles above which a finding is not a coincidence."""
 _NEAR = 0.2
-"""Distance within which a predicted position is recognised, in units of the median distance of neighbours. By
-chance 0.6 % of the spheres and 3 % of the discs have a neighbour there."""
+"""Distance within which a predicted position counts as found, in units of the median distance between
+neighbours. By chance, 0.6 % of the spheres and 3 % of the discs have a neighbour within this distance.
+"""
 _KEY = np.sqrt([2.0, 3.0, 5.0])
-"""Factors that make one number of a velocity, different for different velocities."""
+"""Factors that map different velocities to different numbers."""
 
 
 def continuous(frames: Frames, doubt: str | None, identified: bool) -> Frames:
-    """Return frames without copied velocities, and with the first frame in another order.
+    """Return frames without copied velocities, and the first frame with reordered particles.
 
-    doubt : reason to take velocities for copies.
+    doubt : reason to suspect that velocities are copies.
     identified : True if ids have restored the order.
     """
     if frames.velocities is None or len(frames.positions) < 2 or frames.lengths_by_frame is not None:
-        return frames  # in a container that changes, nothing is compared with velocities
+        return frames  # in a container that changes, displacements are not compared with velocities
     if _are_copied(frames, doubt is not None):
         reason = doubt or "velocities are the same in all frames, and positions do not continue them: copies"
         return replace(frames, velocities=None, no_velocities=reason)
@@ -154,9 +159,9 @@ def continuous(frames: Frames, doubt: str | None, identified: bool) -> Frames:
 
 
 def _are_copied(frames: Frames, doubtful: bool) -> bool:
-    """Return True if all frames have equal velocities by which particles do not move.
+    """Return True if all frames have the same velocities, and particles do not move by them.
 
-    If `doubtful`, velocities are copies unless the times are known and all particles move by them.
+    If `doubtful`, equal velocities count as copies unless the times are known and all particles move by them.
     """
     velocities = frames.velocities
     assert velocities is not None, "see `continuous`"
@@ -165,7 +170,7 @@ def _are_copied(frames: Frames, doubtful: bool) -> bool:
     if frames.time is None:
         if doubtful:
             return True
-        # the time that fits most particles; if none does, they do not move by their velocities
+        # the time step that fits most particles; if none fits, particles do not move by their velocities
         squares = np.maximum(frames.squares[0], np.finfo(float).tiny)
         times = [np.median((step * velocities[0]).sum(axis=1) / squares) for step in frames.steps()]
         frames = replace(frames, time=np.concatenate([[0.0], np.cumsum(times)]))
@@ -174,7 +179,7 @@ def _are_copied(frames: Frames, doubtful: bool) -> bool:
 
 
 def _reordered_frame(frames: Frames) -> int | None:
-    """Find the first frame that lists its particles in another order than before, or None."""
+    """Find the first frame that lists its particles in a new order, or return None."""
     for n in range(len(frames.positions) - 1):
         if _same_velocities_elsewhere(frames, n) or _predicted_elsewhere(frames, n):
             return n + 1
@@ -182,11 +187,11 @@ def _reordered_frame(frames: Frames) -> int | None:
 
 
 def _same_velocities_elsewhere(frames: Frames, n: int) -> bool:
-    """Return True if frame n + 1 has velocities of frame n in other rows.
+    """Return True if frame n + 1 contains velocities of frame n in other rows.
 
-    The velocities must occur more often in other rows than in their own row. Velocities that several
-    particles have do not count. Two equal particles may exchange their velocities in a head-on collision. If
-    times are known, positions show which of the two happened.
+    These velocities must occur more often in other rows than in their own rows. Velocities that several
+    particles share do not count. In a head-on collision, two equal particles exchange their velocities. If
+    the times are known, positions distinguish this case.
     """
     assert frames.velocities is not None, "see `continuous`"
     keys = [(velocity * _KEY[: frames.dimension]).sum(axis=1) for velocity in frames.velocities[n : n + 2]]
@@ -208,9 +213,9 @@ def _same_velocities_elsewhere(frames: Frames, n: int) -> bool:
 
 
 def _predicted_elsewhere(frames: Frames, n: int) -> bool:
-    """Return True if most particles of a frame are where other rows must have moved.
+    """Return True if most particles of a frame are at positions predicted for other rows.
 
-    The particles are in frame n + 1, the rows are rows of frame n.
+    The particles are in frame n + 1; the predictions are for rows of frame n.
     """
     if frames.time is None or frames.count < 3:
         return False
@@ -227,7 +232,7 @@ def _predicted_elsewhere(frames: Frames, n: int) -> bool:
 
 
 def _tree(frames: Frames, n: int) -> cKDTree:
-    """Return the positions of a frame, for searches."""
+    """Return a search tree of the positions in a frame."""
     return cKDTree(frames.positions[n], boxsize=np.where(frames.periodic, frames.lengths, 0.0))
 
 
@@ -237,7 +242,7 @@ def _near(frames: Frames, n: int, tree: cKDTree) -> float:
 
 
 def _wrap_positions(frames: Frames, positions: np.ndarray) -> np.ndarray:
-    """Return positions in the container along periodic axes."""
+    """Return positions wrapped into the container along periodic axes."""
     inside = np.where(
         frames.periodic, positions - frames.lengths * np.floor(positions / frames.lengths), positions
     )

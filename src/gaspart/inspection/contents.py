@@ -1,4 +1,4 @@
-"""Data of particles in the file of any program, and the frames that follow from them."""
+"""Particle data in the file of any program, and the frames that follow from them."""
 
 from __future__ import annotations
 
@@ -15,36 +15,36 @@ from gaspart.scene.container import Container
 from gaspart.scene.scene import Scene
 
 CENTRE = "centre"
-"""The word for an origin in the middle of the container."""
+"""Keyword for an origin in the middle of the container."""
 _SAME = 1e-6
-"""Relative change of a container's side that is attributed to rounding."""
+"""Relative change of a side length that is attributed to rounding."""
 
 
 @dataclass
 class Contents:
-    """Fields of T frames of N particles, as a reader found them.
+    """Fields of T frames of N particles, as read from a file.
 
     Missing fields have the value None.
 
     positions, velocities : (T, N, 2 or 3), as stored.
     time : (T,).
-    steps : (T,), which --time-step multiplies.
+    steps : (T,), step numbers that --time-step multiplies.
     radii, masses : (N,) or (T, N).
-    ids, species : (T, N), ids for each particle, and species, which identify particles.
-    lengths, origin : (T, 3), a length of 0 for walls at an unknown distance.
-    boundary : (3,), a word for each axis.
-    centred : True if the origin is the middle of the container.
-    flat : True for two dimensions.
+    ids, species : (T, N), ids of particles, and species; both identify particles.
+    lengths, origin : (T, 3), side lengths; 0 for walls at an unknown distance.
+    boundary : (3,), boundary of each axis as a word.
+    centred : True if the origin is in the middle of the container.
+    flat : True if the particles move in two dimensions.
     plain : True if only elastic contacts move the particles, according to the file.
-    isolated : True if the file declares its scene to be plain.
-    part : True if there are more particles.
+    isolated : True if the file declares that its scene has no further features.
+    part : True if the scene has more particles than the file.
     sampled : True if particles may overlap.
-    engine, scene : of a file of gaspart.
+    engine, scene : scene of a gaspart file.
     counted : the file, if it counts exact collisions.
-    resolution, time_resolution : errors of a coordinate and of a time because of their type.
-    velocities_from_first : reason to doubt velocities that are in all frames equal to the velocities in frame
+    resolution, time_resolution : resolution of a coordinate and of a time in their data types.
+    velocities_from_first : reason to doubt velocities that are the same in all frames as in frame
     0.
-    no_velocities : reason for missing velocities.
+    no_velocities : reason why velocities are missing.
     """
 
     positions: np.ndarray
@@ -75,9 +75,9 @@ class Contents:
 
 @dataclass(frozen=True)
 class Overrides:
-    """Values from the user, which take precedence over a file; see `readers.read_frames`.
+    """Values passed by the user, which take precedence over the file; see `readers.read_frames`.
 
-    If `last`, only the last frame of a GSD or XYZ file is read; this frame must be complete.
+    If `last`, only the last frame of a GSD or XYZ file is read. This frame must be complete.
     """
 
     radius: float | None = None
@@ -89,7 +89,7 @@ class Overrides:
 
 
 def complete_frames(contents: Contents, overrides: Overrides, path: str) -> Frames:
-    """Complete the contents of a file by the user's statements.
+    """Complete the contents of a file with the values passed by the user.
 
     Raises SceneError for missing, invalid or contradictory values.
     """
@@ -137,10 +137,10 @@ def complete_frames(contents: Contents, overrides: Overrides, path: str) -> Fram
 def _wrap(
     positions: np.ndarray, origin: np.ndarray, sides: np.ndarray, periodic: tuple[bool, ...]
 ) -> np.ndarray:
-    """Return positions (T, N, d) from the lower corner, on periodic axes in [0, L).
+    """Return positions (T, N, d) from the lower corner, wrapped to [0, L) on periodic axes.
 
-    The corner and the sides are (1, d) or (T, d). Coordinates are wrapped one by one: an axis of 3 is slow to
-    broadcast.
+    The corner and the side lengths are (1, d) or (T, d). Coordinates are wrapped one axis at a time, because
+    numpy broadcasts an axis of length 3 slowly.
     """
     frames, count, _ = positions.shape
     wrapped = np.empty((frames, count, len(periodic)))
@@ -150,7 +150,7 @@ def _wrap(
             x = frame[:, k].astype(float) - low[k]
             if along:
                 x -= size[k] * np.floor(x / size[k])
-                x[x >= size[k]] = 0.0  # rounding of -1e-17
+                x[x >= size[k]] = 0.0  # -1e-17 rounds to L
             wrapped[n, :, k] = x
     return wrapped
 
@@ -169,14 +169,14 @@ def _origin(contents: Contents, overrides: Overrides, sides: np.ndarray, path: s
 
 
 def _require_finite(name: str, values: np.ndarray, path: str) -> None:
-    """Reject a file with values that are not finite, and name the first such frame."""
+    """Raise SceneError if values are not finite, and name the first such frame."""
     wrong = ~np.isfinite(values).all(axis=(1, 2))
     if wrong.any():
         raise SceneError("file", path, f"has {name} that are not finite or absent, in frame {wrong.argmax()}")
 
 
 def sort_by_id(contents: Contents, path: str) -> None:
-    """Sort the particles of every frame by their ids; reject frames with other particles."""
+    """Sort the particles of every frame by their ids; reject frames with different ids."""
     if contents.ids is None:
         species = contents.species
         if species is not None and np.any(species != species[0]):
@@ -205,9 +205,9 @@ def sort_by_id(contents: Contents, path: str) -> None:
 def _dimension(contents: Contents, overrides: Overrides, diameter: float) -> int:
     """Return the number of dimensions, 2 or 3.
 
-    The file gives the dimension, or it is found from the motion along z. Particles that stay at the same z
-    are discs, unless three sides are given. Particles of a single frame without velocities are discs only if
-    the container is less than two diameters high, or has no height.
+    If the file does not state the dimension, it follows from the motion along z. Particles that keep the same
+    z are discs, unless the user passes three side lengths. In a single frame without velocities, particles
+    are discs only if the container has no height or is less than two diameters high.
     """
     positions, velocities = contents.positions, contents.velocities
     if positions.shape[2] == 2:
@@ -228,9 +228,9 @@ def _dimension(contents: Contents, overrides: Overrides, diameter: float) -> int
 
 
 def _container(contents: Contents, overrides: Overrides, d: int, path: str) -> tuple[np.ndarray, Container]:
-    """Return the sides, (1, d) or (T, d), and the container of the first frame.
+    """Return the side lengths, (1, d) or (T, d), and the container of the first frame.
 
-    The sides are (T, d) if they change.
+    The side lengths are (T, d) if they change.
     """
     stated = None if contents.lengths is None else np.asarray(contents.lengths, dtype=float)[:, :d]
     if overrides.lengths is not None:
@@ -241,7 +241,7 @@ def _container(contents: Contents, overrides: Overrides, d: int, path: str) -> t
     else:
         assert stated is not None, "see `complete_frames`"
         sides = _per_frame(stated, _SAME)
-    # a length of 0 means walls where it may mean the absence of periodic images, which GSD has always
+    # a length of 0 means walls if it may mean that there are no periodic images; GSD always has images
     walls = np.zeros(d, dtype=bool)
     if stated is not None and not contents.centred:
         walls = (stated == 0.0).all(axis=0)
@@ -272,11 +272,11 @@ def _radii(contents: Contents, overrides: Overrides, path: str) -> np.ndarray:
 
 
 def _times(contents: Contents, overrides: Overrides, path: str) -> np.ndarray | None:
-    """Return the times (T,), or None if the file contains no times.
+    """Return the times (T,), or None if the file contains none.
 
-    If the time is the same in every frame, as in a field that was never set, the file contains no times.
-    Times that are evenly spaced within their resolution are made evenly spaced. In single precision, or with
-    few digits, late times deviate more.
+    Equal times in all frames count as missing, because the field was never set. Times that are evenly spaced
+    within their resolution are replaced by evenly spaced times. The reason is that late times deviate more in
+    single precision, or with few digits.
     """
     frames = len(contents.positions)
     time, resolution = contents.time, contents.time_resolution

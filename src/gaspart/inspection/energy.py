@@ -18,14 +18,14 @@ from gaspart.trajectory.opening import open_netcdf_file
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import read_recipe
 
-_FRAMES = 64  # that are in memory at once
+_FRAMES = 64  # maximum number of values in memory
 
 
 def energy_line(scene: Scene, data: xr.Dataset) -> str:
-    """Return a line on the drift of the energy of a run.
+    """Return a line that states the energy drift of a run.
 
-    The conserved quantity of every scene is the total energy minus the energy that contacts, faces and kicks
-    have exchanged. Its drift is relative to the largest kinetic energy.
+    In every scene the total energy, minus the energy exchanged by contacts, faces and kicks, is conserved.
+    Its drift is relative to the largest kinetic energy.
     """
     kinetic = data["kinetic_energy"].values
     try:
@@ -38,16 +38,16 @@ def energy_line(scene: Scene, data: xr.Dataset) -> str:
     text = f"drift of the energy: {drift:.1e} of it at most"
     if _removed_energy(data).any():
         text += ", less what contacts, faces and kicks have exchanged"
-    if scene.gravity is not None and "displacements" not in data:  # the potential energy is of the positions
+    if scene.gravity is not None and "displacements" not in data:  # it follows from the positions
         text += " (positions have single precision)"
     return text
 
 
 def conserved_energy(scene: Scene, data: xr.Dataset) -> np.ndarray:
-    """Compute the energy (T,) of the frames with the exchanged energy added, relative to any zero.
+    """Compute the conserved energy (T,) of the frames, up to a constant.
 
-    The energy is kinetic, vibrational and potential. Raises SceneError if the file does not contain the
-    energy.
+    It is the sum of the kinetic, vibrational, potential and exchanged energy. Raises SceneError if the file
+    does not contain the energy.
     """
     energy = data["kinetic_energy"].values + _removed_energy(data)
     if "vibrations" in data:
@@ -68,7 +68,7 @@ def conserved_energy(scene: Scene, data: xr.Dataset) -> np.ndarray:
 
 
 def _removed_energy(data: xr.Dataset) -> np.ndarray:
-    """Return the energy (T,) taken by contacts and faces since time 0, less kicks."""
+    """Return the energy (T,) removed by contacts and faces since time 0, minus kicks."""
     removed = data["dissipated_energy"].values + data["wall_energy"].values.sum(axis=1)
     return np.asarray(removed - data["thermostat_energy"].values, dtype=float)
 
@@ -93,11 +93,11 @@ def _potential(scene: Scene, data: xr.Dataset) -> np.ndarray:
     return energy
 
 
-# The certificate of a run of gaspart: its quality in a few lines, from its counters.
+# Certificate of a gaspart run: its quality in a few lines, from its counters.
 
 
 def certificate(path: Path) -> list[str]:
-    """Return lines on the drift of the energy, the worst contact, and the independent samples."""
+    """Return lines that state the energy drift, the worst contact, and the independent samples."""
     scene = read_recipe(path).scene
     with open_netcdf_file(path) as file:
         if not len(file.dimensions["frame"]):
@@ -112,14 +112,14 @@ def certificate(path: Path) -> list[str]:
 
 
 def _inside(scene: Scene, data: xr.Dataset) -> str:
-    """Return a line on the numbers of particles in an open run, and its capacity."""
+    """Return a line that states the numbers of particles in an open run, and its capacity."""
     counts = particle_numbers(scene, data)
     ends = f"{counts[0]} particles at the start, {counts[-1]} at the end"
     return f"{ends}, {counts.min()} to {counts.max()} in between; room for {scene.capacity}"
 
 
 def _contacts(series: dict) -> str:
-    """Return a line on errors of the engine, from its counters."""
+    """Return a line that states the errors of the engine, from its counters."""
     counted = f"{series['collisions'][-1]:.0f} collisions"
     if "overlaps_left" in series:
         deepest, remaining = series["deepest_overlap"][-1], series["overlaps_left"][-1]
@@ -129,10 +129,10 @@ def _contacts(series: dict) -> str:
 
 
 def _samples(scene: Scene, series: dict) -> str:
-    """Return a line on the number of independent values of the pressure.
+    """Return a line that states the number of independent values of the pressure.
 
-    The number is the number of intervals between frames divided by twice their correlation time, but at most
-    the number of collisions.
+    It is the number of intervals between frames divided by twice their correlation time, limited to the
+    number of collisions.
     """
     counted = np.diff(series["virial_sum"])
     per_particle = 2.0 * series["collisions"][-1] / max(scene.count, 1)

@@ -1,4 +1,4 @@
-"""The frames of any program's trajectory, in one form."""
+"""Frames of a trajectory of any program, in a common form."""
 
 from __future__ import annotations
 
@@ -20,25 +20,25 @@ from gaspart.scene.scene import Scene
 
 @dataclass(frozen=True)
 class Frames:
-    """Data of a trajectory of T frames of N particles that can be checked.
+    """Data of T frames of N particles that can be checked.
 
     positions : (T, N, d), on periodic axes inside the container [0, L], NaN for particles that are absent
         from a frame.
     velocities, time : (T, N, d) and (T,), or None if the file does not contain them.
-    lengths, radii, masses : (d,), (N,), (N,), of the first frame where they change.
-    lengths_by_frame, radii_by_frame : (T, d) and (T, N), where they change.
+    lengths, radii, masses : (d,), (N,), (N,), for the first frame if they change.
+    lengths_by_frame, radii_by_frame : (T, d) and (T, N), if they change.
     periodic : (d,), True for each periodic axis.
-    plain : True if only elastic contacts move particles of equal mass in a constant container, according to
-        the file.
-    resolution : error of a position, as a length.
-    isolated : True if the file declares its scene to be plain.
+    plain : True if the file states that only elastic contacts move particles of equal mass, in a constant
+        container.
+    resolution : resolution of a position, as a length.
+    isolated : True if the file declares that its scene has no further features.
     part : True if the scene has more particles than the file.
-    sampled : True if contacts were sampled, so that particles may overlap.
-    engine, scene : by which a file of gaspart was made.
-    counted : file of gaspart that counts the exact collisions of these frames.
-    no_velocities : reason for missing velocities.
-    reordered : first frame that lists its particles in another order than the frame before, without ids to
-        restore the order, or None.
+    sampled : True if collision partners were drawn at random, so that particles may overlap.
+    engine, scene : engine of a gaspart file.
+    counted : gaspart file that counts the exact collisions of these frames.
+    no_velocities : reason why velocities are missing.
+    reordered : first frame that lists its particles in another order than the preceding frame, if ids do not
+        restore the order; otherwise None.
     """
 
     positions: np.ndarray
@@ -68,17 +68,17 @@ class Frames:
 
     @property
     def dimension(self) -> int:
-        """2 or 3."""
+        """Dimension, 2 or 3."""
         return self.positions.shape[2]
 
     @property
     def spacing(self) -> float:
-        """Distance of neighbours."""
+        """Mean distance between neighbours."""
         return float((np.prod(self.lengths) / self.count) ** (1.0 / self.dimension))
 
     @property
     def no_identity(self) -> str | None:
-        """Reason why particles cannot be followed between frames; None if they can."""
+        """Reason why particles cannot be followed between frames, or None."""
         if self.reordered is None:
             return None
         return f"rows are in another order in frame {self.reordered}, and there are no ids to follow them by"
@@ -95,10 +95,10 @@ class Frames:
 
     @cached_property
     def gas(self) -> Gas | None:
-        """Plain gas of these particles, as far as the file contains it, or None.
+        """Plain gas that these particles form, as far as the file describes it, or None.
 
         The mass is 1, the temperature is the mean of `temperatures` (NaN without velocities). None if the
-        particles differ, or if forces move them in addition to elastic contacts.
+        particles differ, or if forces other than elastic contacts act on them.
         """
         if not self.plain or self.diameter is None:
             return None
@@ -113,7 +113,7 @@ class Frames:
 
     @cached_property
     def peculiar_squares(self) -> np.ndarray:
-        """Squared speeds about the mean velocity of each frame along periodic axes, shape (T, N)."""
+        """Squared speeds relative to the mean velocity of each frame along periodic axes, shape (T, N)."""
         assert self.velocities is not None, "requires velocities"
         total = np.zeros(self.velocities.shape[:2])
         for k, periodic in enumerate(self.periodic):
@@ -123,29 +123,30 @@ class Frames:
 
     @property
     def temperatures(self) -> np.ndarray:
-        """Temperature k_B T of each frame, of particles of mass 1, shape (T,).
+        """Temperature k_B T of each frame for particles of mass 1, shape (T,).
 
-        The temperature is 0 for a particle that cannot move about the mean.
+        It is 0 for a single particle without motion relative to the mean.
         """
         freedom = self.dimension * self.count - sum(self.periodic)
         return np.asarray(self.peculiar_squares.sum(axis=1) / max(freedom, 1))
 
     def steps(self) -> Iterator[np.ndarray]:
-        """Yield the displacements (N, d) from each frame to the next, by nearest images."""
+        """Yield the displacements (N, d) between consecutive frames, by nearest images."""
         for before, after in pairwise(self.positions):
             yield self.nearest(after - before)
 
     def nearest(self, apart: np.ndarray) -> np.ndarray:
-        """Return separations (N, d) by nearest images, in the same array."""
+        """Replace separations (N, d) by separations of nearest images, in place."""
         for k in np.flatnonzero(self.periodic):
             apart[:, k] -= self.lengths[k] * np.round(apart[:, k] / self.lengths[k])
         return apart
 
     @cached_property
     def path(self) -> np.ndarray:
-        """The path (T, N, d) of each particle since the first frame.
+        """Displacement (T, N, d) of each particle since the first frame.
 
-        The path is relative to the centre of mass along axes on which only particles exchange momentum.
+        It is relative to the centre of mass along axes on which particles exchange momentum only with each
+        other.
         """
         path = np.zeros(self.positions.shape)
         for n, step in enumerate(self.steps()):
@@ -155,7 +156,7 @@ class Frames:
         return path
 
     def at(self, frame: int) -> Frames:
-        """Return one frame, with the container and the radii that it has, and without absent particles."""
+        """Return a single frame with its container and radii, without absent particles."""
         lengths, radii, moving = self.lengths_by_frame, self.radii_by_frame, self.velocities
         there: np.ndarray | slice = slice(None)
         if not np.isfinite(self.positions[frame]).all():

@@ -1,4 +1,4 @@
-"""The contents of a GSD file of the schema hoomd, https://gsd.readthedocs.io/en/stable/schema-hoomd.html."""
+"""Contents of a GSD file of the hoomd schema, https://gsd.readthedocs.io/en/stable/schema-hoomd.html."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ _FIRST_ONLY = (
     "velocities are stored in frame 0 only; HOOMD stores all with GSD(..., dynamic=['property', 'momentum'])"
 )
 _SPHERE_RADIUS = "state/hpmc/sphere/radius"
-"""Radii of the types, as HOOMD 2 wrote them; other shapes have other names."""
+"""Name of the radii of the types in files of HOOMD 2; other shapes have other names."""
 
 
 def read_gsd(path: Path, overrides: Overrides) -> Contents:
-    """Read all frames, or the last one.
+    """Read all frames, or the last frame.
 
-    A field that no frame contains is unknown, although the schema has a default. The origin is the middle of
-    the box. Raises SceneError for contents that cannot be checked, and what the library raises for a file
-    that cannot be read.
+    A field that no frame contains is unknown, although the schema defines a default. The origin is the middle
+    of the box. Raises SceneError for contents that cannot be checked. Errors of the library for unreadable
+    files are passed on.
     """
     hoomd = optional("gsd.hoomd", "gsd", "GSD files")
     with open_regular(path) as opened_file, hoomd.open(descriptor_path(opened_file), "r") as file:
@@ -49,7 +49,7 @@ def read_gsd(path: Path, overrides: Overrides) -> Contents:
     positions = np.array([frame.particles.position for frame in frames])
     extent = max(float(np.abs(positions).max(initial=0.0)), float(boxes.max()))
     stated = {name: f"particles/{name}" in chunks for name in ("velocity", "mass", "diameter")}
-    if overrides.last:  # what frame n does not have is taken from frame 0, of another time
+    if overrides.last:  # data missing in frame n are taken from frame 0, which has another time
         stated["velocity"] &= first in moving
     return Contents(
         positions=positions,
@@ -68,7 +68,7 @@ def read_gsd(path: Path, overrides: Overrides) -> Contents:
 
 
 def _require_same_count(counts: list[int], path: Path) -> None:
-    """Raise an error if the number of particles differs between frames."""
+    """Raise SceneError if the number of particles differs between frames."""
     for n, count in enumerate(counts):
         if count != counts[0]:
             rule = f"has {count} particles in frame {n} and {counts[0]} in frame 0"
@@ -76,7 +76,7 @@ def _require_same_count(counts: list[int], path: Path) -> None:
 
 
 def _refuse_bodies(frames: list[Any], path: Path) -> None:
-    """Refuse rigid bodies, whose particles may overlap one another."""
+    """Raise SceneError for rigid bodies, whose particles may overlap one another."""
     for n, frame in enumerate(frames):
         if np.any(frame.particles.body >= 0):
             rule = f"has rigid bodies in frame {n} (particles/body), which cannot be checked"
@@ -84,7 +84,7 @@ def _refuse_bodies(frames: list[Any], path: Path) -> None:
 
 
 def _old_radii(file: Any, chunks: set[str], path: Path) -> np.ndarray | None:
-    """Return the radii (types,) of HOOMD 2 in the first frame, if there are any."""
+    """Return the radii (types,) of HOOMD 2 in the first frame, or None."""
     shapes = {name.split("/")[2] for name in chunks if name.startswith("state/hpmc/")}
     if shapes := shapes - {"integrate", "sphere"}:
         raise SceneError("file", str(path), f"has particles that are no spheres: {', '.join(sorted(shapes))}")
@@ -94,9 +94,9 @@ def _old_radii(file: Any, chunks: set[str], path: Path) -> np.ndarray | None:
 def _radii(
     frames: list[Any], diameters: bool, old: np.ndarray | None, overrides: Overrides, path: Path
 ) -> np.ndarray | None:
-    """Return the radii (T, N) by the diameters or by the shapes of the types.
+    """Return the radii (T, N), from the diameters or from the shapes of the types.
 
-    If the two values differ, the file is rejected.
+    The file is rejected if both exist and differ.
     """
     by_diameter = 0.5 * np.array([frame.particles.diameter for frame in frames], dtype=float)
     shapes = []
@@ -114,7 +114,7 @@ def _radii(
 
 
 def _of_shapes(shapes: list[dict], path: Path) -> list[float]:
-    """Return the radii of the types, NaN for types without radius; reject shapes other than spheres."""
+    """Return the radii of the types, NaN for types without radius; reject other shapes than spheres."""
     radii = []
     for shape in shapes:
         kind = shape.get("type")

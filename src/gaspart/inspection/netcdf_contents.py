@@ -1,7 +1,7 @@
-"""Contents of a netCDF file of AMBER's convention, version 1.0.
+"""Contents of a netCDF file of the AMBER convention, version 1.0.
 
 The convention is https://ambermd.org/netcdf/nctraj.xhtml. LAMMPS (`dump netcdf`), OVITO and gaspart add
-variables.
+further variables.
 """
 
 from __future__ import annotations
@@ -25,19 +25,23 @@ from gaspart.trajectory.amber import BOOKKEEPING
 from gaspart.trajectory.opening import check_frames, open_descriptor, open_netcdf_file
 from gaspart.trajectory.recipe import read_recipe
 
-# The size of a netCDF-3 file by its header: of a shorter file, the library reads zeros without a word.
+# Size of a netCDF-3 file according to its header. If a file is shorter, the library reads zeros without a
+# warning.
 #
 # The format: https://docs.unidata.ucar.edu/netcdf-c/current/file_format_specifications.html
 
 
 _WIDTHS = {1: 1, 2: 1, 3: 2, 4: 4, 5: 4, 6: 8, 7: 1, 8: 2, 9: 4, 10: 8, 11: 8}
-"""Bytes of a value of each type, by the number of the type."""
+"""Bytes per value of each type, by the type number."""
 _OFFSETS = {1: 4, 2: 8, 5: 8}
-"""Bytes of an offset, by the version of the format; of a count 8 in version 5, else 4."""
+"""Bytes of an offset, by the format version. A count has 8 bytes in version 5, otherwise 4."""
 
 
 class _Header:
-    """The numbers and names of a header, in their order. Raises ValueError at its end."""
+    """Reader of the numbers and names of a header, in their order.
+
+    Its methods raise ValueError at the end of the header.
+    """
 
     def __init__(self, file: BinaryIO, version: int) -> None:
         self._file, self._offset, self._count = file, _OFFSETS[version], 8 if version == 5 else 4
@@ -66,11 +70,11 @@ class _Header:
         return self.count()
 
     def skip(self, length: int) -> None:
-        """Pass over values, which are padded to words."""
+        """Skip values, which are padded to words."""
         self._file.seek(_pad_length(length), 1)
 
     def skip_attributes(self) -> None:
-        """Pass over a list of attributes."""
+        """Skip a list of attributes."""
         for _ in range(self.items()):
             self.skip(self.count())
             width = _WIDTHS.get(self.word(), 0)
@@ -82,7 +86,7 @@ def _pad_length(length: int) -> int:
 
 
 def needed_bytes(file: BinaryIO) -> int | None:
-    """Return the minimum size of a netCDF-3 file; None for other formats.
+    """Return the minimum size of a netCDF-3 file in bytes; None for other formats.
 
     Raises ValueError for a damaged header.
     """
@@ -92,7 +96,7 @@ def needed_bytes(file: BinaryIO) -> int | None:
         return None
     try:
         return _size(_Header(file, magic[3]))
-    except (IndexError, OverflowError, OSError):  # numbers that lead nowhere
+    except (IndexError, OverflowError, OSError):  # offsets outside of the file
         raise ValueError("damaged header") from None
 
 
@@ -110,7 +114,7 @@ def _size(header: _Header) -> int | None:
         shape = [sides[header.count()] for _ in range(header.count())]
         header.skip_attributes()
         width = _WIDTHS.get(header.word(), 0)
-        header.count()  # its size, which has 32 bits only
+        header.count()  # the size in the header has only 32 bits
         begin = header.offset()
         if shape[:1] == [0]:
             of_records.append((begin, width * math.prod(shape[1:])))
@@ -119,13 +123,13 @@ def _size(header: _Header) -> int | None:
     if not of_records or records == 0:
         return max(fixed)
     if records in (2**32 - 1, 2**64 - 1):
-        return None  # being written: the library derives the number from the size
+        return None  # a file that is being written: the library computes the number of records from the size
     step = sum(_pad_length(size) for _, size in of_records) if len(of_records) > 1 else of_records[0][1]
     return max(*fixed, *(begin + (records - 1) * step + size for begin, size in of_records))
 
 
 _RIGHT_ANGLE = 2e-5
-"""Degrees from 90 that are attributed to single precision."""
+"""Deviation from 90 degrees that is attributed to single precision."""
 _POSITIONS = ("coordinates", "unwrapped_coordinates", "scaled_coordinates")
 _LABELS = {"spatial": "xyz", "cell_spatial": "abc"}
 _REPLICAS = ("remd_indices", "remd_repidx", "remd_crdidx", "remd_values")
@@ -138,8 +142,8 @@ _SECONDS = ("second", "microsecond", "nanosecond", "picosecond", "femtosecond", 
 def read_netcdf(path: Path, overrides: Overrides) -> Contents:
     """Read all frames.
 
-    Raises SceneError for contents that cannot be checked, and what the library raises for a file that cannot
-    be read.
+    Raises SceneError for contents that cannot be checked. Errors of the library for unreadable files are
+    passed on.
     """
     by_gaspart = is_own(path)
     if by_gaspart:
@@ -156,7 +160,7 @@ def read_netcdf(path: Path, overrides: Overrides) -> Contents:
 def is_own(path: Path) -> bool:
     """Return True if gaspart wrote a file.
 
-    Several attributes are tried, so that damage to one does not hide it.
+    Several attributes are tested, so that damage to one of them does not matter.
     """
     with open_regular(path) as file:
         head = file.read(4096)
@@ -176,7 +180,7 @@ def _foreign(path: Path) -> Iterator[Any]:
 
 
 def _check_convention(file: Any, path: Path) -> None:
-    """Reject another convention or another version of it, and frames of several systems."""
+    """Raise SceneError for another convention, another version, or frames of several systems."""
     conventions = re.split(r"[,\s]+", str(getattr(file, "Conventions", "")))
     if not {"AMBER", "AMBERRESTART"} & set(conventions):
         raise SceneError("Conventions", " ".join(conventions), "must be AMBER or AMBERRESTART", str(path))
@@ -198,9 +202,9 @@ def _check_convention(file: Any, path: Path) -> None:
 
 
 def _read(file: Any, name: str) -> np.ndarray | None:
-    """Read the values of a variable, NaN where it was never filled.
+    """Read the values of a variable, with NaN for values that were never written.
 
-    None if the variable does not exist, or is empty.
+    Return None if the variable does not exist or is empty.
     """
     if name not in file.variables:
         return None
@@ -214,9 +218,9 @@ def _read(file: Any, name: str) -> np.ndarray | None:
 
 
 def _read_frames(file: Any, name: str, path: Path, width: int | None = None) -> np.ndarray | None:
-    """Read the values (frame, ...) of a variable of every frame, or of a restart file.
+    """Read the values (frame, ...) of a variable in every frame, or in a restart file.
 
-    A restart file has a single frame. None as `_read` returns it.
+    A restart file has a single frame. Return None in the same cases as `_read`.
     """
     values = _read(file, name)
     if values is None:
@@ -228,7 +232,7 @@ def _read_frames(file: Any, name: str, path: Path, width: int | None = None) -> 
 
 
 def _contents(file: Any, overrides: Overrides, path: Path) -> Contents:
-    """Return the fields of a file in which every frame has a complete set of particles."""
+    """Return the fields of a file whose frames all have a complete set of particles."""
     lengths = _read_frames(file, "cell_lengths", path, 3)
     origin = _read_frames(file, "cell_origin", path, 3)
     angles = _read_frames(file, "cell_angles", path, 3)
@@ -266,16 +270,16 @@ def _contents(file: Any, overrides: Overrides, path: Path) -> Contents:
 
 
 def _find_variable(file: Any, *names: str) -> str:
-    """Return the first of some names that a file has, in small or capital letters (Radius).
+    """Return the first of several names that exists in a file.
 
-    If the file has none of the names, the first name is returned.
+    Names in lower and upper case (Radius) are accepted. If none exists, return the first name.
     """
     there = {name.lower(): name for name in file.variables} | {name: name for name in file.variables}
     return next((there[name] for name in names if name in there), names[0])
 
 
 def _velocities(file: Any, path: Path) -> tuple[np.ndarray | None, str | None]:
-    """Return the velocities (T, N, 3); None with the reason if some frames have none."""
+    """Return the velocities (T, N, 3), or None and the reason if some frames have none."""
     values = _read_frames(file, "velocities", path)
     if values is None or values.ndim != 3:
         return values, None
@@ -290,7 +294,7 @@ def _positions(
 ) -> tuple[np.ndarray, float]:
     """Return the positions and their resolution.
 
-    Positions are (T, N, 3), or (T, N, 2) if z was never filled.
+    Positions are (T, N, 3), or (T, N, 2) if z was never written.
     """
     name = next((name for name in _POSITIONS if name in file.variables), None)
     if name is None or "atom" not in file.dimensions:
@@ -324,10 +328,10 @@ def _positions(
 
 
 def _times(file: Any) -> tuple[np.ndarray | None, float]:
-    """Return times in double precision, and their resolution.
+    """Return the times in double precision, and their resolution.
 
-    LAMMPS may have steps and a scale factor instead. OVITO numbers the frames in `time`, and has the time, if
-    it knows it, in `Time`.
+    LAMMPS may store steps and a scale factor instead. OVITO stores frame numbers in `time`, and the time, if
+    it is known, in `Time`.
     """
     name = "Time" if str(getattr(file, "program", "")) == "OVITO" else "time"
     if name not in file.variables:
@@ -345,7 +349,10 @@ def _times(file: Any) -> tuple[np.ndarray | None, float]:
 
 
 def _check_units(file: Any, path: Path) -> None:
-    """Reject velocities and times in different units of time, like LAMMPS's `units electron`."""
+    """Raise SceneError if velocities and times have different time units.
+
+    An example is LAMMPS `units electron`.
+    """
     units = [str(getattr(file.variables.get(name), "units", "")).lower() for name in ("velocities", "time")]
     of_velocity, of_time = (unit.rpartition("/")[2].removesuffix("s") for unit in units)
     if of_velocity in _SECONDS and of_time in _SECONDS and of_velocity != of_time:
@@ -354,7 +361,7 @@ def _check_units(file: Any, path: Path) -> None:
 
 
 def _check_shapes(contents: Contents, path: Path) -> None:
-    """Refuse fields of another number of frames or particles than the positions."""
+    """Raise SceneError for fields with another number of frames or particles than the positions."""
     frames, count, _ = contents.positions.shape
     expected: dict[str, list[tuple[int, ...]]] = {
         "velocities": [(frames, count, 3), (frames, count, 2)],
@@ -373,14 +380,14 @@ def _check_shapes(contents: Contents, path: Path) -> None:
 
 
 def _add_scene(contents: Contents, path: Path) -> None:
-    """Add the information in the scene of a trajectory of gaspart."""
+    """Add the information from the scene in a gaspart trajectory."""
     recipe = read_recipe(path)
     scene = recipe.scene
     elastic = scene.restitution is None or scene.restitution.smooth_and_elastic
     quiet = scene.gravity is None and not scene.faces and not scene.walls and not scene.vibrates
     quiet = quiet and scene.thermostat is None
     free = not any(kind.fixed for kind in scene.kinds)
-    alike = len({kind.mass for kind in scene.kinds}) == 1  # of all, also where the file has only a part
+    alike = len({kind.mass for kind in scene.kinds}) == 1  # all particles, even those not in the file
     d, frames, count = scene.dimension, len(contents.positions), contents.positions.shape[1]
     contents.boundary = tuple("periodic" if periodic else "wall" for periodic in scene.image_axes)
     contents.flat = d == 2

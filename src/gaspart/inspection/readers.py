@@ -1,6 +1,6 @@
-"""Reading trajectories: AMBER and LAMMPS netCDF, GSD, and XYZ, extended or plain.
+"""Readers of trajectories: AMBER and LAMMPS netCDF, GSD, and plain or extended XYZ.
 
-`docs/files.md` lists every field of these formats and how it is used.
+`docs/files.md` describes how each field of these formats is used.
 """
 
 from __future__ import annotations
@@ -29,7 +29,9 @@ from gaspart.system import memory
 from gaspart.trajectory.recipe import read_recipe
 
 COPIES = 4
-"""Memory that reading takes, over the size of a file: in double precision, as stored and in the container."""
+"""Memory for reading a file divided by the size of the file: in double precision, as stored and in the
+container.
+"""
 SUFFIXES = (".nc", ".gsd", ".xyz")
 _READERS = {
     **dict.fromkeys((".nc", ".ncdf", ".ncrst", ".rst7", ".rst", ".partial"), read_netcdf),
@@ -49,11 +51,11 @@ def read_frames(
     """Read the frames of a trajectory; the arguments take precedence over the file.
 
     radius : radius of all particles.
-    lengths : (d,), sides.
-    boundary : "periodic" (the default for files of other programs without a boundary) or "wall", or one word
-        for each axis.
-    time_step : simulated time of one step if a file counts steps (GSD), otherwise between frames.
-    origin : (d,), lower corner of the container, or "centre" if its middle is at 0.
+    lengths : (d,), side lengths of the container.
+    boundary : "periodic" (the default for files of other programs without a boundary), "wall", or one word
+        per axis.
+    time_step : simulated time of one step if the file counts steps (GSD), otherwise the time between frames.
+    origin : (d,), lower corner of the container, or "centre" if the origin is its middle.
 
     Raises SceneError for a file that cannot be read, or for missing data.
     """
@@ -63,7 +65,7 @@ def read_frames(
 
 
 def is_open_run(path: str | Path) -> bool:
-    """Return True for a trajectory of gaspart with open faces, which `checks.judge_open` checks."""
+    """Return True for a gaspart trajectory with open faces, which `checks.judge_open` checks."""
     path = Path(path)
     with _reading(path):
         netcdf = _READERS.get(path.suffix.lower()) is read_netcdf
@@ -71,7 +73,7 @@ def is_open_run(path: str | Path) -> bool:
 
 
 def read_contents(path: Path, overrides: Overrides) -> Contents:
-    """Read the contents of a file as `read_frames` does; raise SceneError."""
+    """Read the contents of a file as in `read_frames`; raise SceneError."""
     with _reading(path):
         return _contents(path, overrides)
 
@@ -86,7 +88,7 @@ def _contents(path: Path, overrides: Overrides) -> Contents:
 
 @contextmanager
 def _reading(path: Path) -> Iterator[None]:
-    """Raise SceneError for any error in reading a file.
+    """Convert any error in reading a file to SceneError.
 
     Values that are not finite are rejected later.
     """
@@ -101,9 +103,9 @@ def _reading(path: Path) -> Iterator[None]:
 
 
 def _require_memory(path: Path) -> None:
-    """Raise SceneError for a file whose frames exceed the memory, for example a sparse one.
+    """Raise SceneError for a file whose frames exceed the memory, for example a sparse file.
 
-    Raises OSError without a file.
+    Raises OSError if the file does not exist.
     """
     with open_regular(path) as file:
         size = os.fstat(file.fileno()).st_size
@@ -114,7 +116,7 @@ def _require_memory(path: Path) -> None:
         raise SceneError("file", str(path), rule)
 
 
-# The last frame of a file of another program, GSD or XYZ, as the initial state of a scene.
+# Last frame of a GSD or XYZ file of another program, as the initial state of a scene.
 
 
 STARTS = (".gsd", ".xyz", ".extxyz")
@@ -126,7 +128,7 @@ _SAME = 1e-6
 def read_state(path: str | Path, scene: Scene) -> State:
     r"""Return the initial state of a scene from a GSD or XYZ file.
 
-    The state is in the last frame of the file.
+    The state is the last frame of the file.
 
     Parameters
     ----------
@@ -138,20 +140,19 @@ def read_state(path: str | Path, scene: Scene) -> State:
     Returns
     -------
     State
-        State at time 0, with the positions and velocities of the frame, in the precision of the file. In a
+        State at time 0 with the positions and velocities of the frame, in the precision of the file. In a
         sheared scene the velocities are relative to the flow. Spins are 0.
 
     Raises
     ------
     SceneError
-        If the file has no velocities, or another number of particles, other sizes or masses, or another
-        container; if `gaspart check` cannot read it; or if `Simulation` rejects the state.
+        If the file has no velocities; if it has another number of particles, other sizes or masses, or
+        another container; if `gaspart check` cannot read it; or if `Simulation` rejects the state.
 
     Notes
     -----
-    The particles of the file are in the order of their ids, if it has ids. This order is the order of the
-    scene. If the radii and masses of the file do not agree with it, particles are assigned by radii and
-    masses.
+    The particles of the file are sorted by their ids, if there are any. This order must be the order of the
+    scene. If radii and masses then disagree, particles are assigned by their radii and masses.
 
     Examples
     --------
@@ -190,9 +191,9 @@ def read_state(path: str | Path, scene: Scene) -> State:
 
 
 def _in_dimensions(name: str, values: np.ndarray, scene: Scene, path: Path) -> np.ndarray:
-    """Return the values (N, d) from the values (N, 2 or 3) of a frame.
+    """Return values (N, d) from the values (N, 2 or 3) of a frame.
 
-    Discs that are not in a plane, and spheres in a plane, are rejected.
+    Discs that are not in a plane are rejected, and so are spheres in a plane.
     """
     d, stated = scene.dimension, values.shape[1]
     if stated < d:
@@ -207,7 +208,7 @@ def _in_dimensions(name: str, values: np.ndarray, scene: Scene, path: Path) -> n
 def _origin(contents: Contents, scene: Scene) -> np.ndarray:
     """Return the lower corner (d,) of the container.
 
-    A file has the part of the container up to a piston, which is at its side when a run begins.
+    A file contains the part of the container up to the piston, which is at its side when a run begins.
     """
     low, sides = np.zeros(scene.dimension), np.array(scene.container.lengths)
     for number, _ in scene.pistons if contents.lengths is not None else ():
@@ -222,9 +223,9 @@ def _origin(contents: Contents, scene: Scene) -> np.ndarray:
 
 
 def _check_container(contents: Contents, scene: Scene, path: Path) -> None:
-    """Reject a container of other sides.
+    """Raise SceneError for a container with other side lengths.
 
-    Sides between walls may be unknown, 0, and sides up to a piston may be smaller.
+    Side lengths between walls may be unknown (0), and sides up to a piston may be shorter.
     """
     if contents.flat is not None and contents.flat != (scene.dimension == 2):
         has = "two" if contents.flat else "three"
@@ -241,9 +242,9 @@ def _check_container(contents: Contents, scene: Scene, path: Path) -> None:
 
 
 def _order(contents: Contents, scene: Scene, path: Path) -> np.ndarray:
-    """Return the particle (N,) of a file for each particle of the scene.
+    """Return the particle number (N,) in a file for each particle of the scene.
 
-    Particles are identified by the radii and masses in the file.
+    Particles are identified by their radii and masses in the file.
     """
     pairs: list[tuple[str, np.ndarray, np.ndarray]] = []
     for name, stated in (("radius", contents.radii), ("mass", contents.masses)):
@@ -262,5 +263,5 @@ def _order(contents: Contents, scene: Scene, path: Path) -> np.ndarray:
 
 
 def _alike(values: np.ndarray, expected: np.ndarray) -> np.ndarray:
-    """Return True for each value (N,) that has the wanted value but for rounding."""
+    """Return True for each value (N,) that equals the expected value up to rounding."""
     return np.abs(values - expected) <= _SAME * expected

@@ -1,8 +1,8 @@
-"""Number of independent samples of a trajectory, computed from the motion of its particles.
+"""Statistical checks: independent samples, speeds, contact values and diffusion of a trajectory.
 
-Velocities change by collisions, positions by flights. So the clock of velocities is the number of collisions,
-and the clock of positions is the distance that particles have moved. Neither clock requires times or a law of
-motion, so the files of all programs can be used.
+Velocities change by collisions, and positions change by flights. So velocities are measured against the
+number of collisions, and positions against the distance that particles have moved. Neither requires times or
+a law of motion, so files of all programs can be used.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ from itertools import pairwise
 import numpy as np
 
 from gaspart import theory
-from gaspart.analysis.bulk import EXACT, collision_rate
 from gaspart.analysis.diffusion import linear_lags, settled_slope
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.expected.transport import diffusion_in_cube
@@ -24,20 +23,22 @@ from gaspart.inspection.frames import Frames
 from gaspart.inspection.verdict import Check, compare_with_theory
 from gaspart.scene.gas import Gas
 from gaspart.scene.limits import ball_volume
+from gaspart.theory.bulk import EXACT, collision_rate
 
 UNEVEN = 20.0
-"""Power of a long wave, 1 on average if particles are independent, from which on a gas is not uniform: by
-chance once in 1e8."""
-_CHANGED = 0.05  # of the root-mean-square speed, from which on a velocity has changed
+"""Power of a long wave above which a gas is not uniform. It is 1 on average for independent particles, and
+exceeds the limit by chance once in 1e8.
+"""
+_CHANGED = 0.05  # minimum change of a velocity that counts, in root-mean-square speeds
 
 
 def count_collisions(frames: Frames) -> np.ndarray:
-    """Compute a lower bound of the collisions (T,) of a particle since the first frame.
+    """Compute a lower bound of the collisions (T,) per particle since the first frame.
 
-    From frame to frame it is the smaller of two numbers. The first is -ln of the fraction of particles whose
-    velocity has not changed (except by reflections at walls). The second is -(d/2) ln of the correlation of
-    velocities, which decays as exp(-2s/d) in s collisions. The first is deceived by a thermostat, which
-    changes all velocities a little, the second by walls.
+    Between consecutive frames it is the smaller of two numbers. The first is -ln of the fraction of particles
+    whose velocity has not changed (except by reflections at walls). The second is -(d/2) ln of the
+    correlation of velocities, which decays as exp(-2s/d) in s collisions. The first number is too large with
+    a thermostat, which slightly changes all velocities; the second is too large with walls.
     """
     velocities = frames.velocities
     assert velocities is not None, "requires velocities"
@@ -54,16 +55,16 @@ def count_collisions(frames: Frames) -> np.ndarray:
     correlation = products / np.maximum(np.sqrt(square[1:] * square[:-1]), np.finfo(float).tiny)
     unhit = -np.log(np.clip(1.0 - changed, least, 1.0))
     kept = -0.5 * frames.dimension * np.log(np.clip(correlation, least, 1.0))
-    return np.concatenate([[0.0], np.cumsum(np.minimum(unhit, kept))]) + 0.0  # no -0
+    return np.concatenate([[0.0], np.cumsum(np.minimum(unhit, kept))]) + 0.0  # avoids -0
 
 
 def independent(times: np.ndarray, rate: float) -> float:
     """Compute the number of independent samples in a mean over frames at `times`.
 
-    For a property whose correlation decays as exp(-rate t) it is 1 / mean of exp(-rate |t_i - t_j|) over all
-    pairs i, j.
+    If the correlation of a property decays as exp(-rate t), the number is 1 / mean of exp(-rate |t_i - t_j|)
+    over all pairs i, j.
     """
-    total, before = 0.0, 0.0  # sum over earlier frames of their correlation with this one
+    total, before = 0.0, 0.0  # sum of the correlations of earlier frames with this one
     for decay in np.exp(-rate * np.diff(times, prepend=times[0])):
         before *= decay
         total += 1.0 + 2.0 * before
@@ -72,9 +73,9 @@ def independent(times: np.ndarray, rate: float) -> float:
 
 
 def decorrelated_frames(way: np.ndarray, distance: float, first: int = 0) -> list[int]:
-    """Return frames, from `first` on, between which particles have moved by `distance`.
+    """Return frames after `first`, between which particles have moved by `distance`.
 
-    The distance is a minimum of the root mean square, from each frame to the next.
+    The root mean square displacement between consecutive returned frames is at least this distance.
     """
     chosen = [first]
     for n in range(first + 1, len(way)):
@@ -84,15 +85,15 @@ def decorrelated_frames(way: np.ndarray, distance: float, first: int = 0) -> lis
 
 
 def first_relaxed_frame(way: np.ndarray, distance: float) -> int | None:
-    """Return the first frame until which particles have moved by `distance`, or None.
+    """Return the first frame in which particles have moved by `distance`, or None.
 
-    The distance is a root mean square.
+    The displacement is a root mean square.
     """
     return next((n for n, moved in enumerate(way) if sum_squares(moved).mean() >= distance**2), None)
 
 
 def describe_motion(way: np.ndarray, distance: float) -> str:
-    """Return the reason why positions are not relaxed."""
+    """Return the reason why positions have not relaxed."""
     there = math.sqrt(float(sum_squares(way[-1]).mean()))
     return (
         f"particles must move by {distance:.3g} after the first frame, to relax; they have moved {there:.2g}"
@@ -100,10 +101,10 @@ def describe_motion(way: np.ndarray, distance: float) -> str:
 
 
 def density_modulation(frames: Frames, n: int, of: np.ndarray | None = None) -> float:
-    """Compute the largest power of the two longest waves of the density along each axis.
+    """Compute the largest power of the two longest density waves along each axis.
 
-    It is computed for the density of particles in frame n or, with `of` (N,), for a property of the particles
-    minus its mean. It is about 1 if the density is uniform.
+    It is computed for the particle density in frame n, or, with `of` (N,), for the density of a property
+    minus its mean. The power is about 1 if the density is uniform.
     """
     weights = np.ones(frames.count) if of is None else of - of.mean()
     total = float((weights**2).sum())
@@ -113,7 +114,7 @@ def density_modulation(frames: Frames, n: int, of: np.ndarray | None = None) -> 
     for x, side, periodic in zip(frames.positions[n].T, frames.lengths, frames.periodic, strict=True):
         phase = np.pi * (2.0 if periodic else 1.0) * x / side
         cosine, sine = np.cos(phase), np.sin(phase)
-        # of the longest wave, and of half its length by the double angle
+        # longest wave, and half its length by the double-angle formulas
         waves = [cosine @ weights, (2.0 * cosine**2 - 1.0) @ weights]
         others = [sine @ weights, (2.0 * sine * cosine) @ weights]
         powers = np.square(waves) + np.square(others) if periodic else 2.0 * np.square(waves)
@@ -121,20 +122,20 @@ def density_modulation(frames: Frames, n: int, of: np.ndarray | None = None) -> 
     return largest / total
 
 
-# Checks of speeds: Maxwell's distribution, and its kurtosis, once collisions have brought it about.
+# Checks of speeds against Maxwell's distribution and its kurtosis, after enough collisions.
 
 
 SPEEDS = "speed law", "kurtosis of speeds"
 """Names of the checks of speeds."""
 RESIDUE = 0.25
-"""Deviation of the kurtosis that may remain from the initial state, over its scatter in one frame."""
+"""Deviation of the kurtosis that may remain from the initial state, divided by its scatter in one frame."""
 RARE = 1e-4
 """Probability below which the check of the distribution fails."""
-_MOST_SKEWED = 1.0  # skewness of a mean whose probability is known well enough
+_MOST_SKEWED = 1.0  # maximum skewness of a mean at which its probability is sufficiently well known
 
 
 def why_not_speeds(frames: Frames) -> str | None:
-    """Return the reason why speeds cannot be checked; None if they can be checked."""
+    """Return the reason why speeds cannot be checked, or None."""
     if frames.velocities is None:
         return frames.no_velocities
     if not frames.squares.any() and not np.any(frames.velocities):
@@ -153,12 +154,13 @@ def why_not_speeds(frames: Frames) -> str | None:
 def judge_speeds(frames: Frames) -> list[Check]:
     """Check the distribution of speeds in the last frame, and its kurtosis in all relaxed frames.
 
-    The clock is `count_collisions`. A deviation of the kurtosis decays with the slowest rate of the
-    homogeneous Boltzmann equation. The deviation in the first frame is computed from that frame. Maxwell's
-    law also needs relaxed positions. Spheres at packing fraction 0.3 that were inserted at random, with
-    Maxwell's velocities, deviate for a while: by -0.0044(5) after 6 collisions of each, -0.0029(5) after 10
-    and -0.0003(13) after 15. They have then moved by the distance of neighbours. With the same velocities,
-    but relaxed positions, the first number is -0.0006(7).
+    The number of collisions is `count_collisions`. A deviation of the kurtosis decays with the slowest rate
+    of the homogeneous Boltzmann equation. The initial deviation is computed from the first frame. The test of
+    Maxwell's distribution also requires relaxed positions. For spheres at a packing fraction of 0.3 that were
+    inserted at random with Maxwellian velocities, the kurtosis deviates for some time: by -0.0044(5) after 6
+    collisions per particle, -0.0029(5) after 10 and -0.0003(13) after 15. After that they have moved by the
+    distance between neighbours. With the same velocities but relaxed positions, the first deviation is
+    -0.0006(7).
     """
     names = SPEEDS
     if reason := why_not_speeds(frames):
@@ -192,7 +194,7 @@ def judge_speeds(frames: Frames) -> list[Check]:
 
 
 def _law(frames: Frames) -> Check:
-    """Check the speeds of the last frame against Maxwell's law at their own temperature."""
+    """Check the speeds in the last frame against Maxwell's distribution at their own temperature."""
     bins = min(30, frames.count // 10)
     if bins < 4:
         return Check("speed law", None, f"{frames.count} particles are too few for a histogram")
@@ -206,12 +208,12 @@ def _law(frames: Frames) -> Check:
 
 
 def _squares(frames: Frames, n: int) -> np.ndarray:
-    """Return squared speeds (N,) in a frame, about the centre of mass along periodic axes."""
+    """Return squared speeds (N,) in a frame, relative to the centre of mass along periodic axes."""
     return np.asarray(frames.peculiar_squares[n])
 
 
 def _kurtosis(frames: Frames) -> np.ndarray:
-    """Compute <v^4> / <v^2>^2 of each frame (T,); 1 in a frame at rest."""
+    """Compute <v^4> / <v^2>^2 of each frame (T,); 1 for a frame at rest."""
     values = []
     for n in range(len(frames.positions)):
         square = _squares(frames, n)
@@ -221,10 +223,10 @@ def _kurtosis(frames: Frames) -> np.ndarray:
 
 
 def _expected_kurtosis(frames: Frames) -> float:
-    """Compute the kurtosis in equilibrium at fixed energy (exact).
+    """Compute the equilibrium kurtosis at fixed energy (exact).
 
-    The momentum along periodic axes is zero. As in `theory.kurtosis`; along a periodic axis <v_k^2> is its
-    value along another axis times 1 - 1/N.
+    The momentum along periodic axes is zero. As in `theory.kurtosis`, except that <v_k^2>
+    along a periodic axis is reduced by the factor 1 - 1/N.
     """
     parts = np.where(frames.periodic, 1.0 - 1.0 / frames.count, 1.0)
     freedoms = frames.count * parts.sum()
@@ -232,9 +234,9 @@ def _expected_kurtosis(frames: Frames) -> float:
 
 
 def _normal(deviation: float, skewness: float) -> float:
-    """Return the normal deviation with the probability of a deviation of a skewed distribution.
+    """Return the normal deviation with the same probability as a deviation of a skewed distribution.
 
-    Above the mean it uses the gamma distribution (Wilson and Hilferty, Proc. Natl. Acad. Sci. 17, 684
+    Above the mean the gamma distribution is used (Wilson and Hilferty, Proc. Natl. Acad. Sci. 17, 684
     (1931)). Below the mean, where the tail is shorter, the deviation is unchanged.
     """
     if deviation <= 0.0:
@@ -242,33 +244,35 @@ def _normal(deviation: float, skewness: float) -> float:
     return 6.0 / skewness * (math.cbrt(1.0 + 0.5 * skewness * deviation) - 1.0) + skewness / 6.0
 
 
-# The pair distribution at contact, g(sigma), from positions alone; it gives Z = 1 + 2^(d-1) eta g(sigma).
+# Pair distribution at contact, g(sigma), from positions alone; it gives Z = 1 + 2^(d-1) eta g(sigma).
 #
-# g(r) in thin shells from contact to 1.3 diameters is fitted by a polynomial of degree 4 in r, whose value
-# at contact is a sum of the shells' counts with fixed coefficients; so each frame gives one number, and
-# blocks of them the error. A cubic has 0.7 of this error, and is too low by 0.8 % of g(sigma) at packing
-# fraction 0.45, 1.7 % at 0.49, 2.2 % at 0.511 and 2.5 % at 0.52 (each +- 0.3 %, 500 spheres).
+# g(r) in thin shells from contact to 1.3 diameters is fitted by a polynomial of degree 4 in r. Its value at
+# contact is a linear combination of the counts in the shells. So each frame gives one number, and blocks of
+# frames give the error. A cubic polynomial has 0.7 times this error, but gives too low values: by 0.8 % of
+# g(sigma) at a packing fraction of 0.45, 1.7 % at 0.49, 2.2 % at 0.511 and 2.5 % at 0.52 (each +- 0.3 %, 500
+# spheres).
 
 
 WIDTH = 0.3
-"""Width of all shells together, in diameters."""
+"""Total width of all shells in diameters."""
 _SHELLS, _DEGREE = 15, 4
 FIT_ERROR = 0.005
-"""Bound on the relative error of the fit. Differences from the collisions of the same runs, in %: of 500
-spheres at packing fractions 0.4, 0.45, 0.49, 0.511 and 0.52 -0.4(7), -0.2(5), -0.2(4), -0.4(4), -0.6(4); of
-500 discs at 0.5, 0.6 and 0.69 0.2(1.3), -0.6(9), -0.8(6)."""
+"""Bound on the relative error of the fit. Differences from the values by collisions in the same runs, in %:
+for 500 spheres at packing fractions 0.4, 0.45, 0.49, 0.511 and 0.52 -0.4(7), -0.2(5), -0.2(4), -0.4(4),
+-0.6(4); for 500 discs at 0.5, 0.6 and 0.69 0.2(1.3), -0.6(9), -0.8(6).
+"""
 
 
 def contact_values(frames: Frames) -> np.ndarray:
-    """Compute g(sigma) (T,) of each frame of equal particles in a periodic container, dimensionless."""
+    """Compute g(sigma) (T,) in each frame, for equal particles in a periodic container."""
     sigma, (edges, coefficients, _) = frames.diameter, _contact_fit(frames)
     assert sigma is not None, "see `_contact_fit`"
-    inner = round(_SHELLS / WIDTH)  # intervals within a diameter, as wide as the shells
+    inner = round(_SHELLS / WIDTH)  # number of intervals of the width of a shell within a diameter
     values = []
     for positions in frames.positions:
         counts = pair_counts(positions[None], frames.lengths, inner + _SHELLS, sigma * edges[-1])
         shells = counts[inner:]
-        # pairs that rounding has brought below contact belong to the first shell
+        # pairs that rounding moved below contact belong to the first shell
         if below := counts[:inner].sum():
             shells[0] += below - pair_counts(positions[None], frames.lengths, 1, sigma * (1.0 - 1e-5))[0]
         values.append(coefficients @ shells)
@@ -276,10 +280,10 @@ def contact_values(frames: Frames) -> np.ndarray:
 
 
 def has_too_few_contacts(frames: Frames) -> bool:
-    """Return True if pairs near contact are too few for an error of `contact_values`.
+    """Return True if there are too few pairs near contact for an error of `contact_values`.
 
-    The number of pairs in a shell has Poisson's distribution about the mean of an ideal gas. If few are
-    expected, their mean over frames is skewed. Without any pair its scatter is 0.
+    The number of pairs in a shell has a Poisson distribution about the mean of an ideal gas. If this mean is
+    small, the average over frames has a skewed distribution. Without any pair, the scatter is 0.
     """
     _, coefficients, pairs = _contact_fit(frames)
     variance, third = (len(frames.positions) * (coefficients**k @ pairs) for k in (2, 3))
@@ -287,7 +291,7 @@ def has_too_few_contacts(frames: Frames) -> bool:
 
 
 def _contact_fit(frames: Frames) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return edges of shells in diameters, coefficients of counts, counts of an ideal gas."""
+    """Return edges of shells in diameters, coefficients of counts, and ideal-gas counts."""
     n, d, sigma = frames.count, frames.dimension, frames.diameter
     assert sigma is not None, "requires equal particles"
     edges = 1.0 + WIDTH * np.linspace(0.0, 1.0, _SHELLS + 1)
@@ -297,17 +301,17 @@ def _contact_fit(frames: Frames) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _at_contact(edges: np.ndarray, volumes: np.ndarray, dimension: int) -> np.ndarray:
-    """Return coefficients (shells,) for a polynomial's value at r = 1 from its means over shells."""
+    """Return the coefficients (shells,) of a polynomial's value at r = 1 from its means."""
     nodes, weights = np.polynomial.legendre.leggauss(_DEGREE + dimension)
     radii = 0.5 * (edges[1:] + edges[:-1])[:, None] + 0.5 * np.diff(edges)[:, None] * nodes
     weights = weights * radii ** (dimension - 1)
     weights /= weights.sum(axis=1, keepdims=True)
     powers = np.stack([(weights * (radii - 1.0) ** k).sum(axis=1) for k in range(_DEGREE + 1)], axis=1)
-    scale = np.sqrt(volumes)  # counts of larger shells are the more certain ones
+    scale = np.sqrt(volumes)  # counts in larger shells are more accurate
     return np.linalg.pinv(powers * scale[:, None])[0] * scale
 
 
-# The diffusion coefficient of spheres from a trajectory, and that of theory for their number and cube.
+# Diffusion coefficient of spheres from a trajectory, and from theory for the same number and cube.
 
 
 _GROUPS = 32
@@ -316,7 +320,7 @@ _GROUPS = 32
 def why_not(frames: Frames) -> str | None:
     """Return the reason why D cannot be measured from a trajectory, or None.
 
-    Particles are equal and have velocities.
+    The particles must be equal and have velocities.
     """
     if frames.dimension == 2:
         return "discs have none: the displacement's square grows like t ln t"
@@ -340,17 +344,17 @@ def why_not(frames: Frames) -> str | None:
 
 
 def groups_of(frames: Frames) -> int:
-    """Return the number of groups of particles whose scatter gives the error."""
+    """Return the number of groups of particles; their scatter gives the error."""
     return min(frames.count, _GROUPS)
 
 
 def diffusion(frames: Frames) -> tuple[Estimate, tuple[float, float]]:
-    """Measure D by the slope of the mean-squared displacement that no longer changes.
+    """Measure D from the first slope of the mean-squared displacement that no longer changes.
 
-    `gaspart measure` does the same. Returned are D and the collisions of a particle between which the slope
-    is taken. Raises SceneError if it still changes. For N particles whose total momentum is zero, D is (N -
-    1) / N of its value without this condition. The result is corrected for this factor. The error is the
-    scatter of groups of particles.
+    `gaspart measure` uses the same method. Returns D and the first and last lag of the slope, in collisions
+    of a particle. Raises SceneError if the slope still changes at the longest lags. For zero total momentum
+    of N particles, D is (N - 1) / N of its value without this condition. The result is corrected for this
+    factor. The error is the scatter of groups of particles.
     """
     way, n = frames.path, frames.count
     lags = _lags(frames)
@@ -367,7 +371,7 @@ def diffusion(frames: Frames) -> tuple[Estimate, tuple[float, float]]:
 
 
 def expected_diffusion(frames: Frames, window: tuple[float, float]) -> tuple[float, float, str]:
-    """Return D in this cube, its uncertainty and source.
+    """Return the theoretical D in this cube, its uncertainty and its source.
 
     The values are for the equation of the engine, if the file names an engine.
     """
@@ -390,12 +394,12 @@ def _gas(frames: Frames) -> Gas:
 
 
 def _rate(frames: Frames) -> float:
-    """Return the collisions of a particle per time, by theory."""
+    """Return the collisions per time of a particle, from theory."""
     return collision_rate(_gas(frames), frames.engine.equation if frames.engine else EXACT)
 
 
 def _lags(frames: Frames) -> list[int]:
-    """Return the first lags between which slopes are taken, in frames, all different."""
+    """Return the first lags of slopes in frames, without duplicates."""
     first, middle, last = linear_lags(_rate(frames), _interval(frames))
     middle = max(middle, first + 1)
     return [first, middle, max(last, middle + 1)]

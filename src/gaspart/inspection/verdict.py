@@ -1,4 +1,4 @@
-"""The outcome of a check, in one line."""
+"""Result of a check, in one line."""
 
 from __future__ import annotations
 
@@ -7,17 +7,18 @@ from dataclasses import dataclass
 from gaspart.analysis.estimate import Estimate
 from gaspart.errors import visible
 
-_LONGEST = 1000  # characters
+_LONGEST = 1000  # number of characters
 LIMIT = 4.0
-"""Standard errors from theory beyond which a check fails: by chance once in 16 000."""
+"""Difference from theory, in standard errors, above which a check fails; by chance once in 16 000."""
 
 
 @dataclass(frozen=True)
 class Check:
-    """Outcome of one check: whether it is passed, and the reason.
+    """Result of one check: passed or failed, and the reason.
 
-    A check that could not be made has the value None. If `acts`, it has found that more than elastic contacts
-    moves the particles.
+    If the check could not be made, `passed` has the value None. If `acts` is True, the check found that
+    forces other
+    than elastic contacts act on the particles.
     """
 
     name: str
@@ -33,10 +34,10 @@ class Check:
 def compare_with_theory(
     name: str, measured: Estimate, theory: Estimate, basis: str, deviation: float | None = None
 ) -> Check:
-    """Compare a measurement with theory; it passes within `LIMIT` combined standard errors.
+    """Compare a measurement with theory; the check passes within `LIMIT` combined standard errors.
 
-    basis : source of theory, and the number of samples.
-    deviation : deviation in standard errors, if its distribution is neither normal nor Student's.
+    basis : source of the theory, and the number of samples.
+    deviation : deviation in standard errors, if its distribution is neither normal nor Student's t.
     """
     sigma = abs((measured - theory).deviation if deviation is None else deviation)
     text = f"{measured.value:.5g} +- {measured.error:.2g}, theory {theory.value:.5g}"

@@ -1,4 +1,4 @@
-"""The contents of an XYZ file, plain or extended, https://github.com/libAtoms/extxyz (specification)."""
+"""Contents of a plain or extended XYZ file, https://github.com/libAtoms/extxyz (specification)."""
 
 from __future__ import annotations
 
@@ -33,18 +33,18 @@ _NAMES = {
     "forces": ("force", "forces"),
     "move_mask": ("move_mask",),
 }
-"""Names of columns, in small letters, by which programs call the fields that are used."""
+"""Lower-case names of columns under which programs store each field."""
 _FIELDS = {name: field for field, names in _NAMES.items() for name in names}
 _PLAIN = {"species": (0, 1), "pos": (1, 3)}
 _TRUE, _FALSE = ("t", "true", "1"), ("f", "false", "0")
 
 
 def read_xyz(path: Path, overrides: Overrides) -> Contents:
-    """Read all frames, or the last one.
+    """Read all frames, or the last frame.
 
-    Raises SceneError for contents that cannot be checked, ValueError for other text.
+    Raises SceneError for contents that cannot be checked, and ValueError for other text.
     """
-    kinds: dict[str, int] = {}  # a number for each name of a species
+    kinds: dict[str, int] = {}  # a number for each species name
     with open_regular(path) as file, TextIOWrapper(file, encoding="utf-8") as lines:
         frames = (
             _read_frame(n, *frame, kinds, overrides, path) for n, frame in enumerate(_frames(lines, path))
@@ -57,7 +57,7 @@ def read_xyz(path: Path, overrides: Overrides) -> Contents:
     first = parts[0][1]
     for n, part in parts:
         _require_same_fields(n, part, first, path)
-    # one field after the other is brought together, and its parts are freed
+    # fields are joined one after the other, and their parts are freed
     names = [name for name in first if name != "boundary"]
     boundary = first.get("boundary")
     columns = {name: np.array([part.pop(name) for _, part in parts]) for name in names}
@@ -92,9 +92,9 @@ def _drop_velocities(parts: list[dict]) -> str | None:
 
 
 def _add_origins(parts: list[dict]) -> None:
-    """Set a missing corner of a container to 0 if other frames have a corner.
+    """Set the missing lower corner of a container to 0 if other frames have a corner.
 
-    OVITO leaves out a corner of 0.
+    OVITO omits a corner at 0.
     """
     stated = [part["origin"] for part in parts if "origin" in part]
     if stated:
@@ -103,7 +103,7 @@ def _add_origins(parts: list[dict]) -> None:
 
 
 def _require_same_fields(n: int, part: dict, first: dict, path: Path) -> None:
-    """Refuse a frame of another number of particles, other fields or another boundary than the first."""
+    """Raise SceneError if a frame has other numbers, fields or boundaries than the first."""
     if len(part["pos"]) != len(first["pos"]):
         rule = f"has {len(part['pos'])} particles in frame {n} and {len(first['pos'])} in frame 0"
         raise SceneError("file", str(path), f"{rule}: a changing number cannot be checked")
@@ -116,7 +116,7 @@ def _require_same_fields(n: int, part: dict, first: dict, path: Path) -> None:
 
 
 def _velocities(columns: dict[str, np.ndarray], path: Path) -> np.ndarray | None:
-    """Return the velocities (T, N, d), from momenta if need be."""
+    """Return the velocities (T, N, d), computed from momenta if necessary."""
     if "velo" in columns or "momenta" not in columns:
         return columns.get("velo")
     if "mass" not in columns:
@@ -125,7 +125,7 @@ def _velocities(columns: dict[str, np.ndarray], path: Path) -> np.ndarray | None
 
 
 def _frames(lines: Iterator[str], path: Path) -> Iterator[tuple[str, list[list[str]]]]:
-    """Yield the comment and the words of the lines of each frame.
+    """Yield the comment of each frame, and the words of its lines.
 
     Blank lines before a frame are skipped.
     """
@@ -147,10 +147,10 @@ def _frames(lines: Iterator[str], path: Path) -> Iterator[tuple[str, list[list[s
 def _read_frame(
     n: int, comment: str, rows: list[list[str]], kinds: dict[str, int], overrides: Overrides, path: Path
 ) -> dict:
-    """Return the fields of frame n, by the names of `_NAMES`, and of its comment.
+    """Return the fields of frame n by the names of `_NAMES`, including its comment's.
 
-    Fields that the user supplies are not read. `kinds` are the numbers of species; new species are added to
-    it.
+    Fields that the user passes are not read. `kinds` contains the numbers of species names; new names are
+    added to it.
     """
     pairs = {key.lower(): value.strip("\"'") for key, value in _PAIR.findall(comment)}
     named = _columns(pairs["properties"], path) if "properties" in pairs else _PLAIN
@@ -186,7 +186,7 @@ def _read_frame(
 def _columns(properties: str, path: Path) -> dict[str, tuple[int, int]]:
     """Return the first column and the number of columns of each field that is used.
 
-    The key "" has the number of all columns.
+    The key "" has the total number of columns.
     """
     parts, first, columns = properties.split(":"), 0, {}
     if len(parts) % 3 or not all(width.isdigit() and int(width) > 0 for width in parts[2::3]):
@@ -202,7 +202,7 @@ def _columns(properties: str, path: Path) -> dict[str, tuple[int, int]]:
 
 
 def _numbers(tokens: list[list[str]]) -> np.ndarray:
-    """Convert words to numbers, also with the exponents of Fortran; raise ValueError."""
+    """Convert words to numbers, including Fortran exponents; raise ValueError."""
     try:
         return np.array(tokens, dtype=float)
     except ValueError:
@@ -210,14 +210,14 @@ def _numbers(tokens: list[list[str]]) -> np.ndarray:
 
 
 def _of_comment(pairs: dict[str, str], dimension: int, overrides: Overrides, path: Path) -> dict:
-    """Return container, boundary and time of a frame from its comment.
+    """Return the container, boundary and time of a frame from its comment.
 
-    Fields that the user supplies are not read. `dimension` is the number of columns of the positions.
+    Fields that the user passes are not read. `dimension` is the number of columns of the positions.
     """
     fields: dict = {}
     if "lattice" in pairs and (overrides.lengths is None or len(_words(pairs["lattice"])) in (3, 4, 9)):
         cell = _vector(pairs, "lattice", (3, 4, 9), "--lengths X,Y[,Z]", path)
-        if len(cell) == 4:  # two vectors of the plane
+        if len(cell) == 4:  # the two vectors in the plane
             cell = np.array([*cell[:2], 0.0, *cell[2:], 0.0, 0.0, 0.0, 0.0])
         matrix = np.diag(cell) if len(cell) == 3 else cell.reshape(3, 3)
         if np.any(matrix != np.diag(np.diag(matrix))):
@@ -241,14 +241,14 @@ def _of_comment(pairs: dict[str, str], dimension: int, overrides: Overrides, pat
 
 
 def _words(text: str) -> list[str]:
-    """Split a value into its words, in any brackets."""
+    """Split a value into its words, removing brackets."""
     return re.findall(r"[^\s,\[\]{}]+", text)
 
 
 def _vector(pairs: dict[str, str], key: str, sizes: tuple[int, ...], option: str, path: Path) -> np.ndarray:
-    """Return the numbers of a value, of one of these counts.
+    """Return the numbers of a value; their count must be one of `sizes`.
 
-    The error message names an `option` that can be used instead.
+    The error message names an `option` that can replace the value.
     """
     tokens = _words(pairs[key])
     if len(tokens) not in sizes or not all(_NUMBER.fullmatch(token) for token in tokens):
@@ -259,7 +259,7 @@ def _vector(pairs: dict[str, str], key: str, sizes: tuple[int, ...], option: str
 
 
 def _most_digits(tokens: Iterable[str]) -> int:
-    """Return the largest number of significant digits of some printed numbers."""
+    """Return the largest number of significant digits in some printed numbers."""
     text = " ".join(tokens)
     if _EXPONENT.search(text):
         text = _EXPONENT.sub("", text)
@@ -267,10 +267,10 @@ def _most_digits(tokens: Iterable[str]) -> int:
 
 
 def _resolution(positions: np.ndarray, digits: int) -> float:
-    """Return the error of a printed coordinate, one unit of the last printed digit.
+    """Return the resolution of a printed coordinate, one unit of the last printed digit.
 
-    The largest coordinate has `digits` digits. Numbers such as 0 or 2.5, whose further digits were left out,
-    do not make the others coarser.
+    The largest coordinate has `digits` digits. Numbers such as 0 or 2.5, whose trailing zeros were omitted,
+    do not reduce the resolution of the others.
     """
     largest = float(np.abs(positions).max())
     if not 0.0 < largest < math.inf:

@@ -1,4 +1,4 @@
-"""Functions compiled by numba, and no other code.
+"""Functions compiled by numba, without any other code.
 
-The compile policy and the digest of the cache apply to this folder.
+The compile policy and the hash of the cache apply to this folder.
 """

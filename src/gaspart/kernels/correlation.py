@@ -1,8 +1,8 @@
-"""Products of the present velocities and positions with earlier ones, summed over particles and axes.
+"""Products of present velocities and positions with earlier ones, summed over particles and axes.
 
-Earlier samples are adjacent in memory, so that the inner loop runs over them: each lag has its own sum over
-the particles in their order. The loop is compiled to vector instructions, and the bits do not depend on their
-width.
+Earlier samples are adjacent in memory, so the inner loop runs over them. Each lag has its own sum over the
+particles, in their order. The loop is compiled to vector instructions. The bits do not depend on the width of
+the vectors.
 """
 
 from math import sqrt
@@ -45,9 +45,9 @@ def add_displacement_products(earlier, now, used, sums):
 def shear_components(sums, first, d, components, filled):
     """Compute the shear components of the symmetric part of a tensor.
 
-    There are (d - 1)(d + 2) / 2 such components; in an isotropic fluid they have equal fluctuations. The
-    tensor begins at index `first` of the sums, the components at index `filled`; the index after the last
-    component is returned.
+    There are (d - 1)(d + 2) / 2 such components; in an isotropic fluid they fluctuate equally. The tensor
+    begins at index `first` of the sums, and the components at index `filled`. Returns the index after the
+    last component.
     """
     for a in range(d):
         for b in range(a + 1, d):
@@ -64,11 +64,11 @@ def shear_components(sums, first, d, components, filled):
 
 @kernel
 def flux_components(sums, dimension, components):
-    """Compute the components of the fluxes that are correlated.
+    """Compute the components of the fluxes whose correlations are accumulated.
 
-    sums : (2 d^2 + d,), the stress tensor, its collisional part and the heat flux
-    components : the shear components of the stress tensor, the components of its antisymmetric part, the
-        shear components of the collisional part, 1/d of the trace of the stress tensor, and the heat flux
+    sums : (2 d^2 + d,), the stress tensor, its collisional part, and the heat flux
+    components : shear components of the stress tensor, components of its antisymmetric part, shear components
+        of the collisional part, 1/d of the trace of the stress tensor, and the heat flux
     """
     d = dimension
     filled = shear_components(sums, 0, d, components, 0)
@@ -93,7 +93,7 @@ def add_flux_products(earlier, now, groups, used, sums):
 
     earlier : (2, K, S), fluxes J and their integrals G of S earlier samples
     now : (2, K), present fluxes and integrals
-    groups : (K,), group of each component
+    groups : (K,), group number of each component
     """
     for k in range(now.shape[1]):
         flux, integral, group = now[0, k], now[1, k], groups[k]

@@ -1,8 +1,8 @@
-"""Random sequential insertion: the kernel that tries positions one after another.
+"""Random sequential insertion: the kernel that tests positions one after another.
 
-Particles that are placed stay where they are, so a position that is occupied once stays occupied. Trials are
-therefore rejected a block at a time, by the particles in the nearest boxes of each trial, which by then have
-been fetched from memory. The few that remain are tested one by one, against all particles near them.
+Placed particles do not move, so a position that is occupied once remains occupied. Therefore trials are
+rejected in blocks, by the particles in the nearest boxes of each trial; these data have been fetched from
+memory in the meantime. The few remaining trials are tested one by one against all particles near them.
 """
 
 from typing import NamedTuple
@@ -14,28 +14,29 @@ from gaspart.kernels.obstacles.distance import to_wall
 from gaspart.kernels.physics.periodic import box_coordinate
 from gaspart.kernels.prefetch import fetch
 
-BLOCK = 256  # trials of one block
-PLACES = 4  # particles of a box that are read at once
+BLOCK = 256  # number of trials in a block
+PLACES = 4  # number of particles of a box that are read at once
 _NEAREST = (0, 1, 2, 4, 3, 5, 6, 7)
-"""Boxes around the corner nearest to a trial, with a bit for each axis along which a box is not its own box.
+"""Boxes around the corner nearest to a trial, with a bit for each axis along which a box is not the trial's
+own box.
 
-The box that most probably holds a particle too near comes first.
+The box that most probably contains an overlapping particle is first.
 """
 
 
 class Placed(NamedTuple):
-    """Particles, the first of which are placed, and the boxes that contain them.
+    """Particles, of which the first ones are placed, and the boxes that contain them.
 
     Attributes
     ----------
     positions : (N, d)
     radii : (N,)
     failures : (N,), number of failed attempts before each particle was placed
-    near : (boxes, 4, PLACES), coordinates along three axes and radii of the first few particles of each box,
-        infinite for absent particles
+    near : (boxes, 4, PLACES), coordinates along three axes and radii of the first few particles of each box;
+        unused entries are infinite
     filled : (boxes,), number of these particles in each box
-    head : (boxes,), first of the other particles of each box
-    following : (N,), next of the other particles after each particle
+    head : (boxes,), start of the linked list with the other particles of each box
+    following : (N,), next particle in the linked list after each particle
     """
 
     positions: np.ndarray
@@ -50,7 +51,7 @@ class Placed(NamedTuple):
 class PeriodicBoxes(NamedTuple):
     """Boxes (see `state.boxes.Boxes`), and the periods (d,) of the container.
 
-    On an axis without a period, its value is beyond reach.
+    For a nonperiodic axis, the period exceeds every distance.
     """
 
     periods: tuple[float, ...]
@@ -67,10 +68,10 @@ class Block(NamedTuple):
     ----------
     positions : (BLOCK, 3), positions of the trials
     at : (BLOCK, 3), coordinates of their boxes
-    own : (BLOCK, 3), contribution of the trial's box to the index along each axis
-    beside : (BLOCK, 3), contribution of its neighbour on the nearer side to the index along each axis
-    remaining : (BLOCK,), trials that are not rejected
-    box : (BLOCK,), box with which each of these is compared next
+    own : (BLOCK, 3), contribution of the trial's box to the index, along each axis
+    beside : (BLOCK, 3), contribution of the neighbouring box on the nearer side to the index, along each axis
+    remaining : (BLOCK,), trials that have not been rejected
+    box : (BLOCK,), next box with which each of these trials is compared
     """
 
     positions: np.ndarray
@@ -82,13 +83,13 @@ class Block(NamedTuple):
 
 
 class Task(NamedTuple):
-    """Particles to place, from `first` to `stop`, all of one radius.
+    """Particles to place, from `first` to `stop`, all of equal radius.
 
     Attributes
     ----------
     first, stop : first particle, and end of the particles
     failures : number of failed attempts of the first particle so far
-    patience : number of failed attempts at which the search ends
+    patience : maximum number of failed attempts
     lower, upper : (d,), corners of the region for the centres
     """
 
@@ -138,7 +139,7 @@ def overlaps(position, radius, other, placed, periods):
 def overlaps_near(position, radius, box, placed, periods):
     """Return True if a particle would overlap one of the first particles of a box."""
     overlap = 0
-    for n in range(placed.near.shape[2]):  # PLACES, but with that constant no vectors would be made of it
+    for n in range(placed.near.shape[2]):  # PLACES; as a constant it would prevent vectorization
         square = 0.0
         for k in range(len(periods)):
             gap = gap_between(position[k], placed.near[box, k, n], periods[k])
@@ -157,7 +158,7 @@ def fetch_box(placed, box):
 
 @inner_helper
 def fetch_around(at, placed, boxes):
-    """Prefetch the first particles of all boxes around a box that hold particles.
+    """Prefetch the first particles of all nonempty boxes around a box.
 
     at : (3,), coordinates of the box
     """
@@ -209,7 +210,7 @@ def reject_overlapping(count, radius, placed, boxes, block):
                 n = block.remaining[m]
                 block.remaining[kept] = n
                 kept += not overlaps_near(block.positions[n], radius, block.box[m], placed, boxes.periods)
-            if kept > 0.9 * number:  # in a thin gas a complete test of each trial costs less
+            if kept > 0.9 * number:  # in a dilute gas a complete test of each trial costs less
                 return kept
             number = kept
     return number
@@ -217,7 +218,7 @@ def reject_overlapping(count, radius, placed, boxes, block):
 
 @inner_helper
 def is_clear_of_walls(position, radius, periods, walls):
-    """Return True if no interior wall is too near to a position (3,)."""
+    """Return True if no interior wall is too close to a position (3,)."""
     if walls is not None:
         for m in range(len(walls)):
             x, y, z = to_wall(walls, m, position, periods)
@@ -229,7 +230,7 @@ def is_clear_of_walls(position, radius, periods, walls):
 
 @inner_helper
 def is_free(position, at, radius, placed, boxes, oversized, walls):
-    """Return True if no particle and no interior wall is too near to a position (3,).
+    """Return True if no particle and no interior wall is too close to a position (3,).
 
     at : (3,), coordinates of the box of the position
     """
@@ -272,13 +273,13 @@ def enter(placed, i, block, n):
 
 @kernel
 def place(draws, placed, boxes, block, task, oversized, walls):
-    """Try the `draws` (M, d) in [0, 1) as positions for the particles of a task.
+    """Test the `draws` (M, d) in [0, 1) as positions for the particles of a task.
 
-    A position is free if no particle already placed is nearer than the sum of the radii. Returns (next
-    particle to place, its failed attempts so far, number of draws used).
+    A position is free if no placed particle is closer than the sum of the radii. Returns (next particle to
+    place, its failed attempts so far, number of draws used).
 
-    oversized : (K,), placed particles that may reach further than neighbouring boxes
-    walls : (M,), interior walls that must not be too near (see `obstacles`), or None
+    oversized : (K,), placed particles that may reach beyond neighbouring boxes
+    walls : (M,), interior walls that must not be too close (see `obstacles`), or None
     """
     used = 0
     i, failures = task.first, task.failures

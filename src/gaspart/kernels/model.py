@@ -1,8 +1,8 @@
-"""Data structures of the kernels: the particles, the model of the scene, the tally.
+"""Data structures of the kernels: particles, model of the scene, and counters.
 
-Arguments have one order: the particles and their indices, the queue, the boxes, the model, the tally, and
-last arguments that may be absent. None stands for an absent entry of the model. Such an entry is passed to
-the function that uses it as an argument of its own, because numba removes a branch on `None` only for
+Arguments have a fixed order: the particles and their indices, the queue, the boxes, the model, the tally, and
+finally arguments that may be None. None represents an entry that the model does not have. Such an entry is
+passed as a separate argument to the function that uses it, because numba removes a branch on `None` only for
 arguments.
 """
 
@@ -12,25 +12,25 @@ import numpy as np
 
 COUNTS = ("collisions", "crossings", "outdated", "pair_tests", "box_visits", "fixed_collisions")
 SUMS = ("virial_sum", "dissipated_energy")
-"""Entries of Tally.counts and Tally.sums, by the fields of `state.tally.Tally`, which has no outdated
-predictions.
+"""Indices of Tally.counts and Tally.sums, under the names of the fields of `state.tally.Tally`, which has no
+outdated predictions.
 
 Sums are in the kernels' unit of mass, and proportional to it.
 """
 COLLISIONS, CROSSINGS, OUTDATED, PAIR_TESTS, BOX_VISITS, FIXED_COLLISIONS = range(len(COUNTS))
 VIRIAL, LOSS = range(len(SUMS))
 NONE = -1  # no particle, no face
-BOX_FACES = 6  # face codes: 2 axis + side for the container's faces, BOX_FACES more for those between boxes,
-WELL_EDGES = 12  # WELL_EDGES more for the edges of the wells at the container's faces,
-WALLS = 18  # and from here on the rows of interior walls
-NUMBER_BITS = 26  # bits of a particle's number in a candidate of a search, below its image
-IMAGE_BITS = 2  # bits of the image along each axis, above the number, signed
+BOX_FACES = 6  # face codes: 2 axis + side for the container's faces, plus BOX_FACES between boxes,
+WELL_EDGES = 12  # WELL_EDGES for the edges of wells at the faces of the container;
+WALLS = 18  # codes from here on are rows of interior walls
+NUMBER_BITS = 26  # number of bits for the particle number in a candidate of a search, below its image
+IMAGE_BITS = 2  # number of bits for the image along each axis, above the particle number, signed
 HARD, THERMAL, THERMAL_NORMAL, STICKY, VIBRATING, PISTON, OPEN = range(7)  # codes of `obstacles.face.RULES`
-PISTON_PLACE, PISTON_VELOCITY, PISTON_CLOCK = range(3)  # entries of Piston.motion and MovingWall.motion
+PISTON_PLACE, PISTON_VELOCITY, PISTON_CLOCK = range(3)  # indices of Piston.motion and MovingWall.motion
 
 
 def flight_dtype(dimension: int) -> np.dtype:
-    """Return the type of a particle between its events, at the time of its clock.
+    """Return the data type of a particle between its events, at the time of its clock.
 
     It is one cache line of 64 bytes.
     """
@@ -50,19 +50,18 @@ PREDICTION = np.dtype(
     [
         ("contact_time", "f8"),  # predicted time of the next contact
         ("face_time", "f8"),  # predicted time at the next face, edge of a well or interior wall
-        ("predicted", "i8"),  # event count at which the contact was predicted
+        ("predicted", "i8"),  # event count when the contact was predicted
         ("changed", "i8"),  # event count at the last change of this particle's flight
         ("partner", "i4"),  # partner of the contact
         ("face", "i4"),  # code of the face
         ("box", "i4", 3),  # coordinates of the particle's box
-        ("before", "i4"),  # neighbours in its bucket of the queue: before, after
+        ("before", "i4"),  # neighbours in its bucket of the queue: before and after
         ("after", "i4"),
         ("bucket", "i4"),  # bucket of the queue, or -1
     ],
     align=True,
 )
-"""Predicted events of one particle, one cache line, which an event reads and writes in addition to the
-flight.
+"""Predicted events of one particle, one cache line. An event reads and writes it in addition to the flight.
 """
 
 
@@ -101,11 +100,11 @@ class Support(NamedTuple):
     Attributes
     ----------
     number : (N,), number of planes of each particle
-    normal : (N, 3, 3), unit vectors towards the particle
-    plane : (N, 3), coordinates of its centre along them
+    normal : (N, 3, 3), unit vectors from the planes towards the particle
+    plane : (N, 3), coordinates of its centre along these vectors
     row : (N, 3), row of an interior wall, or NONE for a face
-    pull : (N, 3), acceleration that remains
-    height : highest bounce on an interior wall that is taken for rest
+    pull : (N, 3), acceleration that the planes do not support
+    height : highest bounce on an interior wall that counts as rest
     """
 
     number: np.ndarray
@@ -117,7 +116,7 @@ class Support(NamedTuple):
 
 
 def no_support(count: int, height: float) -> Support:
-    """Return the support of particles that rest on no wall."""
+    """Return an empty support: no particle rests on a wall."""
     normal, plane, pull = np.zeros((count, 3, 3)), np.zeros((count, 3)), np.zeros((count, 3))
     return Support(np.zeros(count, np.int64), normal, plane, np.zeros((count, 3), np.int64), pull, height)
 
@@ -128,8 +127,8 @@ class Gravity(NamedTuple):
     Attributes
     ----------
     acceleration : (d,)
-    fixed : (N,), particles that gravity does not move, now or ever
-    shortest_bounce : longest bounce on a floor that is taken for rest
+    fixed : (N,), True for particles that gravity does not move, now or ever
+    shortest_bounce : longest bounce on a floor that counts as rest
     support : None without interior walls
     """
 
@@ -140,19 +139,19 @@ class Gravity(NamedTuple):
 
 
 class ContactDuration(NamedTuple):
-    """Contact duration: a contact less than `length` after an earlier one is elastic.
+    """Contact duration: a contact less than `length` after an earlier contact is elastic.
 
     Attributes
     ----------
     length : contact duration
-    latest : (N,), time of the latest contact of a particle
-    met : (N,), time of its latest contact with another particle
-    island : (N,), see `event.jams`, or NONE
+    latest : (N,), time of the latest contact of each particle
+    met : (N,), time of the latest contact of each particle with another particle
+    island : (N,), island or jam of each particle, see `event.jams`, or NONE
     contacts : (N,), number of contacts since the last search for particles at rest
-    inverse_mass : (N,), inverse masses when no jam holds the particles
+    inverse_mass : (N,), inverse masses of the particles while no jam fixes them
     moving : speed that frees a particle from a jam (`event.jams`)
-    elastic : (1,), number of contacts that last
-    kept : (1, 2), energy that these contacts have not dissipated, see `physics.running_sum.add`
+    elastic : (1,), number of lasting contacts
+    kept : (1, 2), energy that these contacts did not dissipate, see `physics.running_sum.add`
     """
 
     length: float
@@ -174,11 +173,11 @@ class ContactLaw(NamedTuple):
     normal, tangential : coefficients of restitution
     viscous : None, or for viscoelastic particles the damping divided by the fifth root of speed, radius and
         squared inverse mass (`physics.contact.normal_restitution`)
-    inverse_mass : (N,), 0 if fixed or in a jam
+    inverse_mass : (N,), inverse masses; 0 if fixed or in a jam
     inverse_inertia : (N,), 0 if fixed
     spins : (N, 3)
-    vibrations : (N,), energies of vibrational modes, -1 for particles without a mode, or None if no particle
-        has a mode
+    vibrations : (N,), energies of vibrational modes, -1 for particles without a mode; None if no particle has
+        a mode
     duration : None if every contact dissipates
     """
 
@@ -197,12 +196,12 @@ class Motion(NamedTuple):
 
     Attributes
     ----------
-    stroke : (2d,), distance that each face of the container moves inwards, 0 if it does not move
+    stroke : (2d,), distance by which each face of the container moves inwards; 0 if it does not move
     period : (2d,)
     sine : (2d,), True for a sine, False for a sawtooth
-    begun : (2d,), time of the period at which the clocks are at zero
-    slowest : (2d,), minimum speed of separation of particles
-    epoch : (1,), length of the clocks' epoch
+    begun : (2d,), time within the period at which the clocks are at zero
+    slowest : (2d,), minimum separation speed of particles
+    epoch : (1,), length of the epoch of the clocks
     """
 
     stroke: np.ndarray
@@ -218,11 +217,11 @@ class Piston(NamedTuple):
 
     Attributes
     ----------
-    face : its number
+    face : number of the face
     mass : in the kernel's unit
     push : inward acceleration due to its load
-    motion : (3,), inward position and velocity at the time of its clock
-    slowest : (1,), minimum speed of separation of particles
+    motion : (3,), inward position and velocity, and the time of its clock
+    slowest : (1,), minimum separation speed of particles
     """
 
     face: int
@@ -233,12 +232,13 @@ class Piston(NamedTuple):
 
 
 class Sliding(NamedTuple):
-    """Thermal faces that move along themselves, or along which a force drives the gas.
+    """Thermal faces that slide, or along which a force drives the gas.
 
     Attributes
     ----------
-    velocity : (2d, d), velocities of the container's faces
-    shear : (2d^2, 2), momentum along each axis given to each face by particles, see `physics.running_sum.add`
+    velocity : (2d, d), velocities of the faces
+    shear : (2d^2, 2), momentum along each axis that particles give to each face, see
+        `physics.running_sum.add`
     """
 
     velocity: np.ndarray
@@ -251,7 +251,7 @@ class Ramp(NamedTuple):
     Attributes
     ----------
     axis : (2d,), axis along which the temperature of each face varies, or NONE
-    high : (2d,), temperature at its high end
+    high : (2d,), temperature at the upper end
     """
 
     axis: np.ndarray
@@ -275,17 +275,17 @@ class Open(NamedTuple):
 
 
 class Reservoirs(NamedTuple):
-    """Gases outside of open faces, whose particles try to enter.
+    """Gases behind open faces, whose particles try to enter.
 
     Attributes
     ----------
     key : (2,), key of the random numbers
-    rate : attempts per time at all faces
-    up_to : (2d,), fraction of the attempts at a face and at the faces before it
+    rate : rate of attempts, summed over all faces
+    up_to : (2d,), cumulative fraction of the attempts up to each face
     width : (2d,), (k_B T / m)^(1/2) of each gas
     number : (1,), number of the next attempt
-    time : (1,), its time on the clocks of the epoch
-    position : (3,), workspace for its position
+    time : (1,), time of this attempt on the clocks of the epoch
+    position : (3,), workspace for the position of an attempt
     opened : `Open` of the faces
     """
 
@@ -300,23 +300,24 @@ class Reservoirs(NamedTuple):
 
 
 class Faces(NamedTuple):
-    """Faces with a kind.
+    """Special faces.
 
     Attributes
     ----------
     kind : (2d,)
-    level : (2d,), temperature (at the low end if it varies), or momentum that sticks
+    level : (2d,), temperature (at the lower end if it varies), or momentum below which particles stick
     depth, width : (2d,), depth and width of the well, 0 without a well
-    well_side : (N, d), -1 or 1 for a particle in the well of an axis' low or high face, or stuck to it
-    held : (N, d), energy held there as vibration
-    draws : (N,), number of draws of random numbers for a particle
+    well_side : (N, d), -1 or 1 for a particle in the well of the low or high face of an axis, or stuck to
+        this face
+    held : (N, d), energy stored there as vibration
+    draws : (N,), number of random draws of each particle
     key : (2,), key of these random numbers
     sticky : (2d,), sticky faces, or None if no face is sticky
     motion : None if no face vibrates
     piston : None if no face is a piston
     sliding : None if no face slides
-    accommodation : (2d,), fraction of hits after which velocities are drawn, or None if all hits draw
-    ramp : None if the temperature varies along no face
+    accommodation : (2d,), fraction of hits that draw new velocities, or None if all hits do
+    ramp : None if no temperature varies along a face
     open : None if no face is open
     """
 
@@ -343,7 +344,7 @@ class WarmWalls(NamedTuple):
     Attributes
     ----------
     level : (walls,), temperature, 0 for hard walls
-    draws : (N,), number of draws of random numbers for a particle
+    draws : (N,), number of random draws of each particle
     key : (2,), key of these random numbers
     """
 
@@ -359,8 +360,8 @@ class MovingWall(NamedTuple):
     ----------
     axis : axis along which the wall moves
     mass : in the kernel's unit
-    side : (N,), 1.0 for particles above the wall and -1.0 for particles below
-    motion : (3,), position along the axis and velocity at the time of its clock
+    side : (N,), 1.0 for particles above the wall, -1.0 for particles below
+    motion : (3,), position along the axis and velocity, and the time of its clock
     """
 
     axis: int
@@ -370,17 +371,17 @@ class MovingWall(NamedTuple):
 
 
 class InteriorWalls(NamedTuple):
-    """Interior walls, and those near each box.
+    """Interior walls, and lists of walls near each box.
 
     Attributes
     ----------
     rows : (M, 5) or (M, 11), see `obstacles.distance`
     wall : (M,), see `obstacles.distance`
     first, listed : listed[first[b] : first[b + 1]] are the rows near box b, for particles of a radius up to
-        `largest_radius`; all rows, for larger particles, follow the last box
+        `largest_radius`. All rows follow after the last box, for larger particles
     largest_radius : see `listed`
-    warm : None if no wall is at a temperature
-    moving : None if no wall moves; a moving wall has no row
+    warm : None if no wall has a temperature
+    moving : None if no wall moves; a moving wall is not in the rows
     """
 
     rows: np.ndarray
@@ -393,7 +394,7 @@ class InteriorWalls(NamedTuple):
 
 
 class Oversized(NamedTuple):
-    """Particles (B,) with a radius above `largest_radius`, too large for the boxes."""
+    """Particles (B,) with a radius above `largest_radius`, which are too large for the boxes."""
 
     particles: np.ndarray
     largest_radius: float
@@ -406,8 +407,8 @@ class Shear(NamedTuple):
     ----------
     rate : shear rate
     velocity : velocity of the images above
-    origin : (1,), their displacement at clock time zero, without whole lengths of the container
-    turns : (1,), number of these lengths
+    origin : (1,), their displacement at clock time zero, modulo the length of the container
+    turns : (1,), number of whole lengths of the container in the displacement
     kept : (3,), workspace for the position of a particle before a contact, and its velocity
     """
 
@@ -419,12 +420,12 @@ class Shear(NamedTuple):
 
 
 class Model(NamedTuple):
-    """Model of the simulated scene; absent parts are set to None.
+    """Model of the simulated scene; missing parts have the value None.
 
     Attributes
     ----------
-    space : `Space`, of either engine
-    masses : (N,), or None if all masses are 1 or the law has the masses
+    space : `Space`, for either engine
+    masses : (N,), or None if all masses are 1 or the law contains the masses
     """
 
     space: Any
@@ -447,12 +448,13 @@ class Tally(NamedTuple):
     sums : (of `SUMS`, 2), see `physics.running_sum.add`
     worst : (1,), largest value of |r^2/sigma^2 - 1| at a contact
     wall_hits : (faces + walls,)
-    wall_impulse, wall_energy : (faces + walls, 2), by face and interior wall, see `physics.running_sum.add`
+    wall_impulse, wall_energy : (faces + walls, 2), momentum given to each face and interior wall, see
+        `physics.running_sum.add`
     stress : `event.stress.Stress`, or None
     impulses : `event.impulses.Impulses`, or None
     pair_impulses : `event.impulses.PairImpulses`, or None
-    per_area : `physics.per_area.PerArea`, None unless particles of several sizes reach different areas of
-        faces
+    per_area : `physics.per_area.PerArea`, or None unless particles of different sizes reach different areas
+        of faces
     """
 
     counts: np.ndarray
@@ -468,7 +470,7 @@ class Tally(NamedTuple):
 
 
 def empty_tally(walls: int) -> Tally:
-    """Return a tally at zero for a number of faces and interior walls."""
+    """Return counters at zero for a number of faces and interior walls."""
     return Tally(
         counts=np.zeros(len(COUNTS), dtype=np.int64),
         sums=np.zeros((len(SUMS), 2)),

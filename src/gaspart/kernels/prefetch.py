@@ -8,12 +8,12 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 _BYTE, _FLAG, _WORD = ir.IntType(8).as_pointer(), ir.IntType(32), ir.IntType(64)
-TOGETHER = 8  # rows fetched by one call of `fetch_numbered`
-_LINE = 64  # bytes
+TOGETHER = 8  # number of rows fetched by one call of `fetch_numbered`
+_LINE = 64  # length of a cache line in bytes
 
 
 def _fetch(context, builder, kind, array, index, offset=0):
-    """Emit the instruction that prefetches array[index], `offset` bytes on."""
+    """Emit the instruction that prefetches array[index] plus `offset` bytes."""
     array = context.make_array(kind)(context, builder, array)
     one_after_other = kind.ndim == 1 and kind.layout == "C"
     stride = _WORD(context.get_abi_sizeof(context.get_data_type(kind.dtype)))
@@ -28,7 +28,7 @@ def _fetch(context, builder, kind, array, index, offset=0):
 
 @intrinsic
 def fetch(typingctx, array, index):
-    """Prefetch the cache line in which array[index] begins, without waiting for it."""
+    """Prefetch the cache line that contains the start of array[index], without waiting for it."""
 
     def generate(context, builder, signature, arguments):
         _fetch(context, builder, signature.args[0], *arguments)
@@ -39,7 +39,7 @@ def fetch(typingctx, array, index):
 
 @intrinsic
 def fetch_two(typingctx, array, index):
-    """Prefetch the cache line in which array[index] begins, and the next one."""
+    """Prefetch the cache line that contains the start of array[index], and the next one."""
 
     def generate(context, builder, signature, arguments):
         _fetch(context, builder, signature.args[0], *arguments)
@@ -51,9 +51,9 @@ def fetch_two(typingctx, array, index):
 
 @intrinsic
 def fetch_numbered(typingctx, array, numbers, first, mask):
-    """Prefetch `TOGETHER` rows of an array, whose numbers are in another array.
+    """Prefetch `TOGETHER` rows of an array; another array contains their numbers.
 
-    The numbers are words of 32 bits, from numbers[first] on, of which only the bits of a mask count.
+    The numbers are 32-bit words, starting at numbers[first]. Only the bits of a mask count.
     """
 
     def generate(context, builder, signature, arguments):

@@ -1,7 +1,6 @@
-"""Eight numbers at once, in vector instructions: the basis of the searches of both engines.
+"""Eight numbers at once, with vector instructions: the basis of the searches of both engines.
 
-LLVM maps these vectors to the vectors of the processor, of any width. See `event.simd` and
-`step.neighbour_list`.
+LLVM maps these vectors to processor vectors of any width. See `event.simd` and `step.neighbour_list`.
 """
 
 from __future__ import annotations
@@ -19,7 +18,7 @@ _DOUBLE, _INT = ir.DoubleType(), ir.IntType(32)
 
 @dataclass(frozen=True, eq=False)
 class Lanes:
-    """Eight values, and the operations on them that are written into the machine code."""
+    """Eight values, and operations on them that are emitted into machine code."""
 
     builder: ir.IRBuilder
     value: ir.Value
@@ -83,7 +82,7 @@ class Lanes:
     def plus_product(self, factor: Lanes, other: Lanes) -> Lanes:
         """Add a product that is exact.
 
-        So it does not matter whether the product is rounded before the addition.
+        So it does not matter if the product is rounded before the addition.
         """
         kind = ir.FunctionType(self.value.type, [self.value.type] * 3)
         name = f"llvm.fmuladd.v{WIDTH}f64"
@@ -97,18 +96,18 @@ class Lanes:
         return Lanes(self.builder, self.builder.call(root, [self.value]))
 
     def where(self, condition: Lanes, other: Lanes | float) -> Lanes:
-        """Select these lanes where the condition holds, the other lanes elsewhere."""
+        """Select these lanes if the condition holds, otherwise the other lanes."""
         other = other if isinstance(other, Lanes) else self.all(other)
         return Lanes(self.builder, self.builder.select(condition.value, self.value, other.value))
 
 
 def mask_of(condition: Lanes) -> ir.Value:
-    """Return a bit for each lane that tells whether a condition holds."""
+    """Return a bit for each lane that is set if the condition holds."""
     return condition.builder.bitcast(condition.value, ir.IntType(WIDTH))
 
 
 def fields(builder: ir.IRBuilder, kind: types.BaseNamedTuple, value: ir.Value) -> dict:
-    """Return the members of a named tuple by name, with tuples as lists."""
+    """Return the members of a named tuple by name; nested tuples become lists."""
     members = {}
     for n, (name, member) in enumerate(zip(kind.fields, kind.types, strict=True)):
         part = builder.extract_value(value, n)
@@ -118,7 +117,7 @@ def fields(builder: ir.IRBuilder, kind: types.BaseNamedTuple, value: ir.Value) -
 
 @intrinsic
 def lowest(typingctx, bits):
-    """Return the index of the lowest bit that is set in a word other than 0."""
+    """Return the index of the lowest set bit of a nonzero word."""
 
     def generate(context, builder, signature, arguments):
         return builder.cttz(arguments[0], ir.IntType(1)(1))

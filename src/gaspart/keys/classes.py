@@ -1,4 +1,4 @@
-"""Keys that are the fields of a dataclass: their checks, and the schema of their mapping."""
+"""Keys that are fields of a dataclass: their checks, and the schema of their mapping."""
 
 from __future__ import annotations
 
@@ -41,13 +41,12 @@ def validate(instance: Any) -> None:
     Parameters
     ----------
     instance : dataclass
-        Instance, each field of which is set to its value in the final type. None is accepted where it is the
-        default.
+        Instance. Each field is set to its value in the final type. None is accepted if it is the default.
 
     Raises
     ------
     SceneError
-        If a value breaks its rule: with key, value and rule.
+        If a value breaks its rule. The message has key, value and rule.
     """
     for name, check, optional in _checks(instance.__class__):
         value = getattr(instance, name)
@@ -57,7 +56,10 @@ def validate(instance: Any) -> None:
 
 @cache
 def _checks(cls: Any) -> tuple[tuple[str, Check, bool], ...]:
-    """Return name, check and True if None is the default, for each field of a dataclass."""
+    """Return name, check and a flag for each field of a dataclass.
+
+    The flag is True if the field has the default None.
+    """
     return tuple((item.name, item.metadata["kind"].check, item.default is None) for item in fields(cls))
 
 
@@ -67,14 +69,14 @@ def set_fields(instance: Any, **checked: object) -> None:
     Parameters
     ----------
     instance : dataclass
-        Instance, whose cached properties are deleted: they follow from the values before.
+        Instance. Its cached properties are deleted, because they were computed from the earlier values.
     **checked : object
         Values by the name of their field.
     """
     for name, value in checked.items():
         object.__setattr__(instance, name, value)
     for name in set(vars(instance)) - {item.name for item in fields(instance)}:
-        del vars(instance)[name]  # facts of the values before
+        del vars(instance)[name]  # properties computed from the earlier values
 
 
 def field_values(instance: Any) -> dict[str, Any]:
@@ -99,7 +101,8 @@ def schema_of(cls: Any, **more: Kind) -> Kind:
     Parameters
     ----------
     cls : type
-        Dataclass, whose fields were `declare`. The summary of its docstring is the meaning of the mapping.
+        Dataclass whose fields are declared by `declare`. The summary of its docstring is the meaning of the
+        mapping.
     **more : Kind
         Further keys, before the fields.
 
@@ -170,7 +173,7 @@ def refuse_unknown(cls: Any, mapping: dict, where: str) -> None:
     Raises
     ------
     SceneError
-        If a key is unknown, with the rule of `unknown_word`.
+        If a key is unknown. The rule in the message is from `unknown_word`.
     """
     names = [item.name for item in fields(cls)]
     for key, value in mapping.items():
@@ -191,7 +194,7 @@ def instance_of(cls: type, meaning: str) -> Kind:
     Returns
     -------
     Kind
-        Kind with the schema of the class: in a file the value is a mapping of its keys.
+        Kind with the schema of the class. In a file the value is a mapping of the keys of the class.
     """
 
     def check(key: str, value: Any) -> Any:
@@ -274,7 +277,7 @@ def require(kind: Mapping[str, Any], value: object, where: str) -> None:
 def _validator() -> Any:
     """Return the validator of JSON schemas.
 
-    Its test of uniqueness takes a time linear in the length of a list.
+    Its test for distinct items takes a time proportional to the length of a list.
     """
     from jsonschema import Draft202012Validator, ValidationError
     from jsonschema.validators import extend
@@ -288,7 +291,7 @@ def _validator() -> Any:
 
 
 def _rule(validator: str, expected: Any) -> str:
-    """Return the rule of a JSON schema's keyword in words."""
+    """Return the rule of a JSON schema's keyword as words."""
     if validator == "type":
         types = [expected] if isinstance(expected, str) else expected
         return f"must be of type {' or '.join(types)}"

@@ -14,7 +14,7 @@ Check = Callable[[str, Any], Any]
 
 
 def _identity(_: str, value: Any) -> Any:
-    """Return the value as it is."""
+    """Return the value unchanged."""
     return value
 
 
@@ -26,7 +26,7 @@ class Kind(dict[str, Any]):
     schema : mapping
         Entries of the schema.
     check : Check, optional
-        Check for a field of a class. Default: the value is taken as it is, and the class itself checks it.
+        Check for a field of a class. Default: the value is unchanged, and the class itself checks it.
     """
 
     def __init__(self, schema: Mapping[str, Any], check: Check = _identity) -> None:
@@ -94,7 +94,7 @@ def positive(meaning: str, **more: Any) -> Kind:
     Returns
     -------
     Kind
-        Kind, whose check returns a float.
+        The kind; its check returns a float.
     """
     return describe(POSITIVE, meaning, **more)
 
@@ -112,13 +112,13 @@ def not_negative(meaning: str, **more: Any) -> Kind:
     Returns
     -------
     Kind
-        Kind, whose check returns a float.
+        The kind; its check returns a float.
     """
     return describe(NOT_NEGATIVE, meaning, **more)
 
 
 def real(meaning: str) -> Kind:
-    """Return the kind of a number of either sign, 0 or of an acceptable size.
+    """Return the kind of a number of either sign, 0 or of acceptable size.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ def real(meaning: str) -> Kind:
     Returns
     -------
     Kind
-        Kind, whose check returns a float.
+        The kind; its check returns a float.
     """
     return describe(NUMBER, meaning)
 
@@ -146,7 +146,7 @@ def in_range(meaning: str, least: float, most: float) -> Kind:
     Returns
     -------
     Kind
-        Kind, whose check returns a float.
+        The kind; its check returns a float.
     """
     rule = f"must be from {least:g} to {most:g}"
 
@@ -167,7 +167,7 @@ def fraction(meaning: str) -> Kind:
     Returns
     -------
     Kind
-        Kind, whose check returns a float.
+        The kind; its check returns a float.
     """
 
     def check(key: str, value: Any) -> float:
@@ -191,7 +191,7 @@ def count(meaning: str, minimum: int = 1, **more: Any) -> Kind:
     Returns
     -------
     Kind
-        Kind, whose check returns an int.
+        The kind; its check returns an int.
     """
 
     def check(key: str, value: Any) -> int:
@@ -213,7 +213,7 @@ def flag(meaning: str, **more: Any) -> Kind:
     Returns
     -------
     Kind
-        Kind, whose check returns a bool.
+        The kind; its check returns a bool.
     """
     return describe(FLAG, meaning, **more)
 
@@ -233,7 +233,7 @@ def choice(meaning: str, *accepted: Any, **more: Any) -> Kind:
     Returns
     -------
     Kind
-        Kind, whose check returns the value.
+        The kind; its check returns the value.
     """
 
     def check(key: str, value: Any) -> Any:
@@ -250,14 +250,14 @@ def vector(meaning: str, dimension: int | None = None, sized: bool = True) -> Ki
     meaning : str
         Description.
     dimension : int, optional
-        Number of components. Default: 2 or 3, where it is not known.
+        Number of components. Default: 2 or 3 are both accepted.
     sized : bool, default True
         Require that the largest component is 0 or of an acceptable size.
 
     Returns
     -------
     Kind
-        Kind, whose check returns a tuple of float.
+        The kind; its check returns a tuple of float.
     """
 
     def check(key: str, value: Any) -> tuple[float, ...]:
@@ -277,12 +277,12 @@ def two_vectors(meaning: str, dimension: int | None = None) -> Kind:
     meaning : str
         Description.
     dimension : int, optional
-        Number of components of each list. Default: 2 or 3, where it is not known.
+        Number of components of each list. Default: 2 or 3 are both accepted.
 
     Returns
     -------
     Kind
-        Kind, whose check returns a tuple of tuples of float.
+        The kind; its check returns a tuple of tuples of float.
     """
 
     def check(key: str, value: Any) -> tuple[tuple[float, ...], ...]:
@@ -294,7 +294,7 @@ def two_vectors(meaning: str, dimension: int | None = None) -> Kind:
 
 
 def _numbers(dimension: int | None) -> Kind:
-    """Return the kind of a list of numbers with the length of a vector."""
+    """Return the kind of a list of numbers that is as long as a vector."""
     least, most = (2, 3) if dimension is None else (dimension, dimension)
     return list_of({"type": "number"}, least=least, most=most)
 
@@ -310,7 +310,8 @@ def per_side(meaning: str) -> Kind:
     Returns
     -------
     Kind
-        Kind of a number for all sides, or a number for each. Its check is `values.partition`.
+        Kind of a number for all sides, or of a list with a number for each side. Its check is
+        `values.partition`.
     """
     types = {"type": ["integer", "array"], "items": COUNT}
     return describe({**COUNT, **types, **_PER_AXIS}, meaning, values.partition)
@@ -362,7 +363,7 @@ def names(meaning: str, **more: Any) -> Kind:
 
 
 def record(keys: Mapping[str, Mapping[str, Any]], meaning: str = "", **more: Any) -> Kind:
-    """Return the kind of a mapping of these keys and no others.
+    """Return the kind of a mapping with these keys only.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Checks of single values given by a user.
 
-Each check returns the value in its type, or raises SceneError. Every function takes any object at all: None,
-text, nan, an integer that no float can hold, an array.
+Each check returns the value in its type, or raises SceneError. All functions accept any object: None, text,
+nan, an integer beyond the range of floats, an array.
 """
 
 from __future__ import annotations
@@ -15,16 +15,16 @@ from typing import Any
 from gaspart.errors import SceneError
 
 SMALLEST, LARGEST = 1e-60, 1e60
-"""Size of any quantity: contacts multiply four of them, and the product must neither vanish nor overflow."""
+"""Smallest and largest size of a quantity. Contacts multiply four quantities, and the product must neither
+vanish nor overflow."""
 MOST_PARTICLES = 2**31 - 1
-"""Largest number of particles of a scene or a species: their indices have 32 bits."""
+"""Largest number of particles of a scene or a species; indices have 32 bits."""
 MOST_BOXES = 2**26
-"""Largest number of boxes of a partition: more exceed the memory of a common machine."""
+"""Largest number of boxes of a partition; more exceed the memory of a common machine."""
 LARGEST_INTEGER = 2**63 - 1
 MOST_LISTED = 50_000
-"""Largest number of species, single particles or walls of a scene, each of which is written in the scene's
-text.
-"""
+"""Largest number of species, single particles or walls of a scene; each of these is written in the scene's
+text."""
 
 
 def finite(value: object) -> float | None:
@@ -58,7 +58,7 @@ def number(
     least: float = -math.inf,
     most: float = math.inf,
 ) -> float:
-    """Return `value` as a finite float, if it is in the range.
+    """Return `value` as a finite float if it is in the range.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def number(
 
 
 def size(key: str, value: float | tuple[float, ...]) -> None:
-    """Raise SceneError for a number that is so small or large that contacts would be lost.
+    """Raise SceneError for a number so small or so large that contacts would be lost.
 
     Parameters
     ----------
@@ -170,7 +170,7 @@ def not_negative_number(key: str, value: Any) -> float:
 
 
 def sized_number(key: str, value: Any) -> float:
-    """Return `value` as a float of either sign, 0 or of an acceptable `size`.
+    """Return `value` as a float of either sign, which is 0 or of an acceptable `size`.
 
     Parameters
     ----------
@@ -234,7 +234,7 @@ def finite_vector(key: str, value: Any, dimension: int | None = None) -> tuple[f
     value : object
         Value.
     dimension : int, optional
-        Number of components. Default: 2 or 3, where it is not known.
+        Number of components. Default: 2 or 3 are both accepted.
 
     Returns
     -------
@@ -259,7 +259,7 @@ def _items(key: str, value: Any, rule: str, most: int) -> Iterable[Any]:
         raise SceneError(key, value, rule)
     try:
         return tuple(islice(value, most))
-    except Exception:  # not iterable, or an iterator of the user's own that fails
+    except Exception:  # not iterable, or an iterator of the user's code that fails
         raise SceneError(key, value, rule) from None
 
 

@@ -1,1 +1,1 @@
-"""Pictures and films of particles: spheres by a small ray tracer, discs by area coverage."""
+"""Pictures and films of particles: spheres by ray tracing, discs by area coverage."""

@@ -1,4 +1,4 @@
-"""The camera of a picture of spheres: outside the container, which is completely in the picture."""
+"""Camera for pictures of spheres, outside the container, which is completely visible."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from itertools import product
 import numpy as np
 
 CAMERA = (298.0, 24.0)
-"""Azimuth and elevation of the camera in degrees: from the x axis about the z axis, and above the horizon."""
+"""Azimuth and elevation of the camera in degrees: angle from the x axis about the z axis, and angle above the
+horizon."""
 HALF_WIDTH = 0.26
-"""Tangent of half the angle of view across the picture's longer side."""
+"""Tangent of half the angle of view along the longer side of the picture."""
 MARGIN = 1.04
 
 
@@ -21,8 +22,8 @@ class Camera:
     eye : (3,), position.
     forward, right, up : (3,), unit vectors.
     half_width, half_height : tangents of half the angles of view.
-    near, far : distances along `forward` between which the container is.
-    light : (3,), unit vector to the lamp, at the upper left behind the camera.
+    near, far : smallest and largest distance of the container along `forward`.
+    light : (3,), unit vector to the lamp, which is at the upper left behind the camera.
     """
 
     eye: np.ndarray
@@ -69,7 +70,7 @@ def camera_for(
     direction: tuple[float, float] = CAMERA,
     reach: float = 0.0,
 ) -> Camera:
-    """Return the camera for which a container just fills a picture.
+    """Return the camera with which a container just fills a picture.
 
     The container has `lengths` (3,); objects within `reach` around it are included. The direction is
     (azimuth, elevation).
@@ -94,9 +95,7 @@ def camera_for(
         distance = 0.5 * (near + far)
         fits = (0.5 * MARGIN * np.ptp(slope_range(distance), axis=0) <= half).all()
         near, far = (near, distance) if fits else (distance, far)
-    aside, above = (
-        slope_range(far).mean(axis=0) * far
-    )  # the container in the middle, whatever the perspective
+    aside, above = slope_range(far).mean(axis=0) * far  # centres the container, for any perspective
     light = 0.9 * outward - 0.55 * right + np.array([0.0, 0.0, 1.2])
     return Camera(
         eye=0.5 * np.asarray(lengths) - far * forward + aside * right + above * up,
@@ -112,7 +111,7 @@ def camera_for(
 
 
 def edges_of(lengths: np.ndarray) -> np.ndarray:
-    """Return the edges (12, 7) of the container: a corner, the unit vector along, the length."""
+    """Return the edges (12, 7) of the container: a corner, unit vector along the edge, length."""
     return np.array(
         [
             [*np.insert(ends, axis, 0.0) * lengths, *np.eye(3)[axis], lengths[axis]]
@@ -123,7 +122,7 @@ def edges_of(lengths: np.ndarray) -> np.ndarray:
 
 
 def segments(lines: np.ndarray) -> np.ndarray:
-    """Convert lines (M, 2, 3), from end to end, to the form (M, 7) of edges."""
+    """Convert lines (M, 2, 3), given by their ends, to the form (M, 7) of edges."""
     along = lines[:, 1] - lines[:, 0]
     lengths = np.linalg.norm(along, axis=1, keepdims=True)
     return np.hstack([lines[:, 0], along / lengths, lengths])

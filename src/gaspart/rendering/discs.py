@@ -10,7 +10,7 @@ import numpy as np
 from gaspart.kernels.drawing.ray_tracing import draw_discs, draw_segments
 from gaspart.rendering.surfaces import INK, DrawnSurface, arrow_lines
 
-_MARGIN = 0.02  # of the picture's shorter side
+_MARGIN = 0.02  # fraction of the picture's shorter side
 PAPER = (1.0, 1.0, 1.0)
 _SHADE = (0.88, 0.88, 0.88)
 
@@ -27,7 +27,7 @@ def scale_of(lengths: np.ndarray, size: tuple[int, int]) -> tuple[float, np.ndar
 
 
 class Canvas:
-    """White picture of `size` (W, H) pixels, with a container of `lengths` (2,) in the middle."""
+    """White picture with `size` (W, H) pixels, and a centred container of `lengths` (2,)."""
 
     def __init__(self, lengths: np.ndarray, size: tuple[int, int]) -> None:
         width, height = size
@@ -36,16 +36,19 @@ class Canvas:
         self._height = height
 
     def _pixels(self, points: np.ndarray) -> np.ndarray:
-        """Convert points (N, 2) of the container to columns and rows of pixels."""
+        """Convert points (N, 2) in the container to columns and rows of pixels."""
         pixels = self.corner + self.scale * np.asarray(points, dtype=float)
         return np.column_stack([pixels[:, 0], self._height - pixels[:, 1]])
 
     def discs(self, positions: np.ndarray, radii: np.ndarray, colours: np.ndarray) -> None:
-        """Draw discs, later ones over earlier ones; none smaller than half a pixel in radius."""
+        """Draw discs, later discs over earlier ones.
+
+        The radius is at least half a pixel.
+        """
         draw_discs(self.image, self._pixels(positions), np.maximum(self.scale * radii, 0.5), colours)
 
     def cut(self, periodic: Sequence[bool]) -> None:
-        """Clear the pixels beyond the container along the axes that are periodic."""
+        """Clear the pixels outside the container along periodic axes."""
         width, height = self.lengths
         low, high = np.rint(self._pixels(np.array([[0.0, height], [width, 0.0]]))).astype(int)
         if periodic[0]:
@@ -71,7 +74,7 @@ class Canvas:
             draw_segments(self.image, corners[:-1], corners[1:], np.array(colour, dtype=float))
 
     def outline(self, surfaces: Sequence[DrawnSurface]) -> None:
-        """Draw the sides of the container, without those on which a surface lies."""
+        """Draw the sides of the container, except sides with a surface of their own."""
         x, y = self.lengths
         corners = np.array([[0.0, 0.0], [x, 0.0], [x, y], [0.0, y], [0.0, 0.0]])
         for side in pairwise(corners):
@@ -80,7 +83,7 @@ class Canvas:
                 self.line(ends)
 
     def shade_behind(self, surface: DrawnSurface) -> None:
-        """Shade the part of the container behind a surface that has moved in."""
+        """Shade the region of the container behind a surface that has moved in."""
         if surface.depth > 0.0:
             corners = np.vstack([surface.ends, surface.ends - surface.depth * surface.inward])
             (first, right), (top, bottom) = (
@@ -92,7 +95,7 @@ class Canvas:
         """Draw a surface: its line, dashes, hatching, arrows and the edge of its well."""
         start, end = surface.ends
         along = (end - start) / np.linalg.norm(end - start)
-        unit = self._thickness / self.scale  # the thickness of the line as a length
+        unit = self._thickness / self.scale  # thickness of the line as a length
         points = np.linspace(start, end, len(surface.colours) + 1)
         for n, colour in enumerate(surface.colours):
             self._stroke(points[n : n + 2], tuple(colour), 4.0 * unit if surface.dashed else 0.0)
@@ -119,11 +122,11 @@ class Canvas:
 
     @property
     def _thickness(self) -> int:
-        """Width of the line of a surface in pixels, odd."""
+        """Width of the line of a surface in pixels, an odd number."""
         return max(3, round(0.004 * min(self.image.shape[:2])) // 2 * 2 + 1)
 
     def _stroke(self, points: np.ndarray, colour: tuple[float, ...], dash: float) -> None:
-        """Draw a thick line, in dashes of this length unless it is 0."""
+        """Draw a thick line; if `dash` is not 0, in dashes of this length."""
         if not dash:
             self.line(points, colour, self._thickness)
             return

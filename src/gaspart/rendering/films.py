@@ -34,7 +34,7 @@ FILM_FORMATS = {
 
 
 RATES = 0.01, 1000.0
-"""The fewest and the most frames per second that both formats can store."""
+"""Smallest and largest number of frames per second that both formats can store."""
 
 
 def film(
@@ -58,7 +58,7 @@ def film(
     Parameters
     ----------
     trajectory : str, Path or Dataset
-        The trajectory, by its path or open.
+        The trajectory: its path, or an open trajectory.
     path : str or Path
         The film to write, with the suffix .mp4 (which needs the extra `film`) or .gif.
     size : tuple of int, default (1000, 750)
@@ -72,9 +72,9 @@ def film(
     stop : float, [time], optional
         Time of the last frame to show. Default: all frames.
     every : int, default 1
-        Show one of this number of frames.
+        Show every `every`-th frame.
     trail : int, optional
-        Index of a disc whose path is drawn, interrupted where it crosses a periodic face.
+        Index of a disc whose path is drawn. The path is interrupted where it crosses a periodic face.
     clock : bool, default True
         Write parameters and times as in `render`.
     camera : tuple of float, optional
@@ -82,17 +82,17 @@ def film(
     overwrite : bool, default False
         Replace a film at `path`. Files of other kinds are never replaced.
     progress : callable, optional
-        Called as ``progress(done, pictures)`` after each picture.
+        Function that is called as ``progress(done, pictures)`` after each picture.
 
     Returns
     -------
     Film
-        `path`, which shows the film in a notebook.
+        Path of the film. In a notebook it shows the film.
 
     Raises
     ------
     SceneError
-        If the suffix is another one, a file cannot be read or written, or `render` rejects an argument.
+        If the suffix is unknown, a file cannot be read or written, or `render` rejects an argument.
 
     Examples
     --------
@@ -111,7 +111,7 @@ def film(
     size = checked_size(size)
     if path.suffix == ".mp4":
         size = (size[0] // 2 * 2, size[1] // 2 * 2)
-        _ffmpeg()  # before a picture is drawn
+        _ffmpeg()  # checked before any picture is drawn
     to = _gif if path.suffix == ".gif" else _mp4
     with open_source(trajectory) as source:
         if isinstance(source, Scene):
@@ -134,9 +134,9 @@ def film(
 
 
 def poster(source: str | Path, path: str | Path) -> None:
-    """Write the middle picture of an MP4 film as a JPEG file, for a page.
+    """Write the middle picture of an MP4 film as a JPEG file.
 
-    The page shows it until the film plays.
+    A page shows this picture until the film plays.
 
     Parameters
     ----------
@@ -168,7 +168,10 @@ def _report_progress(
 
 
 def _part(source: xr.Dataset, start: float | None, stop: float | None, every: int) -> xr.Dataset:
-    """Return every `every`-th frame between two times; raise SceneError without any frame."""
+    """Return every `every`-th frame between two times.
+
+    Raises SceneError if there is no frame.
+    """
     time = source["time"].values
     first = -np.inf if start is None else number("start", start, "must be a finite number")
     last = np.inf if stop is None else number("stop", stop, "must be a finite number")
@@ -185,7 +188,10 @@ def _check_arguments(
     trail: int | None,
     camera: tuple[float, float] | None,
 ) -> tuple[float, float]:
-    """Return the direction of the camera; raise SceneError if no picture could be drawn."""
+    """Return the direction of the camera.
+
+    Raises SceneError if no picture could be drawn.
+    """
     if trajectory.sizes["frame"] == 0:
         raise SceneError("frame", 0, "the trajectory has no frame yet")
     first = particles_of(trajectory, 0)
@@ -210,7 +216,7 @@ def _pictures(
 ) -> Iterator[np.ndarray]:
     """Yield the pictures in order."""
     fastest = None
-    if isinstance(colour, str) and colour == "speed":  # one scale for all frames
+    if isinstance(colour, str) and colour == "speed":  # all frames have the same scale
         frames = range(trajectory.sizes["frame"])
         fastest = FASTEST * max(particles_of(trajectory, n).root_mean_square_speed for n in frames)
     first, times, path = particles_of(trajectory, 0), trajectory["time"].values, []
@@ -250,11 +256,13 @@ def _ffmpeg() -> ModuleType:
 
 
 def _mp4(scratch: Path, images: Iterator[np.ndarray], size: tuple[int, int], rate: float) -> None:
-    options = ["-f", "mp4", "-fflags", "+bitexact", "-flags:v", "+bitexact"]  # no date, no program in it
-    quiet = {"ffmpeg_log_level": "quiet"}  # gaspart prints the one line of an error
+    # the file contains no date and no program name
+    options = ["-f", "mp4", "-fflags", "+bitexact", "-flags:v", "+bitexact"]
+    quiet = {"ffmpeg_log_level": "quiet"}  # gaspart prints errors in one line itself
     write_frames = _ffmpeg().write_frames
     with scratch.open("rb") as file:
-        # as this process has it open: by its name ffmpeg would make it anew if a signal has removed it
+        # written to the file that this process has open: if a signal has removed the file, ffmpeg would
+        # create it again by its name
         path = path_for_others(file)
         writer = write_frames(path, size, fps=rate, macro_block_size=2, output_params=options, **quiet)
         try:
@@ -268,14 +276,14 @@ def _mp4(scratch: Path, images: Iterator[np.ndarray], size: tuple[int, int], rat
 
 
 def _is_complete_mp4(path: Path) -> bool:
-    """Return True if a file is a sequence of complete boxes with the film's index."""
+    """Return True if a file is a sequence of complete boxes that includes the film's index."""
     size, at, kinds = path.stat().st_size, 0, set()
     with path.open("rb") as file:
         while at < size:
             file.seek(at)
             head = file.read(16)
             length = int.from_bytes(head[:4], "big")
-            if length == 1:  # the size follows in 64 bits
+            if length == 1:  # the size follows as a 64-bit number
                 length = int.from_bytes(head[8:16], "big")
             if length < 8:
                 return False

@@ -34,21 +34,21 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# What notebooks show of pictures and films: they are arrays and paths, which know how to show themselves.
+# Pictures and films in notebooks: they are arrays and paths that display themselves.
 
 
 LARGEST_FILM = 50_000_000
-"""Bytes of a film that a notebook is to hold; a larger one is a link."""
+"""Largest size of a film inside a notebook, in bytes; a larger film is a link."""
 
 
 class Picture(np.ndarray):
     """Array of pixels, uint8 (H, W, 3), that a notebook shows as a picture.
 
-    Parts, and results of arithmetic, that are not pictures are shown as arrays.
+    Slices and results of arithmetic that are not pictures are shown as arrays.
     """
 
     def _repr_png_(self) -> bytes | None:
-        """Return the picture as the content of a PNG file; None for other arrays."""
+        """Return the picture as a PNG file; None for arrays that are no pictures."""
         if self.dtype != np.uint8 or self.ndim != 3 or self.shape[2] != 3 or not self.size:
             return None
         from PIL import Image
@@ -58,7 +58,7 @@ class Picture(np.ndarray):
         return content.getvalue()
 
     def figure(self, caption: str) -> str:
-        """Return the picture with a line of text below it, as a piece of HTML."""
+        """Return the picture as HTML, with a line of text below it."""
         source = f"data:image/png;base64,{base64.b64encode(self._repr_png_() or b'').decode()}"
         text = html.escape(caption)
         image = f'<img src="{source}" alt="{text}" style="max-width: 100%">'
@@ -66,10 +66,10 @@ class Picture(np.ndarray):
 
 
 class Film(type(Path())):  # type: ignore[misc]
-    """The path of a film, .mp4 or .gif, which a notebook shows."""
+    """Path of a film, .mp4 or .gif, which a notebook shows."""
 
     def _repr_html_(self) -> str | None:
-        """Return the film, inside the notebook unless it is too large; None without a file."""
+        """Return HTML with the film or, if it is large, a link; None without a file."""
         if not self.is_file():
             return None
         name = html.escape(str(self))
@@ -84,7 +84,7 @@ class Film(type(Path())):  # type: ignore[misc]
 Source: TypeAlias = "str | Path | xr.Dataset | Simulation | State | Scene"
 """Source of pictures: a trajectory, by its path or open, a simulation, a state or a scene."""
 _CORNERS = {2: ((0,), (1,)), 3: ((0, 0), (1, 0), (1, 1), (0, 1), (0, 0))}
-"""Corners of a face, along its outline, in a container whose sides are 1."""
+"""Corners of a face, in order along its outline, in a container of side 1."""
 
 
 def render(
@@ -101,9 +101,10 @@ def render(
     Parameters
     ----------
     source : str, Path, Dataset, Simulation, State or Scene
-        A trajectory, by its path or open, a simulation or a state now, or a scene at time 0 (seed 0).
+        A trajectory (its path, or an open trajectory), a simulation at the present time, a state, or a scene
+        at time 0 (seed 0).
     frame : int, default -1
-        Number of the frame of a trajectory, counted from 0, or from the end if negative.
+        Index of the frame of a trajectory, counted from 0, or from the end if negative.
     size : tuple of int, default (1000, 750)
         Width W and height H in pixels.
     colour : {"speed", "species"} or ndarray, shape (N, 3), default "speed"
@@ -131,8 +132,8 @@ def render(
     Notes
     -----
     Spheres are drawn in perspective, with light and shadow, over the floor of the container (z = 0). Discs
-    are drawn from above, cut at periodic faces, with the parts that are seen at the other side. Interior
-    walls of a state are not drawn. The same particles give the same pixels.
+    are drawn from above. At periodic faces they are cut, and the other part is drawn at the opposite side.
+    Interior walls of a state are not drawn. The same particles give the same pixels.
 
     Examples
     --------
@@ -161,7 +162,10 @@ def draw_labelled(
     direction: tuple[float, float] = CAMERA,
     paths: Sequence[np.ndarray] = (),
 ) -> Picture:
-    """Return a picture with parameters, legend, time and scale; paths, (M, 2) each, lie over discs."""
+    """Draw a picture with parameters, legend, time and scale.
+
+    `paths` are arrays (M, 2), drawn over discs.
+    """
     labels = Labels(size, particles.parameters, legend_of(particles, colour, fastest), particles.surfaces)
     image = picture(particles, labels.inner, colours_of(particles, colour, fastest), paths, direction)
     scale = pixels_per_length(particles, labels.inner, direction)
@@ -170,7 +174,7 @@ def draw_labelled(
 
 @contextmanager
 def open_source(source: Source) -> Iterator[xr.Dataset | Simulation | State | Scene]:
-    """Yield an open source; close a trajectory that was given as a path.
+    """Yield an open source; a trajectory given by its path is closed afterwards.
 
     Parameters
     ----------
@@ -195,10 +199,10 @@ def particles_of(source: State | Simulation | Scene | xr.Dataset, frame: int = -
     Parameters
     ----------
     source : State, Simulation, Scene or Dataset
-        A simulation or a state now, a scene at time 0, or an open trajectory. A state has no interior walls
-        and no periodic axes.
+        A simulation at the present time, a state, a scene at time 0, or an open trajectory. A state has no
+        interior walls and no periodic axes.
     frame : int, default -1
-        Number of the frame of a trajectory, counted from the end if negative.
+        Index of the frame of a trajectory, counted from the end if negative.
 
     Returns
     -------
@@ -220,11 +224,11 @@ def particles_of(source: State | Simulation | Scene | xr.Dataset, frame: int = -
     if not -frames <= count_of("frame", frame, least=-frames) < frames:
         raise SceneError("frame", frame, f"must be one of {frames} frames, counted from 0")
     names = ("coordinates", "velocities", "time", "piston_position")
-    # Of these alone: xarray takes milliseconds for a frame of the whole.
+    # only these variables, because xarray takes milliseconds for a frame of the complete dataset
     variables = {name: source.variables[name][frame].values for name in names if name in source.variables}
     if "keep" in source.attrs:
         raise SceneError("keep", source.attrs["keep"], "a picture needs positions and velocities")
-    inside = np.isfinite(variables["coordinates"]).all(axis=1)  # of particles that come and go
+    inside = np.isfinite(variables["coordinates"]).all(axis=1)  # particles that enter and leave
     positions, velocities = (variables[name][inside].astype(float) for name in ("coordinates", "velocities"))
     scene, stored = scene_of(source), len(inside)
     return DrawnParticles(
@@ -258,7 +262,7 @@ def parameters_of(scene: Scene) -> tuple[str, ...]:
     texts = [f"{scene.count} {kind}{'s' if scene.count != 1 else ''}"]
     if scene.is_open:
         texts[0] += " at the start"
-    elif not scene.pistons:  # the container would not be what they fill
+    elif not scene.pistons:  # the particles do not fill the whole container
         texts.append(f"packing fraction {scene.packing_fraction:.3g}")
     if scene.gravity is not None:
         texts.append(f"gravity {math.hypot(*scene.gravity):.3g}")

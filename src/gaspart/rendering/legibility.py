@@ -1,4 +1,7 @@
-"""Legibility of a figure: legends off the data, texts without overlaps and on the canvas."""
+"""Legibility of a figure: positions of legends and texts.
+
+Legends must not cover data. Texts must not overlap or leave the canvas.
+"""
 
 from __future__ import annotations
 
@@ -16,11 +19,11 @@ if TYPE_CHECKING:
     from matplotlib.transforms import Bbox
 
 _STEP = 3.0
-"""Pixels between the places of a line that are looked at."""
+"""Distance in pixels between the tested points of a line."""
 _GAP = 5.5
-"""Pixels between a legend and the frame of its panel: matplotlib's, half of the letters' size."""
+"""Pixels between a legend and the frame of its panel: matplotlib's default, half of the font size."""
 _CLEAR = 2.0
-"""Pixels between a legend and data, at least, where a legend is moved to."""
+"""Minimum number of pixels between data and a legend at its new position."""
 _PLACES: dict[Any, tuple[float, float]] = {
     "upper right": (1.0, 1.0),
     "upper left": (0.0, 1.0),
@@ -31,22 +34,23 @@ _PLACES: dict[Any, tuple[float, float]] = {
     "upper center": (0.5, 1.0),
     "lower center": (0.5, 0.0),
 }
-"""Place of a legend in its panel: the parts of the free width and height that are at its left and below."""
+"""Position of a legend in its panel, as fractions of the free width (left of it) and of the free height
+(below it)."""
 _NARROW, _LETTER = 0.8, 16.0
-"""Maximum width of a legend that fits above a panel next to the letter, as a fraction of the panel.
+"""Maximum width of a legend that fits above a panel next to the panel's letter, as a fraction of the panel.
 
-A wider legend is higher by the second number, in pixels.
+A wider legend is moved up by the second number, in pixels.
 """
 _MOST_ROOM = 1.6
-"""A vertical axis is extended by this factor at most to make room for a legend."""
+"""Maximum factor by which a vertical axis is extended to make space for a legend."""
 _PASSES = 5
 
 
 def place_legends(figure: Figure) -> None:
     """Move each legend that covers data to a free position.
 
-    It is in the panel, or in space made by extending the vertical axis, or else above the panel. The figure
-    then keeps its layout.
+    The position is in the panel if possible. Otherwise the vertical axis is extended, or the legend is placed
+    above the panel. Afterwards the layout of the figure is fixed.
     """
     layout = figure.get_layout_engine()
     assert layout
@@ -55,12 +59,12 @@ def place_legends(figure: Figure) -> None:
         moved = [_move_legend(axis) for axis in figure.axes if axis.get_legend()]
         if not any(moved):
             break
-    layout.execute(figure)  # ticks follow the size of a panel, and the layout follows them
-    figure.set_layout_engine(None)  # with "none", each file would be drawn twice, first to lay it out
+    layout.execute(figure)  # ticks depend on the size of a panel, and the layout depends on ticks
+    figure.set_layout_engine(None)  # with "none", each file would be drawn twice, first for the layout
 
 
 def _move_legend(axis: Axes) -> bool:
-    """Return True if the legend of this panel covered data, and was moved."""
+    """Return True if the legend of this panel covered data and was moved."""
     legend, frame = axis.get_legend(), axis.bbox
     assert legend
     box, everything = legend.get_window_extent(), _marks(axis, lines=True)
@@ -85,7 +89,7 @@ def _move_legend(axis: Axes) -> bool:
 
 
 def _text_points(text: Text) -> np.ndarray:
-    """Return positions (n, 2) in pixels all over a text."""
+    """Return points (n, 2) in pixels that cover a text."""
     box = text.get_window_extent()
     x, y = np.linspace(box.x0, box.x1, 9), np.linspace(box.y0, box.y1, 9)
     return np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
@@ -94,7 +98,7 @@ def _text_points(text: Text) -> np.ndarray:
 def _extend_axis(axis: Axes, data: np.ndarray, box: Bbox, free: float) -> bool:
     """Return True if the vertical axis was extended so that the legend fits at the top.
 
-    `free` is the width of the panel, in pixels, that the legend leaves.
+    `free` is the width in pixels of the panel that is not below the legend.
     """
     legend, frame = axis.get_legend(), axis.bbox
     assert legend
@@ -119,7 +123,7 @@ def _extend_axis(axis: Axes, data: np.ndarray, box: Bbox, free: float) -> bool:
 
 
 def _inside(positions: np.ndarray, x_min: float, y_min: float, x_max: float, y_max: float) -> np.ndarray:
-    """Return True for each of the positions (n, 2) in a rectangle."""
+    """Return True for each of the positions (n, 2) inside a rectangle."""
     x, y = positions.T
     return (x > x_min) & (x < x_max) & (y > y_min) & (y < y_max)
 
@@ -131,9 +135,9 @@ def _inside_panel(axis: Axes, positions: np.ndarray) -> np.ndarray:
 
 
 def _marks(axis: Axes, lines: bool) -> np.ndarray:
-    """Return positions (n, 2) in pixels of a panel's points, error bars and, if `lines`, curves.
+    """Return the positions (n, 2) in pixels of a panel's points and error bars.
 
-    Guides across the whole panel are no data.
+    If `lines` is True, points along curves are included. Guide lines across the whole panel are not data.
     """
     from matplotlib.collections import LineCollection
 
@@ -158,8 +162,8 @@ def _marks(axis: Axes, lines: bool) -> np.ndarray:
 
 
 def _along(positions: np.ndarray) -> np.ndarray:
-    """Return positions (m, 2) along the line through positions (n, 2), a few pixels apart."""
-    positions = np.reshape(positions, (-1, 2))  # an error bar without a value has none
+    """Return positions (m, 2), a few pixels apart, along a line through points (n, 2)."""
+    positions = np.reshape(positions, (-1, 2))  # an error bar without a value has no points
     begin, way = positions[:-1], np.diff(positions, axis=0)
     finite = np.isfinite(way).all(axis=1)
     begin, way = begin[finite], way[finite]
@@ -169,14 +173,14 @@ def _along(positions: np.ndarray) -> np.ndarray:
 
 
 def flaws(figure: Figure) -> list[str]:
-    """Return the flaws of a figure that has been saved, a sentence each.
+    """Return the flaws of a saved figure, a sentence each.
 
-    Flaws are a text that overlaps other text or leaves the canvas, a legend on data, and a text in a panel on
-    a point.
+    Flaws are: text that overlaps other text or leaves the canvas, a legend on data, and text in a panel on a
+    point.
     """
     from matplotlib.text import Text
 
-    figure.draw_without_rendering()  # labels have the places of the last drawing, of another resolution
+    figure.draw_without_rendering()  # labels have the positions of the last drawing, at another resolution
     texts = list(_texts(figure))
     sentences = [
         f"{first!r} overlaps {second!r}"
@@ -191,7 +195,7 @@ def flaws(figure: Figure) -> list[str]:
     ]
     for axis in figure.axes:
         legend, points = axis.get_legend(), _inside_panel(axis, _marks(axis, lines=False))
-        # Without the arrow of an annotation, which points at data.
+        # without the arrow of an annotation, which points at data
         covers = [(repr(text.get_text()), Text.get_window_extent(text), points) for text in axis.texts]
         if legend:
             covers.append(
@@ -206,7 +210,7 @@ def flaws(figure: Figure) -> list[str]:
 
 
 def _texts(figure: Figure) -> Iterator[tuple[str, Bbox]]:
-    """Yield every text that is drawn, and its rectangle in pixels; a legend as one text."""
+    """Yield every visible text with its rectangle in pixels; a legend counts as one text."""
     from matplotlib.legend import Legend
     from matplotlib.text import Text
 
@@ -223,7 +227,7 @@ def _texts(figure: Figure) -> Iterator[tuple[str, Bbox]]:
 
 
 def _ticks(axis: Axis) -> Iterator[tuple[object, bool]]:
-    """Yield the labels of an axis' ticks, with True for each label that is drawn."""
+    """Yield the labels of an axis' ticks, with True for each visible label."""
     low, high = sorted(map(float, axis.get_view_interval()))
     panel = axis.axes.axison and axis.axes.get_visible()
     for minor in (False, True):
@@ -235,5 +239,5 @@ def _ticks(axis: Axis) -> Iterator[tuple[object, bool]]:
 
 
 def _smaller(box: Bbox) -> Bbox:
-    """Return a rectangle without its outermost pixels: letters do not fill theirs."""
+    """Return a rectangle without its outermost pixels, which letters do not reach."""
     return box.padded(-2.0)

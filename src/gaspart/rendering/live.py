@@ -1,4 +1,4 @@
-"""Gas to play with in a notebook: sliders change it, gauges measure it."""
+"""Interactive gas in a notebook: sliders change it, gauges measure it."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from gaspart.rendering.live_gas import LEAST_FRAMES, LIVE_SIZE, LiveGas
 from gaspart.scene.scene import Scene
 
 _SECONDS = 0.04
-"""Between the starts of two pictures, at least."""
+"""Minimum time in seconds between the starts of two pictures."""
 _PAUSE = 0.005
-"""Seconds after each picture, at least, in which the notebook hears what its user does."""
+"""Minimum pause in seconds after each picture, in which the notebook processes user input."""
 _METERS = 1.0
-"""Seconds between two readings of the gauges."""
+"""Seconds between two updates of the gauges."""
 
 
 def live(
@@ -30,12 +30,13 @@ def live(
     size: tuple[int, int] = LIVE_SIZE,
     colour: str = "speed",
 ) -> Any:
-    """Show a scene that runs while it is watched, in a widget of a notebook.
+    """Show a running simulation of a scene, in a widget of a notebook.
 
-    Sliders change the packing fraction, for which the gas starts again, and gravity, the temperature of the
-    walls, restitution and the side x high, with which the gas goes on. The side is pushed in as a piston and
-    pulled out into a vacuum. A button removes interior walls. Gauges show temperature and pressure since the
-    last change, with their errors and theory, and the histogram of speeds with Maxwell's distribution.
+    A slider changes the packing fraction; the gas then starts again. Other sliders change gravity, the
+    temperature of the walls, restitution, and the position of the side x high; the gas then continues. The
+    side is pushed in as a piston, or pulled out into a vacuum. A button removes interior walls. Gauges show
+    temperature and pressure since the last change, with errors and theory, and the histogram of speeds with
+    Maxwell's distribution.
 
     Parameters
     ----------
@@ -58,7 +59,8 @@ def live(
     Raises
     ------
     SceneError
-        If nothing moves at the start, the engine cannot model the scene, or ipywidgets is not installed.
+        If no particle moves at the start, if the engine cannot model the scene, or if ipywidgets is not
+        installed.
 
     Notes
     -----
@@ -92,10 +94,10 @@ def live(
 
     def start(change: Any) -> None:
         if change.new:
-            running.task = asyncio.get_running_loop().create_task(play())  # which must be referred to
+            running.task = asyncio.get_running_loop().create_task(play())  # a reference must be kept
 
     def changing(change: Callable[..., None], *values: float) -> bool:
-        """Return False if the gas refuses a change."""
+        """Return False if the gas rejects a change."""
         note.value = "one moment: kernels of a new kind of scene are compiled"
         try:
             change(*values)
@@ -134,9 +136,9 @@ def _slider(
     change: Callable[[float], None],
     changing: Callable[..., bool],
 ) -> Any:
-    """Return a slider of a name and a range (least, value, most) that changes a gas.
+    """Return a slider that changes a gas, with a name and a range (least, value, most).
 
-    It goes back from a value that the gas refuses.
+    If the gas rejects a value, the slider returns to the previous value.
     """
     least, value, most = range_
     slider = widgets.FloatSlider(value, min=least, max=most, step=(most - least) / 50.0, description=name)
@@ -153,7 +155,7 @@ def _slider(
 
 
 def _ranges(gas: LiveGas) -> list[tuple[str, tuple[float, float, float], Callable[[float], None]]]:
-    """Return the name, the range and the effect of each slider that suits a gas."""
+    """Return the name, the range and the effect of each slider that applies to a gas."""
     scene = gas.simulation.scene
     ranges: list[tuple[str, tuple[float, float, float], Callable[[float], None]]] = []
     if gas.richest:

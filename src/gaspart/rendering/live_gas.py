@@ -1,4 +1,4 @@
-"""A simulation that goes on in changed scenes, with gauges of what it does."""
+"""Simulation that continues in changed scenes, with gauges."""
 
 from __future__ import annotations
 
@@ -23,36 +23,36 @@ from gaspart.scene.scene import Scene, require_scene
 from gaspart.simulation import Simulation
 
 _PICTURES = 100
-"""In the time in which a particle crosses the container."""
+"""Number of pictures in the time in which a particle crosses the container."""
 _DENSEST = {2: 0.45, 3: 0.28}
-"""Packing fraction up to which particles are placed at random."""
+"""Largest packing fraction at which particles are placed at random."""
 _WEIGHTS = 8.0
-"""The strongest gravity of the slider: of a fall through the container, in units of m v^2 of a particle."""
+"""Largest gravity of the slider: energy of a fall through the container, in units of m v^2 of a particle."""
 _HOTTEST = 4.0
-"""Highest temperature of the walls, divided by the temperature of the gas at the start."""
+"""Largest temperature of the walls, divided by the initial temperature of the gas."""
 _RICHEST = 4.0
-"""Highest activity of reservoirs, divided by the activity at the start."""
+"""Largest activity of reservoirs, divided by the initial activity."""
 _SMALLEST = 0.4
-"""Least distance of the piston from the other side, as a fraction of the length."""
+"""Smallest distance of the piston from the opposite side, as a fraction of the length."""
 _SPEED = 0.25
 """Speed of the piston, divided by the thermal speed."""
 _KEPT, _TRAIL, _BINS = 256, 400, 24
-"""Most frames of the gauges, points of the tracer's path, bins of speeds."""
+"""Maximum number of frames for the gauges, points of the tracer's path, and bins of speeds."""
 LEAST_FRAMES = 33
-"""Frames from which on gauges state errors."""
+"""Minimum number of frames for gauges with errors."""
 LIVE_SIZE = (600, 450)
 
 
 class LiveGas:
-    """Simulation that goes on from picture to picture, of a scene that may change.
+    """Simulation that advances from picture to picture; its scene may change.
 
     interval : time between two pictures.
     size : (W, H) in pixels.
     collisions : number of collisions since the start.
     traced : True if the path of the first moving particle is drawn.
 
-    Other arguments are those for `Simulation`, and `colour` is explained in `render`. Raises SceneError as
-    `Simulation`, and for a scene in which nothing moves or falls.
+    Other arguments are the arguments of `Simulation`. `colour` is explained in `render`. Raises SceneError
+    like `Simulation`, and for a scene in which no particle moves or falls.
     """
 
     def __init__(
@@ -73,7 +73,7 @@ class LiveGas:
         self._begin(scene)
 
     def _begin(self, scene: Scene) -> None:
-        """Start a scene anew."""
+        """Start a scene from time 0."""
         self.simulation = Simulation(scene, self._engine, self._seed)
         self._before = self._clock = 0.0
         self.collisions, self._counted = 0, 0
@@ -83,7 +83,7 @@ class LiveGas:
         self.observe()
 
     def _go_on(self, scene: Scene, **state: Any) -> None:
-        """Continue in another scene from the present state, of which values may be replaced."""
+        """Continue in another scene from the present state; values of the state may be replaced."""
         present = replace(self.simulation.state, **state)
         if scene.is_open:
             if not present.count:
@@ -97,7 +97,7 @@ class LiveGas:
         self.observe()
 
     def observe(self) -> None:
-        """Begin the measurements of the gauges, as after each change."""
+        """Restart the measurements of the gauges, as after each change."""
         self._rows, self._stride, self._skipped = [frame_of(self.simulation)], 1, 0
 
     @property
@@ -107,19 +107,19 @@ class LiveGas:
 
     @property
     def picture(self) -> Picture:
-        """Picture of the particles now, with the parameters of the scene."""
+        """Picture of the particles at the present time, with the parameters of the scene."""
         particles = particles_of(self.simulation)
         paths = pieces(self._path, particles.lengths) if self.traced and self.traceable else ()
         fastest = FASTEST * np.sqrt(self._first.dimension) * self._thermal_speed or None
         return draw_labelled(particles, self.time, self.size, self.colour, fastest, paths=paths)
 
     def advance(self) -> Picture:
-        """Advance by an interval and return the picture then."""
+        """Advance by an interval, and return the picture."""
         self.step()
         return self.picture
 
     def step(self) -> None:
-        """Advance by an interval, or until the piston arrives."""
+        """Advance by an interval, or until the piston reaches its goal."""
         duration, piston = self.interval, self.simulation.state.piston
         arrives = False
         if self._target is not None and piston is not None:
@@ -137,7 +137,7 @@ class LiveGas:
             self._settle()
 
     def _record(self) -> None:
-        """Store a frame for the gauges; of too many, every second one."""
+        """Store a frame for the gauges; if there are too many, every second frame is removed."""
         self._skipped += 1
         if self._skipped < self._stride:
             return
@@ -147,9 +147,9 @@ class LiveGas:
             self._rows, self._stride = self._rows[::2], 2 * self._stride
 
     def fill(self, packing_fraction: float) -> None:
-        """Start again with another number of particles, for about this packing fraction.
+        """Start again with the number of particles for approximately this packing fraction.
 
-        The species that move keep the proportions of the first scene.
+        The moving species keep the proportions of the first scene.
 
         Parameters
         ----------
@@ -171,7 +171,7 @@ class LiveGas:
         self._begin(replace(now, species=species))
 
     def pull(self, acceleration: float) -> None:
-        """Continue from the present positions under another gravity, down the last axis.
+        """Continue from the present state with another gravity, down the last axis.
 
         Parameters
         ----------
@@ -184,8 +184,8 @@ class LiveGas:
     def heat(self, temperature: float) -> None:
         """Continue between walls at another temperature.
 
-        Thermal faces and reservoirs of the first scene keep the ratios of their temperatures; if it has none,
-        all faces that reflect become thermal.
+        Thermal faces and reservoirs of the first scene keep the ratios of their temperatures. If there are no
+        such faces, all reflecting faces become thermal.
 
         Parameters
         ----------
@@ -197,7 +197,7 @@ class LiveGas:
         scale = temperature / self.temperature if warm and temperature > 0.0 else 1.0
         for name in warm or self._hard:
             face = faces.get(name)
-            if isinstance(face, Piston):  # on its way
+            if isinstance(face, Piston):  # the piston is moving
                 continue
             if warm:
                 assert isinstance(face, Open | Thermal)
@@ -210,7 +210,7 @@ class LiveGas:
         self._go_on(replace(self.simulation.scene, faces=faces))
 
     def supply(self, activity: float) -> None:
-        """Continue with reservoirs of another activity, which keep their ratios.
+        """Continue with other activities of reservoirs, in the same ratios.
 
         Parameters
         ----------
@@ -237,7 +237,7 @@ class LiveGas:
         self._go_on(replace(self.simulation.scene, restitution=law))
 
     def push(self, coordinate: float) -> None:
-        """Move the side x high: inwards as a piston, outwards at once, into a vacuum.
+        """Move the side x high: inwards as a piston, outwards instantaneously into a vacuum.
 
         Parameters
         ----------
@@ -257,7 +257,7 @@ class LiveGas:
             self._resize(scene, coordinate)
 
     def _settle(self) -> None:
-        """Stop the piston where it is."""
+        """Stop the piston at its present position."""
         scene, piston = self.simulation.scene, self.simulation.state.piston
         assert piston is not None
         faces = {name: face for name, face in scene.faces.items() if name != "x_high"}
@@ -272,15 +272,15 @@ class LiveGas:
         self._go_on(replace(scene, container=container), lengths=np.array(lengths), piston=None)
 
     def open_walls(self) -> None:
-        """Continue without interior walls: what they have separated mixes."""
+        """Remove interior walls, so that the separated gases mix."""
         self._go_on(replace(self.simulation.scene, walls=()))
 
     def gauges(self) -> list[tuple[str, float, float, float | None]]:
-        """Name, mean since the last change, standard error and theory of temperature and pressures.
+        """Name, mean since the last change, standard error and theory of each gauge.
 
-        The pressure on each wall; of a gas without walls Z; with open faces the number of particles, too.
-        Empty until there are enough frames. Where no theory of this container is known, it is the equation of
-        state of a gas without walls.
+        The gauges are the temperature, and the pressure on each wall, or Z of a gas without walls. With open
+        faces there is also the number of particles. The list is empty until there are enough frames. If there
+        is no theory for this container, the equation of state of a gas without walls is used.
         """
         if len(self._rows) < LEAST_FRAMES:
             return []
@@ -313,7 +313,7 @@ class LiveGas:
         return readings + list(zip(names, values, errors, theories, strict=True))
 
     def _bulk(self, temperature: float) -> float | None:
-        """Return the pressure, or Z, of the gas without walls; None for other scenes."""
+        """Return the pressure, or Z, of a gas without walls; None for other scenes."""
         scene = self.simulation.scene
         gas = None if scene.is_open else replace(scene, faces={}).gas
         try:
@@ -325,10 +325,10 @@ class LiveGas:
         return z * self.simulation.state.count * temperature / float(np.prod(scene.container.lengths))
 
     def speeds(self) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
-        """Return edges and density of the histogram of speeds since the last change, and Maxwell's.
+        """Return the histogram of speeds since the last change, with Maxwell's density.
 
-        Maxwell's density holds for the mean energy, for particles of one mass; for others it has the value
-        None.
+        The histogram has edges and a density. Maxwell's density is for the mean energy and for particles of
+        equal mass. For other particles, None is returned for this density.
         """
         masses, d = self.simulation.state.masses, self._first.dimension
         masses = masses[np.isfinite(masses)]
@@ -346,7 +346,7 @@ class LiveGas:
 
     @property
     def _flights(self) -> np.ndarray:
-        """(T, N, d) velocities of particles that move, since the last change; NaN for vacant numbers."""
+        """Velocities (T, N, d) of moving particles since the last change; NaN for vacant numbers."""
         velocities = np.array([row["velocities"] for row in self._rows])
         if self._first.is_open:
             return velocities
@@ -354,23 +354,26 @@ class LiveGas:
 
     @property
     def traceable(self) -> bool:
-        """True if a path can be drawn: in the plane, of particles that stay."""
+        """True if a path can be drawn: two dimensions, and no open faces."""
         return self._first.dimension == 2 and not self._first.is_open
 
     @property
     def emptiest(self) -> float:
-        """Packing fraction of all particles except species that move."""
+        """Packing fraction without the moving species."""
         fixed = [item for item in self._first.species if item.fixed]
         return replace(self._first, species=fixed).packing_fraction
 
     @property
     def densest(self) -> float:
-        """Highest packing fraction to choose."""
+        """Largest packing fraction of the slider."""
         return max(_DENSEST[self._first.dimension], self._first.packing_fraction)
 
     @property
     def strongest(self) -> float | None:
-        """Strongest gravity to choose; None without a floor, and with reservoirs, on which nothing acts."""
+        """Largest gravity of the slider; None without a floor, or with reservoirs.
+
+        Gravity does not act on reservoirs.
+        """
         if self._first.container.periodic[-1] or self._first.is_open:
             return None
         height = self._first.container.lengths[-1]
@@ -384,7 +387,7 @@ class LiveGas:
 
     @property
     def temperature(self) -> float:
-        """Temperature of the hottest wall or reservoir of the first scene; 0 without one."""
+        """Temperature of the hottest wall or reservoir of the first scene; 0 without such walls."""
         faces = self._first.faces.values()
         warm = [item.temperatures for item in faces if isinstance(item, Open | Thermal)]
         return max((max(item) for item in warm if item), default=0.0)
@@ -396,12 +399,12 @@ class LiveGas:
 
     @property
     def richest(self) -> float:
-        """Highest activity to choose; 0 without reservoirs."""
+        """Largest activity of the slider; 0 without reservoirs."""
         return _RICHEST * self.activity
 
     @property
     def hottest(self) -> float | None:
-        """Highest temperature of the walls to choose; None without walls that can be thermal."""
+        """Largest temperature of the slider; None without walls that can be thermal."""
         if not self._warm and not self._hard:
             return None
         gas = scales(self._first).thermal_speed ** 2 * float(np.min(self.simulation.state.masses))
@@ -409,7 +412,7 @@ class LiveGas:
 
     @property
     def shortest(self) -> float | None:
-        """Least coordinate of the side x high to choose; None if it cannot be moved."""
+        """Smallest coordinate of the side x high on the slider; None if the side cannot move."""
         first = self._first
         if first.is_open:
             return None
@@ -421,7 +424,7 @@ class LiveGas:
 
     @property
     def _warm(self) -> dict[str, Thermal | Open]:
-        """Thermal faces of the first scene, of one temperature each, and reservoirs."""
+        """Reservoirs and thermal faces of the first scene; each face has a single temperature."""
         faces = self._first.faces.items()
         walls = {
             name: item for name, item in faces if isinstance(item, Thermal) and item.varies_along is None
@@ -436,7 +439,7 @@ class LiveGas:
 
     @property
     def _hard(self) -> list[str]:
-        """Faces of the container that reflect."""
+        """Reflecting faces of the container."""
         axes = range(self._first.dimension)
         names = [f"{'xyz'[axis]}_{end}" for axis in axes for end in ("low", "high")]
         walls = np.repeat([not item for item in self._first.container.periodic], 2)

@@ -19,23 +19,23 @@ if TYPE_CHECKING:
 
 COLOURINGS = ("speed", "species")
 FASTEST = 2.0
-"""The scale of speeds ends at this many root-mean-square speeds."""
+"""Upper end of the scale of speeds, in units of the root-mean-square speed."""
 FIXED = (0.62, 0.62, 0.62)
-"""The colour of fixed particles among those that are coloured by speed."""
+"""Colour of fixed particles, if particles are coloured by speed."""
 
 
 @dataclass(frozen=True)
 class DrawnParticles:
     """Particles of a picture, with their container and walls.
 
-    positions, radii, species, speeds : (N, d), (N,), (N,), (N,).
+    positions, radii, species, speeds : shapes (N, d), (N,), (N,), (N,).
     lengths : (d,), sides of the container.
-    walls : (M, 2, d), ends of the interior walls, for plates the ends of their sides.
+    walls : (M, 2, d), ends of the interior walls; for plates, ends of their sides.
     periodic : True for each periodic axis.
-    masses : (N,), if they are known.
-    fixed : (N,), True for each particle that never moves, None if it is not known.
+    masses : (N,), masses if known, else None.
+    fixed : (N,), True for each fixed particle; None if unknown.
     parameters : short texts on the scene.
-    surfaces : faces and walls with a look of their own.
+    surfaces : faces and walls that are drawn in a special way.
     """
 
     positions: np.ndarray
@@ -52,14 +52,14 @@ class DrawnParticles:
 
     @property
     def dimension(self) -> int:
-        """2 or 3."""
+        """Number of dimensions, 2 or 3."""
         return self.positions.shape[1]
 
     @property
     def reach(self) -> float:
-        """Maximum distance that particles may reach out of the container.
+        """Maximum distance by which particles may extend beyond the container.
 
-        It is the radius of the largest particle that does.
+        It is the radius of the largest particle that extends beyond it.
         """
         positions, radii = self.positions, self.radii[:, None]
         out = (np.maximum(radii - positions, positions + radii - self.lengths) > 1e-9 * self.lengths).any(
@@ -77,7 +77,7 @@ class DrawnParticles:
 class Legend:
     """Meaning of the colours of a picture.
 
-    It has a title, colours (M, 3), and texts, one for each colour or for the two ends of a continuous scale.
+    It has a title, colours (M, 3), and texts: one for each colour, or two for the ends of a continuous scale.
     """
 
     title: str
@@ -86,14 +86,14 @@ class Legend:
 
     @property
     def continuous(self) -> bool:
-        """True if the colours form a scale."""
+        """True if the colours form a continuous scale."""
         return len(self.texts) < len(self.colours)
 
 
 def legend_of(
     particles: DrawnParticles, colour: str | np.ndarray, fastest: float | None = None
 ) -> Legend | None:
-    """Return the legend of `colours_of`; None for given colours, and for one species."""
+    """Return the legend of `colours_of`; None for prescribed colours, and for one species."""
     if not isinstance(colour, str):
         return None
     if colour == "species":
@@ -107,9 +107,9 @@ def legend_of(
 
 
 def _differences(particles: DrawnParticles, used: np.ndarray) -> tuple[str, tuple[str, ...]]:
-    """Return the properties in which these species differ, and their values in each species.
+    """Return the properties in which these species differ, with their values in each species.
 
-    The numbers of the species are returned if a species has several values.
+    If a species has several values, the indices of the species are returned instead.
     """
     titles, columns = [], []
     for title, values in (("radius", particles.radii), ("mass", particles.masses)):
@@ -139,7 +139,7 @@ def _ramp(parts: np.ndarray) -> np.ndarray:
 
 
 def _fastest(particles: DrawnParticles, fastest: float | None) -> float:
-    """Return the end of the scale of speeds."""
+    """Return the upper end of the scale of speeds."""
     return (FASTEST * particles.root_mean_square_speed if fastest is None else fastest) or 1.0
 
 
@@ -148,9 +148,9 @@ def colours_of(
 ) -> np.ndarray:
     """Return the colours (N, 3) of particles: red, green and blue from 0 to 1.
 
-    They are by `colour`: "speed", dark at rest and bright from `fastest` on (without it, from `FASTEST`
-    root-mean-square speeds on), grey for fixed particles; "species"; or an array (N, 3). Raises SceneError
-    for anything else.
+    `colour` is "speed", "species" or an array (N, 3). By speed, particles are dark at rest, and bright at the
+    speed `fastest` and above; fixed particles are grey. The default of `fastest` is `FASTEST`
+    root-mean-square speeds. Raises SceneError for another `colour`.
     """
     if isinstance(colour, str):
         if colour not in COLOURINGS:
@@ -169,19 +169,19 @@ def colours_of(
     return values
 
 
-# The parameters, the meaning of the colours, the time and the scale, written above and below a picture.
+# Labels of a picture: parameters, meaning of the colours, time and scale, above and below the picture.
 
 
 _PART = 0.035
-"""Height of the letters divided by the height of the picture; at least 10 pixels.
+"""Height of the letters divided by the height of the picture; the minimum is 10 pixels.
 
-If 1.5 times the width is less than the height, it replaces the height.
+If 1.5 times the width is less than the height, the former is used instead of the height.
 """
 _LINE = 1.5
 """Height of a line divided by the height of its letters."""
 _INK, _PAPER = (40, 40, 40), (255, 255, 255)
 _LEAST = 16
-"""The least height of a picture between its labels, in pixels."""
+"""Minimum height of a picture between its labels, in pixels."""
 
 
 def round_length(longest: float) -> float:
@@ -195,9 +195,9 @@ def round_length(longest: float) -> float:
 
 
 def time_format(times: np.ndarray) -> str:
-    """Return the format of the times of a film, with equally many decimals for all.
+    """Return the format for the times of a film; all have the same number of decimals.
 
-    There are up to three decimals, as many as they need.
+    The number of decimals is as large as necessary, and at most three.
 
     >>> time_format([0.0, 0.25, 0.5]), time_format([0.0, 1e-9])
     ('.2f', '.4g')
@@ -210,13 +210,13 @@ def time_format(times: np.ndarray) -> str:
 
 @dataclass(frozen=True)
 class Labels:
-    """Text above and below a picture; with the picture its size is (W, H).
+    """Text above and below a picture.
 
-    parameters : short texts, above.
-    legend, surfaces : below the parameters.
+    parameters : short texts above the picture.
+    legend, surfaces : legends below the parameters.
 
-    The time and a bar of a round length are below the picture, whose size is `inner`. Raises SceneError if no
-    space is left for the picture.
+    The time and a bar of a round length are below the picture. The size of the picture is `inner`; with the
+    labels it is (W, H). Raises SceneError if there is no space for the picture.
     """
 
     size: tuple[int, int]
@@ -234,25 +234,28 @@ class Labels:
 
     @property
     def letters(self) -> int:
-        """Height of the letters in pixels."""
+        """Height of the letters, in pixels."""
         width, height = self.size
         return max(10, round(_PART * min(height, 1.5 * width)))
 
     @property
     def line(self) -> int:
-        """Height of a line in pixels."""
+        """Height of a line, in pixels."""
         return round(_LINE * self.letters)
 
     @cached_property
     def font(self) -> Any:
-        """The font of all labels."""
+        """Font of all labels."""
         from PIL import ImageFont
 
         return ImageFont.load_default(self.letters)
 
     @cached_property
     def lines(self) -> list[str]:
-        """Parameters in lines no wider than the picture, if they leave half of it."""
+        """Parameters in lines that are no wider than the picture.
+
+        They are left out if they take more than half of the picture.
+        """
         lines: list[str] = []
         for text in self.parameters:
             longer = f"{lines[-1]}, {text}" if lines else text
@@ -270,7 +273,10 @@ class Labels:
 
     @cached_property
     def rows(self) -> list[list[DrawnSurface]]:
-        """Surfaces in rows no wider than the picture, if they leave half of it."""
+        """Surfaces in rows that are no wider than the picture.
+
+        They are left out if they take more than half of the picture.
+        """
         rows: list[list[DrawnSurface]] = []
         free = 0.0
         for surface in self.surfaces:
@@ -285,16 +291,16 @@ class Labels:
 
     @property
     def _sample(self) -> int:
-        """Length of the line that shows the look of a surface, in pixels."""
+        """Length of the sample line for a surface in the legend, in pixels."""
         return 2 * self.letters
 
     @property
     def inner(self) -> tuple[int, int]:
-        """(W, H) of the picture itself."""
+        """Size (W, H) of the picture without labels."""
         return self.size[0], self.size[1] - self.top - self.line - self.letters // 3
 
     def add_to(self, image: np.ndarray, time: str, pixels_per_length: float) -> np.ndarray:
-        """Add the labels (H, W, 3) to a picture (h, W, 3) of the size `inner`."""
+        """Add the labels to a picture (h, W, 3) of size `inner`; return (H, W, 3)."""
         from PIL import Image, ImageDraw
 
         width, height = self.size
@@ -322,7 +328,7 @@ class Labels:
         return np.asarray(paper)
 
     def _draw_surfaces(self, draw: ImageDraw, row: list[DrawnSurface], base: float) -> None:
-        """Draw the line of each surface of a row, with its meaning."""
+        """Draw a row of the legend of surfaces: the line of each surface, and its meaning."""
         x, y, thick = self.letters / 2, base - 0.3 * self.letters, max(3, self.letters // 5)
         for surface in row:
             count = 5 if surface.dashed else len(surface.colours)
@@ -340,12 +346,12 @@ class Labels:
             )
 
     def _write(self, draw: ImageDraw, position: tuple[float, float], text: str, anchor: str = "ls") -> float:
-        """Write a text; returns where it ends, to the right."""
+        """Write a text, and return the coordinate of its right end."""
         draw.text(position, text, _INK, self.font, anchor)
         return draw.textbbox(position, text, self.font, anchor)[2]
 
     def _draw_legend(self, draw: ImageDraw, legend: Legend, base: float) -> None:
-        """Draw the title, and a bar with numbers at its ends, or colours with texts."""
+        """Draw the legend: title, and a bar with numbers at its ends, or colours with texts."""
         letters, gap = self.letters, self.letters // 2
         colours = [tuple(colour) for colour in np.rint(255.0 * legend.colours).astype(int).tolist()]
         x = self._write(draw, (gap, base), legend.title) + gap

@@ -1,4 +1,4 @@
-"""A picture of particles in given colours, as an array of pixels."""
+"""Picture of particles with prescribed colours, as an array of pixels."""
 
 from __future__ import annotations
 
@@ -20,7 +20,10 @@ LARGEST_SIDE = 20_000
 
 
 def checked_size(size: tuple[int, int]) -> tuple[int, int]:
-    """Return a valid size (W, H), or raise SceneError."""
+    """Return a valid size (W, H).
+
+    Raises SceneError for other values.
+    """
     if not isinstance(size, (tuple, list)) or len(size) != 2:
         raise SceneError("size", size, "must be a width and a height in pixels")
     for side in size:
@@ -30,7 +33,10 @@ def checked_size(size: tuple[int, int]) -> tuple[int, int]:
 
 
 def checked_camera(camera: tuple[float, float] | None, dimension: int) -> tuple[float, float]:
-    """Return azimuth and elevation in degrees, by default for None, or raise SceneError."""
+    """Return azimuth and elevation in degrees, with a default for None.
+
+    Raises SceneError for other values.
+    """
     if camera is None:
         return CAMERA
     if dimension == 2:
@@ -43,7 +49,7 @@ def checked_camera(camera: tuple[float, float] | None, dimension: int) -> tuple[
 
 
 def pixels_per_length(particles: DrawnParticles, size: tuple[int, int], camera: tuple[float, float]) -> float:
-    """Return the scale of a picture; of spheres, in the middle of the container."""
+    """Return the scale of a picture; for spheres, the scale in the middle of the container."""
     lengths = particles.lengths
     if len(lengths) == 2:
         from gaspart.rendering.discs import scale_of
@@ -60,7 +66,7 @@ def picture(
     paths: Sequence[np.ndarray] = (),
     direction: tuple[float, float] = CAMERA,
 ) -> np.ndarray:
-    """Draw particles in these colours (N, 3), as pixels, uint8 (H, W, 3).
+    """Draw particles with colours (N, 3), and return pixels, uint8 (H, W, 3).
 
     paths : arrays (M, 2), drawn over discs.
     direction : azimuth and elevation of the camera for spheres, in degrees.
@@ -76,7 +82,7 @@ def picture(
 
 
 def _with_surfaces(image: np.ndarray, particles: DrawnParticles, camera: Camera) -> np.ndarray:
-    """Draw the outlines of surfaces, and arrows of their motion, over a picture of spheres."""
+    """Draw outlines of surfaces, and arrows of their motion, over a picture of spheres."""
     if not particles.surfaces:
         return image
     from PIL import Image, ImageDraw
@@ -87,7 +93,7 @@ def _with_surfaces(image: np.ndarray, particles: DrawnParticles, camera: Camera)
     thick = max(2, min(width, height) // 250)
     for surface in particles.surfaces:
         middle = surface.ends.mean(axis=0)
-        around = middle + 0.985 * (surface.ends - middle)  # beside the edges that other faces share
+        around = middle + 0.985 * (surface.ends - middle)  # next to the edges that other faces share
         parts = 15 if surface.dashed else len(surface.colours)
         for start, end in pairwise([*around, around[0]]):
             marks = camera.pixels(np.linspace(start, end, parts + 1), (width, height))
@@ -127,9 +133,9 @@ def _plane(
 
 
 def _images(particles: DrawnParticles) -> tuple[np.ndarray, np.ndarray]:
-    """Return indices (M,) of particles and shifts (M, d) of their images.
+    """Return the indices (M,) of the drawn discs, and the shifts (M, d) of their images.
 
-    These are all discs, then the periodic images of discs that cross a periodic face.
+    First are all discs, then the periodic images of discs that cross a periodic face.
     """
     radii, lengths = particles.radii[:, None], particles.lengths
     steps = [(0, -1, 1) if periodic else (0,) for periodic in particles.periodic[: particles.dimension]]

@@ -1,4 +1,4 @@
-"""The style sheet of all figures: layouts, sizes of letters, colours that the colour-blind distinguish."""
+"""Style of all figures: layouts, font sizes, colours suitable for colour-blind readers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from gaspart.analysis.estimate import Estimate
 
-if TYPE_CHECKING:  # the colours are used without matplotlib
+if TYPE_CHECKING:  # colours can be used without matplotlib
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
     from matplotlib.container import ErrorbarContainer
@@ -27,29 +27,30 @@ COLUMN = 3.4
 PAGE = 7.0
 """Width of two columns, in inches."""
 LAYOUTS = {"page": PAGE, "journal": COLUMN}
-"""Width of a figure by its layout: two columns of panels for a page, one for a journal."""
+"""Width of a figure by layout: two columns of panels for a page, one column for a journal."""
 
-# Okabe and Ito, "Color universal design" (2008), in an order whose neighbours differ in lightness too.
+# Okabe and Ito, "Color universal design" (2008), in an order in which neighbours also differ in lightness.
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"]
 MARKERS = ["o", "s", "^", "D", "v", "P", "X"]
 DATA = "#000000"
-"""Colour of measured points, where a panel has one series."""
+"""Colour of measured points, if a panel has one series."""
 REFERENCE = "#0072b2"
-"""Colour of the curve that the measurement is compared with."""
+"""Colour of the curve with which the measurement is compared."""
 GREY = "#8c8c8c"
-"""For guides: zero lines, bands, limits."""
+"""Colour of guides: zero lines, bands, limits."""
 _DATED = {"svg": "Date", "pdf": "CreationDate", "png": "Software"}
-"""Key of the statement about its creation that a file of each format has by default, and here lacks."""
+"""Metadata key with the date or program, by file format; it is removed from files."""
 _SHORTEST, _SHORT = 0.5, 2.2
-"""Decades of a logarithmic axis: below the first it has ticks like a linear one, up to the second also at
-twice and five times a power of ten."""
+"""Lengths of logarithmic axes in decades. Axes below the first length have linear ticks. Axes up to the
+second length also have ticks at two and five times powers of ten."""
 
 RULES: dict[Any, Any] = {
     "figure.dpi": 100,
-    "figure.constrained_layout.use": False,  # by `new` alone, and not again once the panels have their places
+    # only `new` computes the layout; afterwards the panels keep their positions
+    "figure.constrained_layout.use": False,
     "figure.constrained_layout.w_pad": 0.08,
     "savefig.dpi": 300,
-    "font.family": "DejaVu Sans",  # matplotlib's own: no list of others is looked through for every text
+    "font.family": "DejaVu Sans",  # matplotlib's own font: no list of other fonts is searched for every text
     "font.size": 8,
     "axes.labelsize": 9,
     "axes.titlesize": 8,
@@ -78,7 +79,7 @@ RULES: dict[Any, Any] = {
 
 @contextmanager
 def use_style(layout: str = "page") -> Iterator[None]:
-    """Draw in this style and one of LAYOUTS, without a display, inside the ``with`` block."""
+    """Use this style and one of LAYOUTS, without a display, in a ``with`` block."""
     import matplotlib
     from cycler import cycler
 
@@ -89,18 +90,19 @@ def use_style(layout: str = "page") -> Iterator[None]:
 
 
 def width() -> float:
-    """Return the width of a figure in the layout that is applied, in inches."""
+    """Return the width of a figure in the present layout, in inches."""
     import matplotlib
 
     return float(matplotlib.rcParams["figure.figsize"][0])
 
 
 def new(*groups: Sequence[float]) -> tuple[Figure, list[Axes]]:
-    """Create a figure of groups of panels, in the layout that is applied.
+    """Create a figure of groups of panels, in the present layout.
 
     Each of `groups` has the heights in inches of its panels, which lie above each other and share their x
-    axis. On a page the first groups fill the left column and the others the right one, with columns of about
-    the same height; in a journal they all lie above each other. Returns (figure, panels in the order given).
+    axis. On a page the first groups fill the left column, and the others the right column; both columns have
+    about the same height. In a journal all groups are in one column. Returns (figure, panels in the order of
+    `groups`).
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -118,7 +120,7 @@ def new(*groups: Sequence[float]) -> tuple[Figure, list[Axes]]:
         axes += panels
         for group in column:
             *above, last = panels[: len(group)]
-            for panel in above:  # their x axis is labelled below the last
+            for panel in above:  # the x axis is labelled below the last panel only
                 panel.sharex(last)
                 panel.tick_params(labelbottom=False)
             panels = panels[len(group) :]
@@ -126,7 +128,7 @@ def new(*groups: Sequence[float]) -> tuple[Figure, list[Axes]]:
 
 
 def _columns(groups: Sequence[Sequence[float]]) -> list[Sequence[Sequence[float]]]:
-    """Split the groups into two columns so that the higher column is as low as possible.
+    """Split the groups into two columns; the higher column is as low as possible.
 
     The groups keep their order.
     """
@@ -137,7 +139,7 @@ def _columns(groups: Sequence[Sequence[float]]) -> list[Sequence[Sequence[float]
 
 
 def split(axis: Axes, rows: int, columns: int) -> np.ndarray:
-    """Replace a panel by panels (rows, columns)."""
+    """Replace a panel by a grid of panels (rows, columns)."""
     figure, position = axis.get_figure(), axis.get_subplotspec()
     axis.remove()
     assert figure and position
@@ -154,9 +156,10 @@ def points(
     hollow: bool = False,
     **options: Any,
 ) -> ErrorbarContainer:
-    """Draw measured points, with colour and marker number `kind`, or `color` and `marker`.
+    """Draw measured points, with the colour and marker of index `kind`, or with `options`.
 
-    `x` and `y` have the shape (n,); estimates have error bars. `options` are options of `Axes.errorbar`.
+    `x` and `y` have the shape (n,); estimates have error bars. `options` are options of `Axes.errorbar`, such
+    as `color` and `marker`.
     """
     if isinstance(y, Estimate):
         y, error = y.value, y.error
@@ -174,7 +177,7 @@ def points(
 def label_axes(
     axis: Axes, x: str = "", y: str = "", legend: str = "", columns: int = 1, **limits: Any
 ) -> None:
-    """Label the axes of a panel, and add a legend, if its position is given.
+    """Label the axes of a panel; add a legend if its position is given.
 
     `limits` are arguments of `Axes.set`.
     """
@@ -186,7 +189,7 @@ def label_axes(
 
 
 def band(axis: Axes, low: float, high: float, **options: Any) -> Rectangle:
-    """Draw a horizontal grey band, behind everything."""
+    """Draw a horizontal grey band behind all data."""
     return axis.axhspan(low, high, color=GREY, alpha=0.18, linewidth=0, zorder=0, **options)
 
 
@@ -196,9 +199,9 @@ def level(axis: Axes, value: float, **options: Any) -> Line2D:
 
 
 def letter(axis: Axes, text: str) -> Text:
-    """Write (a), (b) ... and perhaps a short title above the left corner of a panel.
+    """Write (a), (b) ... and an optional short title above the left corner of a panel.
 
-    No data are there.
+    This position has no data.
     """
     return axis.set_title(text, loc="left", fontweight="bold", pad=3.0)
 
@@ -212,7 +215,7 @@ def letters(*axes: Axes) -> None:
 def save(figure: Figure, path: str | Path) -> None:
     """Write a figure atomically, in the format of its suffix.
 
-    The same figure gives the same bytes.
+    Equal figures have equal bytes.
     """
     from gaspart.files import whole_file
 
@@ -223,7 +226,7 @@ def save(figure: Figure, path: str | Path) -> None:
 
 
 _DEEPEST = 0.01
-"""Part of the smallest value down to which a logarithmic axis shows the lower ends of errors."""
+"""Lower ends of errors are shown on a logarithmic axis down to this fraction of the smallest value."""
 
 
 def finish(figure: Figure) -> None:
@@ -231,7 +234,7 @@ def finish(figure: Figure) -> None:
     from gaspart.rendering.legibility import place_legends
 
     if not figure.get_constrained_layout():
-        return  # done before
+        return  # already done
     for panel in figure.axes:
         for number, axis in enumerate((panel.xaxis, panel.yaxis)):
             _show_positive_ends(panel, axis, number)
@@ -242,8 +245,8 @@ def finish(figure: Figure) -> None:
 def _show_positive_ends(panel: Axes, axis: Axis, number: int) -> None:
     """Extend an automatic logarithmic axis to the lower ends of error bars.
 
-    Where one of several bars reaches below 0, matplotlib chooses the limit by the values alone, and cuts
-    the lower ends of all others too (matplotlib 3.11). number: 0 of x, 1 of y.
+    If one of several bars extends below 0, matplotlib 3.11 chooses the limit by the values alone, and
+    truncates the lower ends of all other bars too. `number` is 0 for x, 1 for y.
     """
     from matplotlib.container import ErrorbarContainer
 
@@ -275,8 +278,8 @@ def _show_positive_ends(panel: Axes, axis: Axis, number: int) -> None:
 def _number_ticks(axis: Axis) -> None:
     """Choose ticks of a logarithmic axis whose numbers do not overlap.
 
-    They are 1, 2, 5, 10 on a short axis, powers of ten alone on a long axis; ticks that a figure has chosen
-    remain.
+    They are 1, 2, 5, 10 on a short axis, and powers of ten on a long axis. Ticks that a figure has chosen are
+    kept.
     """
     from matplotlib.ticker import AutoLocator, FixedLocator, FuncFormatter, LogLocator, NullFormatter
 

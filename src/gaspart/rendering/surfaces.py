@@ -1,11 +1,11 @@
-"""Looks of the faces of a container and of walls at a temperature, in all pictures.
+"""Appearance of faces and of thermal walls in all pictures.
 
-A hard wall at rest is a thin dark line. A surface at a temperature is thick, from blue (the coldest of the
-scene) to red (the hottest), or orange if all have one temperature; it is dashed if it draws only part of the
-velocities. An open face is dashed, with arrows for particles that leave and enter. A surface that moves has
-hatching, and an arrow in the direction of its motion, with two heads if it moves to and fro; behind a piston
-the container is shaded. Faces whose images slide are dashed, with an arrow. A sticky face is green, and the
-edge of a well is dotted.
+A hard wall at rest is a thin dark line. A thermal surface is a thick line, with a colour from blue (the
+coldest in the scene) to red (the hottest); it is orange if all have the same temperature. The line is dashed
+if the surface thermalises only some of the velocities. An open face is dashed, with arrows for particles that
+leave and enter. A moving surface has hatching, and an arrow in the direction of its motion; the arrow has two
+heads if the surface moves to and fro. Behind a piston the container is shaded. Faces whose images slide are
+dashed, with an arrow. A sticky face is green. The edge of a well is dotted.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ INK: Colour = (0.16, 0.16, 0.16)
 _COLD, _MIDDLE, _HOT = (0.15, 0.38, 0.80), (0.95, 0.55, 0.10), (0.80, 0.10, 0.12)
 _OPEN, _STICKY, _WELL = (0.10, 0.50, 0.55), (0.15, 0.55, 0.20), (0.45, 0.25, 0.65)
 _PIECES = 24
-"""Pieces of a face whose temperature varies along it, each in one colour."""
+"""Number of pieces, of one colour each, of a face whose temperature varies along it."""
 
 
 @dataclass(frozen=True)
@@ -44,25 +44,25 @@ class DrawnSurface:
     Attributes
     ----------
     ends : ndarray, shape (2, 2) or (4, 3), [length]
-        Ends of the line in the plane; in space the corners around the rectangle.
+        Ends of the line in 2D; corners around the rectangle in 3D.
     inward : ndarray, shape (d,)
-        Unit vector into the container; 0 for a wall, which has a gas on both sides.
+        Unit vector into the container; 0 for a wall with gas on both sides.
     colours : ndarray, shape (M, 3)
-        Red, green and blue from 0 to 1, of equal pieces along it.
+        Red, green and blue from 0 to 1, for equal pieces along the surface.
     text : str
-        Meaning, for the legend.
+        Meaning of the surface, for the legend.
     dashed, hatched : bool
-        Dashes, and hatching of its outer side.
+        True for dashes, and for hatching of the outer side.
     motion : ndarray, shape (d,), optional
         Unit vector in the direction of motion.
     to_and_fro : bool
         True if the surface moves in both directions.
     through : tuple of int
-        Arrows across it: -1 outwards, 1 inwards.
+        Arrows across the surface: -1 outwards, 1 inwards.
     depth : float, [length]
-        Thickness of the shaded region behind it.
+        Thickness of the shaded region behind the surface.
     band : float, [length]
-        Distance of a dotted line inside of it; 0 without a dotted line.
+        Distance of a dotted line inside the surface; 0 without a dotted line.
     """
 
     ends: np.ndarray
@@ -79,14 +79,14 @@ class DrawnSurface:
 
 
 def surfaces_of(scene: Scene, time: float = 0.0, piston: float | None = None) -> tuple[DrawnSurface, ...]:
-    """Return the looks of all surfaces that are more than a hard wall at rest.
+    """Return the appearance of all surfaces except hard walls at rest.
 
     Parameters
     ----------
     scene : Scene
         The scene.
     time : float, [time]
-        Time, which determines where vibrating faces are.
+        Time, which determines the positions of vibrating faces.
     piston : float, [length], optional
         Coordinate of the piston or of the moving wall.
     """
@@ -116,7 +116,7 @@ def surfaces_of(scene: Scene, time: float = 0.0, piston: float | None = None) ->
 
 
 def _look_of(face: Surface, scene: Scene, inward: np.ndarray) -> dict[str, Any]:
-    """Return the attributes of a face's look that depend on its kind."""
+    """Return the attributes of a face's appearance that depend on its kind."""
     if isinstance(face, Open):
         activity = face.activity
         text = "open, to a vacuum" if not activity else f"open, activity {activity:.3g}"
@@ -145,7 +145,7 @@ def _look_of(face: Surface, scene: Scene, inward: np.ndarray) -> dict[str, Any]:
 
 
 def _thermal_look(face: Thermal, scene: Scene) -> dict[str, Any]:
-    """Return the look of a thermal face: its temperature, accommodation and motion."""
+    """Return the appearance of a thermal face: temperature, accommodation, motion."""
     low, high = face.temperatures[0], face.temperatures[-1]
     text = f"T = {low:.3g}" if low == high else f"T = {low:.3g} to {high:.3g}"
     temperatures = np.linspace(low, high, 1 if low == high else _PIECES)
@@ -164,7 +164,7 @@ def _thermal_look(face: Thermal, scene: Scene) -> dict[str, Any]:
 
 
 def _warm_walls(scene: Scene) -> tuple[DrawnSurface, ...]:
-    """Return the looks of interior walls at a temperature."""
+    """Return the appearance of interior walls at a temperature."""
     drawn = []
     for wall in scene.walls:
         if wall.temperature is None:
@@ -177,7 +177,10 @@ def _warm_walls(scene: Scene) -> tuple[DrawnSurface, ...]:
 
 
 def _moving_walls(scene: Scene, position: float | None) -> tuple[DrawnSurface, ...]:
-    """Return the look of the interior wall that moves, at this coordinate or where it starts."""
+    """Return the appearance of the moving interior wall.
+
+    Its coordinate is `position`, or its initial coordinate.
+    """
     wall = scene.moving_wall
     if wall is None:
         return ()
@@ -190,7 +193,7 @@ def _moving_walls(scene: Scene, position: float | None) -> tuple[DrawnSurface, .
 
 
 def _sliding_images(face: LeesEdwards, lengths: np.ndarray) -> list[DrawnSurface]:
-    """Return the looks of the two faces beyond which the images of a sheared gas slide."""
+    """Return the appearance of the two sheared faces, beyond which images of the gas slide."""
     drawn = []
     for side, name, region in ((1.0, "high", "above"), (-1.0, "low", "below")):
         speed = side * face.shear_rate * lengths[GRADIENT]
@@ -209,7 +212,7 @@ def _sliding_images(face: LeesEdwards, lengths: np.ndarray) -> list[DrawnSurface
 
 
 def colour_of(temperature: float, scene: Scene) -> Colour:
-    """Return the colour of a temperature within the range of a scene's surfaces."""
+    """Return the colour of a temperature, in the range of temperatures of the scene's surfaces."""
     low, high = min(scene.face_temperatures), max(scene.face_temperatures)
     if not high > low:
         return _MIDDLE
@@ -223,13 +226,13 @@ def _one(colour: Colour) -> np.ndarray:
 
 
 def _outline(lengths: np.ndarray, axis: int, position: float) -> np.ndarray:
-    """Return the ends of a face in the plane, or the corners around it in space."""
+    """Return the ends of a face in 2D, or the corners around it in 3D."""
     corners = {2: ((0,), (1,)), 3: ((0, 0), (1, 0), (1, 1), (0, 1))}[len(lengths)]
     return np.insert(np.array(corners) * np.delete(lengths, axis), axis, position, axis=1).astype(float)
 
 
 def arrow_lines(tail: np.ndarray, head: np.ndarray, two_heads: bool) -> list[np.ndarray]:
-    """Return the shaft and the barbs of an arrow, each a line (2, 2)."""
+    """Return the lines of an arrow's shaft and barbs, (2, 2) each."""
     lines = [np.array([tail, head])]
     for tip, back in ((head, 0.25 * (tail - head)), (tail, 0.25 * (head - tail)))[: 1 + two_heads]:
         barbs = [tip + back + sign * 0.6 * np.array([-back[1], back[0]]) for sign in (-1.0, 1.0)]

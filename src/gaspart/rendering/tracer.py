@@ -2,9 +2,10 @@
 
 Ambient light is added.
 
-Rays find spheres through a grid of cells. Ambient light is dimmed by each near sphere by the part of the sky
-that it covers, in closed form, without random rays and without noise. One ray goes through the middle of each
-pixel; where neighbours show different objects, SUBRAYS x SUBRAYS take its place.
+Rays find spheres through a grid of cells. Each near sphere dims the ambient light by the fraction of the sky
+that it covers. This is computed in closed form, without random rays, and therefore without noise. One ray
+passes through the middle of each pixel. If neighbouring pixels show different objects, SUBRAYS x SUBRAYS rays
+are used instead.
 """
 
 from __future__ import annotations
@@ -38,12 +39,12 @@ def trace(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Trace a picture (H, W, 3), from 0 to 1, and the objects in its pixels.
 
-    positions, radii, colours : (N, 3), (N,), (N, 3).
+    positions, radii, colours : shapes (N, 3), (N,), (N, 3).
     lengths : (3,), sides of the container, whose face at z = 0 is drawn as the floor.
     size : (W, H) in pixels.
     lines : (M, 2, 3), drawn like the edges of the container.
 
-    Returned are the picture and the kind of object in the middle of each pixel (H, W).
+    The function returns the picture, and the kind of object in the middle of each pixel (H, W).
     """
     spheres = np.column_stack([positions, radii]).astype(float)
     grid = cells(spheres, np.asarray(lengths, dtype=float))
@@ -66,8 +67,9 @@ def trace(
 def cells(spheres: np.ndarray, lengths: np.ndarray) -> tuple:
     """Divide container and spheres into cubic cells, and list the spheres in each cell.
 
-    Returned are the lowest corner (3,), the side, the numbers (3,), the lists of the spheres that reach into
-    each cell (listed[first[c] : first[c + 1]]), and each sphere's lowest cell (N, 3).
+    The function returns the lowest corner (3,), the side of a cell, the numbers of cells (3,), the lists of
+    the spheres that reach into each cell c (listed[first[c] : first[c + 1]]), and each sphere's lowest cell
+    (N, 3).
     """
     low, high = np.zeros(3), lengths.copy()
     side = float(lengths.max())

@@ -1,4 +1,4 @@
-"""An interactive view: an HTML page without a server and without other files, drawn by WebGL."""
+"""Interactive view: an HTML page without a server or other files, drawn by WebGL."""
 
 from __future__ import annotations
 
@@ -33,9 +33,10 @@ if TYPE_CHECKING:
 
 _TEMPLATE = Path(__file__).with_name("view.html")
 _RAMP = 16  # colours of the bar of speeds
-_HIGHEST = 254  # of speeds and bond orders as bytes; the byte above is that of fixed particles
-_FINEST = 65534  # positions on an axis: an even number, so that changes modulo one more have two bytes
-_PER_RADIUS = 64  # positions on the smallest radius
+_HIGHEST = 254  # levels of speeds and bond orders, stored as bytes; the next byte marks fixed particles
+# number of positions on an axis: even, so that changes modulo (this number + 1) fit into two bytes
+_FINEST = 65534
+_PER_RADIUS = 64  # positions per smallest radius
 _MARK = "gaspart view"
 
 
@@ -54,7 +55,7 @@ class View:
     Parameters
     ----------
     page : str
-        The text of the page.
+        HTML text of the page.
     """
 
     page: str
@@ -81,7 +82,7 @@ class View:
         Raises
         ------
         SceneError
-            If a file is not replaced, or the suffix is another one.
+            If a file must not be replaced, or the suffix is not .html.
         """
         path = output_path(path)
         if path.suffix != ".html":
@@ -96,15 +97,15 @@ class View:
 
 
 def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order: bool = False) -> View:
-    """Return an interactive view of a trajectory, or of a simulation, which is run again.
+    """Return an interactive view of a trajectory or a simulation; the simulation is run again.
 
-    The page can play, turn, move and zoom; it shows colours by speed or species, the faces
-    in the looks that they have in pictures, with a legend, the time and a scale.
+    The page can play, turn, move and zoom. It shows colours by speed or species, faces as in pictures, a
+    legend, the time and a scale.
 
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
-        A trajectory, by its path or open, or a simulation.
+        A trajectory (its path, or an open trajectory), or a simulation.
     frames : int, default 200
         Number of frames to show, evenly spaced.
     order : bool, default False
@@ -123,8 +124,8 @@ def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order:
 
     Notes
     -----
-    Positions are rounded to a sixty-fourth of the smallest radius, or to 1/65534 of the side if that is more.
-    Ten thousand particles in 200 frames make a page of some 7 MB.
+    Positions are rounded to 1/64 of the smallest radius, or to 1/65534 of the side if that is larger. With
+    ten thousand particles in 200 frames, the page has about 7 MB.
 
     Examples
     --------
@@ -159,18 +160,18 @@ def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order:
 
 
 def _with_names(simulation: Simulation) -> xr.Dataset:
-    """Return the frames of a simulation with the variables of a trajectory that pictures need."""
+    """Return the frames of a simulation, with the variables of a trajectory that pictures need."""
     data, initial = repeat_run(simulation), simulation.initial_state
     lengths = np.tile(initial.lengths, (data.sizes["frame"], 1))
     looks = (np.resize(values, data.sizes["atom"]) for values in (initial.radii, initial.species))
-    radii, species = looks  # of open faces, all alike
+    radii, species = looks  # with open faces, all particles are identical
     return data.assign(
         radius=("atom", radii), type=("atom", species), cell_lengths=(("frame", "cell"), lengths)
     )
 
 
 def _content(data: xr.Dataset, chosen: np.ndarray, order: bool) -> dict:
-    """Return what the page draws: numbers as base64, positions in fractions of the sides."""
+    """Return the data of the page: numbers as base64, positions as fractions of the sides."""
     import matplotlib
 
     drawn = [particles_of(data, int(n)) for n in chosen]
@@ -180,7 +181,8 @@ def _content(data: xr.Dataset, chosen: np.ndarray, order: bool) -> dict:
     positions = np.zeros((len(drawn), len(first.radii), 3), dtype=np.uint16)
     speeds = np.zeros(positions.shape[:2], dtype=np.uint8)
     for n, particles in enumerate(drawn):
-        count = len(particles.radii)  # of open faces as many as are inside, in no order, since all are alike
+        # with open faces, only the particles inside, in any order, because all are identical
+        count = len(particles.radii)
         positions[n, :count, :d] = np.rint(steps * np.clip(particles.positions / particles.lengths, 0.0, 1.0))
         speeds[n, :count] = np.rint(_HIGHEST * np.clip(particles.speeds / fastest, 0.0, 1.0))
         if particles.fixed is not None:
@@ -213,16 +215,17 @@ def _content(data: xr.Dataset, chosen: np.ndarray, order: bool) -> dict:
 
 
 def _resolution(drawn: DrawnParticles) -> int:
-    """Return the number of positions on an axis beyond which no difference is seen."""
+    """Return the number of positions on an axis, above which no difference is visible."""
     smallest = float(drawn.radii.min(initial=np.inf))
     return int(min(_FINEST, _PER_RADIUS * drawn.lengths.max() / smallest + 2.0))
 
 
 def _compressed_text(values: np.ndarray, modulus: int) -> str:
-    """Return whole numbers below a modulus, frame by frame, as the base64 of compressed changes.
+    """Return integers below a modulus, frame by frame, as base64 of compressed changes.
 
-    Changes between frames are taken modulo the modulus, so that one across a periodic face is small, and are
-    written as 0, -1, 1, -2, 2 ... = 0, 1, 2, 3, 4 ... All low bytes come first, then all high bytes.
+    Changes between frames are reduced by the modulus, so that a change across a periodic face is small. The
+    changes 0, -1, 1, -2, 2 ... are written as 0, 1, 2, 3, 4 ... All low bytes come first, then all high
+    bytes.
     """
     numbers = values.astype(np.int32)
     changes = (np.diff(numbers, axis=0) + modulus // 2) % modulus - modulus // 2
@@ -234,7 +237,7 @@ def _compressed_text(values: np.ndarray, modulus: int) -> str:
 def _order(drawn: list[DrawnParticles]) -> dict:
     """Return the local bond order of every particle in every frame.
 
-    It is in units of the largest value on the scale.
+    The unit is the largest value on the scale.
     """
     first = drawn[0]
     if not all(first.periodic[: first.dimension]):
@@ -248,7 +251,7 @@ def _order(drawn: list[DrawnParticles]) -> dict:
 
 
 def _looks(surfaces: list[tuple[DrawnSurface, ...]]) -> dict:
-    """Return the looks of faces and walls, and their corners in each frame.
+    """Return the appearance of faces and walls, and their corners in each frame.
 
     If nothing moves, the corners are returned once.
     """
@@ -289,8 +292,8 @@ def _in_space(vector: np.ndarray) -> list[float]:
 def _lines(lengths: np.ndarray, walls: list[np.ndarray]) -> np.ndarray:
     """Return the ends of the container's edges and of the sides of walls.
 
-    The shape is (frames, 2M, 3). Walls have the shape (M, 2, d). There is one frame if they have the same
-    positions in all frames.
+    The shape is (frames, 2M, 3). Walls have the shape (M, 2, d). If their positions are the same in all
+    frames, there is a single frame.
     """
     if all(np.array_equal(walls[0], segments) for segments in walls):
         walls = walls[:1]

@@ -1,1 +1,4 @@
-"""The reproduction: figures, their points and claims, and the report. No other package needs it."""
+"""Reproduction of published results: figures, their simulations and claims, and the report.
+
+No other package imports this one.
+"""

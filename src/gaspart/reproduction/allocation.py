@@ -1,17 +1,18 @@
-"""Lengths of the runs of each point: the least CPU time that decides all claims.
+"""Run lengths of all points: the least CPU time with which all claims are decided.
 
     python -m gaspart.reproduction.allocation config/config.yaml PAGE [FOLDER ...]
 
-reads the finished run of the config, and further runs with other seeds in FOLDERs with a config of the same
-path; writes the block `lengths` at the end of the config, and a table of all points to PAGE. The runs are
-independent ones: before the next run the config gets another seed. An uncertainty from a few blocks or
-replicas is itself uncertain; the mean of the variances of two runs is less so.
+reads the finished run of the config. It also reads further runs with other seeds; they are in FOLDERs, with a
+config of the same path. The program writes the block `lengths` at the end of the config, and a table of all
+points to PAGE. All runs are independent: the config gets a new seed before each run. An uncertainty from a
+few blocks or replicas is itself uncertain. The mean of the variances of two runs is less uncertain.
 
-The variance of a claim is a sum over the points of which its number is made, sum_p c_p / x_p, where x_p is
-the multiple of the length of point p (x_p = 1 without `lengths`). The part c_p follows from enlarging the
-uncertainties of the rows of point p. A decided claim needs a variance of at most V. The time sum_p t_p x_p,
-where t_p is the time of point p, is least under all these conditions if x_p^2 = sum_k lambda_k c_kp / t_p,
-with a multiplier lambda_k >= 0 for each claim k (for one claim: J. Neyman, J. R. Stat. Soc. 97, 558 (1934)).
+The number of a claim is computed from several points p. Its variance is the sum over these points, sum_p c_p
+/ x_p. Here x_p is the multiple of the length of point p (x_p = 1 without `lengths`). The part c_p is found by
+enlarging the uncertainties in the rows of point p. To decide the claim, its variance must be at most V. The
+total time is sum_p t_p x_p, where t_p is the time of point p. This time is least under all these conditions
+if x_p^2 = sum_k lambda_k c_kp / t_p, with a multiplier lambda_k >= 0 for each claim k (for a single claim: J.
+Neyman, J. R. Stat. Soc. 97, 558 (1934)).
 """
 
 from __future__ import annotations
@@ -36,20 +37,20 @@ from gaspart.reproduction.table import MADE_OF
 from gaspart.yaml_text import read_yaml
 
 IN_HAND = 1.6
-"""Factor by which the length of the runs of a claim is larger than the claim needs."""
+"""Safety factor: the runs of a claim are this many times longer than the claim needs."""
 SHORTEST, LONGEST = 0.3, 1.5
-"""Limits of the multiples."""
+"""Smallest and largest multiple of the length of a run."""
 WHOLE = ("buoyancy", "chemical_potential")
-"""Figures whose runs keep their length.
+"""Figures whose runs keep their full length.
 
-In a trial with 0.45 of the length the squared deviations of the claims of `buoyancy`, in standard errors, had
-a mean of 2.63(37): its discs wander so slowly that shorter runs state too small uncertainties. In shorter
-runs of `chemical_potential` too few frames have an insertion for a verdict.
+`buoyancy` was tried with 0.45 of the length. The squared deviations of its claims, in standard errors, then
+had a mean of 2.63(37). Its discs wander so slowly that the uncertainties from shorter runs are too small. For
+`chemical_potential`, shorter runs have too few frames with an insertion for a verdict.
 """
 _ENLARGED = 2.0
-"""Factor by which variances are enlarged, to find their parts."""
+"""Factor by which variances are enlarged, to find the part of each point."""
 _EXPLAINED = 0.98
-"""Part of a variance above which the rest is an effect of rounding."""
+"""Fraction of a variance; if the points explain more than this, the rest is attributed to rounding."""
 _HEAD = "\nlengths:"
 
 
@@ -57,9 +58,9 @@ _HEAD = "\nlengths:"
 class Demand:
     """Decided claim of a figure.
 
-    parts : part of its variance that each point has; their sum is 1 or less.
-    rest : part that no single point has.
-    most : multiple of the variance at the whole length that it may have.
+    parts : fraction of the claim's variance that is due to each point; the sum is 1 or less.
+    rest : fraction of the variance that is due to no single point.
+    most : maximum variance of the claim, divided by its variance at the full length of the runs.
     """
 
     figure: str
@@ -73,8 +74,8 @@ class Demand:
 class Run:
     """Finished run of a config.
 
-    results : its folder of results.
-    lengths : multiple of the length of each point that has one.
+    results : folder of the results of the run.
+    lengths : multiple of the run length, by point, for the points that have a multiple.
     """
 
     results: Path
@@ -85,9 +86,9 @@ class Run:
         return xr.load_dataset(self.results / "measurements" / f"{figure}.nc")
 
     def seconds(self, point: str) -> float | None:
-        """Return the processor time of a point at the whole length.
+        """Return the CPU time of a point at its full length.
 
-        None if the run has not stored it.
+        None if the run has not stored this time.
         """
         experiment, _, name = point.partition("/")
         try:
@@ -97,7 +98,7 @@ class Run:
 
 
 def demands(figure: str, block: Mapping, runs: Sequence[Run]) -> list[Demand]:
-    """Return the demands of the claims of a figure that one of the runs decided."""
+    """Return the demands of the claims of a figure that at least one run decided."""
     needs: dict[str, list[dict[str, float]]] = {}
     decided = set()
     for run in runs:
@@ -108,10 +109,11 @@ def demands(figure: str, block: Mapping, runs: Sequence[Run]) -> list[Demand]:
 
 
 def _needs(figure: str, block: Mapping, run: Run) -> Iterator[tuple[str, bool, dict[str, float]]]:
-    """Find the claims that have an uncertainty: text, True if decided, length needed by each point.
+    """Yield each claim with an uncertainty: text, True if decided, length needed by each point.
 
-    The length needed is the multiple of the whole length with which the claim were just decided if its number
-    had the scatter of this point alone; the key "" has the part of all points together.
+    The length is a multiple of the full length. If the claim's number had the scatter of this point alone,
+    the claim would just be decided at that length. The key "" has the remainder of the variance that no
+    single point explains.
     """
     dataset = run.measurement(figure)
     before = budget.claims_of(figure, block, dataset)
@@ -120,7 +122,7 @@ def _needs(figure: str, block: Mapping, run: Run) -> Iterator[tuple[str, bool, d
     for n, (claim, verdict) in enumerate(zip(before, judge(before), strict=True)):
         multiple = sufficient(claim)
         if claim.kind == "family" or claim.form == "distribution" or claim.no_verdict:
-            continue  # no length decides these
+            continue  # longer runs do not decide these claims
         if not math.isfinite(multiple):
             continue
         parts: dict[str, float] = {}
@@ -150,16 +152,16 @@ def _mean_demand(figure: str, claim: str, needs: Sequence[Mapping[str, float]]) 
 
 
 def _rows(dataset: xr.Dataset) -> Iterator[tuple[dict[str, int], list[str]]]:
-    """Find the rows of a measurement that state their points: place by dimension, points."""
+    """Yield the rows of a measurement that name their points: index by dimension, and points."""
     for name, column in dataset.variables.items():
         if str(name).endswith(MADE_OF):
             for position, text in np.ndenumerate(column.values.astype(object)):
-                if isinstance(text, str):  # else a gap of a table with two dimensions
+                if isinstance(text, str):  # otherwise the entry is a gap in a table with two dimensions
                     yield dict(zip(map(str, column.dims), position, strict=True)), text.splitlines()
 
 
 def _enlarge_errors(dataset: xr.Dataset, position: Mapping[str, int]) -> xr.Dataset:
-    """Return the data with enlarged uncertainties, and an enlarged scatter of replicas, in a row."""
+    """Return a measurement in which a row has larger uncertainties and more scatter of replicas."""
     factor = np.ones([dataset.sizes[over] for over in position])
     factor[tuple(position.values())] = math.sqrt(_ENLARGED)
     scale = xr.DataArray(factor, dims=tuple(position))
@@ -184,12 +186,13 @@ def allocate(
 ) -> tuple[dict[str, float], list[float]]:
     """Return the multiple of the length of each point, and the price of each demand.
 
-    cost : time of each point, in s.
+    cost : CPU time of each point, in s.
     figures : points of each figure.
-    shortest : least multiple of points that need more than `SHORTEST`.
+    shortest : smallest multiple of each point that needs more than `SHORTEST`.
 
-    The price is the time in s that e times (2.72) the variance would save. Points of a figure that no row
-    states, and the points of a claim with a rest, have the multiple that would suffice if all points had it.
+    The price of a demand is the time in s that would be saved if the variance could be e = 2.72 times larger.
+    Some points of a figure are named in no row, and some claims have a `rest`. For these points a single
+    multiple is used: the multiple that would suffice if all points had it.
     """
     names = sorted(cost)
     index = {name: n for n, name in enumerate(names)}
@@ -215,24 +218,28 @@ def allocate(
 def shortest_multiples(
     config: Mapping[str, Any], planned: Mapping[str, Mapping[str, Point]]
 ) -> dict[str, float]:
-    """Return the multiple of each point that leaves its figure enough samples for blocks and lags."""
+    """Return the smallest multiple of each point at which its figure has enough samples.
+
+    Blocks and lags need these samples.
+    """
     multiples: dict[str, float] = {}
     for figure, points in budget.shown_points(config, planned).items():
         for experiment, name in points:
             settings, key = planned[experiment][name].settings, f"{experiment}/{name}"
             intervals = max(config["figures"][figure].get("blocks", 0), settings.get("lags", 0))
             samples = settings.get("samples", math.inf)
-            # Where samples are fewer than blocks, these are parts of frames or replicas.
+            # If samples are fewer than blocks, they are fractions of frames, or replicas.
             multiple = intervals / samples if intervals <= samples else 0.0
             multiples[key] = max(multiples.get(key, 0.0), multiple)
     return multiples
 
 
 def _least_cost(shares: np.ndarray, times: np.ndarray, least: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Minimise sum t x with shares @ (1 / x) <= 1 in given bounds.
+    """Minimise sum t x under the conditions shares @ (1 / x) <= 1 and bounds.
 
-    The bounds are least <= x <= LONGEST. Returns x and the multipliers of the first conditions, which are
-    found by multiplication with the excess or the deficit.
+    The bounds are least <= x <= LONGEST. The function returns x and the multipliers of the first conditions.
+    It finds these multipliers by iteration: each is multiplied by a factor that depends on the excess or
+    deficit of its condition.
     """
     lengths = np.maximum(least, SHORTEST)
     multipliers = np.where(shares.any(axis=1), times.mean(), 0.0)
@@ -244,7 +251,7 @@ def _least_cost(shares: np.ndarray, times: np.ndarray, least: np.ndarray) -> tup
 
 
 def main(path: str, page: str, *folders: str) -> None:
-    """Allocate lengths from the runs of a config; see the module."""
+    """Allocate run lengths from the finished runs of a config, as the module describes."""
     runs = [_open_run(Path(folder), path) for folder in (".", *folders)]
     with open_config(path) as (config, planned):
         figures = budget.shown_points(config, planned)
@@ -278,7 +285,7 @@ def _mean_seconds(runs: Sequence[Run], point: str) -> float:
 
 
 def _write_lengths(path: Path, multiples: Mapping[str, float]) -> None:
-    """Replace the block at the end of a config by the multiples that differ from 1."""
+    """Replace the block `lengths` of a config by the multiples that differ from 1."""
     rounded = {name: float(f"{multiple:.2g}") for name, multiple in multiples.items()}
     lines = [_HEAD.strip()]
     different = (name for name in rounded if rounded[name] != 1.0)
@@ -297,7 +304,7 @@ def _page(
 ) -> str:
     """Return a table of all points, the most expensive first, and a table of claims.
 
-    The claims are those that cost most.
+    The second table has the most expensive claims.
     """
     rows = [
         "| point | s at the whole length, if proportional to it | multiple | claim that needs it most |",

@@ -1,6 +1,6 @@
-"""Validation of a config before any job, with errors of one line.
+"""Validation of a config before any job starts.
 
-An error has file, key, value and rule.
+Errors are single lines with file, key, value and rule.
 """
 
 from __future__ import annotations
@@ -28,14 +28,15 @@ from gaspart.yaml_text import DEEPEST, MOST_VALUES, is_exponential, read_yaml
 if TYPE_CHECKING:
     from gaspart.inspection.checks import Check
 
-# The files that a config consists of: merged as by Snakemake, and which of them holds a key.
+# The files of a config. They are merged as by Snakemake; `origin` finds the file that holds a key.
 
 
 def merged_with_default(path: Path, base: Path | None = None) -> tuple[dict[str, Any], list[Path]]:
-    """Merge a config over another, as in the workflow, and return it with its files.
+    """Merge a config over its base, as the workflow does; return it with its files.
 
-    The other config is `base`, by default the `config.yaml` in the same folder, else `config/config.yaml` in
-    it, as for the workflow in that folder. Raises SceneError for a file that cannot be read.
+    By default `base` is the `config.yaml` in the same folder. If that does not exist, it is
+    `config/config.yaml` below this folder, which the workflow in this folder uses. Raises SceneError for a
+    file that cannot be read.
     """
     path = resolve_path(path)
     defaults = (path.parent / "config.yaml", path.parent / "config/config.yaml")
@@ -51,27 +52,30 @@ def merged_with_default(path: Path, base: Path | None = None) -> tuple[dict[str,
 
 
 def _merge(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
-    """Merge mappings key by key; replace anything else."""
+    """Merge nested mappings key by key; other values of `above` replace the values of `below`."""
     both = {key: value for key, value in above.items() if isinstance(value, dict)}
     both = {key: value for key, value in both.items() if isinstance(below.get(key), dict)}
     return {**below, **above, **{key: _merge(below[key], value) for key, value in both.items()}}
 
 
 def read_numbers(config: dict, files: Sequence[str | Path]) -> None:
-    """Convert numbers such as 1e3, which Snakemake reads as text, in a merged config.
+    """Convert numbers such as 1e3 in a merged config; Snakemake reads them as text.
 
-    `files` are the merged files, in that order; what is in quotes there stays text. Raises SceneError for a
+    `files` are the merged files, in the order of merging. Text in quotes stays text. Raises SceneError for a
     file that cannot be read.
     """
     _read_numbers(config, [read_yaml(file) for file in files])
 
 
 def _read_numbers(block: Any, held: list[Any]) -> None:
-    """Convert the numbers of a block; `held` has the same block of each file."""
+    """Convert the numbers of a block.
+
+    `held` lists the same block of each file.
+    """
     for key, value in block.items() if isinstance(block, dict) else enumerate(block):
         below = []
         for part in held:
-            with suppress(LookupError, TypeError):  # where this file has something else, or nothing
+            with suppress(LookupError, TypeError):  # in this file the value has another type, or is missing
                 below.append(part[key])
         if isinstance(value, dict | list):
             _read_numbers(value, below)
@@ -80,12 +84,13 @@ def _read_numbers(block: Any, held: list[Any]) -> None:
 
 
 def origin(key: str, config: dict, contents: list[tuple[str, Any]]) -> str | None:
-    """Return the last of the files that holds the longest part of ``key``.
+    """Return the last file that contains a key, or the longest beginning of the key.
 
-    Files are given with their contents. For a value that is in no file, the option of Snakemake is returned.
+    Each file comes with its contents. If no file contains the value, the option of Snakemake is returned.
     """
     parts = key.replace("[", ".").split(".")
-    dotted = parts.index("scene") if "scene" in parts else len(parts)  # `scene.` and what follows is one key
+    # the key `scene.` and its remainder are one key
+    dotted = parts.index("scene") if "scene" in parts else len(parts)
     parts[dotted:] = [".".join(parts[dotted:])]
 
     def content_below(block: Any) -> tuple[int, Any]:
@@ -98,7 +103,7 @@ def origin(key: str, config: dict, contents: list[tuple[str, Any]]) -> str | Non
 
     depth, value = content_below(config)
     if contents and depth and not isinstance(value, dict):
-        # in their written form, in which nan is equal to itself
+        # compared as written, because nan differs from itself
         if repr((depth, value)) not in [repr(content_below(content)) for _, content in contents]:
             return "--config"
     return max(reversed(contents), key=lambda content: content_below(content[1])[0])[0] if contents else None
@@ -115,8 +120,8 @@ _EXPERIMENTS = names("the experiments whose points the figure is made of, in thi
 def schema(installed: tuple[tuple[str, str], ...] = ()) -> Kind:
     """Return the JSON schema of a config.
 
-    Scenes and engines are validated by themselves when a point makes them. `installed` has figures of the
-    config whose kind another installed package brings, each with its kind.
+    Scenes and engines are not part of the schema: they are validated when the points are made. `installed`
+    has the figures whose kind another installed package defines, each with its kind.
     """
     figures = {
         figure: record({"experiments": _EXPERIMENTS, **settings})
@@ -128,13 +133,16 @@ def schema(installed: tuple[tuple[str, str], ...] = ()) -> Kind:
 
 
 def _of_kind(kind: str) -> Kind:
-    """Return the entry of a figure with a name of one's own."""
+    """Return the schema of a figure that has a name chosen by the user."""
     stated = choice("the kind of a figure with a name of one's own", kind)
     return record({"kind": stated, "experiments": _EXPERIMENTS, **registry.settings_of_kind(kind)})
 
 
 def scene_schema() -> Kind:
-    """Return the JSON schema of a scene file, without rules that concern several keys."""
+    """Return the JSON schema of a scene file.
+
+    Rules that concern several keys are left out.
+    """
     from gaspart.keys import schema_of
     from gaspart.scene.scene import Scene
 
@@ -145,8 +153,8 @@ def scene_schema() -> Kind:
 def open_config(path: str | Path) -> Iterator[tuple[dict[str, Any], dict[str, dict[str, Point]]]]:
     """Yield the valid config of a file and its points.
 
-    The working directory is its scene folder: the folder above a file in a folder named `config`; else the
-    folder of the file. Raises SceneError.
+    The working directory is changed to the folder of the scenes. For a config in a folder named `config`,
+    this is the parent folder; otherwise it is the folder of the file. Raises SceneError.
     """
     merged, files = merged_with_default(Path(path))
     folder = files[-1].parent
@@ -157,7 +165,7 @@ def open_config(path: str | Path) -> Iterator[tuple[dict[str, Any], dict[str, di
 def check(config: dict, files: Sequence[str | Path] = ()) -> dict[str, dict[str, Point]]:
     """Validate a merged config against the schema, then the parameters of every point's job.
 
-    `files` are the YAML files that were merged, in that order; an error names the last one that holds the
+    `files` are the merged YAML files, in the order of merging. An error names the last file that contains the
     key. Returns all points, by experiment and name. Raises SceneError.
     """
     contents = [(str(file), read_yaml(file)) for file in files]
@@ -182,12 +190,12 @@ def check(config: dict, files: Sequence[str | Path] = ()) -> dict[str, dict[str,
 
 
 def check_values(config: object) -> None:
-    """Raise SceneError unless a config is a bounded tree of valid values.
+    """Raise SceneError unless a config is a tree of limited size with valid values.
 
-    The tree consists of mappings, lists and plain values, not too deep and not too large; its numbers are
-    finite and neither too large nor too small to compute with.
+    The tree consists of mappings, lists and plain values. Its depth and size are limited. Its numbers are
+    finite, and neither too large nor too small to compute with.
     """
-    stack = [("", config, 0)]  # a stack, so that a deep config does not exhaust Python's own
+    stack = [("", config, 0)]  # an explicit stack, so that a deep config does not overflow Python's stack
     for count in range(MOST_VALUES):
         if not stack:
             return
@@ -213,11 +221,14 @@ def check_values(config: object) -> None:
 
 
 def _check_names(config: object) -> None:
-    """Refuse a figure with neither a name of the package nor a kind, or with both."""
+    """Raise SceneError unless a figure has either a name of the package or a kind.
+
+    Both together are an error too.
+    """
     figures = config.get("figures") if isinstance(config, dict) else None
     for figure, block in figures.items() if isinstance(figures, dict) else ():
         if not isinstance(block, dict):
-            continue  # which the schema refuses
+            continue  # the schema reports this
         if "kind" in block and figure in registry.families():
             rule = "is a figure of gaspart, which has no kind: a figure of one's own needs another name"
             raise SceneError(f"figures.{figure}", block["kind"], rule)
@@ -227,7 +238,7 @@ def _check_names(config: object) -> None:
 
 
 def _installed_kinds(config: object) -> tuple[tuple[str, str], ...]:
-    """Return (figure, kind) of each figure whose kind another installed package brings.
+    """Return (figure, kind) of each figure whose kind another installed package defines.
 
     Raises SceneError for a kind that is unknown, or whose package cannot be used.
     """
@@ -249,9 +260,9 @@ def _installed_kinds(config: object) -> tuple[tuple[str, str], ...]:
 
 
 def _check_caption(figure: str, block: dict) -> None:
-    """Refuse a caption that the report cannot show.
+    """Raise SceneError for a caption that the report cannot show.
 
-    Its text is parsed where docutils is installed, as it is where the report is made.
+    The text is parsed if docutils is installed. It is installed wherever the report is made.
     """
     text = registry.caption(block)
     fault = place_fault(text)
@@ -265,7 +276,7 @@ def _check_caption(figure: str, block: dict) -> None:
 
 
 def _animation(config: dict, animation: str, block: dict | None) -> None:
-    """Refuse a film of an experiment that is missing in the config, or has no trajectories."""
+    """Raise SceneError for a film whose experiment is missing, or has no trajectories."""
     experiment = block["experiment"] if block else None
     kinds = {name: definition.get("job", "simulate") for name, definition in config["experiments"].items()}
     if block and kinds.get(experiment) != TRAJECTORIES:
@@ -290,11 +301,11 @@ def checked_points(config: dict, experiment: str) -> dict[str, Point]:
 def gridded_points(config: dict, experiment: str) -> dict[str, Point]:
     """Return the points of an experiment, by name, after a check of its grid.
 
-    Each value of the grid is checked by itself. Raises SceneError.
+    Each value of the grid is checked alone, without the other keys. Raises SceneError.
     """
     where = f"experiments.{experiment}"
     for key, value in _grid_values(config["experiments"][experiment].get("grid")):
-        if key.startswith(point_keys.PREFIX):  # a value of a scene file, which the scene validates
+        if key.startswith(point_keys.PREFIX):  # a value of a scene file; the scene validates it
             continue
         if key not in POINT:
             raise SceneError(f"{where}.grid.{key}", value, unknown_word(key, POINT))
@@ -303,7 +314,10 @@ def gridded_points(config: dict, experiment: str) -> dict[str, Point]:
 
 
 def check_point(point: Point) -> None:
-    """Make the parameters of a point's job. Raises SceneError where its settings contradict each other."""
+    """Make the parameters of a point's job.
+
+    Raises SceneError if its settings contradict each other.
+    """
     where = f"experiments.{point.experiment}"
     try:
         jobs.validate(point)
@@ -313,7 +327,10 @@ def check_point(point: Point) -> None:
 
 
 def _grid_values(block: Any) -> Iterator[tuple[str, object]]:
-    """Yield every (key, value) that a grid holds; points refuse an empty list."""
+    """Yield every (key, value) of a grid.
+
+    An empty list yields nothing; the points report it.
+    """
     if isinstance(block, list):
         for part in block:
             yield from _grid_values(part)
@@ -324,10 +341,9 @@ def _grid_values(block: Any) -> Iterator[tuple[str, object]]:
 
 
 def explain_error(error: SceneError, config: dict, module: bool) -> SceneError:
-    """Return an error of a config, with an explanation if all keys are missing.
+    """Return an error of a config; add an explanation if all keys are missing.
 
-    `config` is the merged one; `module` is True if the Snakefile of another workflow uses this one as a
-    module.
+    `config` is the merged config. `module` is True if another workflow uses this one as a module.
     """
     if error.rule != "is required" or Path("config/config.yaml").exists() or (module and config):
         return error
@@ -347,7 +363,7 @@ def judge_config(path: Path) -> list[Check]:
     A config next to `config.yaml` is merged over it, as in the workflow. Raises SceneError for a config that
     cannot be run.
     """
-    from gaspart.inspection.checks import Check  # .5 s, which planning does not need
+    from gaspart.inspection.checks import Check  # takes 0.5 s, and planning does not need it
 
     with open_config(path) as (merged, planned):
         counts = [point.extents.particles for points in planned.values() for point in points.values()]

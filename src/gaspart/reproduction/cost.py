@@ -1,4 +1,4 @@
-"""The cost of a config in core-hours, predicted from the measured speeds."""
+"""Cost of a config in core-hours, predicted; cost of a finished run by figure."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 def predict(path: str) -> list[str]:
-    """Predict the core-hours of each experiment of a config on this machine, in lines.
+    """Predict the core-hours of each experiment of a config on this machine, as lines of text.
 
     The last line is the sum. A config next to `config.yaml` is merged over it, as in the workflow. Raises
     SceneError.
@@ -49,9 +49,9 @@ def predict(path: str) -> list[str]:
 
 
 def _seconds(point: Point) -> float | None:
-    """Predict the CPU time of a point's simulations from the theoretical number of contacts.
+    """Predict the CPU time of a point's simulations from the theoretical number of collisions.
 
-    None where the number is unknown.
+    None if this number is unknown.
     """
     if point.job != "simulate":
         return None
@@ -59,7 +59,8 @@ def _seconds(point: Point) -> float | None:
     if gas is None or not gas.temperature > 0.0:
         return None
     engine = point.engine
-    # Where discs or spheres freeze, the pressure is constant, and the number of contacts nearly so.
+    # Where a fluid and a crystal of discs or spheres coexist, the pressure is constant. The number of
+    # collisions is then nearly constant.
     densest = theory.HIGHEST_PACKING_FRACTION[gas.dimension]
     fluid = replace(gas, packing_fraction=min(gas.packing_fraction, densest))
     rate = float(theory.collision_rate(**fluid.parameters))
@@ -75,24 +76,24 @@ def _seconds(point: Point) -> float | None:
         if not step
         else min(table_steps, key=lambda candidate: abs(math.log(candidate / step)), default=step)
     )
-    if step and nearest > step:  # shorter steps than any in the table cost in proportion to their number
+    # below the shortest time step in the table, the cost is proportional to the number of steps
+    if step and nearest > step:
         fine = nearest / step
     each = fine * table.seconds(gas.dimension, gas.packing_fraction, engine.timed_as, "float64", nearest)
     return contacts * each * _speed(gas, engine.timed_as, "float64") if math.isfinite(each) else None
 
 
 def _speed(gas: Gas, engine: str, precision: str) -> float:
-    """Return the relative speed at the nearest power of ten of particles.
+    """Return the relative speed at the nearest power of ten of the particle number.
 
-    So few sizes are timed.
+    Only these particle numbers were timed.
     """
     return speed.factor(gas.dimension, engine, precision, 10 ** round(math.log10(max(gas.count, 10))))
 
 
-# Where the processor time of a reproduction went, and how long the runs of each figure need to be.
-#
-# An uncertainty falls as the inverse root of the length of the runs: a claim with the uncertainty u that
-# requires u0 needs (u / u0)^2 times what was measured.
+# CPU time that a reproduction used, and the length of the runs that each figure needs. An uncertainty falls
+# as the inverse root of the length of the runs: a claim with the uncertainty u that requires u0 needs (u /
+# u0)^2 times the measured length.
 
 
 _WITHOUT_CHANCE = ("identity", "family")
@@ -102,9 +103,9 @@ _COLUMNS = ("figure", "cpu_seconds", "shared_seconds", "claim", "verdict", "requ
 
 @dataclass(frozen=True)
 class Need:
-    """Claim with its uncertainties, `required` and `reached`.
+    """Claim with its `required` and its `reached` uncertainty.
 
-    `multiple` is the multiple of the measurement that would just decide it.
+    A measurement longer by the factor `multiple` would just decide the claim.
     """
 
     claim: str
@@ -118,9 +119,9 @@ class Need:
 class Budget:
     """Budget of a figure.
 
-    seconds : CPU time of its points, its numbers and its picture.
-    shared : CPU time of points that other figures show as well.
-    needs : its claims that runs decide, the most demanding first.
+    seconds : CPU time of the points, the numbers and the picture of the figure.
+    shared : CPU time of points that other figures use as well.
+    needs : claims that longer runs can decide, the most demanding first.
     """
 
     figure: str
@@ -130,12 +131,12 @@ class Budget:
 
     @property
     def conclusive(self) -> tuple[Need, ...]:
-        """The claims that are decided."""
+        """Claims that are decided."""
         return tuple(need for need in self.needs if need.multiple <= 1.0)
 
     @property
     def sufficient(self) -> float:
-        """Multiple of the figure's runs at which all decided claims just would be; 0 without."""
+        """Factor of the run length at which all decided claims are just decided; 0 without."""
         return max((need.multiple for need in self.conclusive), default=0.0)
 
 
@@ -168,9 +169,10 @@ def budgets(path: str | Path) -> list[Budget]:
 
 
 def lines(path: str | Path, target: str | Path | None = None) -> list[str]:
-    """Return the lines of `gaspart budget` for a config; raise as `budgets` does.
+    """Return the lines of `gaspart budget` for a config.
 
-    If `target` is a CSV file, they are written there instead, a line for each claim.
+    If `target` is a CSV file, the budget is written to this file, a line for each claim. Raises the same
+    errors as `budgets`.
     """
     rows = budgets(path)
     if target is not None:
@@ -207,7 +209,10 @@ def shown_points(
 
 
 def point_seconds(results: Path, point: tuple[str, str]) -> float:
-    """Return the processor time of a point's job. Raises SceneError if it was not made."""
+    """Return the CPU time of a point's job.
+
+    Raises SceneError if the point was not made.
+    """
     for rule in ("simulate", "compute"):
         if used := job_time.read_used(results, rule, *point):
             return used.seconds
@@ -215,25 +220,25 @@ def point_seconds(results: Path, point: tuple[str, str]) -> float:
 
 
 def _made(results: Path, figure: str) -> float:
-    """Return the CPU time of the jobs that make numbers, verdicts and picture of a figure."""
+    """Return the CPU time of the jobs for numbers, verdicts and picture of a figure."""
     jobs = (job_time.read_used(results, rule, figure) for rule in ("measure", "judge", "draw"))
     return sum(used.seconds for used in jobs if used)
 
 
 def claims_of(figure: str, block: Mapping, dataset: xr.Dataset) -> list[Claim]:
-    """Return the claims of a figure, as the workflow judges them."""
+    """Return the claims of a figure, judged as in the workflow."""
     family, name = registry.functions(figure, block)
     state = getattr(import_module(registry.module(family, "claims")), name)
     return list(state(dataset, *registry.stated_claims(block)))
 
 
 def is_decided_by_runs(claim: Claim) -> bool:
-    """Return True if longer runs may decide a claim."""
+    """Return True if longer runs could decide a claim."""
     return not (claim.kind in _WITHOUT_CHANCE or claim.form == "distribution" or claim.no_verdict)
 
 
 def _needs(stated: Sequence[Claim]) -> tuple[Need, ...]:
-    """Return those claims of a figure that runs decide, the most demanding first."""
+    """Return the claims of a figure that runs can decide, the most demanding first."""
     needs = []
     for claim, verdict in zip(stated, judge(stated), strict=True):
         multiple = sufficient(claim)

@@ -1,12 +1,12 @@
-"""Process that has loaded the modules of all jobs, and makes each by fork.
+"""Server process with the modules of all jobs loaded; it runs each job in a fork.
 
-A job of the workflow needs 0.5 to 3 s of CPU time to load its modules, a copy 0.1 s. On one machine the
-workflow starts the server. On a cluster, and where processes cannot be copied, jobs start by themselves.
+A job of the workflow needs 0.5 to 3 s of CPU time to load its modules. A forked copy needs 0.1 s. On a single
+machine, the workflow starts the server. On a cluster, and on systems that cannot fork, jobs start without it.
 
-`workflow/scripts/_client.py` stands for the job: it sends the server its arguments, folder, environment and
-standard files over a socket, passes signals on, and ends with the exit code of the job. If the client is
-killed, so is the job; if the server is, so are all. The server ends after its last job once its standard
-input is closed, so with the process that started it.
+`workflow/scripts/_client.py` represents the job. It sends its arguments, folder, environment and standard
+files to the server over a socket. It passes signals on, and ends with the exit code of the job. If the client
+is killed, the job is killed. If the server is killed, all jobs are killed. The server ends when its standard
+input is closed and its last job has ended. Its input is closed when the process that started it ends.
 """
 
 from __future__ import annotations
@@ -43,20 +43,21 @@ _PRELOADED = (
 )
 _PARTS = ("measure", "claims", "figure")
 _WITH_PARENT = 1
-"""PR_SET_PDEATHSIG of Linux's prctl."""
+"""Constant PR_SET_PDEATHSIG of Linux's prctl."""
 _MOST = 1 << 16
-"""Bytes of a request that come with the files; the rest follows."""
+"""Number of bytes of a request that are sent with the files; the remainder follows."""
 
 
 def start(python: str, client: Path) -> str:
     """Start the server, and return the shell command that runs a script in it.
 
-    `python` is the command of the interpreter, as a shell reads it; it runs scripts where there is no server.
+    `python` is the shell command of the interpreter. It runs scripts if there is no server.
     """
     if sys.platform != "linux":
         return python
     try:
-        folder = tempfile.mkdtemp(prefix="gaspart-")  # open to this user alone, as the socket must be
+        # only this user may open the folder, and therefore the socket
+        folder = tempfile.mkdtemp(prefix="gaspart-")
     except OSError:
         return python
     path = f"{folder}/socket"
@@ -70,7 +71,7 @@ def start(python: str, client: Path) -> str:
         )
     atexit.register(
         server.communicate
-    )  # closes its input; it ends, and its time is counted with this process
+    )  # closes the server's input, so that it ends; its time is then counted with this process
     return f"{python} -I -S {shlex.quote(str(client))} {shlex.quote(path)}"
 
 
@@ -79,13 +80,13 @@ def _search_path() -> list[str]:
 
 
 def serve(listener: socket.socket, path: Path) -> None:
-    """Make a copy of this process for each request.
+    """Fork this process for each request.
 
-    It ends when the standard input is closed and all copies have ended.
+    The function returns when the standard input is closed and all forks have ended.
     """
     dispositions = {number: signal.getsignal(number) for number in SIGNALS}
     for number in SIGNALS:
-        signal.signal(number, signal.SIG_IGN)  # copies take them, and the process that started this one
+        signal.signal(number, signal.SIG_IGN)  # forks use them, and so does the process that started this one
     _preload()
     wake, woken = os.pipe()
     os.set_blocking(woken, False)
@@ -106,7 +107,7 @@ def serve(listener: socket.socket, path: Path) -> None:
                     os.read(wake, 512)
                     _end_finished(jobs, selector)
                 elif key.fileobj == 0:
-                    selector.unregister(0)  # nothing is written to it: it was closed
+                    selector.unregister(0)  # nothing is ever written to the input, so it was closed
                 elif (connection := key.fileobj) in jobs:
                     _pass_on(connection, jobs[connection], selector)
     path.unlink()
@@ -114,22 +115,25 @@ def serve(listener: socket.socket, path: Path) -> None:
 
 
 def _preload() -> None:
-    """Load what jobs load. What cannot be loaded is reported by the job that needs it."""
+    """Load the modules that jobs need.
+
+    A module that cannot be loaded is reported by the job that needs it.
+    """
     from gaspart.kernels.compile.cache import load_numba
     from gaspart.reproduction.families.registry import module, titles
 
-    os.environ["OPENBLAS_NUM_THREADS"] = "1"  # a process with threads cannot be copied
+    os.environ["OPENBLAS_NUM_THREADS"] = "1"  # a process with threads cannot be forked safely
     gc.set_threshold(1_000_000)
     load_numba(ours=True)
     families = (module(family, part) for family in titles() for part in _PARTS)
     for name in (*_PRELOADED, *families):
         with suppress(Exception):
             import_module(name)
-    gc.freeze()  # or the copies would write to all objects
+    gc.freeze()  # otherwise garbage collection in forks would write to all objects
 
 
 def _start_process(connection: socket.socket, dispositions: dict) -> int | None:
-    """Return the process of a request, and tell the client; None if there is no request."""
+    """Fork the process of a request, and tell the client; return None without a request."""
     data, files, _, _ = socket.recv_fds(connection, _MOST, 3)
     while data and not data.endswith(b"\n"):
         more = connection.recv(1 << 20)
@@ -151,7 +155,7 @@ def _start_process(connection: socket.socket, dispositions: dict) -> int | None:
 
 
 def _become(request: dict, files: list[int], dispositions: dict) -> NoReturn:
-    """Run the script of a request as an interpreter that has just started."""
+    """Run the script of a request, like an interpreter that has just started."""
     code = 1
     try:
         ctypes.CDLL(None).prctl(_WITH_PARENT, signal.SIGKILL)
@@ -177,7 +181,7 @@ def _become(request: dict, files: list[int], dispositions: dict) -> NoReturn:
 
 
 def _run(script: str) -> int:
-    """Return the exit code of a script that is run as the main module."""
+    """Run a script as the main module, and return its exit code."""
     sys.path[0] = str(Path(script).parent)
     main = ModuleType("__main__")
     main.__file__ = script
@@ -196,7 +200,7 @@ def _run(script: str) -> int:
 
 
 def _pass_on(connection: socket.socket, process: int, selector: selectors.BaseSelector) -> None:
-    """Send a job the signals that its client received, or end it with its client."""
+    """Send a job the signals that its client received; end it if its client has ended."""
     with suppress(OSError):
         numbers = connection.recv(64)
         if not numbers:
@@ -206,7 +210,7 @@ def _pass_on(connection: socket.socket, process: int, selector: selectors.BaseSe
 
 
 def _end_finished(jobs: dict[socket.socket, int], selector: selectors.BaseSelector) -> None:
-    """Tell the clients of jobs that have ended their exit codes; negative ones are signals."""
+    """Send the exit codes of ended jobs to their clients; negative codes are signals."""
     for connection, process in tuple(jobs.items()):
         ended, status = os.waitpid(process, os.WNOHANG)
         if ended:

@@ -1,7 +1,7 @@
 """CPU time and memory of a job, as the last line of its log.
 
-Snakemake samples the CPU time of a job now and then, and not at its end: of 736 s it recorded 607 s. A job
-that a server runs it does not see at all. So each job asks the operating system when its work is done.
+Snakemake samples the CPU time of a job now and then, but not at its end: of 736 s it recorded 607 s. It does
+not measure jobs that run in a server. Therefore each job asks the operating system when its work is done.
 """
 
 from __future__ import annotations
@@ -17,9 +17,11 @@ _LINE = re.compile(r"^processor time: (\d+\.\d+) s, memory: (\d+\.\d+|nan) MB$",
 
 
 class Used(NamedTuple):
-    """CPU time of a job with its children, in s, and its largest memory, in MB.
+    """CPU time in s and peak memory in MB of a job.
 
-    An unknown number is nan.
+    The CPU time includes child processes.
+
+    An unknown number is NaN.
     """
 
     seconds: float
@@ -27,15 +29,15 @@ class Used(NamedTuple):
 
 
 def describe() -> str:
-    """Return the line for the log of this process."""
+    """Return the line that describes this process in its log."""
     return f"processor time: {sum(os.times()[:4]):.2f} s, memory: {largest_memory() / 1e6:.1f} MB"
 
 
 def read_used(results: Path, rule: str, *names: str) -> Used | None:
-    """Return what the log of a job states; None if it states nothing.
+    """Return time and memory from the log of a job, or None.
 
-    `results` is the folder of the logs' folder; `names` are the wildcards of the rule, as folders and file of
-    the log.
+    `results` is the parent folder of the logs. `names` are the wildcards of the rule, as folders and file
+    name of the log.
     """
     log = (results / "logs").joinpath(rule, *names)
     try:

@@ -1,9 +1,9 @@
-"""The table of numbers that this program has measured, from the measurements of a finished reproduction.
+"""Table of numbers measured by gaspart, from the measurements of a finished reproduction.
 
     python -m gaspart.reproduction.measured results/measurements > src/gaspart/theory/data/measured.csv
 
-writes what `gaspart.theory.measurements` reads: Z, contact values and transport coefficients with their
-uncertainties.
+writes the table that `gaspart.theory.measurements` reads. It has Z, contact values and transport coefficients
+with their uncertainties.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ ENSKOG = {
     "conductivity": theory.enskog_conductivity,
 }
 Value = tuple[int, str, Row, Estimate]
-"""Dimension, quantity, the row of the measurement, and the value."""
+"""Dimension, quantity, row of the measurement, and value."""
 
 
 def reference_values(folder: Path) -> Iterator[dict[str, object]]:
     """Yield the rows of the table, from the files <figure>.nc of a folder.
 
-    Units are the diameter, the mass and k_B T. Raises OSError for a file that is missing.
+    Units are the diameter, the mass and k_B T. Raises OSError for a missing file.
     """
     for figure in ("virial_discs", "virial_spheres", "msd_spheres", "viscosity", "conductivity"):
         with xr.open_dataset(folder / f"{figure}.nc") as dataset:
@@ -52,7 +52,7 @@ def reference_values(folder: Path) -> Iterator[dict[str, object]]:
 
 
 def _decimals(value: Estimate) -> int:
-    """Return the number of decimals that gives the error two digits."""
+    """Return the number of decimals for an error of two digits."""
     return max(0, 1 - math.floor(math.log10(value.error)))
 
 

@@ -1,6 +1,6 @@
 """Documents generated from the declarations of all keys: JSON schemas and pages of the reference.
 
-`python -m gaspart.reproduction.reference`, run in the folder of the project, writes the schemas of
+The command `python -m gaspart.reproduction.reference` in the folder of the project writes the schemas of
 configs and scene files for editors. `make docs` makes the pages.
 """
 
@@ -35,7 +35,7 @@ _KEYS = "A key without a default is required. A default of *none* means that the
 
 
 def schemas() -> dict[str, str]:
-    """Return the text of each JSON schema, by its path from the folder of the project."""
+    """Return the text of each JSON schema, by its path in the folder of the project."""
     contents = {"config": schema(), "scene": scene_schema()}
     return {
         f"workflow/schemas/{name}.schema.json": json.dumps(content, indent=1, ensure_ascii=False) + "\n"
@@ -44,7 +44,7 @@ def schemas() -> dict[str, str]:
 
 
 def pages() -> dict[str, str]:
-    """Return the text of each page of the reference, by its path from `docs/generated`."""
+    """Return the text of each page of the reference, by its path in `docs/generated`."""
     texts, index = {}, _INTRODUCTION
     for name, page in _PAGES.items():
         start = f"# {page.title}\n\n{page.about} {page.more}\n"
@@ -64,7 +64,7 @@ def _scene_keys() -> list[str]:
 
 
 def _experiment_keys() -> list[str]:
-    """Describe the keys of a config without those for figures."""
+    """Describe the keys of a config, except those for figures."""
     parts = [_KEYS, "## Config\n", _table(_outline(schema()["properties"]))]
     for title, table in {
         "Experiment": _outline(config_keys.EXPERIMENT),
@@ -82,7 +82,7 @@ def _experiment_keys() -> list[str]:
 
 
 def _figure_keys() -> list[str]:
-    """Describe the settings of figures: of those with other names, then of gaspart's."""
+    """Describe the settings of figures: first figures of other names, then gaspart's figures."""
     parts = [_KEYS]
     for kind, settings in registry.kinds().items():
         claims = settings["claims"]["items"]["properties"]
@@ -112,7 +112,7 @@ def _models() -> str:
 
 
 def _observables() -> list[str]:
-    """Return each named observable, as it is declared."""
+    """Return each named observable, with its declaration."""
     heads = (
         "name",
         "also",
@@ -147,7 +147,7 @@ def _observables() -> list[str]:
 
 
 def _describe_exclusions() -> str:
-    """Describe the features that exclude each other in any scene."""
+    """Describe the features that exclude each other in every scene."""
     rows = ["| feature | excludes | why |", "| --- | --- | --- |"]
     for (first, second), reason in EXCLUDED.items():
         rows.append(f"| {FEATURES[first].meaning} | {FEATURES[second].meaning} | {reason} |")
@@ -155,7 +155,7 @@ def _describe_exclusions() -> str:
 
 
 def _parts(scene: Kind) -> list[tuple[str, Kind]]:
-    """Return the mappings inside a scene file, each with its title."""
+    """Return the mappings inside a scene file, with their titles."""
     titled: dict[str, Kind] = {}
     queue = list(scene["properties"].values())
     while queue:
@@ -168,7 +168,7 @@ def _parts(scene: Kind) -> list[tuple[str, Kind]]:
 
 
 def _outline(table: dict[str, Kind]) -> dict[str, Kind]:
-    """Return a table of keys without those inside their mappings, which have tables of their own."""
+    """Return a table of keys without the keys inside mappings, which have separate tables."""
     return {name: kind.stating(properties={}) for name, kind in table.items()}
 
 
@@ -185,7 +185,7 @@ def _default(value: Any) -> str:
 
 
 def in_words(kind: Kind) -> str:
-    """Describe the kind of a value in words.
+    """Describe the allowed values of a key in words.
 
     An example is `number > 0 and ≤ 0.1, or list of 2 to 3`.
     """
@@ -203,7 +203,7 @@ def in_words(kind: Kind) -> str:
 
 
 def _describe_type(kind: Kind, name: str) -> str:
-    """Describe one of the types of a kind, with the rules for it."""
+    """Describe one of the types of a kind, with its rules."""
     noun = _TYPES.get(name, name)
     if name in ("number", "integer"):
         rules = [f"{sign}{kind[end]:.10g}" for end, sign in _ENDS.items() if end in kind]
@@ -226,7 +226,7 @@ def _describe_type(kind: Kind, name: str) -> str:
 class _Page:
     """Page of the reference.
 
-    It has its title, its subject, as the index repeats it, more of that, and the function that gives its
+    It has a title, a subject that the index repeats, a longer description, and the function that returns its
     parts.
     """
 

@@ -1,10 +1,11 @@
-"""The relaxation of speeds from one speed to Maxwell's distribution, by the DSMC engine.
+"""Relaxation of equal speeds to Maxwell's distribution, by the DSMC engine.
 
     python -m gaspart.reproduction.relaxation 3 1000000 60 > table.csv
 
-computes the numbers of `theory/data/relaxation_3d.csv`: dimension, particles of a run, and runs. The gas is
-homogeneous, so that neither cells nor steps matter: within a step collisions follow one another in continuous
-time (see docs/dsmc.md). Statistical errors are the scatter of the runs.
+computes the numbers of `theory/data/relaxation_3d.csv`. The arguments are the dimension, the number of
+particles in a run, and the number of runs. The gas is homogeneous, so that neither cells nor steps matter:
+within a step, collisions occur one after another in continuous time (see docs/dsmc.md). Statistical errors
+are the scatter of the runs.
 """
 
 from __future__ import annotations
@@ -27,8 +28,8 @@ _PACKING_FRACTION = 1e-3  # packing fraction
 def relaxation(dimension: int, count: int, collisions: float, seed: int) -> np.ndarray:
     """Simulate the relaxation of speeds, and return rows of `COLUMNS`, (rows, 4).
 
-    They are 2 N_coll / N, <v^4> / <v^2>^2, the fraction of the particles without a collision so far, and <v>
-    over the root-mean-square speed, until `collisions` collisions of a particle.
+    The columns are 2 N_coll / N, <v^4> / <v^2>^2, the fraction of particles without a collision so far, and
+    <v> divided by the root-mean-square speed. The run ends after `collisions` collisions of a particle.
     """
     unit = np.pi / (4.0 if dimension == 2 else 6.0)
     side = (count * unit / _PACKING_FRACTION) ** (1.0 / dimension)

@@ -1,8 +1,8 @@
 """`gaspart.sweep`: observables over a grid of scenes or settings, without a workflow.
 
 The grid is an experiment of a config, with the points, seeds and jobs of the workflow. Trajectories are
-stored, so that an interrupted sweep is continued, and a sweep with more values or observables simulates only
-what is missing.
+stored, so that an interrupted sweep can be continued. A sweep with further values or observables simulates
+only the missing points.
 """
 
 from __future__ import annotations
@@ -47,10 +47,10 @@ from gaspart.workers import in_processes, require_processes
 from gaspart.yaml_text import dump_yaml
 
 EXPERIMENT = "points"
-"""Folder of the trajectories within the folder of a sweep; with each point's name it makes the seeds."""
+"""Folder of the trajectories in the folder of a sweep. With each point's name it determines the seeds."""
 _SAMPLES = 128
 _KEPT = ("radius", "packing_fraction", "count", "side")
-"""The extents of a gas in the order in which they keep their values where others vary."""
+"""Extents of a gas, in the order in which they stay constant when others vary."""
 _KEPT_OF_SIZES = ("radius", "count", "packing_fraction", "side")
 """Keys of a polydisperse species, whose radii follow from their number."""
 Progress: TypeAlias = Callable[[int, int, str], None]
@@ -84,15 +84,15 @@ def sweep(
     scene : Scene
         The scene whose parameters are varied.
     over : mapping of str to sequence
-        Values of each varied key; without any key there is one point. A key is one of a config: of one
-        species alone in a container "packing_fraction", "count", "radius", "side", "temperature" and the
-        others of a gas; a setting of the engine, such as "time_step"; or the position of a value in a scene
-        file, such as "gravity" or "species.0.mass".
+        Values of each varied key; without any key there is one point. A key is one of three kinds. For a
+        single species in a container, it is a key of a gas in a config, such as "packing_fraction", "count",
+        "radius", "side" or "temperature". It may be a setting of the engine, such as "time_step". Otherwise
+        it is the position of a value in a scene file, such as "gravity" or "species.0.mass".
     observables : iterable of str
         Names of observables as in `gaspart measure`.
     folder : str or Path
-        Folder of the trajectories, ``points/<name>/replica-<k>.nc``. Several sweeps may use it, also at the
-        same time.
+        Folder of the trajectories, ``points/<name>/replica-<k>.nc``. Several sweeps may use the same folder,
+        even simultaneously.
     engine : Engine or {"event", "step", "dsmc"}, optional
         The engine; a name selects its default settings. Default: event-driven.
     duration : float, [time], optional
@@ -102,8 +102,8 @@ def sweep(
     at_most : float, [time], optional
         Maximum length of each run with `until`.
     samples : int, optional
-        Number of samples of each run. Default: 128; with `until`, those until `at_most`, by default one for
-        each collision of a particle.
+        Number of samples of each run. Default: 128. With `until`, it is the number of samples in the time
+        `at_most`; by default, there is one sample per collision of a particle.
     equilibration : float, [time], optional
         Time before the measurement. Default: the first quarter of each run is discarded.
     correlations : Correlations, optional
@@ -113,27 +113,27 @@ def sweep(
     seed : int, default 0
         Seed of the sweep. With the names of point and replica it determines each random stream.
     workers : int, default 1
-        Number of processes that run points at the same time. It changes no bit.
+        Number of processes that run points at the same time. No bit of the results depends on it.
     progress : callable, optional
-        Called as ``progress(done, points, name)`` when a point is complete. Default: write a line to the
-        standard error.
+        Function that is called as ``progress(done, points, name)`` when a point is complete. By default, a
+        line is written to the standard error.
     overwrite : bool, default False
         Replace trajectories of other settings.
 
     Returns
     -------
     SweepTable
-        A Dataset that plots itself (`SweepTable.plot`), with a dimension for each key. Variables: each
-        observable; its standard uncertainty (suffix _error); its value by theory, if there is one (suffix
-        _theory); `duration`; and `failure`, the reason why a result is NaN, otherwise "". A curve has its own
-        dimension, such as `rdf_distance` (where positions differ `rdf_distance_places`); all observables
-        share `face` and `component`.
+        A Dataset with a method to plot itself (`SweepTable.plot`), and a dimension for each key. Variables
+        are each observable, its standard uncertainty (suffix _error), its theoretical value if known (suffix
+        _theory), `duration`, and `failure`. The latter is the reason why a result is NaN, otherwise "". A
+        curve has its own dimension, such as `rdf_distance`; if positions differ between points, they are in
+        `rdf_distance_places`. All observables share the dimensions `face` and `component`.
 
     Raises
     ------
     SceneError
-        If settings contradict each other, trajectories are of another sweep, no point can have an observable,
-        or no point of the grid can be run.
+        If settings contradict each other, if the folder has trajectories of another sweep, if no point can
+        have an observable, or if no point of the grid can be run.
 
     See Also
     --------
@@ -141,8 +141,8 @@ def sweep(
 
     Notes
     -----
-    If some of radius, packing fraction and count are varied, the others keep their values as far as possible.
-    A complete trajectory is not simulated again, and an interrupted one is continued.
+    If some of radius, packing fraction and count vary, the others keep their values as far as possible. A
+    complete trajectory is not simulated again. An interrupted trajectory is continued.
 
     Examples
     --------
@@ -190,13 +190,13 @@ def sweep(
     return table(rows, names, axes).assign_attrs(about)
 
 
-# The request of a sweep as settings of points: plain values, checked by the keys of a config.
+# The request of a sweep as settings of points: plain values, checked as the keys of a config.
 
 
 def _axes(over: object, engine: Engine) -> dict[str, list]:
-    """Return the values of each key that varies, as Python's own numbers, words and lists.
+    """Return the values of each varying key, as Python numbers, words and lists.
 
-    A single value counts as a list of one. Raises SceneError.
+    A single value counts as a list of one value. Raises SceneError.
     """
     if not isinstance(over, Mapping):
         rule = "must be a mapping from each key that varies to its values, such as {'count': [50, 100]}"
@@ -211,19 +211,22 @@ def _axes(over: object, engine: Engine) -> dict[str, list]:
             raise SceneError(f"over.{key}", values, unknown_word(key, keys | parts))
         if key not in keys and None in values:
             raise SceneError(f"over.{key}", None, "replaces no value of a scene: vary one that it can have")
-        if len({*map(coordinate, values)}) < len(values):  # also 1 and 1.0
+        if len({*map(coordinate, values)}) < len(values):  # 1 and 1.0 are equal
             raise SceneError(f"over.{key}", values, "every point of a grid must be different")
     return axes
 
 
 def _values(where: str, values: Any) -> list:
-    """Return the values of a key; raise SceneError for too many, or an iterator that fails."""
+    """Return the values of a key.
+
+    Raises SceneError for too many values, or for an iterator that fails.
+    """
     plain = _plain(values)
     if isinstance(plain, str | bytes | Mapping) or not isinstance(plain, Iterable):
         return [plain]
     try:
         listed = [_plain(value) for value in islice(plain, MOST_POINTS + 1)]
-    except Exception:  # an iterator of the user's own
+    except Exception:  # an iterator of the user's code may raise anything
         raise SceneError(where, values, "must be a list of values") from None
     if len(listed) > MOST_POINTS:
         raise SceneError(where, len(listed), f"a grid may have {MOST_POINTS} points")
@@ -231,7 +234,7 @@ def _values(where: str, values: Any) -> list:
 
 
 def _plain(value: Any) -> Any:
-    """Convert numbers and arrays of numpy, and what holds them, to Python's own."""
+    """Convert numpy numbers and arrays, also inside containers, to Python values."""
     if hasattr(value, "__array__"):
         value = np.asarray(value).tolist()
     if isinstance(value, Mapping):
@@ -240,9 +243,9 @@ def _plain(value: Any) -> Any:
 
 
 def _names(observables: object, axes: Mapping[str, list]) -> list[str]:
-    """Return the names of the observables, each once; raise SceneError.
+    """Return the distinct names of the observables.
 
-    A single name counts as a list of one.
+    A single name counts as a list of one name. Raises SceneError.
     """
     listed = [observables] if isinstance(observables, str) else observables
     if not isinstance(listed, Iterable) or isinstance(listed, bytes | Mapping):
@@ -262,7 +265,10 @@ def _length(
     samples: int | None,
     equilibration: float | None,
 ) -> dict[str, Any]:
-    """Return the keys of the length of a point, or raise SceneError."""
+    """Return the keys for the length of a point.
+
+    Raises SceneError.
+    """
     if (duration is None) == (until is None):
         raise SceneError("duration", duration, "must be given, or until, but not both")
     if until is None and at_most is not None:
@@ -275,14 +281,17 @@ def _length(
     if until is None:
         return {"samples": _SAMPLES, **settings}
     accuracies = tuple(until) if isinstance(until, list | tuple) else (until,)
-    for accuracy in Until(accuracies, settings["duration"]).accuracies:  # raises SceneError for other things
+    for accuracy in Until(accuracies, settings["duration"]).accuracies:  # raises SceneError for other objects
         if accuracy.start is not None:
             raise SceneError("until.start", accuracy.start, "is the equilibration of a sweep")
     return {**settings, "until": {accuracy.name: accuracy.accuracy for accuracy in accuracies}}
 
 
 def _contents(names: list[str], correlations: Correlations | None, length: dict[str, Any]) -> dict[str, Any]:
-    """Return the keys of the contents of a point's files, or raise SceneError."""
+    """Return the keys for the contents of a point's files.
+
+    Raises SceneError.
+    """
     stored: dict[str, Any] = required_contents({OBSERVABLES[name].needs for name in names})
     if "until" in length:
         del stored["pairs"]
@@ -303,14 +312,15 @@ def _contents(names: list[str], correlations: Correlations | None, length: dict[
 
 
 def _point_keys(engine: Engine) -> set[str]:
-    """Return the keys of gas and engine, which a sweep may vary."""
+    """Return the keys of gas and engine that a sweep may vary."""
     return {*EXTENTS, *GAS, *ENGINE_KEYS[engine.name]}
 
 
 def _settings(scene: Scene, axes: Mapping[str, list], engine: Engine) -> dict[str, Any]:
-    """Return the keys of a point's scene and engine that do not vary, or raise SceneError.
+    """Return the keys of a point's scene and engine that do not vary.
 
-    If a key of a gas varies, the scene is stated by such keys: it is one species alone in a container.
+    If a key of a gas varies, the scene is described by such keys. It must then be a single species in a
+    container. Raises SceneError.
     """
     settings = {"engine" if key == "name" else key: value for key, value in engine_to_dict(engine).items()}
     varied = next((key for key in axes if key in EXTENTS or key in GAS), None)
@@ -337,14 +347,20 @@ def _settings(scene: Scene, axes: Mapping[str, list], engine: Engine) -> dict[st
 
 
 def _root(folder: Any) -> str:
-    """Return the absolute path of the folder of a sweep, or raise SceneError."""
+    """Return the absolute path of the folder of a sweep.
+
+    Raises SceneError.
+    """
     if not isinstance(folder, str | Path) or not str(folder) or "\0" in str(folder):
         raise SceneError("folder", folder, "must be the path of a folder")
     return str(Path(folder).absolute())
 
 
 def _make_folder(root: str) -> None:
-    """Make the folder of the points, unless it exists, or raise SceneError."""
+    """Make the folder of the points, unless it exists.
+
+    Raises SceneError.
+    """
     try:
         Path(root, EXPERIMENT).mkdir(parents=True, exist_ok=True)
     except (OSError, UnicodeEncodeError) as error:
@@ -356,9 +372,9 @@ def _make_folder(root: str) -> None:
 
 
 def _plan(config: dict) -> tuple[list[Point], dict[str, str]]:
-    """Return the points in their order, and reasons why some cannot be run, by name.
+    """Return the points in order, and the reasons, by name, why points cannot be run.
 
-    Raises SceneError for values that no point can use, and if no point can be run.
+    Raises SceneError for values that no point can use, or if no point can be run.
     """
     try:
         points = list(gridded_points(config, EXPERIMENT).values())
@@ -377,14 +393,14 @@ def _plan(config: dict) -> tuple[list[Point], dict[str, str]]:
 
 
 def _of_sweep(error: SceneError) -> SceneError:
-    """Return an error of a config with the key that it has in a sweep."""
+    """Return an error of a config with the sweep's name of the key."""
     key = error.key.removeprefix(f"experiments.{EXPERIMENT}").lstrip(".")
     key = f"over{key.removeprefix('grid')}" if key.startswith("grid") else key
     return SceneError(key or "over", error.value, error.rule, error.file)
 
 
 def _require_measurable(names: list[str], points: list[Point]) -> None:
-    """Raise SceneError for an observable that no run of any of the points can have."""
+    """Raise SceneError for an observable that none of the points can have."""
     kinds = distinct(points)
     for name in names:
         refused: list[SceneError] = []
@@ -404,9 +420,9 @@ def make_all(
 ) -> None:
     """Make the trajectories of all points, and call report(point, reason) for each.
 
-    The reason states why it could not be made, or is "". Points whose trajectories exist come first: a
-    conflict is then found before anything is run. Raises SceneError for files that cannot be written or are
-    of another sweep.
+    The reason states why the point could not be made; "" if it was made. Points with existing trajectories
+    come first, so that a conflict is found before any run. Raises SceneError for files that cannot be
+    written, or belong to another sweep.
     """
     ordered = sorted(points, key=lambda point: not Path(point.path).exists())
     if workers == 1:
@@ -415,14 +431,14 @@ def make_all(
         return
     require_processes("workers", workers)
     for representative in {variant(point): point for point in ordered}.values():
-        with suppress(SceneError, SimulationError):  # of its own point alone
-            compile_kernels(compile_task(representative))  # or each process would compile them
+        with suppress(SceneError, SimulationError):  # an error of this point only
+            compile_kernels(compile_task(representative))  # otherwise each process would compile them
     calls = [(point.to_dict(), point.path, overwrite) for point in ordered]
     in_processes(_make_in_process, calls, workers, lambda n, reason: report(ordered[n], str(reason)))
 
 
 def _make_in_process(tell: Callable[[Any], None], values: dict, path: str, overwrite: bool) -> str:
-    """Make a point, given as a dictionary, in a process of its own; see `_make`."""
+    """Make a point from its dictionary in a separate process; see `_make`."""
     load_numba(ours=True)
     return _make(Point.from_dict(values, path), overwrite)
 
@@ -430,7 +446,8 @@ def _make_in_process(tell: Callable[[Any], None], values: dict, path: str, overw
 def _make(point: Point, overwrite: bool) -> str:
     """Make the trajectories of a point, or check those in its folder.
 
-    Returns the reason why it could not be done, or "": it costs no other point. Raises SceneError for files.
+    Returns the reason for a failure, or "". The failure does not affect other points. Raises SceneError for
+    files.
     """
     folder = Path(point.path)
     try:
@@ -454,7 +471,7 @@ def _make(point: Point, overwrite: bool) -> str:
 
 
 def _row(point: Point, names: list[str], part: bool, failure: str) -> xr.Dataset:
-    """Return the results of a point, or the reason of its failure; see `measure_point`."""
+    """Return the results of a point, or the reason for its failure; see `measure_point`."""
     if failure:
         return xr.Dataset({"duration": nan, "failure": failure})
     results, duration, refused = measure_point(point, names, part)

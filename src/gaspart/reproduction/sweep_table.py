@@ -1,4 +1,4 @@
-"""The table of a sweep: observables of all points, by what varies, which plots itself."""
+"""Table of a sweep: observables of all points, by the varied keys, with a plot method."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class SweepTable(ByFace):
     ) -> Axes:
         """Draw an observable with bars of one standard deviation, and theory as lines.
 
-        Each value of the other dimensions gives one curve.
+        There is one curve for each value of the other dimensions.
 
         Parameters
         ----------
@@ -84,7 +84,10 @@ class SweepTable(ByFace):
 
 
 def _check_name(key: str, name: str | None, names: list[str]) -> str:
-    """Return a name of the table, by default the first; raise SceneError."""
+    """Return a name of the table, by default the first.
+
+    Raises SceneError.
+    """
     if not names:
         raise SceneError(key, name, "there is nothing to be drawn: the sweep has one point")
     if name is not None and name not in names:
@@ -93,7 +96,7 @@ def _check_name(key: str, name: str | None, names: list[str]) -> str:
 
 
 def _draw_curve(axis: Axes, curve: xr.Dataset, name: str, along: str, label: str) -> None:
-    """Draw a curve, with theory as a line of its colour.
+    """Draw a curve, with theory as a line of the same colour.
 
     If positions are words, theory is drawn as crosses.
     """
@@ -110,8 +113,8 @@ def _draw_curve(axis: Axes, curve: xr.Dataset, name: str, along: str, label: str
 def columns(name: str, replicas: list[Observable]) -> Iterable[tuple[str, xr.DataArray]]:
     """Yield the variables of an observable of a point.
 
-    Dimensions of names are common to all observables. Of others each observable has its own, with positions
-    as a variable, since they may differ from point to point.
+    All observables share dimensions whose coordinates are names. Other dimensions belong to one observable;
+    their positions are a variable, because they may differ from point to point.
     """
     first = replicas[0].estimate
     own = {dim: f"{name}_{dim}" for dim in first.dims if not DIMENSIONS[str(dim)].names}
@@ -162,5 +165,5 @@ def table(rows: list[xr.Dataset], names: Sequence[str], axes: Mapping[str, list]
 
 
 def coordinate(value: Any) -> Any:
-    """Return a value as a coordinate: of a list, its text."""
+    """Convert a value to a coordinate; a list is converted to text."""
     return value if isinstance(value, (int, float, str)) else str(value)

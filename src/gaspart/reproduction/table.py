@@ -1,9 +1,9 @@
-"""Table of a figure's numbers: a row for each point, with named columns.
+"""Table of a figure's numbers, with a row for each point and named columns.
 
 Columns are numbers, words or estimates.
 
-`table` makes the data set of a measurement from the columns of each point. `Table` reads it, for claims and
-pictures, and `each` makes one claim about every row.
+`table` makes the data set of a measurement from the columns of each point. `Table` reads this data set, for
+claims and pictures. `each` makes one claim about every row.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from gaspart.reproduction.claims import Claim
 
 Inner = tuple[str, ...] | Mapping[str, tuple[str, ...]]
 MADE_OF = "_made_of"
-"""End of the name of the variable that states of which points each row is made."""
+"""Suffix of the variable that states from which points each row is made."""
 _NESTED = (list, tuple, ValuesView)
 
 
 class _Columns:
-    """The variables, coordinates and attributes of a data set, as attributes; see `Table`."""
+    """Variables, coordinates and attributes of a data set, as Python attributes; see `Table`."""
 
     dataset: xr.Dataset
 
     def __getattr__(self, name: str) -> Any:
         if name == "dataset" or name.startswith("_"):
-            raise AttributeError(name)  # while an object is copied
+            raise AttributeError(name)  # during the copy of an object
         if name not in self.dataset.variables:
             if name in self.dataset.attrs:
                 return _plain(self.dataset.attrs[name])
@@ -48,8 +48,9 @@ class _Columns:
 class Row(_Columns):
     """Row of a table.
 
-    Its columns are single numbers or words, single estimates, or arrays over the inner dimensions, without
-    entries for replicas that only other rows have; `"{count:.0f} discs".format_map(row)` is a text about it.
+    Columns are single numbers or words, single estimates, or arrays over the inner dimensions. Arrays have no
+    entries for replicas that only other rows have. Use a row to format a text, as `"{count:.0f}
+    discs".format_map(row)`.
     """
 
     def __init__(self, dataset: xr.Dataset) -> None:
@@ -64,13 +65,13 @@ class Row(_Columns):
 
 
 class Table(_Columns):
-    """Rows of a data set along its dimension `over`; no rows without this dimension.
+    """Rows of a data set along its dimension `over`; empty without this dimension.
 
     A column is an attribute: `table.Z` is an Estimate of all rows if there is a variable Z_error, otherwise
     an array (rows, ...). Other variables and attributes are as in the data set. `table[condition]` contains
-    the rows for which the condition (rows,) is true, or the rows of a slice or of a list of numbers;
-    `table[0]` is a Row, and so is what it is iterated over. A table without rows is false. Raises
-    AttributeError for what is no column.
+    the rows for which the condition (rows,) is true. A slice, or a list of indices, selects rows too.
+    `table[0]` is a Row, and iteration yields Rows. A table without rows is false. Raises AttributeError for a
+    name that is no column.
     """
 
     def __init__(self, dataset: xr.Dataset, over: str) -> None:
@@ -78,7 +79,7 @@ class Table(_Columns):
 
     @classmethod
     def from_prefixed(cls, dataset: xr.Dataset, over: str) -> Table:
-        """Return the rows along `over` of the variables that begin with its name.
+        """Return the rows along `over`, from the variables that begin with its name.
 
         See the function `merge_with_prefixes`.
         """
@@ -98,7 +99,7 @@ class Table(_Columns):
         return (self[n] for n in range(len(self)))
 
     def by(self, *keys: str | np.ndarray) -> Iterator[tuple[Any, ...]]:
-        """Yield (value of each key, ..., the rows with these values) by ascending values.
+        """Yield the values of the keys, and the rows with these values, in ascending order.
 
         Keys are names of columns, or arrays (rows,).
         """
@@ -132,16 +133,16 @@ def table(
     units: Mapping[str, str] | None = None,
     of: Sequence[Any] | None = None,
 ) -> xr.Dataset:
-    """Return a data set with a row for each point: row(point, *rest) gives its columns.
+    """Return a data set with a row for each point; row(point, *rest) returns the columns.
 
-    An Estimate under `name` gives the variables `name`, `name`_error and `name`_freedom, a pair of a value
-    and its error the first two.
+    An Estimate `name` becomes the variables `name`, `name`_error and `name`_freedom. A pair of value and
+    error becomes the first two.
 
     inner, units : see `from_rows`.
     of : points of each row, if `points` do not determine them.
 
-    If rows are made of points of a grid, as by `made_of`, `over`_made_of has their experiments and names, a
-    line for each.
+    If rows are made from points of a grid (see `made_of`), the variable `over`_made_of has their experiments
+    and names, a line for each.
     """
     rows = [_spread(row(point, *rest)) for point in points]
     named = ["\n".join(made_of(item)) for item in (points if of is None else of)]
@@ -150,9 +151,9 @@ def table(
 
 
 def made_of(value: Any) -> list[str]:
-    """Return experiment/name of each point of a grid in a value.
+    """Return a text `experiment/name` for each point that a value contains.
 
-    The value is a point, or lists and mappings of points.
+    The value is a point of a grid, or lists and mappings of such points.
     """
     if hasattr(value, "experiment") and hasattr(value, "name"):
         return [f"{value.experiment}/{value.name}"]
@@ -163,11 +164,11 @@ def made_of(value: Any) -> list[str]:
 def each(rows: Table, claim: str, form: Callable[..., Claim] = Claim, **stated: Any) -> list[Claim]:
     """Return a claim about each row.
 
-    form : function that makes it, such as `Claim.at_most`.
-    stated : its arguments.
+    form : function that makes the claim, such as `Claim.at_most`.
+    stated : arguments of this function.
 
-    Texts may name columns, as "Z at {packing_fraction:.2g}". Lists, arrays and estimates of arrays must have
-    one element for each row; ValueError if they do not.
+    Texts may name columns, as in "Z at {packing_fraction:.2g}". Lists, arrays and estimates of arrays must
+    have one element for each row. Otherwise ValueError is raised.
     """
     claims = []
     for n, row in enumerate(rows):
@@ -200,9 +201,9 @@ def _spread(row: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def merge_with_prefixes(**tables: xr.Dataset) -> xr.Dataset:
-    """Merge tables with different rows to one data set, by the names of their dimensions.
+    """Merge tables with different rows to one data set; add their dimensions as prefixes.
 
-    The column `volume` along `path` is the variable `path_volume`.
+    The column `volume` along `path` becomes the variable `path_volume`.
     """
     renamed = (part.rename({name: f"{over}_{name}" for name in part}) for over, part in tables.items())
     return xr.merge(renamed, join="outer", compat="no_conflicts")
@@ -216,19 +217,19 @@ def from_rows(
 ) -> xr.Dataset:
     """Return a variable over the dimension `over` for each key of the rows.
 
-    inner : further dimensions of arrays, the same for all of them, or by key.
-    units : by key, "1" for others; by default none are stated.
+    inner : further dimensions of arrays, either the same for all, or by key.
+    units : units by key; "1" for other keys. By default no units are stated.
 
-    Arrays that are shorter than the longest are filled up with NaN, and so are missing entries of a row. A
-    key with the suffix _error has the dimensions and the unit of the key without the suffix; a key with
-    _freedom has its dimensions.
+    Shorter arrays are padded with NaN. Missing entries of a row are NaN. A key with the suffix _error has the
+    dimensions and the unit of the key without the suffix. A key with the suffix _freedom has the same
+    dimensions.
     """
     columns = {}
     for name in dict.fromkeys(name for row in rows for name in row):
         key = name.removesuffix("_error")
         values = _stack([np.asarray(row.get(name, np.nan)) for row in rows])
         dims = inner if isinstance(inner, tuple) else inner.get(key.removesuffix("_freedom"), ())
-        dims = dims[: values.ndim - 1]  # one number of degrees of freedom may be that of an array
+        dims = dims[: values.ndim - 1]  # a single number of degrees of freedom may belong to an array
         attributes = {} if units is None or values.dtype.kind in "OSU" else {"units": units.get(key, "1")}
         columns[name] = (over, *dims), values, attributes
     return xr.Dataset(columns)
@@ -239,8 +240,8 @@ def entries(numbers: Mapping[str, Estimate | tuple[Any, Any]], freedom: int | No
 
     The entries are `name`, `name`_error, and `name`_freedom.
 
-    numbers : by name, each an Estimate, or a value and its error, numbers or arrays.
-    freedom : degrees of freedom of the latter; without it they have no such entry.
+    numbers : by name, an Estimate, or a value and its error; numbers or arrays.
+    freedom : degrees of freedom for values with errors; without it they have no such entry.
     """
     row: dict[str, Any] = {}
     for name, number in numbers.items():
@@ -254,7 +255,7 @@ def entries(numbers: Mapping[str, Estimate | tuple[Any, Any]], freedom: int | No
 
 
 def _stack(arrays: list[np.ndarray]) -> np.ndarray:
-    """Join arrays of one number of dimensions along a new first one.
+    """Join arrays of the same number of dimensions along a new first axis.
 
     An empty array is replaced by a single NaN.
     """

@@ -1,1 +1,1 @@
-"""Runs on request: of a duration, or until they are accurate, alone or as replicas."""
+"""Runs of a given duration, or until accuracies are reached, also as replicas."""

@@ -1,6 +1,6 @@
-"""End of a run without a duration: accuracies of its observables, and limits of accuracy.
+"""End of a run without a duration: required accuracies of observables, and their limits.
 
-The rule by which it ends is in `gaspart.accuracy.reached`.
+The test that ends the run is in `gaspart.accuracy.reached`.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class Accuracy(Requirement):
     Raises
     ------
     SceneError
-        If a value is invalid, or the observable ends no run.
+        If a value is invalid, or if the accuracy of the observable cannot end a run.
 
     See Also
     --------
@@ -56,8 +56,8 @@ class Accuracy(Requirement):
 
     Notes
     -----
-    A run until the density, or the pressure on walls across one axis, is accurate also stores impulses, if
-    its engine can and they are of use.
+    Impulses are stored too, if the required accuracy concerns the density or the pressure on walls across one
+    axis, if the engine can tally impulses, and if they make the run shorter.
 
     Examples
     --------
@@ -118,9 +118,9 @@ def contents_until(
 ) -> Contents:
     """Return the contents of a file, with the displacements that requested accuracies need.
 
-    Raises SceneError for an accuracy that this run cannot measure, or that never ends it.
+    Raises SceneError for an accuracy that this run cannot measure or never reach.
 
-    from_state : True if the run starts from a given state
+    from_state : True if the run starts from a prescribed state.
     """
     for requirement in until.accuracies:
         require_measurable(requirement, scene, engine, contents)
@@ -133,8 +133,8 @@ def contents_until(
 def require_measurable(requirement: Requirement, scene: Scene, engine: Engine, contents: Contents) -> None:
     """Raise SceneError for an accuracy of an observable that this run cannot measure.
 
-    The scene may not have the observable, however long the run; runs of the engine may not determine it; or
-    the file lacks its data.
+    There are three reasons: the scene does not have the observable for a run of any length; runs of the
+    engine do not determine it; or the file lacks its data.
     """
     walls = walls_of(requirement.observable, scene)
     try:
@@ -150,11 +150,12 @@ def require_measurable(requirement: Requirement, scene: Scene, engine: Engine, c
 def _require_end(requirement: Requirement, scene: Scene, at_most: float | None, from_state: bool) -> None:
     """Raise SceneError for a run that has no end.
 
-    Nothing may ever happen in the scene, or, without a maximum length, it may have no steady state.
+    Either nothing ever happens in the scene, or the scene has no steady state and the run has no maximum
+    length.
     """
     kinds = [kind for kind in scene.kinds if kind.count]
     if not kinds:
-        return  # which the recipe refuses
+        return  # the recipe rejects this
     moving = from_state or any(kind.initial_temperature(scene.dimension) > 0.0 for kind in kinds)
     driven = scene.gravity or scene.thermostat or any(face.moves for face in scene.faces.values())
     if not moving and not driven:
@@ -163,7 +164,7 @@ def _require_end(requirement: Requirement, scene: Scene, at_most: float | None, 
         raise SceneError("until", requirement.name, "never becomes known: a single particle meets no other")
     if at_most is None:
         try:
-            from gaspart.accuracy.conditions import require_steady  # xarray takes 0.4 s
+            from gaspart.accuracy.conditions import require_steady  # importing xarray takes 0.4 s
 
             require_steady(scene)
         except SceneError as error:
@@ -174,7 +175,7 @@ def _require_end(requirement: Requirement, scene: Scene, at_most: float | None, 
 def require_reachable(requirement: Requirement, scene: Scene, replicas: int) -> None:
     """Raise SceneError for an accuracy that the mean of replicas never reaches.
 
-    Each replica has its own seed, and so a different energy of its initial state.
+    Each replica has its own seed, and therefore a different initial energy.
 
     Parameters
     ----------
@@ -188,11 +189,11 @@ def require_reachable(requirement: Requirement, scene: Scene, replicas: int) -> 
     Raises
     ------
     SceneError
-        If the mean never becomes so accurate.
+        If the mean never reaches this accuracy.
     """
     if replicas == 1:
         return
-    from gaspart.accuracy.scatter import start_scatter  # loads the analysis, which few runs need
+    from gaspart.accuracy.scatter import start_scatter  # this loads the analysis, which few runs need
     from gaspart.accuracy.target import Target
 
     starts = start_scatter(Target(scene, requirement.observable, requirement.face))
@@ -231,7 +232,7 @@ def default_sample_interval(scene: Scene, engine: Engine, correlations: Correlat
     Raises
     ------
     SceneError
-        If nothing moves.
+        If no particle moves.
     """
     from gaspart.accuracy.scales import scales, two_digits
 

@@ -83,8 +83,9 @@ def run(
         collisions of a particle.
     path : str or Path
         The trajectory file (AMBER netCDF).
-    until : Accuracy or sequence of Accuracy, optional Requested relative standard errors, standard error /
-        |value|. The accuracies are tested at 64, 96, 128 ... frames (see `reached_accuracy`).
+    until : Accuracy or sequence of Accuracy, optional
+        Requested relative standard errors, standard error / |value|. The accuracies are tested at 64, 96,
+        128 ... frames (see `reached_accuracy`).
     at_most : float, [time], optional
         Maximum length of a run with `until`. By default such a run ends if its first 16384 frames have no
         contact.
@@ -102,26 +103,26 @@ def run(
     pairs : bool, default False
         Count the collisions of each pair of species in each frame.
     tallies : iterable of OptionalTally, optional
-        Sums to store that not every run has: ``ImpulseTally("z", 200)`` for densities and pressures,
-        ``PairImpulseTally(3.0, 300, 0.5)`` for g(r), more accurate than by counts.
+        Optional sums to store: ``ImpulseTally("z", 200)`` for densities and pressures,
+        ``PairImpulseTally(3.0, 300, 0.5)`` for g(r). They are more accurate than counts.
     initial : State, str or Path, optional
         Initial state: a state, the last state of a trajectory (`last_state`), or a GSD or XYZ file
         (`read_state`). The particles and the size of the container must be the same as in `scene`. Defaults
-        of engines still follow from the scene's speeds or temperatures.
+        of engines are still computed from the scene's speeds or temperatures.
     checkpoint_seconds : float, default 30.0
         Wall-clock time between checkpoints, in seconds.
     progress : callable, optional
-        Called as ``progress(time, duration, collisions)`` about twice per second.
+        Function that is called as ``progress(time, duration, collisions)`` about twice per second.
     examined : callable, optional
-        Called with the list of `AccuracyStatus` after each test of `until`.
+        Function that is called with the list of `AccuracyStatus` after each test of `until`.
     overwrite : bool, default False
         Replace another trajectory at `path`. Files of other kinds are never replaced.
     keep_checkpoint : bool, default False
         Store the final state in ``<path>.checkpoint.npz``.
     replicas : int, default 1
-        Number of independent runs at the same time, one process each. Run k has the seed ``(seed, k)`` and,
-        of ``run.nc``, the file ``run-k.nc`` (`replica_paths`). With `until` they end when their mean is
-        accurate.
+        Number of independent simultaneous runs, one process each. Run k has the seed ``(seed, k)``. For the
+        path ``run.nc``, its file is ``run-k.nc`` (`replica_paths`). With `until` the runs end when their mean
+        is accurate.
 
     Returns
     -------
@@ -186,7 +187,7 @@ def _engine_of(scene: object, engine: Engine | str | None) -> Engine:
 def _in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
     """Return the recipes of the replicas of a run.
 
-    Raises SceneError as `in_replicas`, and for an accuracy that their mean never reaches.
+    Raises SceneError like `in_replicas`, and for an accuracy that their mean never reaches.
     """
     recipes, until = in_replicas(recipe, replicas), recipe.until
     if until is not None and until.at_most is None and recipe.initial is None:
@@ -208,8 +209,8 @@ def _record(
 
 
 def _with_useful_tally(contents: Contents, request: Until, scene: Scene, engine: Engine) -> Contents:
-    """Add a tally, if there is one, that makes requested accuracies cheaper."""
-    from gaspart.accuracy.target import Target  # loads the analysis, which few runs need
+    """Add a tally, if there is one, that makes the requested accuracies cheaper."""
+    from gaspart.accuracy.target import Target  # this loads the analysis, which few runs need
 
     useful = (
         tally
@@ -224,14 +225,15 @@ def _with_useful_tally(contents: Contents, request: Until, scene: Scene, engine:
 def _start(
     initial: State | str | Path | None, scene: Scene, path: str | Path | None, replicas: int
 ) -> State | None:
-    """Return the initial state of a run. For a file, this is its last state.
+    """Return the initial state of a run; for a file, its last state.
 
-    Raises SceneError if that file is one of the files at `path`, by any name: it would be lost.
+    Raises SceneError if that file is one of the files at `path`, also under another name, because it would be
+    overwritten.
     """
     paths = replica_paths(_require_path(path), count_of("replicas", replicas, least=1, most=MOST_REPLICAS))
     if not isinstance(initial, str | Path):
         return initial
-    from gaspart.inspection.readers import STARTS, read_state  # which few runs need
+    from gaspart.inspection.readers import STARTS, read_state  # few runs need this
 
     for output in map(output_path, paths):
         for target in (output, partial_path(output), checkpoint_path(output)):
@@ -293,9 +295,9 @@ def resume(
     checkpoint_seconds : float, default 30.0
         Wall-clock time between checkpoints, in seconds.
     progress : callable, optional
-        Called as ``progress(time, duration, collisions)`` about twice per second.
+        Function that is called as ``progress(time, duration, collisions)`` about twice per second.
     examined : callable, optional
-        Called with the list of `AccuracyStatus` after each test of `until`.
+        Function that is called with the list of `AccuracyStatus` after each test of `until`.
     duration : float, [time], optional
         New length of a complete run.
     keep_checkpoint : bool, default False
@@ -311,7 +313,8 @@ def resume(
     SceneError
         If there is nothing to resume or to extend, if another version of the program began the run, if the
         duration is not longer, or if the file at `path` is not a complete trajectory of gaspart.
-        SimulationError If an invariant is violated during the run.
+    SimulationError
+        If an invariant is violated during the run.
 
     See Also
     --------
@@ -320,9 +323,9 @@ def resume(
     Notes
     -----
     The file of an extended run has the same bytes as the file of a single run of this duration. If the run
-    was made with `keep_checkpoint`, the extension starts from the state at its end, and the extended run has
-    a checkpoint, too. Otherwise the whole run is repeated from its start. The file is replaced when the
-    longer run is complete. An extension that was interrupted is finished with or without `duration`.
+    was made with `keep_checkpoint`, the extension starts from its final state, and the extended run has a
+    checkpoint, too. Otherwise the whole run is repeated from its start. The file is replaced when the longer
+    run is complete. To finish an interrupted extension, call `resume` with or without `duration`.
 
     Examples
     --------
@@ -344,7 +347,7 @@ def resume(
 
 
 def _replica(path: str | Path) -> tuple[Path, Recipe] | None:
-    """Return a file of the replicas at a path and its recipe; None without replicas."""
+    """Return a file of the replicas at a path, and its recipe; None without replicas."""
     with suppress(SceneError):
         file, recipe = find_run(path)
         return (file, recipe) if recipe.replica else None

@@ -1,4 +1,4 @@
-"""Replicas of a run, each in its own process.
+"""Replicas of a run, each in a separate process.
 
 The processes of the replicas exchange all information through their files (`gaspart.trajectory.replicas`).
 This module starts the processes and collects their progress.
@@ -41,7 +41,7 @@ def record_together(
     options : WriteOptions
         Options of writing.
     examined : callable, optional
-        Called with the list of `AccuracyStatus` after each test.
+        Function that is called with the list of `AccuracyStatus` after each test.
 
     Returns
     -------
@@ -51,8 +51,7 @@ def record_together(
     Raises
     ------
     SceneError, SimulationError
-        As for one run (`gaspart.trajectory.run.record`), and SimulationError for a process that was ended
-        from outside.
+        Like `gaspart.trajectory.run.record`. SimulationError is raised also if a process was killed.
     """
     path = output_path(path)
     files = replica_paths(path, len(recipes))
@@ -74,7 +73,7 @@ def resume_together(
     options : WriteOptions
         Options of writing.
     examined : callable, optional
-        Called with the list of `AccuracyStatus` after each test.
+        Function that is called with the list of `AccuracyStatus` after each test.
     duration : float, [time], optional
         New length of the run.
 
@@ -86,7 +85,7 @@ def resume_together(
     Raises
     ------
     SceneError, SimulationError
-        As `gaspart.trajectory.run.resume` and `extend`.
+        Like `gaspart.trajectory.run.resume` and `extend`.
     """
     path, replicas = path_of_all(file, recipe), beside(file, recipe)
     if duration is not None:
@@ -109,12 +108,15 @@ def _carry_out(
     options: WriteOptions,
     examined: Examined,
 ) -> None:
-    """Call a function for all replicas, with `send`, its arguments, options and a flag for progress."""
+    """Call a function for all replicas.
+
+    Its arguments are `send`, those in `calls`, the options, and True if it must report progress.
+    """
     reached: dict[int, tuple[float, float, int]] = {}
 
     def receive(number: int, message: Any) -> None:
         if isinstance(message, list):
-            if examined and number == 0:  # the others say the same
+            if examined and number == 0:  # the other replicas report the same result
                 examined(message)
             return
         reached[number] = message
@@ -147,6 +149,6 @@ def _extend(send: Send, duration: float, path: Path, options: WriteOptions, with
 
 
 def _sending(options: WriteOptions, send: Send, with_progress: bool) -> WriteOptions:
-    """Return the options of a process that sends its progress and the results of its tests."""
+    """Return options with which a process sends its progress and the results of its tests."""
     progress = (lambda *reached: send(reached)) if with_progress else None
     return replace(options, progress=progress, examiner=Examiner(send))

@@ -1,1 +1,4 @@
-"""Simulated system: container, species, walls, faces and collision law; validated on creation."""
+"""Simulated system: container, species, walls, faces and collision law.
+
+A scene is validated when it is created.
+"""

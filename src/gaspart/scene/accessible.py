@@ -1,12 +1,15 @@
-"""Accessible volume and areas: the points that centres of particles of a radius can reach.
+"""Accessible volume and areas: the positions that particle centres can reach.
 
-A point is accessible to a centre if a particle there overlaps no wall of the container, no interior wall and
-no fixed particle. Other moving particles are ignored, and the point need not be connected to the other
-accessible points. A body is a ball, a segment or a rectangle, grown by the radius of the particle: it is
-convex, and covers one interval of a line. On a face of a container of two dimensions the accessible length is
-the length of the line without these intervals, exactly. Otherwise the volume is exact in regions without
-bodies, and where bodies overlap neither each other nor the border. Elsewhere it is the mean over `SETS` sets
-of `LINES` parallel lines, which are shifted at random. The error is computed from the scatter of the sets.
+A point is accessible to the centre of a particle if the particle would overlap no wall of the container, no
+interior wall and no fixed particle there. Other moving particles are ignored. The point need not be connected
+to other accessible points.
+
+Obstacles are represented by bodies. A body is a ball, a segment or a rectangle, grown by the radius of the
+particle. It is convex, and covers one interval of a line. On a face of a two-dimensional container, the
+accessible length is the length of the line without these intervals; this is exact. In other cases the volume
+is exact in regions without bodies, and in regions where bodies overlap neither each other nor the border.
+Elsewhere it is the mean over `SETS` sets of `LINES` parallel lines, which are shifted at random. The error is
+computed from the scatter of the sets.
 """
 
 from __future__ import annotations
@@ -24,13 +27,13 @@ if TYPE_CHECKING:
     from gaspart.scene.walls import Plate, Wall
 
 LINES, SETS = 8192, 8
-"""Lines of a set, and number of sets."""
+"""Number of lines in a set, and number of sets."""
 SPREADING = {1: 1.61803398874989484820, 2: 1.32471795724474602596}
 """Numbers whose powers spread points evenly along one or two axes: x^(d + 1) = x + 1 (Roberts 2018)."""
 
 
 class Measure(NamedTuple):
-    """Volume or area, and the estimated error of its quadrature, 0 if exact."""
+    """Volume or area, and the estimated error of its numerical integration; 0 if exact."""
 
     value: float
     error: float
@@ -54,7 +57,7 @@ class Ball(NamedTuple):
     def interval(self, points: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
         """Return the ends of the covered interval on each line through points (M, d).
 
-        The lines are along an axis. Without an interval the ends are inf and -inf.
+        The lines are along an axis. If a line has no covered interval, the ends are inf and -inf.
         """
         away = np.delete(points - self.centre, axis, axis=1)
         square = self.radius**2 - (away**2).sum(axis=1)
@@ -69,7 +72,8 @@ class Ball(NamedTuple):
 class Slab(NamedTuple):
     """Points within a distance of the inside of a segment or a rectangle.
 
-    It is given by `start` (d,) and its orthogonal `edges` (K, d). Points on its rim are outside.
+    The segment or rectangle is given by `start` (d,) and its orthogonal `edges` (K, d). Points on its rim are
+    outside.
     """
 
     start: np.ndarray
@@ -78,7 +82,7 @@ class Slab(NamedTuple):
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Lowest and highest coordinates, (d,) each, or a little beyond."""
+        """Lowest and highest coordinates, (d,) each, or slightly beyond."""
         sums = np.array(
             [np.sum(part, axis=0) for part in product(*((0.0 * edge, edge) for edge in self.edges))]
         )
@@ -120,7 +124,7 @@ class Slab(NamedTuple):
 
 
 def _interval(part: np.ndarray, slope: float, low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the t for which low <= part + slope t <= high."""
+    """Return the interval of t in which low <= part + slope t <= high."""
     if slope == 0.0:
         inside = (part >= low) & (part <= high)
         return np.where(inside, -np.inf, np.inf), np.where(inside, np.inf, -np.inf)
@@ -129,7 +133,7 @@ def _interval(part: np.ndarray, slope: float, low: float, high: float) -> tuple[
 
 
 class Body(NamedTuple):
-    """Fixed particle or interior wall, grown: its parts, whose union it is, and its volume."""
+    """Fixed particle or interior wall, grown: parts that form the body, and volume."""
 
     parts: list[Ball | Slab]
     volume: float
@@ -141,7 +145,7 @@ class Body(NamedTuple):
         return np.min(lower, axis=0), np.max(upper, axis=0)
 
     def is_apart(self, other: Body) -> bool:
-        """Return True if it is known to have no point in common with another body."""
+        """Return True if it certainly has no point in common with another body."""
         first, second = self.parts[0], other.parts[0]
         if isinstance(first, Ball) and isinstance(second, Ball):
             return bool(((first.centre - second.centre) ** 2).sum() >= (first.radius + second.radius) ** 2)
@@ -150,7 +154,7 @@ class Body(NamedTuple):
 
 
 def grown_wall(wall: Wall | Plate, radius: float) -> Body:
-    """Return an interior wall grown by a radius (Steiner's formula)."""
+    """Return an interior wall grown by a radius, with its volume by Steiner's formula."""
     corners = [np.array(corner, float) for corner in wall.corners.values()]
     edges = np.array([corner - corners[0] for corner in corners[1:3]])
     sides, d = np.sqrt((edges**2).sum(axis=1)), len(corners[0])
@@ -167,10 +171,10 @@ def grown_wall(wall: Wall | Plate, radius: float) -> Body:
 class Accessible:
     """Accessible volume and areas of a scene, computed once for each radius.
 
-    Making it raises SceneError for fixed species without `fixed`: their positions are known in a run, not in
-    a scene.
+    If the scene has fixed species, `fixed` is required; otherwise SceneError is raised. Positions of a
+    species are known only in a run.
 
-    fixed : positions (F, d) and radii (F,) of the fixed particles, by default of the single particles
+    fixed : positions (F, d) and radii (F,) of the fixed particles. Default: the fixed single particles.
     """
 
     def __init__(self, scene: Scene, fixed: tuple[np.ndarray, np.ndarray] | None = None) -> None:
@@ -188,13 +192,13 @@ class Accessible:
         self._found: dict[tuple[float, int | None], Measure] = {}
 
     def volume(self, radius: float) -> Measure:
-        """Return the volume (2D: area) that centres of particles of a radius can reach."""
+        """Return the volume (2D: area) that is accessible to particles of a radius."""
         return self._measure(radius, None)
 
     def areas(self, radii: np.ndarray) -> np.ndarray:
-        """Return the areas (2D: lengths) of faces that centres of particles can reach.
+        """Return the accessible areas (2D: lengths) of faces, for particle centres.
 
-        radii : Array of shape (K,); the result has the shape (K, 2d)
+        radii : radii of particles, shape (K,). The result has the shape (K, 2d).
         """
         scene, faces = self._scene, range(2 * self._scene.dimension)
         if self._fixed or scene.walls:
@@ -228,10 +232,10 @@ class Accessible:
         return self._found[radius, face]
 
     def _compute(self, radius: float, face: int | None) -> Measure:
-        """Compute the volume, or the area of a face."""
+        """Compute the accessible volume, or the accessible area of a face."""
         lower, upper = (np.array(ends) for ends in self._scene.reach(radius))
         axes = [axis for axis in range(len(lower)) if face is None or axis != face // 2]
-        if face is not None:  # the plane in which centres touch it
+        if face is not None:  # the plane in which centres lie when particles touch the face
             lower[face // 2] = upper[face // 2] = (lower, upper)[face % 2][face // 2]
         full = float((upper - lower)[axes].prod())
         near = [body for body in self._bodies(radius) if _meets(body, lower, upper)]
@@ -253,9 +257,9 @@ def _meets(body: Body, lower: np.ndarray, upper: np.ndarray) -> bool:
 
 
 def _apart(bodies: list[Body], lower: np.ndarray, upper: np.ndarray, scene: Scene) -> float | None:
-    """Return the total volume of bodies that are inside a box and apart from each other.
+    """Return the total volume of bodies inside a box that do not overlap; else None.
 
-    Images beyond periodic faces may be outside. Returns None for other bodies.
+    Images beyond periodic faces may be outside the box.
     """
     periodic, lengths = np.array(scene.container.periodic), np.array(scene.container.lengths)
     total = 0.0
@@ -277,7 +281,7 @@ def free_fraction(
 
     The lines are evenly spread over the other axes and shifted at random.
 
-    shift : number of the random shift
+    shift : index of the random shift.
     """
     (lower, upper), across = ends, axes[1:]
     steps = SPREADING[len(across)] ** -np.arange(1.0, len(across) + 1)
@@ -293,7 +297,8 @@ def free_lengths(
 ) -> np.ndarray:
     """Return the free length of each line along an axis through points (M, d).
 
-    The lines connect the points ends (d,). The free length excludes the parts of lines inside bodies.
+    The lines extend between the coordinates `ends`, (d,) each. The free length excludes the parts of lines
+    inside bodies.
     """
     low, high = (float(end[axis]) for end in ends)
     lines, starts, stops = [], [], []
@@ -307,7 +312,8 @@ def free_lengths(
         starts.append(start[hit])
         stops.append(stop[hit])
     line, start, stop = (np.concatenate(each) for each in (lines, starts, stops))
-    # One coordinate for all lines, in which each is a stretch of its own beyond those before it.
+    # A single coordinate for all lines: each line is a separate interval, after the intervals of the lines
+    # before.
     stretch = 2.0 * (high - low)
     order = np.lexsort((start, line))
     line, start, stop = line[order], (start + line * stretch)[order], (stop + line * stretch)[order]

@@ -23,7 +23,7 @@ _ENERGY = "inelastic contacts, or faces or walls at a temperature"
 def check_driven(scene: Scene) -> None:
     """Raise SceneError for a force along a periodic axis without a sink.
 
-    The scene must contain a sink for the momentum and a sink for the energy of the force.
+    The scene must have a sink for the momentum of the force, and a sink for its energy.
     """
     for axis in scene.driven_axes:
         for has_sink, quantity, by in (
@@ -58,9 +58,9 @@ def _takes_energy(scene: Scene) -> bool:
 
 
 def _spans(wall: Wall | Plate, axis: int, length: float) -> bool:
-    """Return True if a wall spans an axis from end to end.
+    """Return True if a wall spans the container along an axis.
 
-    No particle then hits it along the axis.
+    No particle then hits the ends of the wall along this axis.
     """
     first, *others = wall.corners.values()
     edges = ([b - a for a, b in zip(first, corner, strict=True)] for corner in others)
@@ -92,7 +92,7 @@ class Thermostat:
     Notes
     -----
     At each multiple of `interval`, a normal random number is added to every velocity component of a particle
-    of mass m; its variance is 2 power interval/(d m). Then the same velocity is subtracted from all
+    of mass m. Its variance is 2 power interval/(d m). Then the same velocity is subtracted from all
     particles, so that the total momentum is conserved. For short intervals this is white noise of strength
     xi_0^2 = 2 power/(d m).
 

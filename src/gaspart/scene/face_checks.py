@@ -1,4 +1,4 @@
-"""Checks of faces that concern more than the face itself, and numbers of open faces."""
+"""Checks of faces that involve the rest of the scene, and particle numbers for open faces."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def check_faces(scene: Scene) -> None:
 
 
 def _check_sheared(scene: Scene, name: str, surface: LeesEdwards) -> None:
-    """Raise SceneError for a sheared face that is not y_high, and a container with walls."""
+    """Raise SceneError for a sheared face other than y_high, or a container with walls."""
     if name != FACES[2 * GRADIENT + 1]:
         rule = (
             "must be stated for y_high, which includes y_low; the flow is along x, with its gradient along y"
@@ -93,9 +93,9 @@ def _check_ramp(scene: Scene, name: str, surface: Thermal, axis: int) -> None:
 
 
 def _check_piston(scene: Scene, name: str, surface: Piston) -> None:
-    """Raise SceneError for a second piston, and for a piston that its load moves too fast.
+    """Raise SceneError for a second piston, or a piston that moves too fast.
 
-    Raise it also if the prescribed speed is too high.
+    The speed may be due to its load, or prescribed.
     """
     if len(scene.pistons) > 1:
         raise SceneError("faces", [FACES[n] for n, _ in scene.pistons], "must include at most one piston")
@@ -104,11 +104,11 @@ def _check_piston(scene: Scene, name: str, surface: Piston) -> None:
 
 
 def piston_end(scene: Scene, position: float | None = None) -> float:
-    """Return the time at which a piston of prescribed speed compresses the particles to closest packing.
+    """Return the time at which a piston of prescribed speed reaches closest packing.
 
-    Without such a piston the time is infinite.
+    The time is infinite without such a piston.
 
-    position : position along its axis at time 0, by default at its side
+    position : position along the axis of the piston at time 0. Default: the side of the container.
     """
     for number, face in scene.pistons:
         if face.speed is not None:
@@ -122,7 +122,10 @@ def piston_end(scene: Scene, position: float | None = None) -> float:
 
 
 def check_piston_end(scene: Scene, key: str, until: float, position: float | None = None) -> None:
-    """Raise SceneError, with the key of an end of a run, if it is after `piston_end`."""
+    """Raise SceneError if the end `until` of a run is after `piston_end`.
+
+    `key` is the key of this end.
+    """
     end = piston_end(scene, position)
     if end < until:
         rule = f"must be before {end:.6g}, when the piston leaves no room for the particles"
@@ -130,7 +133,7 @@ def check_piston_end(scene: Scene, key: str, until: float, position: float | Non
 
 
 def _check_vibrating(scene: Scene, name: str, surface: Vibrating) -> None:
-    """Raise SceneError for obstacles against which a vibrating face would press a particle."""
+    """Raise SceneError for obstacles that a vibrating face would press against a particle."""
     axis, upper = FACES.index(name) // 2, FACES.index(name) % 2 == 1
     length = scene.container.lengths[axis]
     clear = 2.0 * (surface.amplitude + scene.largest_radius)
@@ -178,16 +181,17 @@ def _check_room(scene: Scene) -> None:
         raise SceneError("packing_fraction", scene.packing_fraction, rule)
 
 
-# Open faces, through which particles leave and enter: requirements and maximum number of particles.
+# Open faces, through which particles leave and enter: requirements, and maximum number of particles.
 
 
 MOST_ATTEMPTS = 1e12
-"""Maximum number of attempts to enter while a particle of the reservoir crosses the container."""
-_SIGMAS = 10.0  # standard deviations of the number of an ideal gas for which there is room
+"""Maximum number of attempts to enter in the time in which a particle of the reservoir crosses the container.
+"""
+_SIGMAS = 10.0  # allowance for the number of an ideal gas, in standard deviations
 
 
 def check_open_faces(scene: Scene) -> None:
-    """Raise SceneError for a scene in which entering or leaving particles are not defined.
+    """Raise SceneError if entry or exit of particles is not defined in a scene.
 
     Only scenes with open faces are checked.
     """
@@ -201,7 +205,10 @@ def check_open_faces(scene: Scene) -> None:
 
 
 def _check_attempts(scene: Scene, number: int, face: Open) -> None:
-    """Raise SceneError for a reservoir whose attempts to enter would stop the time."""
+    """Raise SceneError for a reservoir with too many attempts to enter.
+
+    Simulated time would not advance.
+    """
     speed = math.sqrt((face.temperature or 0.0) / scene.species[0].mass)
     if speed:
         attempts = attempt_rate(scene, number, face) * scene.container.lengths[number // 2] / speed
@@ -230,28 +237,38 @@ def number_density(scene: Scene, face: Open) -> float:
 def attempt_rate(scene: Scene, number: int, face: Open) -> float:
     """Return the number of particles per time that try to enter through a face.
 
-    The rate through an open face of area A is z A (k_B T / 2 pi m)^(1/2).
+    The rate through an open face of area A is z A (k_B T / 2 pi m)^(1/2), where z is the `number` density.
     """
     area = scene.container.volume / scene.container.lengths[number // 2]
     width = math.sqrt((face.temperature or 0.0) / scene.species[0].mass)
     return number_density(scene, face) * area * width / math.sqrt(2.0 * math.pi)
 
 
-def capacity(scene: Scene) -> int:
-    """Return the maximum number of particles.
+def mean_count(scene: Scene) -> float:
+    """Return the greatest mean number of particles that reservoirs let into a container; 0 for a vacuum.
 
-    Without open faces this is the number at the start. With open faces it is the mean number in equilibrium
-    plus 10 standard deviations. Particles that repel one another are fewer than the particles of an ideal gas
-    at the same activity, whose number has the distribution of Poisson. The pressure inside is at most the
-    pressure of the strongest reservoir, and the gas is at least as hot as the coldest face or wall. The
-    number is never higher than the number that fits.
+    This is an upper bound. Particles that repel each other are fewer than those of an ideal gas at the same
+    activity. The pressure in the container is at most the pressure of the strongest reservoir. The gas is at
+    least as hot as the coldest face or wall.
     """
     reservoirs = [face for _, face in scene.faces_of(Open) if face.temperature is not None]
     if not reservoirs:
+        return 0.0
+    pressure = max(number_density(scene, face) * (face.temperature or 0.0) for face in reservoirs)
+    return pressure / min(scene.face_temperatures) * scene.container.volume
+
+
+def capacity(scene: Scene) -> int:
+    """Return the maximum number of particles.
+
+    Without open faces this is the number at the start. With reservoirs it is the mean number in equilibrium
+    plus 10 standard deviations: the number of an ideal gas has the distribution of Poisson. The number is
+    never higher than the number that fits.
+    """
+    mean = mean_count(scene)
+    if mean == 0.0:
         return scene.count
     species, d = scene.species[0], scene.dimension
-    pressure = max(number_density(scene, face) * (face.temperature or 0.0) for face in reservoirs)
-    mean = pressure / min(scene.face_temperatures) * scene.container.volume
     most = scene.count + mean + _SIGMAS * math.sqrt(mean) + _SIGMAS
     around = math.prod(length + 2.0 * species.radius for length in scene.container.lengths)
     packed = CLOSE_PACKING[d] * around / ball_volume(d, species.radius)

@@ -35,15 +35,15 @@ if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
 
 FACES = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
-"""Keys of faces. In results they are named as walls, `x low`; users may write either."""
+"""Keys of faces. In results, faces are named as walls, such as `x low`. Users may write either form."""
 COMPONENTS = ("all", "normal")
 WAVEFORMS = ("sine", "sawtooth")
 FLOW, GRADIENT = 0, 1
-"""Axes of the flow of a sheared gas and of its gradient."""
+"""Axis of the flow of a sheared gas, and axis of its gradient."""
 
 
 FACE_KINDS: dict[str, type[Surface]] = {}
-"""All kinds of faces, by name; `Surface` adds each."""
+"""All kinds of faces, by name; the class `Surface` registers each kind."""
 
 
 @dataclass(frozen=True)
@@ -64,9 +64,9 @@ class Surface:
 
     @property
     def rule(self) -> tuple[str, float]:
-        """Name and parameter of the wall's effect on particles, as the kernels know it (`kernels.obstacles`).
+        """Name and parameter of the wall's effect on particles, for the kernels (`kernels.obstacles`).
 
-        The parameter is the only number on which the effect may depend: an energy or a momentum.
+        The parameter is the only number on which the effect may depend. It is an energy or a momentum.
         """
         return self.kind, 0.0
 
@@ -77,7 +77,7 @@ class Surface:
 
     @property
     def temperatures(self) -> tuple[float, ...]:
-        """Temperature of the face, or the temperatures of both its ends; () without a temperature."""
+        """Temperature of the face, or temperatures of its two ends; () without a temperature."""
         return ()
 
 
@@ -112,8 +112,8 @@ class Thermal(Surface):
     Parameters
     ----------
     temperature : float or dict of str to float, [energy]
-        Temperature k_B T of the wall. If it is given at two opposite faces, as {"y_low": 1.0, "y_high": 2.0},
-        the temperature is linear between them.
+        Temperature k_B T of the wall. If values at two opposite faces are given, as in {"y_low": 1.0,
+        "y_high": 2.0}, the temperature is linear between them.
     components : {"all", "normal"}, default "all"
         Velocity components that are drawn at random. "all": the tangential components and, with rough
         particles, the spins are Maxwellian, too (a diffuse wall with full accommodation). "normal": the
@@ -175,7 +175,7 @@ class Thermal(Surface):
         super().__post_init__()
         if self.components == "normal" and self.slides:
             raise SceneError("velocity", self.velocity, 'requires components "all"')
-        if self.accommodation == 1.0:  # absent everywhere, so that no other place has to ask
+        if self.accommodation == 1.0:  # absent everywhere, so that no other code has to test for this value
             set_fields(self, accommodation=None)
 
     @property
@@ -285,7 +285,7 @@ class Well(Surface):
 
     @property
     def rule(self) -> tuple[str, float]:
-        """Name of the effect of the wall behind the well in the kernels, and its temperature.
+        """Kernel name of the wall's effect behind the well, and temperature of the wall.
 
         Examples
         --------
@@ -388,9 +388,9 @@ class Vibrating(Surface):
     Notes
     -----
     The wall is at the side of the container at time 0, and moves inwards from this side by at most 2 A. The
-    sine is at A (1 - cos(2 pi t / period)). The sawtooth moves inwards at the speed 2 A / period and is back
-    at once at the end of each period. Contacts follow the collision law of the scene in the frame of the
-    wall.
+    sine is at A (1 - cos(2 pi t / period)). The sawtooth moves inwards at the speed 2 A / period. At the end
+    of each period it returns instantaneously. Contacts follow the collision law of the scene in the frame of
+    the wall.
 
     Examples
     --------
@@ -414,7 +414,7 @@ class Vibrating(Surface):
 
     @property
     def greatest_speed(self) -> float:
-        """Maximum speed of the wall, apart from the return of the sawtooth.
+        """Maximum speed of the wall, except during the return of the sawtooth.
 
         Examples
         --------
@@ -426,7 +426,7 @@ class Vibrating(Surface):
 
     @property
     def greatest_acceleration(self) -> float:
-        """Maximum acceleration of the wall, apart from the return of the sawtooth.
+        """Maximum acceleration of the wall, except during the return of the sawtooth.
 
         Examples
         --------
@@ -486,12 +486,12 @@ class Piston(Surface):
 
     Notes
     -----
-    The piston starts at the side of the container. With a mass and a pressure the piston starts at rest at
-    the side of the container. The side is its outermost position, where it bounces off without loss. The sum
-    of three energies is conserved: the kinetic energy of the piston, `pressure` times the volume, and the
-    energy of the particles. A light piston samples the ensemble of constant pressure and enthalpy [1]_, and a
-    heavy one compresses a gas adiabatically. A piston with a prescribed speed compresses a gas if it is slow
-    and drives a shock if it is fast. The particles gain its work.
+    The piston starts at the side of the container. With a mass and a pressure it starts at rest. The side is
+    its outermost position, where it bounces back without loss. The sum of three energies is conserved: the
+    kinetic energy of the piston, `pressure` times the volume, and the energy of the particles. A light piston
+    samples the ensemble of constant pressure and enthalpy [1]_, and a heavy one compresses a gas
+    adiabatically. A piston with a prescribed speed compresses a gas if it is slow and drives a shock if it is
+    fast. The particles gain its work.
 
     References
     ----------
@@ -589,7 +589,7 @@ class Open(Surface):
     Parameters
     ----------
     activity : float, [1], optional
-        Activity eta exp(mu_excess / k_B T) of the reservoir outside, with its packing fraction eta. Requires
+        Activity eta exp(mu_excess / k_B T) of the reservoir outside; eta is its packing fraction. Requires
         `temperature`. Default: a vacuum.
     temperature : float, [energy], optional
         Temperature k_B T of the reservoir. Requires `activity`.
@@ -612,6 +612,9 @@ class Open(Surface):
     then exactly a grand-canonical ensemble of centres between its faces. The reason is detailed balance: an
     entry is the reversal of an exit, and the weight is z^N exp(-E / k_B T). The density equals the density of
     the reservoir only at some diameters from a face.
+
+    The Boltzmann model of the DSMC engine has no excluded volume, so that no particle is rejected: its
+    reservoir is an ideal gas with the packing fraction `activity`.
 
     Examples
     --------
@@ -686,9 +689,10 @@ class LeesEdwards(Surface):
     Notes
     -----
     The boundary condition is by Lees and Edwards [1]_. The face must be y_high of a container that is
-    periodic along all axes; the flow also applies at y_low. A particle that leaves at y_high enters at y_low,
-    displaced by -shear_rate L_y t along x, with v_x less by shear_rate L_y, and back. The initial velocities
-    are drawn about this flow, with mean 0. The faces do work, which heats an elastic gas.
+    periodic along all axes; the flow also applies at y_low. A particle that leaves at y_high enters at y_low.
+    Its x is then displaced by -shear_rate L_y t, and its v_x is reduced by shear_rate L_y. In the other
+    direction the signs are reversed. The initial velocities are drawn about this flow, with mean 0. The faces
+    do work, which heats an elastic gas.
 
     References
     ----------
@@ -722,7 +726,7 @@ SCHEMA = {
 
 
 def surface_from_dict(mapping: object, where: str) -> Surface:
-    """Return the face that {"kind": one of `FACE_KINDS`, setting: value, ...} describes.
+    """Return the face from a mapping {"kind": one of `FACE_KINDS`, setting: value, ...}.
 
     Parameters
     ----------
@@ -765,14 +769,14 @@ def surface_to_dict(surface: Surface) -> dict:
 
 
 def key_of(face: Any) -> Any:
-    """Return the key of a face from either of its names.
+    """Return the key of a face, which may be given by its wall name.
 
     Other values are unchanged.
 
     Parameters
     ----------
     face : object
-        Name of a face, `x low` or `x_low`.
+        Name or key of a face, `x low` or `x_low`.
 
     Returns
     -------
@@ -801,7 +805,7 @@ def wall_of(face: Any) -> Any:
 
 
 def thermal_face(scene: Scene, name: str) -> Thermal:
-    """Return the face of a name, which must be at one temperature.
+    """Return the face of a name, which must be thermal with a uniform temperature.
 
     Parameters
     ----------

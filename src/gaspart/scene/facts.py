@@ -1,7 +1,7 @@
 """Facts of a scene: properties that follow from the keys of a `Scene`.
 
-Each has one definition and is computed once. Observables, theory, tallies, rejections and advice read these
-properties by name and do not compute them. A `Scene` has them as its own attributes:
+Each fact has one definition, and is computed once. Observables, theory, tallies, rejections and advice read
+these properties by name, and do not compute them. They are attributes of a `Scene`:
 
 - faces: `numbered_faces`, `faces_of(kind)`, `pistons`, `sliding_faces`, `partial_faces`, `ramps`,
   `thermal_numbers`, `drawing_numbers`, `face_temperatures`;
@@ -14,7 +14,7 @@ properties by name and do not compute them. A `Scene` has them as its own attrib
   `vibrates`, `rough`;
 - `features`, the names of its features.
 
-The volume and the areas that centres of particles can reach are in `accessible`.
+The accessible volume and areas for particle centres are in `accessible`.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ _CONTACT = 0.01
 
 
 class Facts:
-    """Facts of a scene, in the dimension d, as attributes of a `Scene`."""
+    """Facts of a scene as attributes of a `Scene`; d is the dimension."""
 
     container: Container
     species: Sequence[Species]
@@ -73,7 +73,7 @@ class Facts:
 
     @cached_property
     def dimension(self) -> int:
-        """2 or 3."""
+        """Number of dimensions, 2 or 3."""
         return self.container.dimension
 
     @cached_property
@@ -83,15 +83,15 @@ class Facts:
 
     @cached_property
     def walled_axes(self) -> tuple[int, ...]:
-        """Axes that are not periodic: each has a face at both ends."""
+        """Axes that are not periodic: these have a face at both ends."""
         return tuple(axis for axis, around in enumerate(self.container.periodic) if not around)
 
     @cached_property
     def image_axes(self) -> tuple[bool, ...]:
         """True for axes with fixed periodic images, shape (d,).
 
-        Such images are displaced by exactly the length of the container. These are the periodic axes. In a
-        sheared gas, the axis of the gradient is excluded, because its images move.
+        Fixed images are displaced by exactly the length of the container. All periodic axes have fixed
+        images, with one exception: in a sheared gas, the images along the gradient move.
         """
         sheared = self.shear_rate is not None
         return tuple(
@@ -101,50 +101,50 @@ class Facts:
 
     @cached_property
     def numbered_faces(self) -> tuple[tuple[int, Surface], ...]:
-        """Faces with a kind, with their numbers, in the order of the numbers."""
+        """Faces that have a kind, with their indices, in ascending order."""
         names = enumerate(FACES[: 2 * self.dimension])
         return tuple((n, self.faces[name]) for n, name in names if name in self.faces)
 
     @cached_property
     def _faces_by_kind(self) -> dict[type[Surface], list[tuple[int, Surface]]]:
-        """Faces of each kind, with their numbers."""
+        """Faces of each kind, with their indices."""
         faces: dict[type[Surface], list[tuple[int, Surface]]] = {}
         for number, face in self.numbered_faces:
             faces.setdefault(type(face), []).append((number, face))
         return faces
 
     def faces_of(self, kind: type[S]) -> list[tuple[int, S]]:
-        """Return the faces of a kind, with their numbers."""
+        """Return the faces of a kind, with their indices."""
         return self._faces_by_kind.get(kind, [])  # type: ignore[return-value]
 
     @cached_property
     def pistons(self) -> list[tuple[int, Piston]]:
-        """Faces that are pistons, at most one, with their numbers."""
+        """Faces that are pistons, with their indices; at most one face."""
         return self.faces_of(Piston)
 
     @cached_property
     def sliding_faces(self) -> list[tuple[int, Thermal]]:
-        """Faces that move along themselves, with their numbers."""
+        """Faces that slide parallel to themselves, with their indices."""
         return [(n, face) for n, face in self.faces_of(Thermal) if face.slides]
 
     @cached_property
     def partial_faces(self) -> list[tuple[int, Thermal]]:
-        """Faces that do not draw velocities after every hit, with their numbers."""
+        """Faces that do not draw velocities after every hit, with their indices."""
         return [(n, face) for n, face in self.faces_of(Thermal) if face.accommodation is not None]
 
     @cached_property
     def ramps(self) -> list[tuple[int, Thermal]]:
-        """Faces whose temperature varies along them, with their numbers."""
+        """Faces whose temperature varies along them, with their indices."""
         return [(n, face) for n, face in self.faces_of(Thermal) if face.varies_along is not None]
 
     @cached_property
     def thermal_numbers(self) -> list[int]:
-        """Numbers of the faces at a temperature, including wells whose wall has a temperature."""
+        """Indices of the faces at a temperature, including wells whose wall has a temperature."""
         return [n for n, face in self.numbered_faces if face.rule[0] in ("thermal", "thermal_normal")]
 
     @cached_property
     def drawing_numbers(self) -> list[int]:
-        """Numbers of the faces that draw all components of a velocity, and so act along themselves."""
+        """Indices of faces that draw all velocity components, and therefore exert tangential forces."""
         return [n for n, face in self.numbered_faces if face.rule[0] == "thermal"]
 
     @cached_property
@@ -158,7 +158,7 @@ class Facts:
 
     @cached_property
     def kinds(self) -> tuple[Species | Particle, ...]:
-        """Species followed by single particles: all that has a radius and a mass."""
+        """Species, then single particles: all objects with a radius and a mass."""
         return (*self.species, *self.particles)
 
     @cached_property
@@ -168,7 +168,7 @@ class Facts:
 
     @cached_property
     def count(self) -> int:
-        """Number of particles; with open faces, at the start."""
+        """Number of particles; with open faces, the initial number."""
         return sum(kind.count for kind in self.kinds)
 
     @cached_property
@@ -188,7 +188,7 @@ class Facts:
 
     @cached_property
     def capacity(self: Scene) -> int:  # type: ignore[misc]
-        """Greatest number of particles at any time: `count`, unless faces are open."""
+        """Maximum number of particles at any time: `count`, unless faces are open."""
         return capacity(self)
 
     @cached_property
@@ -205,22 +205,22 @@ class Facts:
 
     @cached_property
     def largest_radius(self) -> float:
-        """Largest radius of any particle (0 in an empty scene)."""
+        """Largest radius of a particle; 0 in an empty scene."""
         return max((kind.largest_radius for kind in self.kinds if kind.count), default=0.0)
 
     @cached_property
     def smallest_radius(self) -> float:
-        """Smallest radius of any particle (0 in an empty scene)."""
+        """Smallest radius of a particle; 0 in an empty scene."""
         return min((kind.smallest_radius for kind in self.kinds if kind.count), default=0.0)
 
     @cached_property
     def largest_moving_radius(self) -> float:
-        """Largest radius of any particle that is not fixed, 0 without such particles."""
+        """Largest radius of a particle that is not fixed; 0 without such particles."""
         return max((kind.largest_radius for kind in self.moving_kinds), default=0.0)
 
     @cached_property
     def has_unequal_areas(self) -> bool:
-        """True if particles that move have several sizes, which may reach other areas of a face."""
+        """True if moving particles have several sizes, with different accessible areas of faces."""
         many = len({kind.radius for kind in self.moving_kinds}) > 1
         sizes = many or not all(kind.alike for kind in self.moving_kinds)
         beside = len(self.walled_axes) > 1 and not self.centres_to_walls
@@ -228,15 +228,15 @@ class Facts:
 
     @cached_property
     def alike(self) -> bool:
-        """True if all particles have one radius and one mass."""
+        """True if all particles have equal radii and equal masses."""
         kinds = [kind for kind in self.kinds if kind.count]
         return len({(kind.radius, kind.mass) for kind in kinds}) < 2 and all(kind.alike for kind in kinds)
 
     @cached_property
     def gas(self: Scene) -> Gas | None:  # type: ignore[misc]
-        """Plain gas that is equivalent to the scene, at the temperature of its initial velocities.
+        """Plain gas equivalent to the scene, at the temperature of the initial velocities.
 
-        The value is absent (None) if the scene is empty, has particles of several sizes or masses, or has any
+        Its value is absent (None) if the scene is empty, has particles of several sizes or masses, or has any
         feature except `centres_to_walls`.
         """
         kinds = [kind for kind in self.kinds if kind.count]
@@ -253,7 +253,7 @@ class Facts:
     def mixture(self: Scene) -> Mixture | None:  # type: ignore[misc]
         """Mixture of plain gases that is equivalent to the scene.
 
-        The value is absent (None) if the scene is empty, or has any feature except `polydispersity` and
+        Its value is absent (None) if the scene is empty, or has any feature except `polydispersity` and
         `centres_to_walls`.
         """
         if self.features - {"polydispersity", "centres_to_walls"}:
@@ -262,7 +262,7 @@ class Facts:
 
     @cached_property
     def contact_duration(self) -> float:
-        """Time after a contact of a particle within which its next contacts are elastic.
+        """Time after a contact of a particle during which its further contacts are elastic.
 
         It is 0 if all contacts dissipate energy (`Restitution`). Under gravity g the default is 0.01
         sqrt(d/g), where d is the smallest diameter.
@@ -311,12 +311,12 @@ class Facts:
 
     @cached_property
     def has_piston(self) -> bool:
-        """True if a face or an interior wall moves as particles and its load push it."""
+        """True if particles and a load move a face or an interior wall."""
         return bool(self.pistons) or self.moving_wall is not None
 
     @cached_property
     def load_axis(self) -> int | None:
-        """Axis along which a piston is loaded with a pressure, None without one."""
+        """Axis along which a pressure loads a piston; None without a piston."""
         return next((number // 2 for number, face in self.pistons if face.pressure is not None), None)
 
     @cached_property
@@ -327,12 +327,12 @@ class Facts:
 
     @cached_property
     def shear_rate(self) -> float | None:
-        """du_x / dy between sheared faces (`LeesEdwards`), None without any."""
+        """Gradient du_x / dy between sheared faces (`LeesEdwards`); None without such faces."""
         return next((face.shear_rate for _, face in self.faces_of(LeesEdwards)), None)
 
     @cached_property
     def driven_axes(self) -> tuple[int, ...]:
-        """Periodic axes along which a force acts on all particles, and so drives a flow."""
+        """Periodic axes along which a force acts on all particles, and drives a flow."""
         pulls = zip(self.gravity or (), self.container.periodic, strict=False)
         return tuple(axis for axis, (pull, around) in enumerate(pulls) if pull != 0.0 and around)
 
@@ -340,15 +340,15 @@ class Facts:
     def drags_faces(self) -> bool:
         """True if the momentum along faces is tallied.
 
-        The shear force is tallied for faces that draw tangential velocities, if one of them slides, or if a
-        force drives the gas along them.
+        It is tallied for faces that draw tangential velocities, if one of these faces slides, or if a force
+        drives the gas along them.
         """
         rubs = any(not face.smooth for face in self.faces.values())
         return bool(self.sliding_faces) or (rubs and bool(self.driven_axes))
 
     @cached_property
     def frame_velocity(self) -> tuple[float, ...]:
-        """Mean velocity (d,) of the faces that drag particles along, 0 unless a face slides."""
+        """Mean velocity (d,) of the faces that drag particles along; 0 unless a face slides."""
         dragging = [face.velocity for _, face in self.faces_of(Thermal) if not face.smooth]
         if not any(any(velocity or ()) for velocity in dragging):
             return (0.0,) * self.dimension
@@ -359,7 +359,7 @@ class Facts:
     def flow_changes(self) -> bool:
         """True if the flow of the gas changes with time.
 
-        The flow changes with time if faces or walls move along their normal, and between open faces.
+        It does if faces or walls move along their normal, or if faces are open.
         """
         return bool(self.moving_axes) or self.is_open
 
@@ -367,8 +367,8 @@ class Facts:
     def flow_axes(self) -> tuple[int, ...]:
         """Axes along which the velocity of the gas may vary.
 
-        If the gas moves only as a whole, no axis is listed. A mean velocity of the whole gas, which depends
-        on the run and not on a key of the scene, is added by `analysis.flow`.
+        If the gas moves only as a whole, there are no such axes. `analysis.flow` adds a mean velocity of the
+        whole gas, because it depends on the run and not on a key of the scene.
         """
         if self.flow_changes:
             return self.moving_axes or self.open_axes
@@ -378,8 +378,9 @@ class Facts:
     def resolved_axes(self, across: tuple[int, ...] = ()) -> tuple[int, ...]:
         """Return the axes along which a steady flow may vary.
 
-        Around obstacles these are all axes. Otherwise they are `across`, the axes of the faces that drive the
-        flow. The default is all axes with walls, or the first axis if there are no walls.
+        If there are obstacles, these are all axes. Otherwise they are `across`, the axes of the faces that
+        drive the flow. The default of `across` is all axes with walls, or the first axis if there are no
+        walls.
         """
         if self.has_obstacles:
             return tuple(range(self.dimension))
@@ -389,8 +390,8 @@ class Facts:
     def conserved_axes(self) -> tuple[bool, ...]:
         """True for axes along which the total momentum is conserved, shape (d,).
 
-        These are periodic axes, if no particle is fixed and if the container has only smooth faces or a
-        moving wall. Such faces and walls act along their normals. In a sheared gas the momentum is relative
+        They are the periodic axes, if no particle is fixed, and if the container has only smooth faces or a
+        moving wall. Such faces and walls exert only normal forces. In a sheared gas the momentum is relative
         to the flow.
         """
         smooth = all(face.smooth for face in self.faces.values())

@@ -1,9 +1,9 @@
 """Features of a scene, each with a name.
 
 A scene without features has smooth, elastic particles in a hard or periodic container. `FEATURES` is the
-table of all features, `EXCLUDED` the table of pairs which no scene may have. An engine lists the features
-that it models (`Engine.models`). Its rejections, and the table in the documentation, are derived from this
-list.
+table of all features. `EXCLUDED` is the table of pairs of features that exclude each other. An engine lists
+the features that it models (`Engine.models`). Its rejections, and the table in the documentation, are derived
+from this list.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 
 class Feature(NamedTuple):
-    """Feature of a scene: its key, and value(scene), None if it is absent.
+    """Feature of a scene: its key, and the function value(scene), which returns None without the feature.
 
-    A kind of face has a `kind`.
+    A feature that is a kind of face has a `kind`.
     """
 
     meaning: str
@@ -30,14 +30,17 @@ class Feature(NamedTuple):
     kind: str | None = None
 
     def refuse(self, scene: Scene, rule: str) -> SceneError:
-        """Return an error that names the key, and the face, of a scene with this feature."""
+        """Return an error about a scene with this feature.
+
+        The error names the key and the face.
+        """
         faces = (name for name, face in scene.faces.items() if face.kind == self.kind)
         key = f"faces.{next(faces)}" if self.kind else self.key
         return SceneError(key, self.value(scene), rule)
 
 
 def _face(kind: str) -> Feature:
-    """Return the feature of a kind of face of the container."""
+    """Return the feature that represents a kind of face."""
 
     def value(scene: Scene) -> str | None:
         return kind if any(face.kind == kind for face in scene.faces.values()) else None
@@ -46,7 +49,7 @@ def _face(kind: str) -> Feature:
 
 
 def _law(key: str, meaning: str, value: Callable[[Any], Any]) -> Feature:
-    """Return the feature of a property of the collision law."""
+    """Return the feature for a property of the collision law."""
 
     def of_scene(scene: Scene) -> Any:
         return value(scene.restitution) if scene.restitution is not None else None
@@ -117,7 +120,7 @@ FEATURES: dict[str, Feature] = {
         lambda scene: scene.vibrates or None,
     ),
 }
-"""Name -> feature, in the order in which they are refused."""
+"""Features by name, in the order in which scenes are rejected."""
 
 _CLOSED = {
     "the particles of a reservoir are smooth and elastic": (
@@ -131,7 +134,7 @@ _CLOSED = {
     ),
     "beside open faces, a thermal one is at rest": ("sliding",),
 }  # fmt: skip
-"""Features that exclude open faces, and why."""
+"""Features that exclude open faces, with the reason."""
 
 EXCLUDED: dict[tuple[str, str], str] = {
     ("gravity", "piston"): "the energy of a piston is known only without gravity",
@@ -159,7 +162,7 @@ EXCLUDED: dict[tuple[str, str], str] = {
     ("centres_to_walls", "roughness"): "rough particles touch walls with their surfaces",
     **{(name, "open"): reason for reason, names in _CLOSED.items() for name in names},
 }
-"""Pairs of features that no scene may have, and why."""
+"""Pairs of features that exclude each other, with the reason."""
 
 
 def check_features(scene: Scene) -> None:
@@ -171,17 +174,20 @@ def check_features(scene: Scene) -> None:
 
 
 _STEADY = frozenset(("walls", "polydispersity", "centres_to_walls"))
-"""Features with which the kinetic energy of flight is still that of the start."""
+"""Features with which the kinetic energy of flight keeps its initial value."""
 
 
 def shares_energy_evenly(scene: Scene) -> bool:
     """Return True if the kinetic energy of flight is constant, and equal for all directions.
 
-    This is true in equilibrium for smooth, elastic particles without a potential or a source of heat.
+    This holds in equilibrium for smooth, elastic particles without a potential or a source of heat.
     """
     return scene.features <= _STEADY
 
 
 def row_count(scene: Scene) -> int:
-    """Return the number of rows of impulses: one per species, one for all single particles."""
+    """Return the number of rows of impulses.
+
+    There is a row for each species, and one for all single particles.
+    """
     return len(scene.species) + bool(scene.particles)

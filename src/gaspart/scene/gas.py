@@ -1,4 +1,4 @@
-"""Plain gas: the scene of most formulas of kinetic theory."""
+"""Plain gas: the scene for most formulas of kinetic theory."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ class Gas:
 
     @property
     def particle(self) -> dict[str, float]:
-        """Diameter, temperature and mass, as keyword arguments of the functions of `gaspart.theory`."""
+        """Diameter, temperature and mass, as keyword arguments for functions of `gaspart.theory`."""
         return {"diameter": self.diameter, "temperature": self.temperature, "mass": self.mass}
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """Parameters of `particle`, with packing_fraction and dimension."""
+        """Entries of `particle`, with packing_fraction and dimension."""
         return {"packing_fraction": self.packing_fraction, "dimension": self.dimension, **self.particle}
 
 
@@ -73,9 +73,9 @@ class Mixture:
         return self.packing_fraction, self.dimension, self.diameters, self.counts
 
     def thin(self, most: int) -> Mixture:
-        """Return the mixture with every k-th size only, at most `most` sizes.
+        """Return the mixture with only every k-th size, at most `most` sizes.
 
-        The limit is valid for sizes of one species.
+        This approximation is valid for the sizes of one species.
         """
         step = -(-len(self.counts) // most)
         kept = slice(step // 2, None, step)
@@ -84,7 +84,7 @@ class Mixture:
 
 
 def mixture_of(scene: Scene) -> Mixture | None:
-    """Return the mixture of a scene, see `Scene.mixture`."""
+    """Return the mixture of a scene; see `Scene.mixture`."""
     counts, diameters, masses = [], [], []
     kinds = [kind for kind in scene.kinds if kind.count]
     for kind in kinds:
@@ -118,7 +118,7 @@ def plain_mixture(scene: Scene) -> Mixture:
 
 
 def _refuse_others(scene: Scene, rule: str, allowed: set[str]) -> None:
-    """Raise SceneError for an empty scene, and one with other features than these."""
+    """Raise SceneError for an empty scene, or one with other features than the allowed ones."""
     from gaspart.scene.features import FEATURES
 
     if not scene.count:

@@ -1,7 +1,7 @@
 """Limits of sizes and positions: particles that fit into a container and next to each other.
 
 The module contains the limits of sizes, the tolerance of prescribed positions, the volume of a particle, the
-closest packing, and the search of particles near a position.
+closest packing, and the search for particles near a position.
 """
 
 from __future__ import annotations
@@ -36,23 +36,27 @@ def ball_volume(dimension: int, radius: float = 1.0) -> float:
     return _UNIT_BALL[dimension] * radius**dimension
 
 
-_RESOLVED = 1e12  # diameters in the longest side, at most: contacts are then accurate to a thousandth
-_ROOM = 1e-6  # minimum gap of a particle between two walls, in radii
-_UNITS = 8.0 * 2.0**-52  # some units in the last place, of a number
-_SUM = 1e-12  # relative: rounding of the sum of all volumes
+# maximum length of the longest side, in diameters: contacts are then accurate to a thousandth of a diameter
+_RESOLVED = 1e12
+_ROOM = 1e-6  # minimum clearance of a particle between two walls, in radii
+_UNITS = 8.0 * 2.0**-52  # tolerance, in units in the last place
+_SUM = 1e-12  # relative tolerance for rounding of the sum of all volumes
 
 
 def rounding(position: Iterable[float], *lengths: float) -> float:
     """Return the tolerance of prescribed positions.
 
-    Particles and walls that touch in decimals may overlap by this length in binary numbers. It is some units
-    in the last place of the largest of these numbers, because decimal numbers are rounded: 0.6 - 0.5 < 0.1.
+    Particles and walls that touch in decimal numbers may overlap in binary numbers, because 0.6 - 0.5 < 0.1
+    after rounding. The tolerance is some units in the last place of the largest number.
     """
     return _UNITS * max(*map(abs, position), *lengths)
 
 
 def closest_packing(scene: Scene) -> float:
-    """Return the highest possible packing fraction: proven for equal particles, 1 for others."""
+    """Return the highest possible packing fraction.
+
+    It is proven for equal particles, and 1 for others.
+    """
     alike = (
         len({kind.radius for kind in scene.species if kind.count} | {it.radius for it in scene.particles}) < 2
     ) and all(kind.alike for kind in scene.species)
@@ -60,7 +64,7 @@ def closest_packing(scene: Scene) -> float:
 
 
 def check_packing(scene: Scene) -> None:
-    """Raise SceneError for more particles than can be in the container."""
+    """Raise SceneError for more particles than the container can hold."""
     if not scene.centres_to_walls and scene.packing_fraction > closest_packing(scene) * (1.0 + _SUM):
         raise SceneError("packing_fraction", scene.packing_fraction, "exceeds close packing")
 
@@ -68,8 +72,8 @@ def check_packing(scene: Scene) -> None:
 def check_room(container: Container, centres_to_walls: bool, key: str, particle: Particle | Species) -> None:
     """Raise SceneError, with `key`, if a particle does not fit into the container.
 
-    Raise it also for a particle that is not fixed but cannot move, and for a particle so small that its
-    contacts are lost in rounding.
+    SceneError is also raised for a particle that is not fixed but cannot move, and for a particle so small
+    that its contacts are lost in rounding.
     """
     radius = particle.largest_radius
     shortest, longest = min(container.lengths), max(container.lengths)
@@ -108,9 +112,9 @@ def check_region(container: Container, key: str, kind: Species) -> None:
 
 
 class Nearby:
-    """Positions in cells at least `reach` wide, to find near positions without a search of all.
+    """Cells of width `reach` or more, to find positions near a point quickly.
 
-    Near positions are within `reach` of a point.
+    Positions are near if their distance is at most `reach`.
     """
 
     def __init__(self, container: Container, reach: float) -> None:
@@ -123,11 +127,11 @@ class Nearby:
         return tuple(min(int(x / length * side), side - 1) for x, length, side in axes)
 
     def add(self, n: int, position: tuple[float, ...]) -> None:
-        """Put number `n` at a position (d,) inside the container."""
+        """Add index `n` at a position (d,) inside the container."""
         self._members.setdefault(self._cell(position), []).append(n)
 
     def neighbours(self, position: tuple[float, ...]) -> list[int]:
-        """Return all numbers within the reach of a position, and some others, in ascending order."""
+        """Return the indices within `reach` of a position, and some others, in ascending order."""
         axes = []
         for at, side, periodic in zip(
             self._cell(position), self._sides, self._container.periodic, strict=True

@@ -45,10 +45,11 @@ from gaspart.scene.walls import WALL_RULE, Plate, Wall, check_walls, wall_kind
 from gaspart.yaml_text import read_yaml, write_yaml
 
 THUMBNAIL = (480, 360)
-"""Pixels of a picture that a notebook shows for a scene."""
+"""Size in pixels of the picture of a scene in a notebook."""
 DRAWN = 20_000
-"""Maximum number of particles of such a picture: the particles of a scene must be placed before."""
-_ABSENT = ("fixed", "exact_temperature", "walls", "faces")  # keys that are written to a file only if present
+"""Maximum number of particles in such a picture, because all particles must be placed for it."""
+# keys that are written to a file only if they are present
+_ABSENT = ("fixed", "exact_temperature", "walls", "faces")
 
 
 @with_guidance
@@ -57,7 +58,7 @@ class Scene(Facts):
     """The system to simulate: a container, its particles and everything that acts on them.
 
     A scene is immutable and is validated when it is created. In all arrays the single `particles` come first,
-    in their order, and then the particles of each of the `species`.
+    in their order, followed by the particles of each of the `species`.
 
     Parameters
     ----------
@@ -176,11 +177,11 @@ class Scene(Facts):
         check_packing(self)
 
     def _check_gravity(self) -> None:
-        """Check the acceleration; a zero vector counts as no gravity."""
+        """Check the acceleration; a zero vector means no gravity."""
         if self.gravity is None:
             return
         finite_vector("gravity", self.gravity, self.dimension)
-        if not any(self.gravity):  # absent everywhere, so that no other place has to ask
+        if not any(self.gravity):  # absent everywhere, so that no other code has to test for this value
             set_fields(self, gravity=None)
             return
 
@@ -219,13 +220,13 @@ class Scene(Facts):
         return None
 
     def _fits(self, key: str, particle: Particle | Species) -> None:
-        """Raise SceneError if particles are larger than the container."""
+        """Raise SceneError if particles do not fit into the container."""
         check_room(self.container, self.centres_to_walls, key, particle)
 
     def _check_particle(self, n: int, particle: Particle, earlier: Nearby) -> None:
         """Raise SceneError for a particle that is outside, or overlaps a wall or another particle.
 
-        Only earlier particles count.
+        The particle is compared only with `earlier` particles.
         """
         where = f"particles[{n}]"
         finite_vector(f"{where}.position", particle.position, self.dimension)
@@ -276,7 +277,7 @@ class Scene(Facts):
         return tuple(lower), tuple(upper)
 
     def separation(self, a: tuple[float, ...], b: tuple[float, ...]) -> float:
-        """Return the distance between two points, to the nearest image on periodic axes.
+        """Return the distance between two points; on periodic axes, to the nearest image.
 
         Parameters
         ----------
@@ -385,7 +386,7 @@ class Scene(Facts):
 
     @property
     def summary(self) -> str:
-        """The scene in one line: number of particles, container, packing fraction and features.
+        """Summary of the scene in one line: number of particles, container, packing fraction, features.
 
         Examples
         --------
@@ -400,12 +401,12 @@ class Scene(Facts):
         return text + (f"; {', '.join(FEATURES[name].meaning for name in present)}" if present else "")
 
     def _repr_html_(self) -> str:
-        """Return a picture of the scene at time 0, with its `summary` below it."""
+        """Return a picture of the scene at time 0, with its `summary` as a caption."""
         if self.count > DRAWN:
             return html.escape(self.summary)
         try:
             return gaspart.render(self, size=THUMBNAIL).figure(self.summary)
-        except SceneError as error:  # its particles do not fit
+        except SceneError as error:  # the particles do not fit
             return html.escape(f"{self.summary}. {error}")
 
     def to_dict(self) -> dict:

@@ -14,18 +14,18 @@ if TYPE_CHECKING:
 
 
 def flow(scene: Scene, positions: np.ndarray) -> np.ndarray:
-    """Return the velocity (..., d) of the flow at positions, or 0 without sheared faces."""
+    """Return the velocity (..., d) of the flow at positions; 0 without sheared faces."""
     return flow_of_rate(scene.shear_rate, scene.container.lengths[GRADIENT], positions)
 
 
 def flow_of_rate(rate: float | None, height: float, positions: np.ndarray) -> np.ndarray:
-    """Return the velocity (..., d) of a flow of a shear rate at positions.
+    """Return the velocity (..., d) of a uniform shear flow at positions.
 
-    Without a rate the velocity is 0.
+    Without a `rate`, the velocity is 0.
 
-    height : side of the container along the gradient
+    height : side of the container along the gradient.
     """
-    import numpy as np  # planning a workflow needs the rest of this module, without it
+    import numpy as np  # planning a workflow needs the rest of this module, but not this import
 
     velocities = np.zeros_like(positions, dtype=float)
     if rate is not None:

@@ -1,7 +1,8 @@
 """Radii of a polydisperse species: equally probable quantiles of a distribution.
 
-Radii follow from the scene alone, without a seed. So the packing fraction and the moments of the radii are
-exact and equal in every run. All is +, -, x, / and the square root, the same bits on every machine.
+Radii follow from the scene alone, without a seed. Therefore the packing fraction and the moments of the radii
+are exact, and equal in every run. Only +, -, x, / and the square root are used, which have the same bits on
+every machine.
 """
 
 from __future__ import annotations
@@ -15,12 +16,12 @@ if TYPE_CHECKING:
 
 DISTRIBUTIONS = ("lognormal", "uniform")
 MOST_UNIFORM = 1.0 / math.sqrt(3.0)
-"""Polydispersity of a uniform distribution that begins at 0."""
+"""Largest polydispersity of a uniform distribution; its smallest radius is then 0."""
 
 _LN2 = 0.6931471805599453
 _TERMS = 16  # terms of the series of exp, for |x| < 0.35
 # Numerators and denominators of Wichura's algorithm AS 241 (Appl. Stat. 37, 477 (1988)), the highest power
-# first, for the middle, the tails, and far out in these.
+# first: for the middle, for the tails, and for the extreme tails.
 # fmt: off
 _MIDDLE = (
     (2509.0809287301226727, 33430.575583588128105, 67265.770927008700853, 45921.953931549871457,
@@ -70,7 +71,7 @@ def _log(x: np.ndarray) -> np.ndarray:
 def normal_quantile(p: np.ndarray) -> np.ndarray:
     """Return the quantile of the standard normal distribution, by Wichura's AS 241.
 
-    p : probability in (0, 1)
+    p : probability in (0, 1).
     """
     import numpy as np
 
@@ -86,10 +87,10 @@ def normal_quantile(p: np.ndarray) -> np.ndarray:
 
 @lru_cache(maxsize=16)
 def relative_radii(count: int, polydispersity: float, distribution: str) -> np.ndarray:
-    """Return the radii (count,) divided by their mean, in falling order.
+    """Return the radii (count,) divided by their mean, in descending order.
 
-    The radii are the quantiles at (k + 1/2) / count, k = 0, 1 ..., of a distribution with this standard
-    deviation, scaled so that their mean is 1.
+    The radii are the quantiles at (k + 1/2) / count, k = 0, 1 ..., of a distribution whose standard deviation
+    is the polydispersity. They are scaled so that their mean is 1.
     """
     import numpy as np
 
@@ -99,7 +100,7 @@ def relative_radii(count: int, polydispersity: float, distribution: str) -> np.n
     else:
         square = polydispersity * polydispersity
         more = 1.0 + square
-        # ln(1 + s^2), also for an s^2 that rounding loses in 1 + s^2
+        # ln(1 + s^2), accurate also if rounding removes s^2 from 1 + s^2
         variance = float(_log(np.array(more))) * square / (more - 1.0) if more > 1.0 else square
         radii = _exp(math.sqrt(variance) * normal_quantile(p))
     radii = radii * (count / math.fsum(radii)) if count else radii

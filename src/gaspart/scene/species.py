@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 LATTICES = ("lattice", "slab")
 SHARED = (*LATTICES, "compressed")
-"""Arrangements that all particles of a scene share."""
+"""Arrangements that apply to all particles of a scene together."""
 ARRANGEMENTS = ("random", *SHARED)
 
 _RADIUS = declare(positive("radius"))
@@ -48,7 +48,7 @@ _SPIN: dict = {"type": ["number", "array"], "items": {"type": "number"}, "minIte
 
 
 def _check_matter(particle: Species | Particle) -> None:
-    """Check the rules for several keys that species and single particles have in common."""
+    """Check rules on several keys that species and single particles have in common."""
     if particle.moment_of_inertia is not None:
         if not SMALLEST <= particle.moment_of_inertia / particle.mass / particle.radius**2 <= LARGEST:
             rule = f"must be from {SMALLEST:g} to {LARGEST:g} times the mass times the radius squared"
@@ -189,7 +189,7 @@ class Species:
             raise SceneError("exact_temperature", True, "needs the temperature of a species that moves")
         if self.vibration is not None and self.temperature is not None:
             raise SceneError("temperature", self.temperature, "give vibration or temperature, not both")
-        if self.polydispersity == 0.0:  # absent everywhere, so that no other place has to ask
+        if self.polydispersity == 0.0:  # absent everywhere, so that no other code has to test for this value
             set_fields(self, polydispersity=None, radius_distribution=None)
         self._check_sizes()
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class MovingWall(NamedTuple):
-    """Axis of motion of a wall, its coordinate there at time 0, and its mass."""
+    """Moving wall: axis of motion, coordinate on this axis at time 0, and mass."""
 
     axis: int
     position: float
@@ -29,11 +29,11 @@ class MovingWall(NamedTuple):
 
 
 MOVING_WALL = "walls[0]"
-"""Key of a moving wall, which is the only interior wall."""
+"""Key of a moving wall; it is the only interior wall."""
 
 
 def moving_wall_among(walls: Sequence[Wall | Plate], lengths: tuple[float, ...]) -> MovingWall | None:
-    """Return the interior wall that moves, or None without one."""
+    """Return the interior wall that moves; None if there is no such wall."""
     for wall in walls:
         if wall.mass is not None:
             axis = crossed_axis(wall, lengths)
@@ -42,7 +42,7 @@ def moving_wall_among(walls: Sequence[Wall | Plate], lengths: tuple[float, ...])
 
 
 def crossed_axis(wall: Wall | Plate, lengths: tuple[float, ...]) -> int:
-    """Return the axis perpendicular to a wall that spans a container, or -1."""
+    """Return the axis perpendicular to a wall that spans a container; -1 for other walls."""
     for axis, _ in enumerate(lengths):
         coordinates = [{corner[k] for corner in wall.corners.values()} for k in range(len(lengths))]
         is_spanning = all(coordinates[k] == {0.0, length} for k, length in enumerate(lengths) if k != axis)
@@ -52,7 +52,7 @@ def crossed_axis(wall: Wall | Plate, lengths: tuple[float, ...]) -> int:
 
 
 def check_moving_wall(scene: Scene) -> None:
-    """Raise SceneError for a moving wall with other walls, or not across the whole container."""
+    """Raise SceneError for a moving wall with other walls, or not across the container."""
     for n, wall in enumerate(scene.walls):
         if wall.mass is None:
             continue
@@ -192,10 +192,10 @@ class Plate:
 
     Notes
     -----
-    A plate with a `mass` must reach across the whole container at right angles to an axis. The wall starts at
-    rest. Only particles move it, along that axis, and it exchanges momentum with each particle without loss
-    [1]_. The wall conducts no heat except by its own motion. There is no other interior wall then, and both
-    of its sides have particles, smooth and elastic.
+    A plate with a `mass` must extend across the whole container, perpendicular to an axis. It starts at rest.
+    Only particles move the plate, along this axis. It exchanges momentum with each particle without loss of
+    energy [1]_. It conducts no heat except by its own motion. There must be no other interior wall. Both
+    sides must have particles, which are smooth and elastic.
 
     References
     ----------

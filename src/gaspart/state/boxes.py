@@ -1,8 +1,8 @@
 """Partition of space into equal boxes on a grid.
 
-Each axis is divided on its own, down to one box. Box coordinates are stored for three axes in two dimensions,
-too; the missing axis has one box and no neighbours. For each axis a table contains the neighbours of each
-box. So walls, periodic faces and axes of one or two boxes need no special code.
+Each axis is divided separately, and may have a single box. Box coordinates have three axes in two dimensions,
+too; the third axis has one box and no neighbours. For each axis a table contains the neighbours of each box.
+Therefore walls, periodic faces and axes of one or two boxes need no special code.
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ class Boxes:
     strides : ndarray of int, shape (3,)
         Strides of the linear index.
     neighbour : ndarray of int, shape (3, most, 3)
-        Change of the linear index by a step of -1, 0, +1 from a box coordinate, or NOWHERE.
+        Change of the linear index for a step of -1, 0, +1 from a box coordinate; NOWHERE if there is no box.
     shift : ndarray of int, shape (3, most, 3)
-        Container lengths that this step crosses on a periodic axis.
+        Number of container lengths that this step crosses on a periodic axis.
     """
 
     per_side: np.ndarray
@@ -83,7 +83,7 @@ class Boxes:
         Returns
         -------
         Boxes
-            Grid that is otherwise equal.
+            Grid, which is otherwise equal.
         """
         neighbour, last = self.neighbour.copy(), self.per_side[axis] - 1
         neighbour[axis, 0, 0] = neighbour[axis, last, 2] = NOWHERE
@@ -106,7 +106,9 @@ class Boxes:
 
 
 def narrowest_box(scene: Scene) -> float:
-    """Return the smallest side of a box: the largest diameter, so that no contact is missed.
+    """Return the smallest allowed side of a box: the largest particle diameter.
+
+    With narrower boxes, contacts would be missed.
 
     Parameters
     ----------
@@ -145,12 +147,13 @@ def sides_for(scene: Scene, narrowest: float | None = None, per_particle: float 
 
 
 def cube_side(lengths: tuple[float, ...], number: float) -> float:
-    """Return the side of cubes, such that about `number` of them fill a container.
+    """Return the side of a cube, so that about `number` cubes fill a container.
 
     Parameters
     ----------
     lengths : tuple of float, shape (d,), [length]
-        Sides of the container. A side shorter than the cube has one cube, and the others share the number.
+        Sides of the container. A side shorter than the cube has one cube; the number then applies to the
+        other sides.
     number : float
         Number of cubes; at least 1 is used.
 
@@ -180,9 +183,8 @@ def make_boxes(
     boxes_per_side : int or tuple of int, shape (d,)
         Boxes per side: one number, or one for each axis.
     images : bool
-        On a periodic axis of fewer than three boxes the same box is a neighbour on both sides. If both
-        neighbours of a box along an axis are the same box, True: the table has this box twice, each time with
-        its own shift; False: once.
+        On a periodic axis of fewer than three boxes, the same box is a neighbour on both sides. If True, the
+        table has this box twice, with different shifts. If False, the table has it once.
     narrowest : float, optional, [length]
         Smallest side of a box if some particles are not put into boxes. Default: the largest diameter.
 
@@ -228,16 +230,16 @@ def make_boxes(
     return Boxes(per_side, widths, strides, neighbour, shift)
 
 
-# Oversized particles, which are too large for the boxes of the partition.
-#
-# A box may not be narrower than the diameter of any particle that is found by its box alone. So a few large
-# particles would make the boxes of all the small ones huge. Outside the partition, they cost a look at
-# each of them in every search, and a look at all the boxes around one in a search of its own.
+# Oversized particles, which are too large for the boxes of the partition. A box must not be narrower than the
+# diameter of any particle that is found by its box. A few large particles would therefore make the boxes of
+# all small particles huge. Outside the partition, each large particle is tested in every search. A search for
+# its own contacts tests all boxes around it.
 
 
-MOST = 256  # oversized particles, at most, where the program chooses
-_GAIN = 0.75  # largest share of the work that may remain if particles are taken out of the partition
-_BOXES = {2: (0.53, 0.5, 0.8), 3: (1.0, 3.0, 1.5)}  # per particle: in a dilute gas, more by density, at most
+MOST = 256  # maximum number of oversized particles that the program chooses
+_GAIN = 0.75  # largest fraction of the work that may remain, if particles are removed from the partition
+# boxes per particle; in a dilute gas more, depending on density, up to the maximum
+_BOXES = {2: (0.53, 0.5, 0.8), 3: (1.0, 3.0, 1.5)}
 
 
 def boxes_per_particle(scene: Scene) -> float:
@@ -251,12 +253,13 @@ def boxes_per_particle(scene: Scene) -> float:
     Returns
     -------
     float
-        Number, at least 1 if gravity gathers the particles, or if kicks make most searches find nothing new.
+        Number of boxes. It is at least 1 if gravity collects the particles, or if most searches find no new
+        contact because of kicks.
 
     Notes
     -----
-    Eight particles are tested at once. So in a dilute gas of discs, which cross many boxes between contacts,
-    wide boxes are best; measured with 10^4 particles at packing fractions of 0.01 to 0.4.
+    Eight particles are tested at once. In a dilute gas of discs, particles cross many boxes between contacts.
+    Therefore wide boxes are best, as measured with 10^4 particles at packing fractions of 0.01 to 0.4.
     """
     dilute, by_density, limit = _BOXES[scene.dimension]
     best = min(dilute + by_density * scene.packing_fraction, limit)
@@ -274,8 +277,8 @@ def largest_in_boxes(scene: Scene) -> float:
     Returns
     -------
     float, [length]
-        Among the radii that leave at most `MOST` particles outside the boxes, this radius requires the least
-        work of a search. The largest radius of all, unless the other saves a quarter.
+        Radius that minimises the work of a search, with at most `MOST` particles outside the boxes. If this
+        saves less than a quarter of the work, the largest radius of all particles is returned instead.
     """
     radii, counts = sizes(scene)
     if len(radii) < 2 or scene.shear_rate is not None:
@@ -322,7 +325,7 @@ def boxes_and_largest(scene: Scene, boxes_per_side: int | tuple[int, ...] | None
 
 
 def sizes(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Return the different radii and how many particles have each radius.
+    """Return the distinct radii, and the number of particles with each radius.
 
     Parameters
     ----------
@@ -344,20 +347,20 @@ def sizes(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 
 
 def work(scene: Scene, largest: float) -> float:
-    """Return the boxes and particles searched while each particle travels a unit of length.
+    """Return the number of visited boxes and particles per unit of path length of each particle.
 
     Parameters
     ----------
     scene : Scene
-        Scene, whose particles are taken to be spread evenly and to be equally fast.
+        Scene. Its particles are assumed to be uniformly distributed and equally fast.
     largest : float, [length]
         Largest radius of particles in the boxes.
 
     Returns
     -------
     float, [1/length]
-        Number of boxes and particles: in a search after every contact, and a third of a search at every face
-        of a box.
+        Number of boxes and particles in one search after every contact, and in a third of a search at every
+        face of a box.
     """
     dimension, volume = scene.dimension, scene.container.volume
     radii, counts = sizes(scene)
@@ -368,7 +371,7 @@ def work(scene: Scene, largest: float) -> float:
     reach = np.where(listed, 0.0, radii + largest)
     boxes = np.minimum(2 * np.ceil(reach[:, None] / widths) + 3, per_side).prod(axis=1)
     looked_at = boxes * (1.0 + crowd) + counts[~listed].sum()
-    # the section that a particle and any other show one another, summed over the others
+    # cross-section of a particle and each other particle, summed over the others
     total, first, second = counts.sum(), counts @ radii, counts @ radii**2
     if dimension == 2:
         sections = 2.0 * (total * radii + first)
@@ -379,19 +382,21 @@ def work(scene: Scene, largest: float) -> float:
     return float(counts @ (looked_at * (contacts + faces / 3.0)))
 
 
-# Deepest overlap of particles of any sizes, in time and memory that grow as their number.
+# Deepest overlap of particles of any sizes. Time and memory are proportional to the number of particles.
 
 
 _CROWD, _SAMPLE = 32.0, 256
-"""Mean number of neighbours of some particles from which on others are not only those that touch."""
+"""Mean number of neighbours of a sample of particles, above which the search is limited to particles that
+touch; size of the sample."""
 
 
 def _reach_of_deepest(tree: cKDTree, other: cKDTree, reach: float) -> float:
-    """Return the largest distance at which the deepest overlap of two classes of sizes can be.
+    """Return the largest distance at which two size classes can have their deepest overlap.
 
-    It is `reach` for particles that touch. Where many lie on top of each other, their pairs within `reach`
-    are more than memory holds. Contact distances differ by less than a factor of two. So if the nearest pair
-    is at q, no deeper one is beyond 2 q. The distance is 0 if two centres coincide.
+    It is `reach` for particles that touch. If many particles lie on top of each other, memory cannot hold all
+    pairs within `reach`. Contact distances in the classes differ by less than a factor of two. If the nearest
+    pair has the distance q, no deeper overlap has a distance above 2 q. The result is 0 if two centres
+    coincide.
     """
     itself = tree is other
     sample = tree.data[:: max(1, tree.n // _SAMPLE)]
@@ -406,7 +411,7 @@ def _reach_of_deepest(tree: cKDTree, other: cKDTree, reach: float) -> float:
 def deepest_overlap(
     positions: np.ndarray, radii: np.ndarray, lengths: np.ndarray, periodic: tuple[bool, ...]
 ) -> float:
-    """Return the relative overlap of the pair of particles that overlaps most, by nearest images.
+    """Return the largest relative overlap of a pair of particles, by nearest images.
 
     Parameters
     ----------
@@ -427,10 +432,10 @@ def deepest_overlap(
 
     Notes
     -----
-    Particles are sorted into classes of sizes within a factor of two, with a tree for each class. So a search
-    covers only the distance at which particles of its two classes can touch.
+    Particles are sorted into classes of sizes within a factor of two, with a tree for each class. A search
+    for two classes covers only the distance at which their particles can touch.
     """
-    from scipy.spatial import cKDTree  # few runs need it
+    from scipy.spatial import cKDTree  # few runs need this import
 
     if not len(positions):
         return 0.0
@@ -447,7 +452,7 @@ def deepest_overlap(
             return 1.0
         if a == b:
             pairs = trees[a].query_pairs(reach, output_type="ndarray")
-        else:  # the larger ones ask: they are fewer where sizes differ much
+        else:  # the larger particles search, because they are fewer if sizes differ strongly
             near = trees[b].query_ball_tree(trees[a], reach)
             larger = np.repeat(np.arange(len(near)), [len(neighbours) for neighbours in near])
             pairs = np.stack([np.fromiter(chain.from_iterable(near), dtype=int), larger], axis=1)

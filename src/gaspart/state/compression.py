@@ -1,10 +1,10 @@
-"""Random packings denser than insertion can make, by growing particles.
+"""Random packings that are denser than insertion can reach, by growing particles.
 
-The particles move, collide and grow until they have their size or jam (Lubachevsky & Stillinger, J. Stat.
-Phys. 60, 561 (1990)). All particles grow in proportion, at a constant rate of their diameters. During growth
-all particles have mass 1, and their temperature is reset to 1 every few collisions. The final density depends
-on the speed of growth. If it is fast, spheres jam at a packing fraction of about 0.64 and discs at 0.84. If
-it is slow, they crystallise.
+The particles move, collide and grow until they have their final size, or jam (Lubachevsky & Stillinger, J.
+Stat. Phys. 60, 561 (1990)). All particles grow in proportion, and diameters grow at a constant rate. During
+growth all particles have mass 1, and their temperature is reset to 1 every few collisions. The final density
+depends on the growth rate. If growth is fast, spheres jam at a packing fraction of about 0.64, and discs at
+0.84. If it is slow, they crystallise.
 """
 
 from __future__ import annotations
@@ -25,19 +25,20 @@ from gaspart.state.insertion import per_particle, random_insertion
 from gaspart.state.random import normals, stream
 
 JAMMED = 1e6
-"""Reduced pressure PV/(N k_B T) at which particles count as jammed."""
+"""Reduced pressure PV/(N k_B T) above which particles count as jammed."""
 RATES = (2.0**-4, 2.0**-7, 2.0**-10)
-"""Growth of the largest diameter per thermal speed: rates of `compress_positions`, tried in this order."""
+"""Growth rates of the largest diameter, divided by the thermal speed, which `compress_positions` tries in
+this order."""
 
-_START = {2: 0.3, 3: 0.2}  # packing fraction at which growth begins, within easy reach of insertion
-_SPARE = 2.0**-36  # relative excess of the grown size, so that rounding leaves no overlap
-_COLLISIONS = 8  # per particle between two resettings of the temperature
+_START = {2: 0.3, 3: 0.2}  # packing fraction at which growth begins; insertion easily reaches it
+_SPARE = 2.0**-36  # relative excess of the final size, so that rounding leaves no overlap
+_COLLISIONS = 8  # collisions per particle between two resets of the temperature
 _POSITIONS, _MOTION = 0, 4
 
 
 @dataclass(frozen=True)
 class Packing:
-    """Packing of particles that `compress` has reached.
+    """Packing of particles made by `compress`.
 
     Parameters
     ----------
@@ -50,7 +51,7 @@ class Packing:
     pressure : float, [1]
         Reduced pressure in the last block of collisions.
     collisions : int
-        Number of all collisions.
+        Total number of collisions.
     """
 
     positions: np.ndarray
@@ -74,14 +75,14 @@ def compress(
     scene : Scene
         Scene without single particles, interior walls and fixed particles.
     seed : int or tuple of int, default 0
-        Seed of the random start, from which the species grow.
+        Seed of the random initial state, from which the particles grow.
     growth_rate : float, default 0.0625, [1]
         Growth rate of the diameter of the largest particles, divided by the thermal speed of a particle.
     until : float or "jammed", optional
         Packing fraction at which growth ends, or "jammed" for growth until the particles jam. Default: the
         packing fraction of the scene.
     jammed : float, default 1e6, [1]
-        Reduced pressure that ends the growth in any case.
+        Reduced pressure at which the growth ends in any case.
 
     Returns
     -------
@@ -96,9 +97,9 @@ def compress(
 
     Notes
     -----
-    The algorithm of Lubachevsky and Stillinger [1]_. The temperature is brought back to 1 every few
-    collisions. If growth is fast, spheres jam at a packing fraction of about 0.64 and discs at 0.84. If
-    growth is slow, they crystallise.
+    The algorithm is by Lubachevsky and Stillinger [1]_. The temperature is reset to 1 every few collisions.
+    If growth is fast, spheres jam at a packing fraction of about 0.64, and discs at 0.84. If growth is slow,
+    they crystallise.
 
     References
     ----------
@@ -137,7 +138,9 @@ def compress(
 
 
 def compress_positions(scene: Scene, seed: int | tuple[int, ...]) -> np.ndarray:
-    """Return positions for a scene, by the fastest of `RATES` that reaches its packing fraction.
+    """Return positions for a scene, grown at the fastest sufficient rate of `RATES`.
+
+    The rate is sufficient if growth reaches the packing fraction of the scene.
 
     Parameters
     ----------
@@ -154,7 +157,7 @@ def compress_positions(scene: Scene, seed: int | tuple[int, ...]) -> np.ndarray:
     Raises
     ------
     SceneError
-        If no rate reaches it.
+        If no rate reaches the packing fraction.
     """
     for rate in RATES[:-1]:
         with suppress(SceneError):
@@ -163,7 +166,7 @@ def compress_positions(scene: Scene, seed: int | tuple[int, ...]) -> np.ndarray:
 
 
 def _root(value: float, dimension: int) -> float:
-    """Return the square or cube root, by bisection: library roots differ between machines."""
+    """Return the square or cube root by bisection, because library roots differ between machines."""
     low, high = 0.0, max(1.0, value)
     for _ in range(200):
         middle = 0.5 * (low + high)
@@ -178,7 +181,7 @@ def _scale_species(scene: Scene, scale: float) -> tuple[Species, ...]:
 
 
 class _Growing:
-    """Particles of a scene that grow, at `scale` times their radii."""
+    """Growing particles of a scene; their radii are `scale` times the radii of the scene."""
 
     def __init__(self, scene: Scene, seed: int | tuple[int, ...], scale: float, end: float) -> None:
         from gaspart.kernels import model
@@ -199,7 +202,8 @@ class _Growing:
         self.flights["radius"] = self._radii * scale
         predictions = aligned_zeros((n,), model.PREDICTION)
         self.particles = model.Particles(self.flights, np.zeros((n, d), dtype=np.int64), predictions)
-        width = 2.0 * scene.largest_radius * end * (1.0 + 2.0 * _SPARE)  # so that boxes serve to the end
+        # so that the same boxes suffice until the end
+        width = 2.0 * scene.largest_radius * end * (1.0 + 2.0 * _SPARE)
         boxes = make_boxes(scene, sides_for(scene, width), images=True, narrowest=width)
         predictions["box"] = boxes.coordinates(positions)
         self.boxes = empty_lists(boxes, n)
@@ -209,7 +213,7 @@ class _Growing:
         self._queue = empty_queue(n)
 
     def grow(self, rate: float, end: float) -> None:
-        """Simulate some collisions per particle at this rate, or until the scale is `end`."""
+        """Simulate some collisions per particle at this growth rate, or until the scale is `end`."""
         d, n = self._scene.dimension, self._scene.count
         rate /= 2.0 * self._scene.largest_radius * self.scale
         remaining = (end / self.scale - 1.0) / rate
@@ -225,14 +229,17 @@ class _Growing:
             self.pressure = 1.0 + float(tally.sums[self._kernels.VIRIAL].sum()) / (d * n * time)
 
     def final_positions(self, scale: float) -> np.ndarray:
-        """Return the (N, d) positions at a scale; raise SimulationError if two particles overlap."""
+        """Return the positions (N, d) at a scale.
+
+        Raises SimulationError if two particles overlap.
+        """
         self.flights["radius"] = self._radii * scale
         if self._growth.closest(self.particles, self.boxes, self._space) < 1.0:
             raise SimulationError("growth has left an overlap")
         positions, lengths = self.flights["position"], np.array(self._space.lengths)
         periodic = np.array(self._space.periodic)
         margin = np.outer(self._radii * scale, self._space.margin * ~periodic)
-        # within a wall's reach, or an image of the container, to the last bit
+        # inside the walls or the periodic container, to the last bit
         images = periodic * (np.array(positions >= lengths) - 1.0 * (positions < 0.0))
         positions = positions - images * lengths
         positions = np.where(periodic & (positions >= lengths), 0.0, positions)

@@ -23,7 +23,7 @@ from gaspart.state.insertion import per_particle
 from gaspart.state.state import State
 
 _SINGLE = 2.0**-24
-"""Largest relative error of a number in single precision, as in the frames of a trajectory."""
+"""Largest relative error of a number in single precision, the precision of trajectory frames."""
 
 
 def state_from_arrays(
@@ -45,15 +45,15 @@ def state_from_arrays(
         Positions. Positions beyond a wall or the piston by no more than the rounding of single precision are
         moved to the wall or piston.
     velocities : ndarray, shape (N, d), [length/time]
-        Velocities, in a sheared gas with the flow.
+        Velocities; in a sheared gas they include the flow.
     spins : ndarray, shape (N,) in 2D or (N, 3) in 3D, optional, [1/time]
         Spins of rough particles. Default: 0.
     piston : ndarray, shape (2,), optional, [length] and [length/time]
         Position of the piston along its axis, and its velocity. Default: at rest at its side.
     displaced : float, optional, [length]
-        Displacement of the images above in a sheared gas. Default: 0.
+        Displacement of the images above a sheared gas. Default: 0.
     vibrations : ndarray, shape (N,), optional, [energy]
-        Energies, of a scene whose particles store them.
+        Vibrational energies, for a scene whose particles have them.
 
     Returns
     -------
@@ -118,8 +118,8 @@ def state_at_time_zero(scene: Scene, other: State) -> State:
     Raises
     ------
     SceneError
-        As for `state_from_arrays`. Also if particles or container differ, if the piston is another face, or
-        if the state has displaced images and the scene has none.
+        If `state_from_arrays` raises it. Also if particles or container differ, if the piston is another
+        face, or if the state has displaced images and the scene has no sheared face.
 
     Notes
     -----
@@ -155,9 +155,10 @@ def state_at_time_zero(scene: Scene, other: State) -> State:
 
 
 def _in_flow(scene: Scene, other: State) -> tuple[np.ndarray, np.ndarray]:
-    """Return (N, d) positions and velocities of a state in the flow of the scene."""
+    """Return positions and velocities (N, d) of a state, in the flow of the scene."""
     positions, height = np.array(other.positions, dtype=float), scene.container.lengths[GRADIENT]
-    if scene.shear_rate is not None and other.shear_rate is None:  # whose faces are places as any other
+    # faces of a sheared scene have no special position
+    if scene.shear_rate is not None and other.shear_rate is None:
         positions[:, GRADIENT] = _wrap_coordinates(positions[:, GRADIENT], height)
     if (scene.shear_rate or 0.0) == (other.shear_rate or 0.0):
         return positions, other.velocities
@@ -166,7 +167,7 @@ def _in_flow(scene: Scene, other: State) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _image_displacement(scene: Scene, other: State) -> float | None:
-    """Return the displacement of the images; raise SceneError if the scene has no sheared images.
+    """Return the displacement of images; raise SceneError if the scene has no sheared images.
 
     Complete lengths of the container are subtracted, which is exact.
     """
@@ -216,7 +217,7 @@ def _checked_piston(scene: Scene, piston: np.ndarray | None) -> np.ndarray | Non
 
 
 def check_apart(scene: Scene, state: State) -> None:
-    """Raise SceneError if particles overlap by more than the rounding of single precision.
+    """Raise SceneError if particles overlap by more than rounding in single precision.
 
     Parameters
     ----------
@@ -243,7 +244,7 @@ def check_apart(scene: Scene, state: State) -> None:
 def _with_images(state: State) -> tuple[np.ndarray, np.ndarray]:
     """Return positions (M, d) and radii (M,) of a sheared gas and its images.
 
-    These are the images below the gas that particles of the gas may touch.
+    The images lie below the gas. Only images that particles of the gas may touch are included.
     """
     near = state.lengths[GRADIENT] - state.positions[:, GRADIENT] <= 2.0 * state.radii.max()
     images = state.positions[near]
@@ -253,15 +254,15 @@ def _with_images(state: State) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _wrap_coordinates(values: np.ndarray, lengths: np.ndarray | float) -> np.ndarray:
-    """Return coordinates in [0, L) of the same positions among periodic images."""
+    """Return the coordinates in [0, L) of the equivalent periodic images."""
     placed = values - lengths * np.floor(values / lengths)
-    return np.where(placed >= lengths, 0.0, placed)  # rounded up
+    return np.where(placed >= lengths, 0.0, placed)  # rounding may give L itself
 
 
 def _inside(scene: Scene, positions: np.ndarray, radii: np.ndarray, piston: np.ndarray | None) -> np.ndarray:
-    """Return (N, d) positions inside the container; raise SceneError for a particle outside.
+    """Return positions (N, d) inside the container; raise SceneError for a particle outside.
 
-    They are in [0, L) on axes with fixed images, and between the walls and the piston on other axes.
+    On axes with fixed images they are in [0, L). On other axes they are between the walls and the piston.
     """
     lengths, periodic = np.array(scene.container.lengths), np.array(scene.image_axes)
     slack = _SINGLE * lengths
@@ -282,10 +283,10 @@ def _inside(scene: Scene, positions: np.ndarray, radii: np.ndarray, piston: np.n
 def _bounds(
     scene: Scene, positions: np.ndarray, radii: np.ndarray, piston: np.ndarray | None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the (N, d) least and (N, d) greatest coordinates of particles at these positions.
+    """Return the lowest and highest coordinates, (N, d) each, that particles may have.
 
-    The bounds are walls and a piston, or the side of a piston on which a particle is. A sheared face is
-    crossed where it is reached.
+    The bounds are the walls and a piston. For a moving interior wall, the bounds depend on the particle's
+    side of the wall. A centre crosses a sheared face when it reaches the face.
     """
     walled = ~np.array(scene.container.periodic)
     margins = np.where(walled & (not scene.centres_to_walls), radii[:, None], 0.0)

@@ -18,7 +18,7 @@ from gaspart.state.insertion import per_particle, random_insertion
 from gaspart.state.random import directions, natural_log, normals, stream
 from gaspart.state.state import State
 
-# Potential wells at the faces of a container: depths, and which particles are inside.
+# Potential wells at the faces of a container: depths, and particles inside.
 
 
 def wells_of(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
@@ -43,7 +43,7 @@ def wells_of(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 
 
 def places_in_wells(scene: Scene, positions: np.ndarray, radii: np.ndarray) -> np.ndarray:
-    """Return the wells in which particles are.
+    """Return the wells that contain particles.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def places_in_wells(scene: Scene, positions: np.ndarray, radii: np.ndarray) -> n
     Returns
     -------
     ndarray of int8, shape (N, d)
-        -1 in the well of an axis' low face, 1 in the well of the high face, otherwise 0.
+        Index for each axis: -1 in the well of the low face, 1 in the well of the high face, otherwise 0.
     """
     margins = 0.0 if scene.centres_to_walls else radii[:, None]
     _, widths = wells_of(scene)
@@ -85,7 +85,7 @@ def well_energies(scene: Scene, wells: np.ndarray) -> np.ndarray:
     return -(np.where(wells < 0, depths[::2], 0.0) + np.where(wells > 0, depths[1::2], 0.0)).sum(axis=1)
 
 
-_POSITIONS, _VELOCITIES, _VIBRATIONS = 0, 1, 3  # 2 is that of draws at walls
+_POSITIONS, _VELOCITIES, _VIBRATIONS = 0, 1, 3  # stream 2 is for velocities drawn at walls
 
 
 def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
@@ -173,12 +173,13 @@ def assemble_state(scene: Scene, positions: np.ndarray, velocities: np.ndarray, 
     Returns
     -------
     State
-        State, with a piston at its position, at rest or at its speed, and images of a sheared gas that are
-        not displaced yet.
+        State. A piston is at its initial position, at rest or at its prescribed speed. Images of a sheared
+        gas are not displaced.
     """
     radii, masses = per_particle(scene, "radius").astype(float), per_particle(scene, "mass").astype(float)
-    shape = 1 / 2 if scene.dimension == 2 else 2 / 5  # moment of inertia / (m r^2), uniform density
-    inertia = per_particle(scene, "moment_of_inertia").astype(float)  # None becomes nan
+    # moment of inertia divided by m r^2, for uniform density
+    shape = 1 / 2 if scene.dimension == 2 else 2 / 5
+    inertia = per_particle(scene, "moment_of_inertia").astype(float)  # None becomes NaN
     inertia = np.where(np.isnan(inertia), shape * masses * radii**2, inertia)
     groups = [len(scene.species), *range(len(scene.species))]
     counts = [len(scene.particles), *(kind.count for kind in scene.species)]
@@ -204,9 +205,9 @@ def assemble_state(scene: Scene, positions: np.ndarray, velocities: np.ndarray, 
 
 
 def _piston(scene: Scene) -> tuple[str | None, np.ndarray | None]:
-    """Return the name of the face or interior wall that is a piston, and its start.
+    """Return the name of the face or interior wall that is a piston, and its motion.
 
-    The start is (2,): position and velocity at time 0.
+    The motion, (2,), has position and velocity at time 0.
     """
     for n, face in scene.pistons:
         start = scene.container.lengths[n // 2] if n % 2 else 0.0
@@ -216,9 +217,9 @@ def _piston(scene: Scene) -> tuple[str | None, np.ndarray | None]:
 
 
 def _on_lattice(scene: Scene, rng: np.random.Generator, arrangement: str) -> np.ndarray:
-    """Return the (N, d) positions of a "lattice" or "slab".
+    """Return the positions (N, d) of the arrangement "lattice" or "slab".
 
-    Raises SceneError as `lattice`, and if a particle would overlap an interior wall.
+    Raises SceneError like `lattice`, and if a particle would overlap an interior wall.
     """
     positions = lattice(scene, rng, slab=arrangement == "slab")
     radii = per_particle(scene, "radius").astype(float)
@@ -229,9 +230,9 @@ def _on_lattice(scene: Scene, rng: np.random.Generator, arrangement: str) -> np.
 
 
 def _instead_of_random(scene: Scene, seed: int | tuple[int, ...]) -> str:
-    """Return advice for particles that do not fit by random insertion.
+    """Return advice for particles that cannot be placed by random insertion.
 
-    The message names an arrangement only if the particles fit into the container with it.
+    The advice names an arrangement only if the particles fit into the container in this arrangement.
     """
     try:
         arranged = replace(scene, species=[replace(kind, arrangement="lattice") for kind in scene.species])
@@ -242,9 +243,9 @@ def _instead_of_random(scene: Scene, seed: int | tuple[int, ...]) -> str:
 
 
 def _vibrations(scene: Scene, rng: np.random.Generator) -> np.ndarray:
-    """Return the (N,) energies of the vibrations.
+    """Return the energies (N,) of the vibrations.
 
-    The energies are values of the scene, or drawn from exp(-E/kT)/kT; 0 without a vibration.
+    Energies are values of the scene, or drawn from exp(-E/kT)/kT. Without a vibration they are 0.
     """
     parts = [np.array([particle.vibration or 0.0 for particle in scene.particles])]
     for kind in scene.species:
@@ -256,7 +257,7 @@ def _vibrations(scene: Scene, rng: np.random.Generator) -> np.ndarray:
 
 
 def _velocities(scene: Scene, rng: np.random.Generator) -> np.ndarray:
-    """Return the (N, d) velocities: values of the scene, equal speeds, Maxwellian, or 0."""
+    """Return the velocities (N, d): from the scene, of equal speeds, Maxwellian, or 0."""
     parts = [
         np.array([particle.velocity for particle in scene.particles], dtype=float).reshape(
             -1, scene.dimension
@@ -277,14 +278,14 @@ def _velocities(scene: Scene, rng: np.random.Generator) -> np.ndarray:
 
 
 def _add_flow(scene: Scene, positions: np.ndarray, velocities: np.ndarray) -> None:
-    """Add the flow of a sheared gas to drawn velocities (N, d)."""
+    """Add the flow of a sheared gas to random velocities (N, d)."""
     drawn = slice(len(scene.particles), None)
     if scene.shear_rate is not None and len(positions[drawn]):
         velocities[drawn] = in_flow(scene, masses_of(scene)[drawn], positions[drawn], velocities[drawn])
 
 
 def in_flow(scene: Scene, masses: np.ndarray, positions: np.ndarray, velocities: np.ndarray) -> np.ndarray:
-    """Return velocities about the flow of a sheared gas, without a mean.
+    """Add the flow of a sheared gas to velocities, after their mean has been subtracted.
 
     Parameters
     ----------
@@ -300,8 +301,7 @@ def in_flow(scene: Scene, masses: np.ndarray, positions: np.ndarray, velocities:
     Returns
     -------
     ndarray, shape (N, d), [length/time]
-        Velocities. A gas with a mean velocity across the flow would be dragged along by the flow, ever
-        faster.
+        Velocities. If a gas had a mean velocity across the flow, the flow would accelerate it without limit.
     """
     peculiar = velocities.copy()
     for k in range(scene.dimension):
@@ -310,10 +310,10 @@ def in_flow(scene: Scene, masses: np.ndarray, positions: np.ndarray, velocities:
 
 
 def _make_exact(scene: Scene, velocities: np.ndarray) -> None:
-    """Rescale velocities so that the species of exact temperature, together, have that temperature.
+    """Rescale velocities so that all species with an exact temperature have it together.
 
-    Their mean is 0 along axes on which momentum is conserved, and the mean of m v^2 / kT per degree of
-    freedom is 1. The sums have the same rounding on every machine. Raises SceneError without a degree of
+    Their mean velocity is 0 along axes with conserved momentum. The mean of m v^2 / kT per degree of freedom
+    is 1. The sums have the same rounding on every machine. Raises SceneError if there is no degree of
     freedom.
     """
     first, parts = len(scene.particles), []
@@ -344,12 +344,13 @@ def lattice(scene: Scene, rng: np.random.Generator, slab: bool = False) -> np.nd
     Parameters
     ----------
     scene : Scene
-        Scene, to whose container the lattice is stretched.
-    rng : numpy.random.Generator Generator. If there are more sites than particles, the empty sites are
-        random; the order of species in a mixture is random, too.
+        Scene. The lattice is stretched to fill its container.
+    rng : numpy.random.Generator
+        Generator of random numbers. If there are more sites than particles, the empty sites are random. The
+        order of species in a mixture is random, too.
     slab : bool, default False
         If True, sites are empty only in the upper half of the longest side. This half melts at densities at
-        which a complete crystal would not melt. The result is a start for a crystal that coexists with its
+        which a complete crystal would not melt. The result is an initial state for coexistence of crystal and
         fluid.
 
     Returns
@@ -360,8 +361,7 @@ def lattice(scene: Scene, rng: np.random.Generator, slab: bool = False) -> np.nd
     Raises
     ------
     SceneError
-        If the lattice would have to be denser than the particles allow, or if the particles are too few for
-        the slab.
+        If the particles do not fit on the lattice, or if there are too few particles for the slab.
     """
     margin = np.array(scene.reach(scene.largest_radius)[0])
     walled = ~np.array(scene.container.periodic)
@@ -398,15 +398,15 @@ _FCC = np.array([[0.0, 0, 0], [0, 0.5, 0.5], [0.5, 0, 0.5], [0.5, 0.5, 0]])
 
 
 def _periods(cells: np.ndarray, walled: np.ndarray, basis: np.ndarray) -> np.ndarray:
-    """Return the (d,) lattice cells that fill the length.
+    """Return the number of lattice cells (d,) that fill the container.
 
-    Between walls the last half cell is empty, so it is not counted.
+    Between walls the last half cell is empty, and not counted.
     """
     return np.where(walled, np.maximum(cells - 1 + basis.max(axis=0), 0.5), cells)
 
 
 def _spacing(lengths: np.ndarray, cells: np.ndarray, walled: np.ndarray, basis: np.ndarray) -> float:
-    """Return the shortest distance of two sites."""
+    """Return the shortest distance between two sites."""
     edge = lengths / _periods(np.asarray(cells), walled, basis)
     diagonals = (basis[1:] * edge) if len(basis) > 1 else np.empty((0, len(edge)))
     return float(min(np.sqrt((diagonals**2).sum(axis=1)).min(), edge.min()))
@@ -415,7 +415,7 @@ def _spacing(lengths: np.ndarray, cells: np.ndarray, walled: np.ndarray, basis: 
 def _cell_counts(
     lengths: np.ndarray, shape: np.ndarray, walled: np.ndarray, count: int, per_cell: int
 ) -> list[np.ndarray]:
-    """Return numbers of cells (d,) close to the ideal shape, with at least `count` sites."""
+    """Return numbers of cells (d,) with nearly ideal shape, and at least `count` sites."""
     ideal = (lengths / shape) * (count / per_cell / np.prod(lengths / shape)) ** (1.0 / len(lengths))
     reach = np.stack(np.meshgrid(*([np.arange(-2, 4)] * len(lengths)), indexing="ij"), axis=-1)
     options = np.floor(ideal).astype(int) + reach.reshape(-1, len(lengths))

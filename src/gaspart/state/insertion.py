@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 PATIENCE = 2_000_000
-"""Failed attempts at placing one particle after which a container counts as full."""
+"""Number of failed attempts to place one particle, after which a container counts as full."""
 
 
 def per_particle(scene: Scene, attribute: str) -> np.ndarray:
@@ -29,8 +29,8 @@ def per_particle(scene: Scene, attribute: str) -> np.ndarray:
     scene : Scene
         Scene of the particles.
     attribute : str
-        Name of an attribute of `Particle` and `Species`. All particles of a species have the same value,
-        except for the radius.
+        Name of an attribute of `Particle` and `Species`. Except for the radius, all particles of a species
+        have the same value.
 
     Returns
     -------
@@ -44,14 +44,15 @@ def per_particle(scene: Scene, attribute: str) -> np.ndarray:
 
 
 def range_of_centres(scene: Scene, kind: Species) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Return the lowest and highest coordinates at which centres of a species are placed.
+    """Return the lowest and highest coordinates for centres of a species.
 
     Parameters
     ----------
     scene : Scene
         Scene of the species.
-    kind : Species Species. The centres of all its particles are as far from walls as the centre of its
-        largest particle must be.
+    kind : Species
+        Species. The centres of all its particles are as far from walls as the centre of its largest particle
+        must be.
 
     Returns
     -------
@@ -116,7 +117,7 @@ def random_insertion(
     rng : numpy.random.Generator
         Generator of the attempts.
     patience : int, default 2_000_000
-        Number of failures of one particle after which the container counts as full.
+        Number of failed attempts for one particle, after which the container counts as full.
 
     Returns
     -------
@@ -128,13 +129,13 @@ def random_insertion(
     Raises
     ------
     SceneError
-        If one particle has failed `patience` times: the container is practically full.
+        If `patience` attempts failed for one particle: the container is practically full.
     """
     from gaspart.kernels.insertion import Task, place, put
 
     dimension, explicit = scene.dimension, len(scene.particles)
     species = sorted(range(len(scene.species)), key=lambda n: -scene.species[n].largest_radius)
-    order = [np.arange(explicit)]  # particles in the order in which they are placed
+    order = [np.arange(explicit)]  # particles in the order of placement
     first = explicit + np.cumsum([0, *(kind.count for kind in scene.species)])
     order += [np.arange(first[n], first[n + 1]) for n in species]
     radii = np.concatenate(
@@ -149,10 +150,11 @@ def random_insertion(
     placed.failures[:explicit] = 0
     larger = np.flatnonzero(radii > largest)
 
-    for n, particle in enumerate(scene.particles):  # their places are given, and the scene has checked them
+    # positions of single particles are prescribed, and the scene has checked them
+    for n, particle in enumerate(scene.particles):
         position = np.clip(
             particle.position, *scene.reach(particle.radius)
-        )  # at a wall that it touches, exactly
+        )  # exactly at a wall that it touches
         placed.positions[n] = position
         put(placed, boxes.index_of(position), n)
     done = explicit

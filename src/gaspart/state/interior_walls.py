@@ -1,8 +1,8 @@
 """Interior walls as arrays, with images of walls near periodic faces.
 
-There is a row for each wall, and for each image of a wall that comes near a periodic face. Rows of segments
-and plates are described in `kernels.obstacles.distance`. Particles meet a wall near a periodic face
-across it too, so a wall has an image wherever one is within a radius of the container.
+There is a row for each wall, and for each periodic image of a wall that particles can touch. Rows of segments
+and plates are described in `kernels.obstacles.distance`. Particles also hit a wall across a periodic face.
+Therefore a wall has all periodic images whose distance from the container is at most a particle radius.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from gaspart.scene.scene import Scene
 from gaspart.scene.walls import Plate, Wall
 from gaspart.state.boxes import Boxes
 
-_SLACK = 1e-9  # relative extension of neighbourhoods, so that rounding leaves no wall out of a box's list
+_SLACK = 1e-9  # relative extension of neighbourhoods, so that rounding removes no wall from a box's list
 
 
 def wall_rows(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
@@ -96,7 +96,7 @@ def walls_near(rows: np.ndarray, boxes: Boxes, reach: float) -> tuple[np.ndarray
     Returns
     -------
     first : ndarray of int, shape (boxes + 2,)
-        Box b has the walls listed[first[b] : first[b + 1]].
+        Index of the first entry of each box: box b has the walls listed[first[b] : first[b + 1]].
     listed : ndarray of int
         Rows of the walls. The list of the last box is followed by a list of all walls, for particles that
         reach beyond the neighbouring boxes.
@@ -112,7 +112,8 @@ def walls_near(rows: np.ndarray, boxes: Boxes, reach: float) -> tuple[np.ndarray
         high = np.floor((corners.max(axis=0) + reach) / widths + _SLACK).astype(int)
         low, high = (np.clip(c, 0, per_side - 1) for c in (low, high))
         at = np.stack(np.meshgrid(*map(np.arange, low, high + 1), indexing="ij"), axis=-1).reshape(-1, d)
-        # near: the wall's line or plane passes the box's centre within reach and half the extent across it
+        # the line or plane of the wall is near if its distance from the centre of the box is at most reach
+        # plus half of the box's extent along the wall's normal
         normal = _normal(row)
         off = abs((((at + 0.5) * widths - row[:d]) * normal).sum(axis=1))
         near = off <= (reach + (0.5 * widths * abs(normal)).sum()) * (1 + _SLACK)

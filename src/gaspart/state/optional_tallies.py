@@ -1,8 +1,8 @@
-"""Base class of tallies that not every run has; `state.tally` declares them.
+"""Base class of optional tallies, which are declared in `state.tally`.
 
-A run requests a tally by an instance of its class with the settings. The command line and configs have
-these settings as text. An engine that can make it has its name in `Engine.tallies`, and a part
-(`engines.features.part.TallyPart`) that is found by that name.
+A run requests a tally by an instance of its class, with its settings. On the command line and in configs, the
+settings are text. An engine that can make the tally has the tally's name in `Engine.tallies`. It has a part
+(`engines.features.part.TallyPart`) of the same name.
 """
 
 from __future__ import annotations
@@ -25,10 +25,11 @@ class OptionalTally:
     name : str
         Name in messages, in files, and as `only` in the metadata of its fields of `Tally`.
     meaning, form : str
-        Description of the option of a run that requests it, and the form of its text: the settings in their
-        order, separated by colons; "" without such an option.
+        Description of the option of a run that requests the tally, and the form of its text: the settings in
+        their order, separated by colons. Both are "" without such an option.
     fact : str
-        Property that is true for the scenes whose runs all have the tally; "" if it is requested.
+        Name of a property of scenes. If it is true, all runs of the scene have the tally. It is "" if the
+        tally must be requested.
     """
 
     name: ClassVar[str]
@@ -67,12 +68,12 @@ class OptionalTally:
         return cls(*settings)
 
     def to_text(self) -> str:
-        """Return the text of its option, the inverse of `from_text`."""
+        """Return the text of the tally's option, the inverse of `from_text`."""
         return ":".join(map(str, asdict(self).values()))
 
     @property
     def option(self) -> str:
-        """Option of `gaspart run` that requests it, with its text."""
+        """Option of `gaspart run` that requests the tally, with its text."""
         return f"--{self.name.replace('_', '-')} {self.to_text()}"
 
     def check(self, scene: Scene) -> None:
@@ -86,4 +87,4 @@ class OptionalTally:
         self._require(scene)
 
     def _require(self, scene: Scene) -> None:
-        """Raise SceneError for such a scene; every class states its own rule here."""
+        """Raise SceneError for such a scene; every class implements its own rule here."""

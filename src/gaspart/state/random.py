@@ -1,8 +1,8 @@
-"""Seed streams, and random directions and velocities that are the same bits on every machine.
+"""Random streams, directions and velocities, with the same bits on every machine.
 
-Uniform numbers are from numpy's PCG64. All other random numbers are computed from these by +, -, x, / and the
-square root only. IEEE 754 defines these operations to the last bit, while logarithms of libraries differ
-between machines.
+Uniform numbers are from numpy's PCG64. All other random numbers are computed from these, only by +, -, x, /
+and the square root. IEEE 754 defines these operations to the last bit. Logarithms of libraries differ between
+machines.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def key_of(seed: int | tuple[int, ...], *purpose: int) -> np.ndarray:
 
 
 def _sequence(seed: int | tuple[int, ...], purpose: tuple[int, ...]) -> np.random.SeedSequence:
-    """Return the seed sequence of one purpose; raise SceneError for an invalid seed."""
+    """Return the seed sequence for one purpose; raise SceneError for an invalid seed."""
     parts = seed if isinstance(seed, (tuple, list)) else (seed,)
     for part in parts:
         if isinstance(part, bool) or not isinstance(part, (int, np.integer)) or part < 0:
@@ -69,7 +69,7 @@ def _sequence(seed: int | tuple[int, ...], purpose: tuple[int, ...]) -> np.rando
 
 
 def natural_log(x: np.ndarray) -> np.ndarray:
-    """Compute ln x to 2 units in the last place, by arithmetic alone.
+    """Compute ln x by basic arithmetic, accurate to 2 units in the last place.
 
     Parameters
     ----------

@@ -18,7 +18,8 @@ from gaspart.scene.shear import flow
 class State:
     """All particles at one time: the input and the output of engines.
 
-    The mass and the moment of inertia of a fixed particle are infinite. These particles count in no sum.
+    The mass and the moment of inertia of a fixed particle are infinite. Sums over particles exclude fixed
+    particles.
 
     Parameters
     ----------
@@ -35,7 +36,7 @@ class State:
     masses : ndarray, shape (N,), [mass]
         Masses.
     species : ndarray of int, shape (N,)
-        Index of the particle's species. Explicit particles are one more species after the others.
+        Index of the particle's species. Single particles form one more species after the others.
     lengths : ndarray, shape (d,), [length]
         Lengths of the container.
     spins : ndarray, shape (N,) in 2D or (N, 3) in 3D, [1/time]
@@ -189,11 +190,12 @@ class State:
         >>> initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1).momentum
         array([3., 4.])
         """
-        return (_finite(self.masses)[:, None] * self.velocities).sum(axis=0)  # not @: BLAS differs by machine
+        # not @, because BLAS differs between machines
+        return (_finite(self.masses)[:, None] * self.velocities).sum(axis=0)
 
     @property
     def angular_momentum(self) -> np.ndarray | float:
-        """Total angular momentum about the container's origin, spins included, [mass length^2/time].
+        """Total angular momentum about the container's origin with spins, [mass length^2/time].
 
         The result is a number in 2D and has the shape (3,) in 3D.
 
@@ -237,7 +239,7 @@ class State:
         >>> initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1).rotational_energy
         0.25
         """
-        if not self.spins.any():  # the energies of smooth particles, at a fraction of the cost
+        if not self.spins.any():  # equal for smooth particles, and much cheaper
             return 0.0
         return 0.5 * float((_finite(self.moments_of_inertia) * (self.spins**2).T).sum())
 
@@ -284,7 +286,7 @@ class State:
     def potential_energy(self) -> float:
         """Energy of all particles in wells and under gravity, [energy].
 
-        The energy under gravity is 0 if the centres are at the origin. On periodic axes it goes on falling
+        The energy under gravity is 0 for centres at the origin. On periodic axes it continues to decrease
         from image to image.
 
         Examples
@@ -360,7 +362,7 @@ class State:
         Returns
         -------
         State
-            State with read-only views of the same arrays: a change would not reach the simulation.
+            State with read-only views of the same arrays, because a change would not affect the simulation.
 
         Examples
         --------
@@ -395,7 +397,7 @@ def by_number(state: State, values: np.ndarray, capacity: int) -> np.ndarray:
     Returns
     -------
     ndarray, shape (capacity, ...)
-        Values, NaN for a number without a particle. Without open faces these are `values` themselves.
+        Values; NaN for a number without a particle. Without open faces, `values` is returned unchanged.
     """
     if state.numbers is None:
         return values
@@ -405,7 +407,7 @@ def by_number(state: State, values: np.ndarray, capacity: int) -> np.ndarray:
 
 
 def _finite(values: np.ndarray) -> np.ndarray:
-    """Return values with infinity replaced by 0."""
+    """Return values in which infinity is replaced by 0."""
     return np.where(np.isinf(values), 0.0, values)
 
 
@@ -415,10 +417,10 @@ def _cross(state: State) -> np.ndarray:
     return r[:, 0] * v[:, 1] - r[:, 1] * v[:, 0]
 
 
-# Velocity of the centre of mass of a gas, about which its fluxes are.
+# Velocity of the centre of mass of a gas; fluxes are computed relative to it.
 
 
-_ROUNDED = 2.0**-46  # mean velocity, in rms speeds, that is only rounding
+_ROUNDED = 2.0**-46  # mean velocity, in units of the rms speed, that is attributed to rounding
 
 
 def drift_of(scene: Scene, state: State) -> np.ndarray:
@@ -427,14 +429,14 @@ def drift_of(scene: Scene, state: State) -> np.ndarray:
     Parameters
     ----------
     scene : Scene
-        Scene of the state. In a sheared gas the velocity is about the flow.
+        Scene of the state. In a sheared gas the velocity is relative to the flow.
     state : State
         State.
 
     Returns
     -------
     ndarray, shape (d,), [length/time]
-        Velocity, or 0 if it is only rounding.
+        Velocity; 0 if it is due to rounding only.
     """
     velocities = state.velocities - flow(scene, state.positions)
     shares = (state.masses / state.masses.sum())[:, None] if state.count else np.zeros((0, 1))

@@ -1,6 +1,6 @@
 """Counters and sums of an engine, and the optional tallies, each declared once.
 
-Planning imports this module, so numpy is imported inside functions.
+The planning of a workflow imports this module, so numpy is imported inside functions.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 ENERGY, IMPULSE = "mass length^2/time^2", "mass length/time"
 ACTION, HEAT = "mass length^2/time", "mass length^3/time^2"
 SPEED, PRESSED, HEATED = "length/time", "mass length^(2-d)/time", "mass length^(3-d)/time^2"
-"""Units of sums, and of the velocity that goes with them; of momentum and heat per area."""
+"""Units of sums: of the velocity that belongs to a sum, and of momentum and heat per area."""
 
 
 @with_guidance
@@ -64,7 +64,7 @@ class Tally:
         Contacts of pairs and with walls that were elastic because an earlier contact of the same particle had
         not ended (`Restitution.contact_duration`).
     retained_energy : float, default 0.0, [energy]
-        Energy that these contacts would have dissipated.
+        Energy that these elastic contacts would have dissipated.
     thermostat_energy : float, default 0.0, [energy]
         Energy added by kicks.
     steps : int, default 0
@@ -86,11 +86,12 @@ class Tally:
         Particles that have entered through each face. None unless faces are open.
     momentum_per_area : ndarray, shape (F, d), optional, [mass length^(2-d)/time]
         Momentum along each axis given to each face, positive along the outward normal. The momentum of each
-        particle is divided by the area of the face that centres of its size can reach (`scene.accessible`),
-        in the container at the start. The value is 0 for interior walls and for faces that an engine does not
-        tally. None unless particles of different sizes can reach different areas of faces.
+        particle is divided by the area of the face that is accessible to centres of particles of this size
+        (`scene.accessible`). The area is computed for the initial container. The value is 0 for interior
+        walls and for faces that an engine does not tally. None unless particles of different sizes can reach
+        different areas of faces.
     heat_per_area : ndarray, shape (F,), optional, [mass length^(3-d)/time^2]
-        Energy of `wall_energy`, divided in the same way, and with the same zeros. Absent without
+        Energy of `wall_energy`, divided in the same way, with 0 for the same faces. None without
         `momentum_per_area`.
     stress_sum : ndarray, shape (d, d), optional, [mass length^2/time]
         Time integral of the stress tensor times the volume: of m v v and, at a collision, of r dp. Here r is
@@ -112,7 +113,7 @@ class Tally:
         Mean over each shell of k_B T g(r) times the time, from the pairs that collide
         (`analysis.pairs`). None unless requested.
     other_impulse_sum : ndarray, shape (shells,), optional, [mass length^2/time]
-        Contribution of all other pairs to the same quantity.
+        Contribution of all other pairs to the same mean.
 
     See Also
     --------
@@ -213,13 +214,13 @@ def compressibility_factor(
     return np.asarray(1.0 + virial / (dimension * count * temperature * time))
 
 
-# Optional tallies that a run requests.
+# Optional tallies that a run can request.
 
 
 _WITH_STRESS = frozenset(
     ("restitution", "roughness", "viscoelasticity", "contact_duration", "polydispersity", "lees_edwards")
 )
-"""Features with which velocities still change at contacts only."""
+"""Features with which velocities change only at contacts."""
 
 
 @with_guidance
@@ -260,7 +261,7 @@ _DISTURBING = (
     "sliding",
     "open",
 )
-"""Features with which there is no equilibrium at one temperature, or fixed particles in the way."""
+"""Features that prevent equilibrium at one temperature, or place fixed particles between the others."""
 _MOST = 100_000
 """Largest number of bins or shells."""
 FURTHEST = 0.499
@@ -317,10 +318,10 @@ class ImpulseTally(OptionalTally):
 
 
 def _require_equilibrium(scene: Scene) -> None:
-    """Raise SceneError, with the reason, if the impulses in a scene give no density.
+    """Raise SceneError if impulses do not determine the density in a scene.
 
-    Impulses give no density if velocities depend on positions. Velocities are independent of positions only
-    in equilibrium at one temperature.
+    The message states the reason. Velocities must be independent of positions. This holds only in equilibrium
+    at one temperature.
     """
     if len({particle.mass for particle in scene.particles}) > 1:
         rule = "must have one mass for an impulse tally, which sums over all single particles"
@@ -356,7 +357,7 @@ class PairImpulseTally(OptionalTally):
     shells : int
         Number of shells, from 2 to 100000.
     share : float, default 1.0, [1]
-        Fraction of contacts at which the pairs with the other particles are searched for, in (0, 1].
+        Fraction of contacts at which pairs with all other particles are searched, in (0, 1].
 
     Raises
     ------
@@ -391,7 +392,10 @@ class PairImpulseTally(OptionalTally):
         number("pair_impulses.share", self.share, "must be above 0 and at most 1", above=0.0, most=1.0)
 
     def _require(self, scene: Scene) -> None:
-        """Raise SceneError unless a scene is periodic, in equilibrium at one temperature, and long enough."""
+        """Raise SceneError unless a scene is periodic, large enough, and in equilibrium.
+
+        Equilibrium requires a single temperature.
+        """
         if not scene.is_periodic:
             rule = "needs a periodic container; set boundary: periodic"
             raise SceneError("pair_impulses", self.furthest, rule)
@@ -405,7 +409,7 @@ class PairImpulseTally(OptionalTally):
         _require_equilibrium(scene)
 
 
-# Optional tallies of every run of some scenes, if the engine makes them.
+# Optional tallies that every run of some scenes has, if the engine can make them.
 
 
 @dataclass(frozen=True)
@@ -434,7 +438,7 @@ class FixedCollisionTally(OptionalTally):
 
 @dataclass(frozen=True)
 class PerAreaTally(OptionalTally):
-    """Momentum and heat of faces per area that centres of each size can reach."""
+    """Momentum and heat transferred to faces, per area accessible to centres of each particle size."""
 
     name: ClassVar[str] = "per_area"
     fact: ClassVar[str] = "has_unequal_areas"

@@ -1,4 +1,4 @@
-"""Gases at walls that hold particles: step well, hard layer in it, flux from a wall.
+"""Gases at walls that bind particles: step well, hard layer, flux from a wall.
 
 Energies are in k_B T unless a temperature is among the arguments. A particle is in a well of width w if its
 centre is within w of the lowest position that it can reach.
@@ -11,7 +11,7 @@ from gaspart.theory.geometry import Numbers, Values, check_ranges, checked_packi
 from gaspart.theory.tables import packing_fraction_at
 
 _EXACT = np.sqrt(0.75)
-"""Height above a layer of spheres of diameter 1 above which a point is near one sphere at most."""
+"""Height above a layer of spheres of diameter 1, above which a point is near at most one sphere."""
 
 
 @check_ranges
@@ -84,8 +84,9 @@ def excess_in_well(held: Numbers, free: Numbers, diameter: float, width: float, 
 
     Notes
     -----
-    A sphere's ball of radius sigma, 4 pi sigma^3 / 3, is closed to other centres. Beyond a plane at a random
-    distance within a layer of thickness t lies the volume pi sigma^4 / (4 t) of this ball (exact).
+    A sphere excludes other centres from a ball of radius sigma and volume 4 pi sigma^3 / 3. For a sphere at a
+    random distance from the surface of a layer of thickness t, the mean volume of this ball beyond the
+    surface is pi sigma^4 / (4 t) (exact).
     """
     ball, beyond = particle_volume(3, 2.0 * diameter), 0.25 * np.pi * diameter**4
     in_well = held * (ball - 2.0 * beyond / width) + free * beyond / width
@@ -109,7 +110,7 @@ def length_in_langmuirs_formula(ratio: Numbers, depth: Numbers, outside: Numbers
     Returns
     -------
     float or ndarray, [length]
-        Length lambda of N_ads / N_gas = (A lambda / V) e^{depth / k_B T} (identity).
+        Length lambda in N_ads / N_gas = (A lambda / V) e^{depth / k_B T} (identity).
 
     Raises
     ------
@@ -151,13 +152,13 @@ def scaled_particle_activity(packing_fraction: Numbers) -> Values:
     Parameters
     ----------
     packing_fraction : array_like, [1]
-        Packing fraction eta, (coverage) of the discs, from 0 to 0.70.
+        Packing fraction eta (coverage) of the discs, from 0 to 0.70.
 
     Returns
     -------
     ndarray, same shape as `packing_fraction`, [1]
-        Activity z w e^{depth / k_B T} pi sigma^2 / 4 of a layer of coverage eta, whose gas has the activity
-        z.
+        Activity z w e^{depth / k_B T} pi sigma^2 / 4 of a layer of coverage eta in equilibrium with a gas of
+        activity z.
 
     Raises
     ------
@@ -199,21 +200,20 @@ def layer_diameter(width: Numbers) -> Values:
     Notes
     -----
     sqrt(1 - w^2 / 6). The heights of the centres are uniform and independent, so the mean square of their
-    difference is w^2 / 6. This is true to first order in w^2, if neighbours touch.
+    difference is w^2 / 6. The formula is correct to first order in w^2 for neighbours in contact.
     """
     return np.sqrt(1.0 - np.asarray(width, dtype=float) ** 2 / 6.0)
 
 
 def excluded_in_front(packing_fraction: float, width: float) -> float:
-    """Compute the volume in front of a layer that a sphere closes to the gas.
+    """Compute the volume in front of a layer that a sphere in it closes.
 
-    The result is the volume from which each further sphere of diameter 1 in the layer excludes the centres of
-    the gas.
+    From this volume, each further sphere of diameter 1 in the layer excludes the centres of the gas.
 
     Parameters
     ----------
     packing_fraction : float, [1]
-        Coverage eta of the layer, from 0 to 0.70, the stable discs.
+        Coverage eta of the layer, from 0 to 0.70, the limit of the stable disc fluid.
     width : float, [1]
         Width of the layer, in diameters of the spheres.
 
@@ -225,15 +225,15 @@ def excluded_in_front(packing_fraction: float, width: float) -> float:
     Raises
     ------
     SceneError
-        If the coverage is above the highest of stable discs.
+        If the coverage is above the limit of the stable disc fluid.
 
     Notes
     -----
-    For a single sphere the volume is the part of its ball of radius 1 that is in front of the layer: 2 pi / 3
-    if the layer is thin. For more spheres it is less, since their balls overlap. At the height h above the
-    layer's middle a sphere of the gas needs a circle of radius R = sqrt(1 - h^2) without discs. The
-    probability of such a circle is exact up to R = 1/2. For larger R it is from scaled-particle theory [1]_.
-    The volume is the derivative of the closed volume by the number of discs.
+    For a single sphere, the volume is the part of its ball of radius 1 in front of the layer: 2 pi / 3 if the
+    layer is thin. For more spheres it is smaller, because their balls overlap. At a height h above the middle
+    of the layer, a sphere of the gas needs a circle of radius R = sqrt(1 - h^2) without discs. The
+    probability of such a circle is exact up to R = 1/2. For larger R it follows from scaled-particle theory
+    [1]_. The volume is the derivative of the closed volume with respect to the number of discs.
 
     References
     ----------
@@ -261,8 +261,8 @@ def layer_activity(activity: Numbers, packing_fraction: float, gas_density: floa
     Parameters
     ----------
     activity : float or ndarray, [1]
-        beta P w e^{depth / k_B T} pi / 4 of the gas, whose pressure P is the density at contact with a hard
-        wall.
+        beta P w e^{depth / k_B T} pi / 4. P is the pressure of the gas; the density at contact with a hard
+        wall is beta P.
     packing_fraction : float, [1]
         Coverage eta of the layer, from 0 to 0.70.
     gas_density : float or ndarray, [1]
@@ -282,9 +282,9 @@ def layer_activity(activity: Numbers, packing_fraction: float, gas_density: floa
 
     Notes
     -----
-    `activity` is right for a single sphere in a thin well. The correction is of first order in the density of
-    the gas: a sphere excludes less additional volume where other spheres already exclude it, see
-    `excluded_in_front`.
+    `activity` is correct for a single sphere in a thin well. The correction is of first order in the density
+    of the gas. A sphere excludes less additional volume in front of the layer if other spheres already
+    exclude part of it, see `excluded_in_front`.
     """
     gained = 2.0 * np.pi / 3.0 - excluded_in_front(packing_fraction, width)
     return activity * layer_diameter(width) ** 2 * np.exp(gas_density * gained)
@@ -298,21 +298,21 @@ def excess_of_few(activity: float, held: float, others: float) -> float:
     activity : float, [1]
         Activity of the discs.
     held : float
-        Mean number of discs in the layer under a large gas.
+        Mean number of discs in the layer in equilibrium with an infinite gas.
     others : float
-        Mean number of particles of the gas with which the layer exchanges.
+        Mean number of particles in the gas that exchanges with the layer.
 
     Returns
     -------
     float, [1]
-        Mean excess of the number of discs, divided by the number under a large gas.
+        Mean excess of the number of discs, divided by the number in equilibrium with an infinite gas.
 
     Notes
     -----
-    The activity of the gas decreases with each particle that the layer gains. To the first order beyond
-    Gaussian fluctuations, with the cumulants kappa_n of the number of discs under a large gas, the excess is
-    (kappa_2 - kappa_3) / (2 (others + kappa_2)) discs; kappa_2 = S held, kappa_3 = (S^2 + S') held, S = d ln
-    eta / d ln z, S' = dS / d ln z. An ideal layer has no such excess (exact: the number is binomial).
+    The activity of the gas decreases with each particle that the layer gains. The excess is (kappa_2 -
+    kappa_3) / (2 (others + kappa_2)) discs, to first order beyond Gaussian fluctuations. The cumulants of the
+    number of discs with an infinite gas are kappa_2 = S held and kappa_3 = (S^2 + S') held, with S = d ln eta
+    / d ln z and S' = dS / d ln z. An ideal layer has no such excess (exact, because the number is binomial).
     """
     step = 0.05
     lower, middle, upper = np.log(

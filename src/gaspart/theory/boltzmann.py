@@ -2,9 +2,9 @@
 
 Chapman and Cowling, The Mathematical Theory of Non-uniform Gases (1970). Velocities are in sqrt(k_B T / m),
 and frequencies in n sigma^(d-1) times this velocity unless noted. The collision integrals are exact
-quadratures, so results of kinetic theory are accurate to the order of the polynomials. In the Enskog equation
-a homogeneous gas relaxes by the same operator times the contact value. So rates per collision of a particle
-do not depend on density.
+quadratures, so results of kinetic theory are accurate to the order of the polynomials. In the Enskog
+equation, a homogeneous gas relaxes by the same operator multiplied by the contact value. So rates per
+collision of a particle do not depend on density.
 """
 
 from __future__ import annotations
@@ -22,7 +22,8 @@ from gaspart.theory.rough import rough_ratio
 _FLUXES = {"viscosity": (2, 0), "conductivity": (1, 1)}
 """Rank of the harmonic tensor and order of the Sonine polynomial of the stress and of the heat flux."""
 _ORDERS = 5
-"""Number of polynomials of a flux: a sixth changes the integral of its correlation by 3e-5."""
+"""Number of polynomials of a flux; a sixth polynomial changes the integral of the flux correlation by 3e-5.
+"""
 
 
 def collisions(
@@ -42,20 +43,20 @@ def collisions(
     Returns
     -------
     weights : ndarray, shape (Q,), [1]
-        Weights, in which max(g.n, 0) counts.
+        Weights, which include the factor max(g.n, 0).
     velocities : tuple of ndarray, shape (d, Q), [1]
-        Velocities of both particles before, and of both after the collision.
+        Velocities of both particles before the collision, and of both particles after it.
 
     Notes
     -----
-    The normal is the last axis: integrands are scalars, on which its direction has no influence. Exact for
-    polynomials of a degree below 2 nodes in each component.
+    The normal is the last axis. Its direction has no influence, because the integrands are scalars. The
+    quadrature is exact for polynomials of a degree below 2 `nodes` in each component.
     """
     from scipy.special import roots_hermitenorm, roots_laguerre
 
     abscissae, share = roots_hermitenorm(nodes)
     share = share / np.sqrt(2.0 * np.pi)
-    energy, weight = roots_laguerre(nodes)  # of the approach, half the square of its speed over sqrt 2
+    energy, weight = roots_laguerre(nodes)  # half of the squared approach speed, over sqrt 2
     free = 2 * (dimension - 1) + 1
     axes = [part.ravel() for part in np.meshgrid(*[abscissae] * free, np.sqrt(2.0 * energy), indexing="ij")]
     shares = np.meshgrid(*[share] * free, weight / np.sqrt(np.pi), indexing="ij")
@@ -115,8 +116,8 @@ def brackets(
 def _contraction(rank: int, v: np.ndarray, w: np.ndarray) -> np.ndarray:
     """Return the contraction of two harmonic tensors of velocities.
 
-    It is v^l w^l P_l of the cosine of their angle, with v and w their sizes; in two dimensions cos(l angle)
-    instead of P_l.
+    It is v^l w^l P_l of the cosine of their angle, with the magnitudes v and w. In two dimensions cos(l
+    angle) replaces P_l.
     """
     from scipy.special import eval_legendre
 
@@ -128,7 +129,7 @@ def _contraction(rank: int, v: np.ndarray, w: np.ndarray) -> np.ndarray:
 
 @lru_cache
 def flux_relaxation(quantity: str) -> tuple[np.ndarray, np.ndarray]:
-    """Compute rates and weights of the relaxation of the kinetic part of a flux of discs.
+    """Compute rates and weights of the relaxation of the kinetic flux of discs.
 
     Parameters
     ----------
@@ -150,38 +151,39 @@ def flux_relaxation(quantity: str) -> tuple[np.ndarray, np.ndarray]:
     Notes
     -----
     The correlation of the flux after s collisions of a particle is sum w exp(-rate s). The spectrum of the
-    operator is continuous. Rates and weights belong to its Gauss quadrature, which gives the correlation's
-    integral and mean time to 1e-4. The integrals are the Sonine factors divided by the first rate; the heat
-    flux of discs relaxes half as fast as their stress.
+    operator is continuous. The rates and weights form its Gauss quadrature, which gives the integral and the
+    mean time of the correlation to 1e-4. The integrals are the Sonine factors divided by the first rate. The
+    heat flux of discs relaxes half as fast as their stress.
     """
     rank, first = _FLUXES[quantity]
     orders = range(first, first + _ORDERS)
     matrix = brackets(rank, orders, collisions(2, 2 * _ORDERS + 2))
-    # the mean square of S_k times the harmonic tensor
+    # mean square of S_k times the harmonic tensor
     norms = [2.0**rank * math.gamma(order + rank + 1.0) / math.factorial(order) for order in orders]
-    rate = 2.0 * math.sqrt(math.pi)  # collisions of a particle
+    rate = 2.0 * math.sqrt(math.pi)  # decay times, in collisions of a particle
     rates, modes = np.linalg.eigh(matrix / np.sqrt(np.outer(norms, norms)) / rate)
     return rates, modes[0] ** 2
 
 
 # Homogeneous Boltzmann equation of hard spheres and discs, by direct simulation.
 #
-# This program computes results without a closed form: the relaxation of a gas whose particles all start
-# with one speed, by which the tables `data/relaxation_2d.csv` and `_3d.csv` are checked; the fourth
-# cumulant of a gas that cools; `data/rough_cooling.csv` and `data/rough_start.csv`, the temperatures of
-# rough discs that cool, and from a start without spins. There are no positions: partners are drawn at
-# random, which is molecular chaos (Nanbu 1980, Babovsky 1986). `tagged_paths` has a particle of another size
-# and mass in such a gas.
+# This program computes results without a closed form. One is the relaxation of a gas in which all particles
+# initially have the same speed; it tests the tables `data/relaxation_2d.csv` and `_3d.csv`. Another is the
+# fourth cumulant of a cooling gas. `data/rough_cooling.csv` and `data/rough_start.csv` contain the
+# temperatures of rough discs that cool, and of rough discs that start without spins. Particles have no
+# positions. Collision partners are drawn at random, which is molecular chaos (Nanbu 1980, Babovsky 1986).
+# `tagged_paths` simulates a particle of another size and mass in such a gas.
 
 
 _SHARE = 0.01
-"""Time step times the root-mean-square speed: 0.4 % of the particles collide in a step, so that what would
-have been a particle's second collision in it, which is lost, is 0.2 % of all."""
+"""Time step times the root-mean-square speed. In a step 0.4 % of the particles collide. A second collision of
+a particle within a step is lost; this concerns 0.2 % of all collisions.
+"""
 
 
 @dataclass(frozen=True)
 class Homogeneous:
-    """Course of a homogeneous gas, after each of S - 1 steps and at the start.
+    """Evolution of a homogeneous gas, at the start and after each of S - 1 steps.
 
     Parameters
     ----------
@@ -279,7 +281,7 @@ def relaxing_speeds(count: int, times: np.ndarray, hits: float, seed: int = 0) -
             i, j, normal, approach = _meetings(rng, velocity)
             velocity[i] -= approach[:, None] * normal
             velocity[j] += approach[:, None] * normal
-            # A step pairs all, and the mean of max(g.n, 0) over the normals is g / 4.
+            # all particles are paired in each step, and the mean of max(g.n, 0) over the normals is g / 4
             now += _step(velocity) / (4.0 * hits)
         rows.append(lengths(velocity))
     return np.array(rows)
@@ -288,7 +290,7 @@ def relaxing_speeds(count: int, times: np.ndarray, hits: float, seed: int = 0) -
 def rough_discs(
     count: int, collisions: float, inertia: float, tangential: float, normal: float = 1.0, seed: int = 0
 ) -> np.ndarray:
-    """Simulate the ratio of the temperatures of rough discs that cool.
+    """Simulate the ratio of the temperatures of cooling rough discs.
 
     Parameters
     ----------
@@ -317,8 +319,8 @@ def rough_discs(
 
     Notes
     -----
-    Velocities and spins start Maxwellian, at the ratio of `rough.rough_ratio`. They become correlated with
-    time.
+    Velocities and spins initially have Maxwellian distributions, with the temperature ratio
+    `rough.rough_ratio`. During the run they become correlated.
     """
     rng = np.random.default_rng(seed)
     velocity, spin = rng.standard_normal((count, 2)), rng.standard_normal(count)  # spin: R omega
@@ -333,7 +335,7 @@ def rough_discs(
 def rough_start(
     count: int, collisions: float, inertia: float, seed: int = 0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Simulate perfectly rough discs whose velocities are Maxwellian and whose spins are 0 at first.
+    """Simulate perfectly rough discs with initially Maxwellian velocities and zero spins.
 
     Parameters
     ----------
@@ -373,7 +375,7 @@ def _rough_step(
     tangential: float,
     normal: float,
 ) -> float:
-    """Advance rough discs by a step: change velocities and spins, return the collisions of a disc."""
+    """Advance rough discs by a step; change velocities and spins, and return the collisions per disc."""
     share = inertia * (1.0 + tangential) / (2.0 * inertia + 2.0)
     i, j, along, approach = _meetings(rng, velocity)
     across = np.stack([-along[:, 1], along[:, 0]], axis=1)
@@ -389,9 +391,9 @@ def _rough_step(
 def _meetings(
     rng: np.random.Generator, velocity: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return the collisions of a step.
+    """Return the collisions in a step.
 
-    These are particles i and j (M,), unit normals (M, d), speeds of approach (M,).
+    They consist of the particles i and j (M,), unit normals (M, d), and speeds of approach (M,).
     """
     step = _step(velocity)
     first, second = rng.permutation(len(velocity))[: len(velocity) // 2 * 2].reshape(2, -1)
@@ -402,7 +404,7 @@ def _meetings(
 
 
 def _step(velocity: np.ndarray) -> float:
-    """Return the probability of a collision per speed of approach in a step."""
+    """Return the probability of a collision in a step, divided by the speed of approach."""
     return _SHARE / float(np.sqrt(dot(velocity, velocity).mean()))
 
 
@@ -470,20 +472,20 @@ def dot(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     return products
 
 
-# Tagged sphere in a dilute gas of given speeds, by direct simulation.
+# Tagged sphere in a dilute gas with given speeds, by direct simulation.
 #
-# The simulation solves the linear Boltzmann equation. The gas is isotropic, unaffected by the sphere, and
-# need not be in equilibrium. The sphere, of mass M, flies freely until a gas particle of mass m hits it
-# along a normal n; then its velocity along n changes by 2 m / (m + M) times the difference of both.
-# Normals are isotropic, and a gas particle of speed c has a velocity along them that is uniform in [-c, c]
-# (Archimedes), so hits come at the rate
+# The simulation solves the linear Boltzmann equation. The gas is isotropic and not affected by the sphere. It
+# need not be in equilibrium. A sphere of mass M flies freely until a gas particle of mass m hits it along a
+# normal n. Then its velocity along n changes by 2 m / (m + M) times the velocity difference along n. Normals
+# are isotropic. The velocity along the normal of a gas particle of speed c is uniform in [-c, c]
+# (Archimedes), so the hit rate is
 #
 # .. math:: n a^2 \int d\hat n \int_{-c}^{c} \frac{du}{2c} \max(\mathbf V \cdot \hat n - u, 0) .
 #
-# Gas particles never come back (Chapman and Cowling's molecular chaos): this needs a mean free path of
-# theirs that is much longer than the distance of contact a. In Maxwell's gas a heavy sphere obeys
-# Langevin's equation, and one of the gas's own mass has 1.01895 times its diffusion; there this program
-# has both as tests.
+# Gas particles never return (Chapman and Cowling's molecular chaos). This requires that their mean free path
+# is much longer than the contact distance a. In a Maxwellian gas a heavy sphere obeys the Langevin equation,
+# and the diffusion coefficient of a sphere with the mass of the gas particles is 1.01895 times the first
+# Sonine approximation. Both results are tests of this program.
 
 
 @dataclass(frozen=True)
@@ -552,8 +554,8 @@ def _advance(
 ) -> None:
     """Move all spheres for one interval, in place.
 
-    Hits are drawn at a rate that no sphere exceeds at its present speed, and accepted in proportion to the
-    speed of approach. So there is no time step and no error of a time step.
+    Hits are drawn at a rate that exceeds the hit rate of every sphere, and accepted with a probability
+    proportional to the speed of approach. So there is no time step and no error due to a time step.
     """
     fastest = float(gas.max())
     flying, moving, remaining = np.arange(len(position)), velocity.copy(), np.full(len(position), interval)

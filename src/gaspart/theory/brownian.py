@@ -12,8 +12,9 @@ import numpy as np
 from gaspart.theory.geometry import Numbers, Values, check_ranges, checked_packing_fraction
 
 SONINE_EQUAL_MASSES = 1.01895
-"""D of a particle as heavy as the gas's, divided by the first Sonine approximation k_B T / (M rate) (derived
-again, as in `enskog`)."""
+"""Diffusion coefficient D of a particle with the mass of the gas particles, divided by the first Sonine
+approximation k_B T / (M rate) (derived again, as in `enskog`).
+"""
 
 
 @check_ranges
@@ -31,7 +32,7 @@ def friction_rate(
     number_density : float or ndarray, [1/length^3]
         Number density n of the gas.
     contact_distance : float, [length]
-        Distance a of the centres at contact, the sum of the two radii.
+        Distance a of the centres at contact, the sum of both radii.
     mass : float or ndarray, [mass]
         Mass M of the particle.
     gas_mass : float, default 1.0, [mass]
@@ -51,8 +52,8 @@ def friction_rate(
 
     Notes
     -----
-    (8/3) n a^2 sqrt(2 pi mu k_B T) / M, with mu the reduced mass of particle and gas particle [1]_. Exact for
-    a dilute gas in equilibrium whose mean free path is much longer than the contact distance.
+    (8/3) n a^2 sqrt(2 pi mu k_B T) / M, with the reduced mass mu of the particle and a gas particle [1]_.
+    Exact for a dilute gas in equilibrium whose mean free path is much longer than the contact distance.
 
     References
     ----------
@@ -96,9 +97,9 @@ def tagged_diffusion(rate: Numbers, mass: float, gas_mass: float = 1.0, temperat
 
     Notes
     -----
-    D = k_B T / (M rate) by the Langevin equation, times 1.01895 for a particle as heavy as the gas's. For
-    other masses the true correction lies below this one, and it vanishes as the particle becomes heavy: it is
-    left out.
+    D = k_B T / (M rate) by the Langevin equation. For a particle with the mass of the gas particles, the
+    result is multiplied by 1.01895. For other masses the true correction is smaller, and vanishes for heavy
+    particles; it is neglected.
 
     Examples
     --------
@@ -139,7 +140,7 @@ def langevin_msd(time: Numbers, diffusion: Numbers, rate: Numbers, dimension: in
 
     Notes
     -----
-    2 d D [t - (1 - exp(-g t)) / g], Ornstein and Fuerth's. The result is for an exponential velocity
+    2 d D [t - (1 - exp(-g t)) / g], by Ornstein and Fuerth. The result is for an exponential velocity
     autocorrelation with the rate g: ballistic at short times, 2 d D t at long times.
 
     Examples
@@ -149,7 +150,8 @@ def langevin_msd(time: Numbers, diffusion: Numbers, rate: Numbers, dimension: in
     array([  0.    ,   2.2073, 594.    ])
     """
     scaled = rate * np.asarray(time, dtype=float)
-    # t - (1 - exp(-g t)) / g loses its digits at small g t: its series there, g t^2 / 2 (1 - g t / 3 + ...).
+    # At small g t, t - (1 - exp(-g t)) / g loses digits. The series g t^2 / 2 (1 - g t / 3 + ...) is used
+    # instead.
     series = 0.5 * scaled**2 * (1.0 - scaled / 3.0 + scaled**2 / 12.0)
     shape = np.where(scaled < 1e-3, series, scaled + np.expm1(-scaled))
     return 2.0 * dimension * diffusion / rate * shape
@@ -197,12 +199,12 @@ def langevin_msd_from_rest(time: Numbers, diffusion: Numbers, rate: Numbers, dim
     return 2.0 * dimension * diffusion / rate * shape
 
 
-# Buoyancy of a large disc in a fluid of small discs, by scaled-particle theory.
+# Buoyancy of a large disc in a fluid of small discs, from scaled-particle theory.
 #
-# The theory gives the work of insertion. In equilibrium the work of inserting a hard disc depends on the
-# height through the chemical potential of the fluid there, mu(z) = const - m g z. The upward force on the
-# disc is therefore m g dW/dmu = m g (number of small discs displaced). That is Archimedes's principle:
-# only the missing fluid counts, adsorption included.
+# The theory gives the work of insertion. In equilibrium, the work of inserting a hard disc depends on the
+# height only through the chemical potential mu(z) = const - m g z of the fluid. The upward force on the disc
+# is therefore m g dW/dmu, which is m g times the number of displaced small discs. This is Archimedes's
+# principle: only the mass of the displaced fluid counts, including adsorption.
 
 
 _HIGHEST = 0.7
@@ -215,7 +217,7 @@ def insertion_work(packing_fraction: Numbers, size_ratio: Numbers) -> Values:
     Parameters
     ----------
     packing_fraction : array_like, [1]
-        Packing fraction eta, of the fluid, from 0 to 0.7.
+        Packing fraction eta of the fluid, from 0 to 0.7.
     size_ratio : array_like, [1]
         Radius s of the inserted disc divided by the radius of a disc of the fluid.
 
@@ -232,7 +234,7 @@ def insertion_work(packing_fraction: Numbers, size_ratio: Numbers) -> Values:
     Notes
     -----
     -ln(1 - eta) + 2 s eta / (1 - eta) + s^2 eta / (1 - eta)^2, scaled-particle theory [1]_ (tested against
-    the equation of state at s = 1). The last term is the pressure times the disc's own area, so the second
+    the equation of state at s = 1). The last term is the pressure times the area of the disc, so the second
     term is the line tension of its edge.
 
     References
@@ -257,14 +259,14 @@ def displaced_area(packing_fraction: Numbers, size_ratio: Numbers) -> Values:
     Parameters
     ----------
     packing_fraction : array_like, [1]
-        Packing fraction eta, of the fluid, from 0 to 0.7.
+        Packing fraction eta of the fluid, from 0 to 0.7.
     size_ratio : array_like, [1]
         Radius s of the large disc divided by the radius of a disc of the fluid.
 
     Returns
     -------
     ndarray, [1]
-        Area of fluid displaced divided by the area of a small disc, (dW/dmu) / eta.
+        Displaced area of fluid divided by the area of a small disc, (dW/dmu) / eta.
 
     Raises
     ------
@@ -274,8 +276,9 @@ def displaced_area(packing_fraction: Numbers, size_ratio: Numbers) -> Values:
     Notes
     -----
     s^2 + 2 s (1 - eta) / (1 + eta) + (1 - eta)^2 / (1 + eta), scaled-particle theory (see `insertion_work`).
-    In a dilute gas the result is (s + 1)^2, because centres are excluded from the radius R + r. In a dense
-    fluid it is less, because the fluid is drawn to the disc's edge and fills a part of that margin again.
+    In a dilute gas the result is (s + 1)^2, because centres are excluded within the radius R + r. In a dense
+    fluid the result is smaller, because the fluid is attracted to the edge of the disc and fills a part of
+    this margin.
 
     Examples
     --------

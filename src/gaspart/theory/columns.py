@@ -1,7 +1,9 @@
-"""Column of a gas in equilibrium under gravity: hydrostatics at the temperature of its energy.
+"""Column of a gas in equilibrium under gravity: hydrostatics for a prescribed energy.
 
-Heights are heights of centres above the lowest position of a centre. Hard spheres and discs follow the
-reference equation of state. With `ideal` the gas follows the Boltzmann model, whose virial is 0.
+The temperature of the column is the temperature at which it has this energy.
+
+Heights are measured from the lowest possible position of a centre. Hard spheres and discs follow the
+reference equation of state. With `ideal`, the gas follows the Boltzmann equation, without a virial.
 """
 
 from __future__ import annotations
@@ -12,6 +14,8 @@ from functools import cached_property
 
 import numpy as np
 
+from gaspart.scene.faces import Thermal
+from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 from gaspart.theory.geometry import particle_volume
 from gaspart.theory.gravity import hydrostatic_profiles
@@ -19,8 +23,10 @@ from gaspart.theory.state import compressibility_factor, contact_value
 
 _POINTS = 1200
 _SCALES = 25.0
-"""Scale heights above the floor beyond which nothing is left of a column."""
+"""Height above the floor, in scale heights, beyond which the density of a column is negligible."""
 _ROUNDS = 40
+COMPARED = ("collision_rate", "temperature", "density")
+"""Observables by which columns are compared, besides pressures."""
 
 
 @dataclass(frozen=True)
@@ -28,13 +34,13 @@ class Column:
     """Column of a gas in equilibrium under gravity.
 
     heights : (Z,), heights.
-    numbers : (S, Z), particles per height, of kinds that differ in mass.
+    numbers : (S, Z), particles per height, for each kind of particle mass.
     masses : (S,), masses of the kinds.
     temperature : temperature.
     pull : acceleration of gravity.
     area : area of the cross-section.
-    diameter, dimension : of the particles.
-    ideal : see the module.
+    diameter, dimension : diameter of the particles.
+    ideal : True for an ideal gas (see the module).
     """
 
     heights: np.ndarray
@@ -49,7 +55,7 @@ class Column:
 
     @cached_property
     def filled(self) -> np.ndarray:
-        """(Z,) packing fraction."""
+        """Packing fraction (Z,)."""
         return self.numbers.sum(axis=0) / self.area * particle_volume(self.dimension, self.diameter)
 
     @property
@@ -62,9 +68,9 @@ class Column:
 
     @property
     def collisions(self) -> float:
-        """Collisions per time, in units that do not depend on the state.
+        """Collisions per time, up to a constant factor.
 
-        These rates are for comparing two columns of one scene.
+        The result is only for comparisons between columns of one scene.
         """
         contact = 1.0 if self.ideal else contact_value(self.filled, self.dimension)
         speed = np.sqrt(1.0 / self.masses[:, None] + 1.0 / self.masses)
@@ -80,14 +86,14 @@ class Column:
 
 @dataclass(frozen=True)
 class GravityColumn:
-    """Scene under gravity along one axis with walls, whose columns are computed.
+    """Scene with gravity along one axis with walls, for which columns are computed.
 
     axis : number of the axis.
     low : True if the floor is the lower wall.
     pull : acceleration of gravity.
-    height : height that centres can reach.
-    area : area of the cross-section.
-    masses, counts : (S,), masses and numbers of particles of the kinds.
+    height : height that is accessible to centres.
+    area : cross-section.
+    masses, counts : (S,), masses and numbers of particles of each kind.
     diameter : diameter of the particles.
     """
 
@@ -104,7 +110,7 @@ class GravityColumn:
     def column(self, temperature: float, ideal: bool) -> Column:
         """Compute the column at a temperature.
 
-        Raises ValueError if the fluid would be denser than the range of its equation of state.
+        Raises ValueError if the density exceeds the range of the equation of state of the fluid.
         """
         d, weights = self.dimension, self.masses * self.pull / temperature
         top = min(self.height, self._reaches(temperature))
@@ -119,7 +125,7 @@ class GravityColumn:
         return Column(z, densities * self.area, *shape)
 
     def _reaches(self, temperature: float) -> float:
-        """Return the height of the gas: a close-packed bed, and an atmosphere above it.
+        """Return the height of the gas: a close-packed bed plus an atmosphere above it.
 
         The atmosphere consists of the lightest particles.
         """
@@ -127,9 +133,9 @@ class GravityColumn:
         return 2.0 * float(volume) + _SCALES * temperature / float(self.masses.min() * self.pull)
 
     def of_energy(self, energy: float, ideal: bool) -> Column:
-        """Compute the column at the temperature at which it has an energy.
+        """Compute the column whose temperature corresponds to an energy.
 
-        Raises ValueError as `column`, and for an energy that the column has at no temperature.
+        Raises ValueError for the reasons of `column`, and for an energy that no temperature gives.
         """
         if not energy > 0.0:
             raise ValueError(f"energy: {energy} (must be positive)")
@@ -138,7 +144,7 @@ class GravityColumn:
             middle = 0.5 * (low + high)
             try:
                 colder = self.column(middle, ideal).energy < energy
-            except ValueError:  # so cold that its floor would be denser than a fluid
+            except ValueError:  # at this temperature the floor would be denser than the fluid
                 colder = True
             low, high = (middle, high) if colder else (low, middle)
         return self.column(high, ideal)
@@ -150,8 +156,70 @@ class GravityColumn:
         return float(state.translational_energy + self.pull * (state.masses @ heights))
 
     def equilibrate(self, energy: float, heat: float | None, ideal: bool) -> Column:
-        """Compute the column in equilibrium: at the temperature of its faces, or with its energy.
+        """Compute the equilibrium column, at the temperature of its faces or for its energy.
 
-        The temperature of the faces is `heat`, if there is one. Raises ValueError as `of_energy`.
+        `heat` is the temperature of the faces, or None. Raises ValueError for the reasons of `of_energy`.
         """
         return self.column(heat, ideal) if heat else self.of_energy(energy, ideal)
+
+
+def gravity_column(scene: Scene) -> GravityColumn | None:
+    """Return the column of a scene under gravity, or None without a theory.
+
+    Theory covers equal-sized particles that lose no energy, between hard walls or walls at one temperature.
+    """
+    pull = [(k, g) for k, g in enumerate(scene.gravity or ()) if g]
+    kinds = [kind for kind in scene.kinds if kind.count]
+    law, thermal = scene.restitution, scene.face_temperatures
+    if len(pull) != 1 or scene.thermostat is not None or scene.walls or not kinds:
+        return None
+    if law is not None and (law.dissipative or law.rough):
+        return None
+    if len({kind.radius for kind in kinds}) > 1 or not all(kind.alike and not kind.fixed for kind in kinds):
+        return None
+    if len(thermal) > 1 or any(not isinstance(face, Thermal) or face.slides for face in scene.faces.values()):
+        return None
+    (k, g), (lower, upper) = pull[0], map(np.array, scene.reach(scene.smallest_radius))
+    sides = upper - lower
+    masses = sorted({kind.mass for kind in kinds})
+    counts = [sum(kind.count for kind in kinds if kind.mass == mass) for mass in masses]
+    return GravityColumn(
+        scene.dimension, k, g < 0.0, abs(g), float(sides[k]), float(np.delete(sides, k).prod()),
+        np.array(masses), np.array(counts, dtype=float), 2.0 * kinds[0].radius,
+    )  # fmt: skip
+
+
+def relative_change(
+    observable: str, low: Column, high: Column, middle: Column, top: bool | None = None
+) -> float:
+    """Compute the change of an observable between two columns, divided by its value in a third.
+
+    observable : one of `COMPARED`, where density means the root mean square, or pressure.
+    top : for a pressure, True at the top and False on the floor.
+    """
+    if observable == "density":
+        profiles = [
+            np.interp(middle.heights, column.heights, column.numbers.sum(axis=0), right=0.0)
+            for column in (low, high, middle)
+        ]
+        return float(np.sqrt(((profiles[1] - profiles[0]) ** 2).sum() / (profiles[2] ** 2).sum()))
+    first, second, value = (_value(column, observable, top) for column in (low, high, middle))
+    return abs(second - first) / value if value > 0.0 else math.inf
+
+
+def _value(column: Column, observable: str, top: bool | None) -> float:
+    """Return the pressure, the collision rate or the temperature of a column."""
+    if top is not None:
+        return column.pressure(top)
+    return column.collisions if observable == "collision_rate" else column.temperature
+
+
+def compare_columns(real: Column, ideal: Column, observable: str, top: bool | None) -> float:
+    """Compute the relative difference of an observable between a column of ideal and of real gas.
+
+    `top` is used only for a pressure: True for the wall at the top, None for all walls together.
+    """
+    if observable == "pressure" and top is not None:
+        return relative_change(observable, real, ideal, real, top)
+    differences = {name: relative_change(name, real, ideal, real) for name in COMPARED}
+    return differences.get(observable, max(differences.values()))

@@ -1,6 +1,7 @@
 """Self-diffusion beyond Enskog: dense corrections, finite systems, and the long-time tail.
 
-Arguments as in `enskog`: packing fraction (number or array), diameter, temperature (k_B = 1), mass, contact.
+Arguments are as in `enskog`: packing fraction (number or array), diameter, temperature (k_B = 1), mass,
+contact.
 """
 
 import math
@@ -25,15 +26,17 @@ ERPENBECK_WOOD_UNCERTAINTY = 0.007
 """Relative uncertainty of `erpenbeck_wood_ratio` up to eta = 0.45: the largest difference from the table of
 Pieprzyk and others (2019)."""
 ERPENBECK_WOOD_HIGHEST = 0.4915
-"""Packing fraction up to which `erpenbeck_wood_ratio` holds: where spheres freeze."""
+"""Largest packing fraction for `erpenbeck_wood_ratio`, where spheres freeze."""
 VISCOSITY_RATIO_UNCERTAINTY = 0.02
-"""Relative standard uncertainty of `viscosity_ratio`: the largest of its table."""
-_SHIFT = 0.05  # of the shift in a long container, see `diffusion_in_cube`
+"""Relative standard uncertainty of `viscosity_ratio`: the largest value in its table."""
+_SHIFT = 0.05  # relative uncertainty of the shift in a long container, see `diffusion_in_cube`
 _DENSE = 0.45, 0.03
-# Packing fraction from which on the uncertainty is larger, and which; the difference is 2 % at 0.487.
+# Packing fraction above which the uncertainty is larger, and this uncertainty; the difference is 2 % at
+# 0.487.
 _ORDERED = 2.0
-"""Relative remainder of D in a short cube, divided by the relative remainder of the contact value there: by
-the rows of `data/small_systems.csv` (tested)."""
+"""Relative remainder of D in a short cube, divided by the relative remainder of the contact value, from the
+rows of `data/small_systems.csv` (tested).
+"""
 _VELOCITY_DECAY = {
     2: (
         (0.846023, 1.076378, 1.483431, 2.029232, 2.713878),
@@ -44,8 +47,9 @@ _VELOCITY_DECAY = {
         (0.7870072, 0.1861966, 0.0259296, 0.0008627, 0.0000038),
     ),
 }
-"""Rates, in collisions of a particle, and weights of the velocity autocorrelation by the linear Boltzmann
-equation, whose spectrum five Sonine polynomials represent (by `boltzmann`, tested)."""
+"""Rates, per collision of a particle, and weights of the velocity autocorrelation from the linear Boltzmann
+equation. Five Sonine polynomials represent its spectrum (by `boltzmann`, tested).
+"""
 YEH_HUMMER_CONSTANT = 2.837297
 """Madelung-like constant of a cubic periodic container (Yeh and Hummer 2004, abstract)."""
 
@@ -71,8 +75,8 @@ def erpenbeck_wood_ratio(packing_fraction: Numbers) -> Values:
     Notes
     -----
     1 + 0.05403 y + 6.3656 y^2 - 10.9425 y^3 with y = rho sigma^3 / sqrt 2 [1]_. The coefficients were not
-    read in the paper. The values differ from the table of D in [2]_, as a public script quotes it, by 0.7 %
-    at most up to eta = 0.45, and by 2 % at 0.487 (tested).
+    checked against the paper. The values differ from the table of D in [2]_, as quoted by a public script, by
+    at most 0.7 % up to eta = 0.45, and by 2 % at 0.487 (tested).
 
     References
     ----------
@@ -153,9 +157,9 @@ def viscosity_ratio(packing_fraction: Numbers) -> Values:
 
     Notes
     -----
-    Measured by this program: straight lines between the rows of `data/viscosity_3d.csv`, and 1 up to eta =
-    0.3, where 1.00(1) was measured. The uncertainty is `VISCOSITY_RATIO_UNCERTAINTY`, and some 2 % more
-    between the rows.
+    Measured by this program. The ratio is interpolated linearly between the rows of `data/viscosity_3d.csv`.
+    It is 1 up to eta = 0.3, where 1.00(1) was measured. The uncertainty is `VISCOSITY_RATIO_UNCERTAINTY`,
+    plus about 2 % between the rows.
 
     Examples
     --------
@@ -171,7 +175,7 @@ def viscosity_ratio(packing_fraction: Numbers) -> Values:
 
 @check_ranges
 def yeh_hummer(length: Numbers, viscosity: Numbers, temperature: float = 1.0) -> Values:
-    """Compute the correction of the self-diffusion coefficient of spheres for a finite periodic cube.
+    """Compute the finite-size correction of the self-diffusion coefficient in a periodic cube.
 
     Parameters
     ----------
@@ -194,9 +198,9 @@ def yeh_hummer(length: Numbers, viscosity: Numbers, temperature: float = 1.0) ->
 
     Notes
     -----
-    2.837297 k_B T / (6 pi viscosity L) [1]_. The correction is hydrodynamic: it is valid if the mean free
-    path is much shorter than L. In a gas, modes of the velocity field decay with nu + D instead of nu. They
-    are the modes for a viscosity that is larger by rho D.
+    2.837297 k_B T / (6 pi viscosity L) [1]_. The correction is hydrodynamic, so it is valid if the mean free
+    path is much shorter than L. In a gas, the relevant modes decay with nu + D instead of nu. This is
+    equivalent to a viscosity that is larger by rho D.
 
     References
     ----------
@@ -244,18 +248,18 @@ def diffusion_in_cube(
     Raises
     ------
     SceneError
-        If an argument is out of range, or if the cube is so short that the images of a particle change the
-        contact value by more than a tenth.
+        If an argument is out of range, or if the cube is so small that periodic images change the contact
+        value by more than a tenth.
 
     Notes
     -----
-    `erpenbeck_wood_diffusion` minus `yeh_hummer`, of modes that decay with nu + D, with the viscosity of
-    `viscosity_ratio`. The shift is uncertain by a fraction of 5 % plus two mean free paths divided by the
-    side, but at most by a half. The second term counts in containers that are not much longer than a mean
-    free path. (Tested with 49 values of 1372 to 530604 spheres by another program.) In a short cube the
-    images of a particle order the fluid about it. The relative change of D is twice `finite_size_remainder`.
-    (Tested with 44 rows of `small_systems` in longer cubes; D is relative to the centre of mass in this
-    table.)
+    `erpenbeck_wood_diffusion` minus `yeh_hummer` for modes that decay with nu + D, with the viscosity from
+    `viscosity_ratio`. The relative uncertainty of the shift is 5 % plus two mean free paths divided by the
+    side, and at most a half. The second term matters if the container is not much longer than a mean free
+    path. (Tested with 49 values of 1372 to 530604 spheres from another program.) In a small cube, the
+    periodic images of a particle order the surrounding fluid. The relative change of D is twice
+    `finite_size_remainder`. (Tested with 44 rows of `small_systems` in larger cubes; in this table D is
+    relative to the centre of mass.)
 
     Examples
     --------
@@ -322,8 +326,8 @@ def velocity_decay_rate(
 
     Notes
     -----
-    2 nu / d, with nu of `collision_rate` (exact in equilibrium). k_B T / (m rate) is Enskog's D in the first
-    Sonine approximation.
+    2 nu / d, with nu of `collision_rate` (exact in equilibrium). k_B T / (m rate) is D of Enskog theory in
+    the first Sonine approximation.
 
     Examples
     --------
@@ -379,9 +383,9 @@ def enskog_mean_squared_displacement(
     -----
     2 d int (t - s) C(s) ds with C(s) = (k_B T / m) sum w exp(-r s). The velocity autocorrelation C is the
     solution of the linear Boltzmann equation at Enskog's collision rate, with the rates r and weights w of
-    five Sonine polynomials. At long times, where the result is 2 d D t, the accuracy is 6e-5 of Enskog's D
-    (2D) or 1e-5 (3D). At short times the error is smaller. There are no correlated collisions and no
-    long-time tail.
+    five Sonine polynomials. At long times, where the result is 2 d D t, the accuracy is 6e-5 (2D) or 1e-5
+    (3D) of Enskog's D. At short times the error is smaller. Correlated collisions and the long-time tail are
+    neglected.
 
     Examples
     --------
@@ -400,7 +404,7 @@ def enskog_mean_squared_displacement(
 def _spreading(
     packing_fraction: Numbers, dimension: int, diameter: float, temperature: float, mass: float
 ) -> tuple[Values, Values]:
-    """Return the number density, and Enskog's diffusion coefficient plus kinematic viscosity."""
+    """Return the number density, and the sum of Enskog's diffusion coefficient and kinematic viscosity."""
     density = number_density(np.asarray(packing_fraction, dtype=float), dimension, diameter)
     diffusion = enskog_diffusion(packing_fraction, dimension, diameter, temperature, mass)
     viscosity = enskog_viscosity(packing_fraction, dimension, diameter, temperature, mass)
@@ -446,7 +450,7 @@ def velocity_autocorrelation_tail(
     Notes
     -----
     ((d-1) / (d rho)) [4 pi (D + nu) t]^(-d/2), by mode coupling [1]_: the integral over the shear modes of
-    `modes`. D and the kinematic viscosity nu are Enskog's. Range: after 15 to 30 mean free times and before
+    `modes`. D and the kinematic viscosity nu are Enskog's. Range: after 15 to 30 mean free times, and before
     sound has crossed the container.
 
     References
@@ -493,9 +497,9 @@ def logarithmic_slope(
 
     Notes
     -----
-    k_B T / (8 pi m rho (D + nu)), the integral of `velocity_autocorrelation_tail`, which has the range and
-    the source. In 2D the tail falls as 1/t, so D(t) grows without limit and no diffusion coefficient exists.
-    At very long times D(t) changes the slope itself. Simulations do not reach these times.
+    k_B T / (8 pi m rho (D + nu)), the integral of `velocity_autocorrelation_tail`. See there for the range
+    and the source. In 2D the tail falls as 1/t, so D(t) grows without limit and no diffusion coefficient
+    exists. At very long times, D(t) itself changes the slope. Simulations do not reach such times.
 
     Examples
     --------

@@ -1,15 +1,15 @@
-"""Boltzmann equation of electrons among scatterers with modes, between two walls, by direct simulation.
+"""Boltzmann equation of electrons and scatterers with modes, between two walls, by direct simulation.
 
-Electrons in two dimensions do not collide with each other. An electron that hits a scatterer along a normal n
-gives its energy along n to the mode of the scatterer and receives the energy of the mode. Its velocity
-perpendicular to n does not change. Scatterers are met at random after a mean free path, the unit of length
-here. This is molecular chaos, which requires scatterers that are far from each other. Electrons that leave a
-wall have its temperature.
+Electrons in two dimensions do not collide with each other. A scatterer has a mode with an energy. An electron
+that hits a scatterer along a normal n exchanges its energy along n with the energy of the mode. Its velocity
+perpendicular to n does not change. Electrons hit scatterers at random after a mean free path, which is the
+unit of length. This is molecular chaos, which requires scatterers that are far from each other. Electrons
+that leave a wall have the temperature of the wall.
 
-This program computes `heat.METAL_BEND`, the deviation of the electrons' temperature from a straight line.
-Among scatterers that only deflect, n sqrt(T) is uniform, and T is linear where electrons have forgotten the
-walls. Here a fast electron loses its speed at a hit and not its direction alone; n T^0.65 is uniform (by
-correlations in equilibrium), so T^0.85 is linear, up to flights that are not short compared with the gap.
+This program computes `heat.METAL_BEND`, the deviation of the temperature profile of the electrons from a
+straight line. For scatterers that only deflect, n sqrt(T) is uniform, and T is linear far from the walls.
+Here a fast electron loses its energy at a hit, not only its direction. n T^0.65 is uniform (from correlations
+in equilibrium), so T^0.85 is linear, except if mean free paths are not short compared with the gap.
 """
 
 from __future__ import annotations
@@ -17,12 +17,13 @@ from __future__ import annotations
 import numpy as np
 
 _CELLS = 100
-"""Number of cells of the gap: within one of them electrons hit the same modes."""
+"""Number of cells in the gap; electrons in one cell hit the same modes."""
 _PER_CELL = 1.0
-"""Number of modes divided by the number of electrons: a steady state does not depend on it."""
+"""Number of modes divided by the number of electrons; the steady state does not depend on it."""
 _STEP = 0.2
-"""Time step of all electrons, in mean free paths divided by sqrt(cold): flights are exact, but hits of
-different electrons in a step have no order."""
+"""Time step of all electrons, in mean free paths divided by sqrt(cold). Flights are exact, but hits of
+different electrons within a step have no order.
+"""
 
 
 class MetalSlab:
@@ -50,7 +51,7 @@ class MetalSlab:
 
     Notes
     -----
-    All begin at the mean temperature.
+    Initially all modes have the mean temperature.
     """
 
     def __init__(self, hot: float, gap: float, count: int, seed: int = 0) -> None:
@@ -61,7 +62,7 @@ class MetalSlab:
         self.modes = self.rng.exponential(mean, (_CELLS, round(_PER_CELL * count / _CELLS)))
 
     def profile(self, duration: float, bins: int) -> np.ndarray:
-        """Advance the electrons and sum their energies and numbers in bins over times.
+        """Advance the electrons, and sum their energies and numbers in bins over time.
 
         Parameters
         ----------
@@ -73,7 +74,7 @@ class MetalSlab:
         Returns
         -------
         ndarray, shape (2, bins)
-            Sums over times and over electrons in each bin: of v^2 / 2, and of their number.
+            Sums over time and electrons in each bin: of v^2 / 2, and of the number of electrons.
         """
         sums = np.zeros((2, bins))
         for _ in range(round(duration / _STEP)):
@@ -103,7 +104,7 @@ class MetalSlab:
     def _leave_wall(self, which: np.ndarray) -> None:
         """Draw new velocities at the wall, diffusely at its temperature.
 
-        Along the normal they have the distribution of a flux.
+        Normal velocities have the distribution of a flux.
         """
         at_cold = self.velocity[which, 0] > 0.0
         thermal = np.sqrt(np.where(at_cold, 1.0, self.hot))
@@ -114,7 +115,7 @@ class MetalSlab:
     def _swap(self, which: np.ndarray) -> None:
         """Exchange the energy along the normal of each particle with one mode of the cell.
 
-        No mode is taken twice.
+        No mode is used twice.
         """
         cell = np.minimum((self.positions[which] * (_CELLS / self.gap)).astype(int), _CELLS - 1)
         order = np.argsort(cell, kind="stable")
@@ -123,7 +124,7 @@ class MetalSlab:
         mode = (rank + self.rng.integers(self.modes.shape[1])) % self.modes.shape[1]
         velocity = self.velocity[which]
         speed = np.linalg.norm(velocity, axis=1)
-        sine = self.rng.uniform(-1.0, 1.0, which.size)  # of the angle of incidence: the impact parameter
+        sine = self.rng.uniform(-1.0, 1.0, which.size)  # impact parameter instead of the angle of incidence
         cosine = np.sqrt(1.0 - sine**2)
         ahead = velocity / speed[:, None]
         aside = np.stack([-ahead[:, 1], ahead[:, 0]], axis=1)

@@ -1,11 +1,11 @@
 """Enskog theory of the dense gas: collision rate, mean free path and transport coefficients.
 
-All functions take `packing_fraction` (number or array), dimension 2 or 3, and the particles' diameter,
-temperature (k_B = 1) and mass; time is in units of diameter sqrt(mass / temperature). chi is `contact`, the
-pair distribution at contact, by default `state.contact_value`. Contact value of another equation of state, or
-1 in a gas of points. Literature: Chapman and Cowling (1970) for spheres; Gass, J. Chem. Phys. 54, 1898 (1971)
-for discs. The range is the range of the reference equation of state. The collision rate is exact; the
-transport coefficients neglect correlated collisions (see `diffusion`).
+All functions take `packing_fraction` (number or array), dimension 2 or 3, and the diameter, temperature (k_B
+= 1) and mass of the particles. Time is in units of diameter sqrt(mass / temperature). chi is `contact`, the
+pair distribution at contact; the default is `state.contact_value`. `contact` may be the contact value of
+another equation of state, or 1 for a gas of points. Literature: Chapman and Cowling (1970) for spheres; Gass,
+J. Chem. Phys. 54, 1898 (1971) for discs. The range is the range of the reference equation of state. The
+collision rate is exact. The transport coefficients neglect correlated collisions (see `diffusion`).
 """
 
 import math
@@ -23,9 +23,9 @@ from gaspart.theory.geometry import (
 from gaspart.theory.speeds import mean_speed, mean_speed_factor
 from gaspart.theory.state import compressibility_factor, contact_value, finite_size_correction
 
-# Exact solutions of the linear Boltzmann equation over the first Sonine approximation, at zero density:
-# diffusion; and viscosity and conductivity in units of diameter = mass = k_B T = 1. All derived again, by
-# Sonine polynomials to the fifth (tested).
+# Exact solutions of the linear Boltzmann equation divided by the first Sonine approximation, at zero density:
+# diffusion. Viscosity and conductivity, in units of diameter = mass = k_B T = 1. All values were derived
+# again with Sonine polynomials up to the fifth (tested).
 _DIFFUSION_FACTOR = {2: 1.02710, 3: 1.01895}
 _DILUTE_VISCOSITY = {2: 0.28829, 3: 0.17913}
 _DILUTE_CONDUCTIVITY = {2: 1.16192, 3: 0.67783}
@@ -52,7 +52,7 @@ def _kinetic(
 
 
 def kinetic_viscosity(packing_fraction: Numbers, dimension: int, contact: Numbers | None = None) -> Values:
-    """Compute the part of `enskog_viscosity` that is due to the kinetic stress.
+    """Compute the contribution of the kinetic stress to `enskog_viscosity`.
 
     Parameters
     ----------
@@ -76,13 +76,13 @@ def kinetic_viscosity(packing_fraction: Numbers, dimension: int, contact: Number
 
     Notes
     -----
-    The first term of `enskog_viscosity`. The kinetic stress relaxes within some collisions.
+    The first term of `enskog_viscosity`. The kinetic stress relaxes within a few collisions.
     """
     return _kinetic(_DILUTE_VISCOSITY[dimension], 2.0, packing_fraction, dimension, contact)
 
 
 def kinetic_conductivity(packing_fraction: Numbers, dimension: int, contact: Numbers | None = None) -> Values:
-    """Compute the part of `enskog_conductivity` that is due to the kinetic heat flux.
+    """Compute the contribution of the kinetic heat flux to `enskog_conductivity`.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def kinetic_conductivity(packing_fraction: Numbers, dimension: int, contact: Num
 
     Notes
     -----
-    The first term of `enskog_conductivity`. The kinetic heat flux relaxes within some collisions.
+    The first term of `enskog_conductivity`. The kinetic heat flux relaxes within a few collisions.
     """
     return _kinetic(_DILUTE_CONDUCTIVITY[dimension], 3.0, packing_fraction, dimension, contact)
 
@@ -151,8 +151,8 @@ def collision_rate(
     Notes
     -----
     nu = S rho sigma^(d-1) chi sqrt(k_B T / (pi m)) with S = 2 pi (2D), 4 pi (3D): 2 rho sigma chi sqrt(pi k_B
-    T / m) and 4 rho sigma^2 chi sqrt(pi k_B T / m). Exact in equilibrium (velocities are independent of
-    positions), with the accuracy of chi. In a run of N particles, nu = 2 N_coll / (N t).
+    T / m) and 4 rho sigma^2 chi sqrt(pi k_B T / m). The formula is exact in equilibrium (velocities are
+    independent of positions), apart from the accuracy of chi. In a run of N particles, nu = 2 N_coll / (N t).
 
     Examples
     --------
@@ -167,7 +167,7 @@ def collision_rate(
 
 @check_ranges
 def collision_rate_finite_size_factor(packing_fraction: Numbers, dimension: int, count: int) -> Values:
-    """Compute the collision rate of a finite number of particles divided by the infinite system's.
+    """Compute the collision rate of N particles divided by its value in the infinite system.
 
     Parameters
     ----------
@@ -190,8 +190,8 @@ def collision_rate_finite_size_factor(packing_fraction: Numbers, dimension: int,
 
     Notes
     -----
-    Contacts: the canonical Z_N - 1 divided by Z - 1, to first order in 1/N (see `finite_size_correction`).
-    Speeds: see `enskog.approach_factor`.
+    Contact value: the canonical Z_N - 1 divided by Z - 1, to first order in 1/N (see
+    `finite_size_correction`). Mean relative speed: see `enskog.approach_factor`.
 
     Examples
     --------
@@ -200,7 +200,7 @@ def collision_rate_finite_size_factor(packing_fraction: Numbers, dimension: int,
     1.00188
     """
     speeds = approach_factor(dimension, count)
-    eta = np.maximum(packing_fraction, 1e-6)  # the ratio's limit, where the excess itself vanishes
+    eta = np.maximum(packing_fraction, 1e-6)  # limit of the ratio, where the excess itself vanishes
     shift = finite_size_correction(eta, dimension, count, ensemble="canonical")
     return speeds * (1.0 + shift / (compressibility_factor(eta, dimension) - 1.0))
 
@@ -218,7 +218,7 @@ def approach_factor(dimension: int, count: int) -> float:
     Returns
     -------
     float, [1]
-        The mean of abs(v_12 . n), divided by Maxwell's at the temperature 2 E / (d N).
+        Mean of abs(v_12 . n), divided by its value for Maxwell's distribution at the temperature 2 E / (d N).
 
     Notes
     -----
@@ -235,7 +235,9 @@ def approach_factor(dimension: int, count: int) -> float:
 
 
 @check_ranges
-def mean_free_path(packing_fraction: Numbers, dimension: int, diameter: float = 1.0) -> Values:
+def mean_free_path(
+    packing_fraction: Numbers, dimension: int, diameter: float = 1.0, contact: Numbers | None = None
+) -> Values:
     """Compute the mean path of a particle between collisions.
 
     Parameters
@@ -246,6 +248,9 @@ def mean_free_path(packing_fraction: Numbers, dimension: int, diameter: float = 
         Discs or spheres.
     diameter : float, default 1.0, [length]
         Diameter sigma of a particle.
+    contact : array_like, [1], optional
+        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
+        state, or 1 in a gas of points.
 
     Returns
     -------
@@ -269,7 +274,8 @@ def mean_free_path(packing_fraction: Numbers, dimension: int, diameter: float = 
     0.158
     """
     with np.errstate(divide="ignore"):
-        return mean_speed(dimension) / collision_rate(packing_fraction, dimension, diameter)
+        rate = collision_rate(packing_fraction, dimension, diameter, contact=contact)
+        return mean_speed(dimension) / rate
 
 
 @check_ranges
@@ -311,9 +317,10 @@ def enskog_diffusion(
 
     Notes
     -----
-    D = c sqrt(k_B T / (pi m)) / (rho sigma^(d-1) chi), with c = (3/8) 1.01895 in 3D and (1/2) 1.02710 in 2D
-    (Sonine factors). 3D: exact at zero density; `diffusion` has the correction at higher density. 2D: D of
-    the Enskog equation only. The true D does not exist, because it grows like ln t.
+    D = c sqrt(k_B T / (pi m)) / (rho sigma^(d-1) chi). The constant c, which includes a Sonine factor, is
+    (3/8) 1.01895 in 3D and (1/2) 1.02710 in 2D. In 3D the formula is exact at zero density; `diffusion` has
+    the correction at higher density. In 2D it is D of the Enskog equation only. The true D does not exist,
+    because it grows like ln t.
 
     Examples
     --------
@@ -368,9 +375,9 @@ def enskog_bulk_viscosity(
 
     Notes
     -----
-    (S / d^2) rho^2 sigma^(d+1) chi sqrt(m k_B T / pi), with S = 2 pi (2D), 4 pi (3D). Exact within the
-    theory: it is the first-order change of the collisional pressure under uniform expansion, in which a pair
-    at contact has the mean normal velocity sigma div(u) / d.
+    (S / d^2) rho^2 sigma^(d+1) chi sqrt(m k_B T / pi), with S = 2 pi (2D), 4 pi (3D). It is exact within the
+    theory: the first-order change of the collisional pressure under uniform expansion, in which a pair at
+    contact has the mean normal velocity sigma div(u) / d.
 
     Examples
     --------
@@ -466,7 +473,7 @@ def enskog_longitudinal_viscosity(
     Returns
     -------
     ndarray, same shape as `packing_fraction`, [mass length^(2-d)/time]
-        Viscosity against a flow along an axis that changes along this axis.
+        Viscosity of a flow along an axis that varies along this axis.
 
     Raises
     ------
@@ -476,7 +483,7 @@ def enskog_longitudinal_viscosity(
     Notes
     -----
     2 (d-1)/d shear viscosity + bulk viscosity. The longitudinal viscosity damps sound. In a gas between a
-    wall and a piston it produces heat: longitudinal viscosity times (du/dx)^2 per volume and time.
+    wall and a piston it produces heat at the rate longitudinal viscosity times (du/dx)^2 per volume.
 
     Examples
     --------
@@ -546,7 +553,7 @@ def enskog_conductivity(
 
 @check_ranges
 def transport_finite_size_factor(count: int, dimension: int, quantity: str) -> float:
-    """Compute a transport coefficient of few dilute particles divided by the infinite gas's.
+    """Compute a transport coefficient of N dilute particles divided by its value in the infinite gas.
 
     Parameters
     ----------
@@ -569,9 +576,10 @@ def transport_finite_size_factor(count: int, dimension: int, quantity: str) -> f
 
     Notes
     -----
-    With D = d (N - 1), the mean square of the stress is lower by (1 - 1/N) D / (D + 2), the mean square of
-    the heat flux by (1 - 1/N)^3 D^2 / ((D + 2)(D + 4)) (moments of the uniform distribution on a sphere; to
-    O(1/N^2)). Both fluxes last longer by the factor 1 / (1 - 1/N), since a particle has N - 1 partners.
+    With D = d (N - 1), the mean square of the stress is multiplied by (1 - 1/N) D / (D + 2), and the mean
+    square of the heat flux by (1 - 1/N)^3 D^2 / ((D + 2)(D + 4)) (moments of the uniform distribution on a
+    sphere; to O(1/N^2)). Both fluxes decay more slowly by the factor 1 / (1 - 1/N), because a particle has N
+    - 1 partners.
 
     Examples
     --------

@@ -10,9 +10,10 @@ from gaspart.scene.limits import CLOSE_PACKING
 from gaspart.theory.geometry import Numbers, Values, checked_dimension, checked_packing_fraction
 
 STABLE_DISCS = 0.70
-"""Highest packing fraction of the disc fluid, by Bernard and Krauth (2011): see `freezing`."""
+"""Highest packing fraction of the disc fluid, from Bernard and Krauth (2011), see `freezing`."""
 METASTABLE_SPHERES = 0.539
-"""Packing fraction of rho sigma^3 = 1.03, where the data behind `kolafa_labik_malijevsky` end."""
+"""Packing fraction at rho sigma^3 = 1.03, the highest density of the data behind `kolafa_labik_malijevsky`.
+"""
 
 _KLM = np.zeros(23)
 _KLM[:9] = 1.0, 4.0, 6.0, 2.3647684, -0.8698551, 1.1062803, -1.1014221, 0.66605866, -0.03633431
@@ -42,8 +43,8 @@ def van_der_waals(packing_fraction: Numbers, dimension: int) -> Values:
     Notes
     -----
     Z = 1 / (1 - b_2 eta), the proposal P = N k_B T / (V - N b) of source A, with b = B2. The equation is
-    exact to the first order in eta only: its b_3 is b_2^2, 28 % too high in 2D and 60 % in 3D. The pressure
-    diverges far below close packing. In one dimension it is exact.
+    exact only to first order in eta: its b_3 is b_2^2, which is 28 % too high in 2D and 60 % too high in 3D.
+    Its pressure diverges far below close packing. In one dimension it is exact.
 
     Examples
     --------
@@ -75,8 +76,8 @@ def carnahan_starling(packing_fraction: Numbers) -> Values:
 
     Notes
     -----
-    Z = (1 + eta + eta^2 - eta^3) / (1 - eta)^3 [1]_. The equation is 0.13 % low at eta = 0.2 and 0.27 % low
-    at 0.3 to 0.4. So it is accurate enough for a figure, but not for a test at 0.1 %.
+    Z = (1 + eta + eta^2 - eta^3) / (1 - eta)^3 [1]_. Z is 0.13 % too low at eta = 0.2, and 0.27 % too low at
+    0.3 to 0.4. So the equation is accurate enough for a figure, but not for a test at 0.1 %.
 
     References
     ----------
@@ -149,10 +150,10 @@ def kolafa_labik_malijevsky(packing_fraction: Numbers) -> Values:
 
     Notes
     -----
-    A polynomial in x = eta / (1 - eta), fitted to simulations and to B2 ... B6 [1]_. The data are at
-    rho sigma^3 = 0.20 to 1.03 and have a relative error below 4e-5 at 95 % confidence (literature: the
-    abstract of the article). The coefficients are the same in a public program of Enskog's theory. A test
-    shows that they give B4, B5 and B6.
+    The equation is a polynomial in x = eta / (1 - eta), fitted to simulations and to B2 ... B6 [1]_. The data
+    are at rho sigma^3 = 0.20 to 1.03 and have a relative error below 4e-5 with 95 % confidence (literature:
+    abstract of the article). A public program for Enskog theory uses the same coefficients. A test shows that
+    they give B4, B5 and B6.
 
     References
     ----------
@@ -188,7 +189,7 @@ def percus_yevick_virial(packing_fraction: Numbers) -> Values:
 
     Notes
     -----
-    Z = (1 + 2 eta + 3 eta^2) / (1 - eta)^2, exact within that theory.
+    Z = (1 + 2 eta + 3 eta^2) / (1 - eta)^2, exact within this theory.
 
     Examples
     --------
@@ -220,7 +221,7 @@ def percus_yevick_compressibility(packing_fraction: Numbers) -> Values:
 
     Notes
     -----
-    Z = (1 + eta + eta^2) / (1 - eta)^3, exact within that theory.
+    Z = (1 + eta + eta^2) / (1 - eta)^3, exact within this theory.
 
     Examples
     --------
@@ -238,7 +239,7 @@ def scaled_particle(packing_fraction: Numbers) -> Values:
     Parameters
     ----------
     packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70, the highest of the fluid.
+        Packing fraction eta, from 0 to 0.70, the highest density of the fluid.
 
     Returns
     -------
@@ -273,7 +274,7 @@ def henderson(packing_fraction: Numbers) -> Values:
     Parameters
     ----------
     packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70, the highest of the fluid.
+        Packing fraction eta, from 0 to 0.70, the highest density of the fluid.
 
     Returns
     -------
@@ -287,8 +288,8 @@ def henderson(packing_fraction: Numbers) -> Values:
 
     Notes
     -----
-    Z = (1 + eta^2 / 8) / (1 - eta)^2 [1]_, copied from SklogWiki. Against the reference it is 0.5 % high at
-    eta = 0.5, 1 % at 0.6 and 2.5 % at 0.7.
+    Z = (1 + eta^2 / 8) / (1 - eta)^2 [1]_, copied from SklogWiki. Compared with the reference, Z is 0.5 % too
+    high at eta = 0.5, 1 % at 0.6 and 2.5 % at 0.7.
 
     References
     ----------
@@ -310,7 +311,7 @@ def santos_haro_yuste(packing_fraction: Numbers) -> Values:
     Parameters
     ----------
     packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70, the highest of the fluid.
+        Packing fraction eta, from 0 to 0.70, the highest density of the fluid.
 
     Returns
     -------
@@ -324,8 +325,9 @@ def santos_haro_yuste(packing_fraction: Numbers) -> Values:
 
     Notes
     -----
-    Z = 1 / [1 - 2 eta + (2 eta_c - 1) eta^2 / eta_c^2], with eta_c of close packing [1]_: the simplest
-    equation that has B2 and a pole at close packing. The equation is accurate to 1.6 % up to eta = 0.55.
+    Z = 1 / [1 - 2 eta + (2 eta_c - 1) eta^2 / eta_c^2], with eta_c at close packing [1]_. It is the simplest
+    equation with the correct B2 and a pole at close packing. The equation is accurate to 1.6 % up to eta =
+    0.55.
 
     References
     ----------
@@ -348,7 +350,7 @@ def liu(packing_fraction: Numbers) -> Values:
     Parameters
     ----------
     packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70, the highest of the fluid.
+        Packing fraction eta, from 0 to 0.70, the highest density of the fluid.
 
     Returns
     -------

@@ -1,7 +1,7 @@
 """Hard spheres between two flat hard walls: density profile and pressure by density functional theory.
 
-Diameter 1 and k_B T = 1; densities in 1 / sigma^3. The width H of a slit is the distance of its walls'
-surfaces, so that centres have H - 1.
+Diameter 1 and k_B T = 1; densities in 1 / sigma^3. The width H of a slit is the distance between the surfaces
+of its walls, so centres can move over H - 1.
 """
 
 from __future__ import annotations
@@ -23,11 +23,13 @@ from gaspart.theory.geometry import (
 
 _RADIUS = 0.5
 _MIXING = 0.015
-"""Fraction of a change that is made far from the solution: a larger one oscillates without end in slits of
-less than two diameters."""
+"""Fraction of a change that is applied far from the solution. With larger fractions the iteration oscillates
+in slits narrower than two diameters.
+"""
 _NEAR, _NEAR_MIXING, _REMEMBERED = 0.3, 0.05, 5
-"""Largest change, in bulk densities, near the solution; the fraction that is made there, and the number of
-changes that are remembered."""
+"""Largest change, in units of the bulk density, that counts as near the solution; the fraction of a change
+that is applied there; and the number of stored changes.
+"""
 
 
 @check_ranges
@@ -41,7 +43,7 @@ def white_bear_slit(
     bulk_density : float, [1]
         Number density of the bulk, in 1 / sigma^3.
     width : float, [1]
-        Distance H of the walls' surfaces, in diameters, above 1.
+        Distance H between the surfaces of the walls, in diameters, above 1.
     spacing : float, default 0.01, [1]
         Spacing of the grid, in diameters; adapted to divide the width and the radius.
     tolerance : float, default 1e-8, [1]
@@ -66,9 +68,9 @@ def white_bear_slit(
 
     Notes
     -----
-    White Bear functional [1]_, solved by damped iteration, near the solution with Anderson's mixing [2]_. Its
-    bulk pressure is the value of Carnahan and Starling, 0.3 % low at eta = 0.35. The theory obeys the contact
-    theorem exactly, so rho(0) is its pressure on the walls.
+    White Bear functional [1]_. It is solved by damped iteration, and near the solution by Anderson mixing
+    [2]_. Its bulk pressure is Carnahan and Starling's, which is 0.3 % too low at eta = 0.35. The theory obeys
+    the contact theorem exactly, so rho(0) is the pressure on the walls.
 
     References
     ----------
@@ -89,7 +91,7 @@ def white_bear_slit(
     step = (width - 1.0) / cells
     half = round(_RADIUS / step)
     offset = step * np.arange(-half, half + 1)
-    # Weights of a sphere's slices, normalised so that the bulk's measures are exact on the grid.
+    # Weights of the slices of a sphere, normalised so that the weighted bulk densities are exact on the grid.
     ends = np.where(np.abs(np.arange(-half, half + 1)) == half, 0.5, 1.0) * step
     volume = np.maximum(_RADIUS**2 - offset**2, 0.0) * ends
     volume *= np.pi / 6.0 / volume.sum()
@@ -128,7 +130,8 @@ def white_bear_slit(
 def _anderson(moves: list[np.ndarray], changes: list[np.ndarray]) -> np.ndarray:
     """Return the next step towards the solution, by Anderson's mixing.
 
-    The changes wanted after the last steps, taken as linear, are combined so that they are smallest.
+    The requested changes of the last steps are treated as linear functions, and combined to minimize the
+    change.
     """
     if not moves:
         return _NEAR_MIXING * changes[-1]
@@ -150,7 +153,7 @@ def white_bear_pressure(bulk_density: float) -> float:
     Returns
     -------
     float, [1]
-        Pressure in k_B T / sigma^3, Carnahan and Starling's.
+        Pressure in k_B T / sigma^3, by Carnahan and Starling.
 
     Raises
     ------
@@ -167,16 +170,16 @@ def white_bear_pressure(bulk_density: float) -> float:
 
 
 def _bulk_measures(density: float) -> tuple[float, float]:
-    """Return n_3 and n_2 of a homogeneous fluid."""
+    """Return the weighted densities n_3 and n_2 of a homogeneous fluid."""
     return density * np.pi / 6.0, density * np.pi
 
 
 def _derivatives(
     n3: np.ndarray, n2: np.ndarray, vector: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the derivatives of the free energy density by n_3, n_2 and n_V2.
+    """Return the derivatives of the free energy density with respect to n_3, n_2 and n_V2.
 
-    The lower measures are expressed by these.
+    The other weighted densities are expressed by these.
     """
     void = 1.0 - n3
     logarithm = np.log(void)
@@ -200,15 +203,14 @@ def _derivatives(
 
 # Cluster integrals of hard discs and spheres in a box, by Monte Carlo.
 #
-# They state what walls take off the positions of clusters. The grand partition function of centres in a box
-# with sides l is, exactly,
+# They describe how walls restrict the positions of clusters. The grand partition function of centres in a box
+# with sides l is exactly
 #
 #     ln Xi = sum over n of z^n / n!  <U_n (l_1 - e_1) (l_2 - e_2) ...>,
 #
-# an integral over the relative positions of n centres: U_n is Ursell's function of them, and e_k their
-# extent along axis k. The terms without e belong to the bulk, the terms with one e to the walls, with two
-# to the edges between them, with three to the corners. This program computes the numbers that stand in
-# `walls`.
+# an integral over the relative positions of n centres: U_n is Ursell's function of the centres, and e_k is
+# their extent along axis k. The terms without e belong to the bulk, the terms with one e to the walls, with
+# two to the edges, and with three to the corners. This program computes the constants in `walls`.
 
 
 def cluster_integrals(order: int, dimension: int, samples: int, seed: int = 0) -> np.ndarray:
@@ -237,10 +239,10 @@ def cluster_integrals(order: int, dimension: int, samples: int, seed: int = 0) -
 
     Notes
     -----
-    The first integral is known: it is the coefficient of z^n in P / k_B T. A tree on n centres is drawn
-    uniformly and its neighbours are placed within a diameter of each other. A configuration whose overlaps
-    contain T of the n^(n-2) trees is T times as likely as a configuration with a single tree, so it counts
-    for U_n / T.
+    The first integral is known: it is the coefficient of z^n in P / k_B T. A random tree on n centres is
+    drawn uniformly, and neighbours in the tree are placed within a diameter of each other. A configuration
+    whose overlaps contain T of the n^(n-2) trees is T times as likely as a configuration with a single tree,
+    so it contributes U_n / T.
     """
     d, rng = checked_dimension(dimension), np.random.default_rng(seed)
     ursell, trees = _graphs(order)
@@ -266,8 +268,8 @@ def cluster_integrals(order: int, dimension: int, samples: int, seed: int = 0) -
 def _graphs(order: int) -> tuple[np.ndarray, np.ndarray]:
     """Return Ursell's function and the number of spanning trees of each graph of overlaps.
 
-    A graph has a bit for each pair. U_n is the sum of (-1)^edges over the connected subgraphs that contain
-    all n, and a tree is a connected subgraph of n - 1 edges.
+    A graph is an integer with one bit per pair. U_n is the sum of (-1)^edges over the connected subgraphs
+    that contain all n vertices. A tree is a connected subgraph with n - 1 edges.
     """
     pairs = list(combinations(range(order), 2))
     graphs = np.arange(1 << len(pairs))
@@ -293,7 +295,7 @@ def _graphs(order: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _random_trees(rng: np.random.Generator, order: int, samples: int) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return the edges of random trees, uniform among the labelled trees (Pruefer's code).
+    """Return the edges of random trees, uniform among the labelled trees (Pruefer code).
 
     Each edge is a leaf and its parent, both of shape (samples,). The parent is placed before the leaf, except
     for the first leaf, whose parent is the origin.

@@ -1,10 +1,10 @@
-r"""Pairs of few particles in a periodic container: closed form, table, expansion with its remainder.
+r"""Pairs of few particles in a periodic container: closed form, table, and expansion in 1/N.
 
 The container is a square or a cube.
 
-All quantities of N equal particles at fixed energy and zero total momentum that depend on pairs in contact
-follow from one number, the contact value g_N. The value is the density of pairs at contact, averaged over all
-directions, divided by N (N - 1) / V^2. With k_B T = 2 E / (d (N - 1)), exactly,
+Consider N equal particles at fixed energy and zero total momentum. All quantities that depend on pairs in
+contact follow from one number, the contact value g_N. It is the density of pairs at contact, averaged over
+all directions, divided by N (N - 1) / V^2. With k_B T = 2 E / (d (N - 1)), the exact relations are
 
 .. math:: Z_N = 1 + 2^{d-1} \eta \, \frac{N-1}{N} \, g_N, \qquad
           \nu_N = \nu_1 \, \frac{N-1}{N} \, g_N \, f_{d (N-1)},
@@ -13,8 +13,9 @@ where nu_1 is `collision_rate` for a contact value of 1, and f is `speeds.mean_s
 canonical compressibility factor, which `gaspart.analysis.compressibility_factor` measures.
 
 The expansion in 1/N (`state.finite_size_correction`) neglects terms that decrease exponentially with the side
-of the container: images of a particle order the fluid around the particle. These terms are the largest ones
-in dense or small systems. `finite_size_remainder` estimates their size from the table.
+of the container. They arise because the periodic images of a particle order the surrounding fluid. In dense
+or small systems these terms are the largest ones. `finite_size_remainder` estimates their size from the
+table.
 """
 
 import math
@@ -45,17 +46,22 @@ from gaspart.theory.tables import (
 )
 
 _PAIR_HIGHEST = {2: math.pi / 4.0, 3: math.pi / (6.0 * math.sqrt(2.0))}
-"""Packing fraction of two particles in a container of side sqrt(2) diameters, where the spheres about the
-images of a particle begin to overlap three at a time."""
+"""Packing fraction of two particles in a container of side sqrt(2) diameters. Above this packing fraction,
+three of the excluded spheres around the periodic images overlap.
+"""
 _REMAINDER = {2: (14.665, -39.404, 28.652, 2.17, -3.62), 3: (13.094, -46.965, 46.633, 1.953, -3.727)}
-"""Coefficients a0, a1, a2, b0, b1 of `finite_size_remainder`, by maximum likelihood from the rows of
-`data/small_systems.csv` with 4 and more particles in 2.2 and more diameters (`benchmarks/small_systems.py
-fit`): 95 rows of discs, none further away than 3.9 standard deviations, and 66 rows of spheres, 3.2."""
+"""Coefficients a0, a1, a2, b0, b1 of `finite_size_remainder`, by maximum likelihood. The fit uses the rows of
+`data/small_systems.csv` with at least 4 particles and a side of at least 2.2 diameters
+(`benchmarks/small_systems.py fit`): 95 rows of discs with deviations up to 3.9 standard deviations, and 66
+rows of spheres with deviations up to 3.2.
+"""
 _SHORTEST = 2.2
-"""Side in diameters below which the expansion in 1/N states nothing: a particle feels its own images."""
-_NODES = 32  # of the integral over packing fractions
+"""Side in diameters below which the expansion in 1/N is not used, because a particle interacts with its own
+images.
+"""
+_NODES = 32  # number of nodes of the integral over packing fractions
 LARGEST_REMAINDER = 0.1
-"""Relative uncertainty above which `finite_contact_value` and `insertion_potential` state nothing."""
+"""Relative uncertainty above which `finite_contact_value` and `insertion_potential` raise an error."""
 
 
 @check_ranges
@@ -65,8 +71,8 @@ def pair_contact_value(packing_fraction: Numbers, dimension: int) -> Values:
     Parameters
     ----------
     packing_fraction : array_like, [1]
-        Packing fraction eta of both: up to pi/4 for discs, 0.3702 for spheres, where the side of the
-        container is sqrt(2) diameters.
+        Packing fraction eta of both particles: up to pi/4 for discs and 0.3702 for spheres, where the side of
+        the container is sqrt(2) diameters.
     dimension : {2, 3}
         Discs or spheres.
 
@@ -82,10 +88,10 @@ def pair_contact_value(packing_fraction: Numbers, dimension: int) -> Values:
 
     Notes
     -----
-    Exact. The centre of the second particle is anywhere outside of the spheres of radius sigma about the
-    first particle and its images: g = V s / (V - v), with v the volume of these spheres in the container and
-    s the fraction of their surface that no image covers. At L >= 2 sigma they do not overlap, and
-    g = 1 / (1 - 2^(d-1) eta).
+    The result is exact. The centre of the second particle is anywhere outside of the spheres of radius sigma
+    around the first particle and its images. So g = V s / (V - v), with the volume v of these spheres in the
+    container and the fraction s of their surface that no image covers. At L >= 2 sigma the spheres do not
+    overlap, and g = 1 / (1 - 2^(d-1) eta).
 
     Examples
     --------
@@ -98,7 +104,7 @@ def pair_contact_value(packing_fraction: Numbers, dimension: int) -> Values:
     with np.errstate(divide="ignore"):
         half = np.minimum(
             0.5 * (2.0 * particle_volume(d) / eta) ** (1.0 / d), 1.0
-        )  # of the side, at most sigma
+        )  # as a fraction of the side, at most sigma
     if d == 2:
         angle = np.arccos(half)
         covered = 4.0 * angle / math.pi
@@ -111,7 +117,7 @@ def pair_contact_value(packing_fraction: Numbers, dimension: int) -> Values:
 
 @check_ranges
 def finite_size_remainder(packing_fraction: Numbers, dimension: int, side: Numbers) -> Values:
-    """Estimate the relative size of what the expansion in 1/N leaves out of a contact value.
+    """Estimate the relative remainder of a contact value that the expansion in 1/N neglects.
 
     Parameters
     ----------
@@ -134,10 +140,11 @@ def finite_size_remainder(packing_fraction: Numbers, dimension: int, side: Numbe
 
     Notes
     -----
-    exp(a - b L), with a a polynomial of second order in eta and ln b one of first order: the amplitude and
-    the decay of correlations between images at a distance L. Their coefficients are those for which the
-    differences between the table (`small_systems`) and the expansion are most likely, normally distributed
-    with this deviation. The differences alternate in sign with the side. Infinite below 2.2 diameters.
+    exp(a - b L). a is a polynomial of second order in eta, and ln b a polynomial of first order. They
+    describe the amplitude and the decay of correlations between images at a distance L. The coefficients
+    maximize the likelihood of the differences between the table (`small_systems`) and the expansion, assumed
+    to be normally distributed with this standard deviation. The differences change sign with the side. The
+    result is infinite below 2.2 diameters.
 
     Examples
     --------
@@ -174,20 +181,21 @@ def finite_contact_value(
     value : float, [1]
         Density of pairs at contact divided by N (N - 1) / V^2.
     uncertainty : float, [1]
-        Its standard uncertainty.
+        Standard uncertainty of the value.
 
     Raises
     ------
     SceneError
-        If an argument is out of range, or if the uncertainty would be above a tenth of the value.
+        If an argument is out of range, or if the uncertainty exceeds a tenth of the value.
 
     Notes
     -----
-    In a square or cube, two particles have a closed form (`pair_contact_value`), and the numbers in the table
-    (`small_systems`) are interpolated in eta: linearly, as a factor of the expansion, uncertain by the
-    difference from a parabola. Otherwise, and if it has the smaller uncertainty, the expansion in 1/N is used
-    (`finite_size_correction`). Its uncertainty is made up of the uncertainty of the equation of state,
-    `finite_size_remainder`, and the square of the relative correction for the next order in 1/N.
+    In a square or cube, two particles have a closed form (`pair_contact_value`). For the particle numbers in
+    the table (`small_systems`), the ratio to the expansion is interpolated linearly in eta. Its uncertainty
+    is the difference from a parabola. In all other cases, and if it has the smaller uncertainty, the
+    expansion in 1/N is used (`finite_size_correction`). Its uncertainty combines the uncertainty of the
+    equation of state, `finite_size_remainder`, and the square of the relative correction for the next order
+    in 1/N.
 
     Examples
     --------
@@ -217,7 +225,7 @@ def finite_contact_value(
 def insertion_potential(
     packing_fraction: float, dimension: int, count: int, side: float
 ) -> tuple[float, float]:
-    """Compute -ln P of the probability P that a further particle fits at a random position.
+    """Compute -ln P with the probability P that a further particle fits at a random position.
 
     Parameters
     ----------
@@ -226,7 +234,7 @@ def insertion_potential(
     dimension : {2, 3}
         Discs or spheres.
     count : int
-        Number of particles N that are there.
+        Number N of particles in the container.
     side : float, [1]
         Shortest side of the periodic container, in diameters.
 
@@ -235,20 +243,20 @@ def insertion_potential(
     value : float, [1]
         Excess chemical potential of N particles by insertion, divided by k_B T.
     uncertainty : float, [1]
-        Its standard uncertainty.
+        Standard uncertainty of the value.
 
     Raises
     ------
     SceneError
-        If an argument is out of range, or if the uncertainty would be above a tenth of the value.
+        If an argument is out of range, or if the uncertainty exceeds a tenth of the value.
 
     Notes
     -----
-    `excess_chemical_potential` and `insertion_finite_size_correction`. With F_N the free energy of N
-    particles, the difference F_(N+1) - F_N has the remainder R + (integral of R / eta over eta), where R is
-    the remainder of Z, `finite_size_remainder` times Z - 1. The uncertainty combines both remainders, the
-    uncertainty of the equation of state, and the square of the relative correction. A particle alone excludes
-    2^d eta of the container, exactly.
+    The result is the sum of `excess_chemical_potential` and `insertion_finite_size_correction`. The remainder
+    of Z is R, `finite_size_remainder` times Z - 1. With the free energy F_N of N particles, the difference
+    F_(N+1) - F_N has the remainder R + (integral of R / eta over eta). The uncertainty combines both
+    remainders, the uncertainty of the equation of state, and the square of the relative correction. A single
+    particle excludes exactly the fraction 2^d eta of the container.
 
     Examples
     --------
@@ -285,7 +293,7 @@ def _require_small(uncertainty: float, value: float, side: float) -> None:
 
 def _expansion(eta: float, dimension: int, count: int, side: float) -> tuple[float, float]:
     """Return the contact value to first order in 1/N, and its uncertainty."""
-    eta = max(eta, 1e-6)  # the limit of the ratios, where the excess itself vanishes
+    eta = max(eta, 1e-6)  # limit of the ratio, where the excess itself vanishes
     excess = float(compressibility_factor(eta, dimension)) - 1.0
     shift = float(finite_size_correction(eta, dimension, count))
     value = (excess + shift) / (2.0 ** (dimension - 1) * eta)
@@ -300,7 +308,7 @@ def _expansion(eta: float, dimension: int, count: int, side: float) -> tuple[flo
 def _interpolate_table(eta: float, dimension: int, count: int) -> list[tuple[float, float]]:
     """Return the contact value between rows of the table, and its uncertainty.
 
-    The list is empty outside of the rows.
+    The result is empty outside of the rows.
     """
     fractions, factors, errors = _factors(dimension, count)
     if len(fractions) < 3 or eta > fractions[-1]:
@@ -315,9 +323,9 @@ def _interpolate_table(eta: float, dimension: int, count: int) -> list[tuple[flo
 
 @cache
 def _factors(dimension: int, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return packing fractions, and contact values of the table divided by the expansion with their errors.
+    """Return packing fractions, and the ratios of contact values in the table to the expansion.
 
-    The first row is the limit 1 at zero density.
+    The ratios have errors. The first row is the limit 1 at zero density.
     """
     rows = small_systems("contact_value", dimension)
     rows = np.sort(rows[rows.count == count], order="packing_fraction")

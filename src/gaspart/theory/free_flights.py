@@ -1,11 +1,11 @@
-"""Free flights of a particle between its collisions: distribution of their times.
+"""Distribution of the free-flight times of a particle between its collisions.
 
-All functions take `packing_fraction`, dimension 2 or 3, and the particles' diameter, temperature (k_B = 1)
-and mass. Range: the collision rate at a speed is exact in equilibrium at zero density; beyond, it is
-Enskog's, by the factor chi. The distribution assumes that consecutive collisions are independent (molecular
-chaos), which holds at low density: at a packing fraction of 0.05 there are 2 % fewer of the shortest flights
-(events of 1000 and of 4000 spheres). Literature: Chapman and Cowling, The mathematical theory of non-uniform
-gases (1970), chapter 5, for spheres.
+All functions take `packing_fraction`, dimension 2 or 3, and the diameter, temperature (k_B = 1) and mass of
+the particles. Range: the collision rate at a given speed is exact in equilibrium at zero density. At higher
+density it is multiplied by chi, as in Enskog theory. The distribution assumes that consecutive collisions are
+independent (molecular chaos), which holds at low density. At a packing fraction of 0.05 the shortest flights
+are 2 % less frequent (from events of 1000 and of 4000 spheres). Literature: Chapman and Cowling, The
+mathematical theory of non-uniform gases (1970), chapter 5, for spheres.
 """
 
 import math
@@ -19,7 +19,9 @@ from gaspart.theory.speeds import maxwell_pdf, mean_speed
 _SPEEDS = 160
 """Number of points of the quadrature over speeds."""
 _FASTEST = 8.0
-"""Highest speed of the quadrature, in thermal speeds: fewer than exp(-32) of all particles are faster."""
+"""Highest speed of the quadrature in thermal speeds; a fraction of less than exp(-32) of the particles is
+faster.
+"""
 
 
 @check_ranges
@@ -60,12 +62,12 @@ def collision_rate_at_speed(
 
     Notes
     -----
-    nu(v) is `collision_rate` times the mean relative speed u at this speed, divided by the mean relative
-    speed of all pairs. The mean u is over the velocity of a partner, which is Maxwell's. With c = v / sqrt(2
-    k_B T / m), and u in units of that speed, u = exp(-c^2) / sqrt(pi) + (c + 1 / (2 c)) erf(c) in 3D, and u =
-    sqrt(pi)/2 exp(-c^2 / 2) [(1 + c^2) I_0(c^2 / 2) + c^2 I_1(c^2 / 2)] in 2D, the mean of Rice's
-    distribution. The mean of nu(v) over all speeds is nu. Exact in equilibrium at zero density; beyond,
-    Enskog's, by the factor chi.
+    nu(v) is `collision_rate` times u divided by the mean relative speed of all pairs. Here u is the mean
+    relative speed of a particle with speed v. The mean u is over Maxwellian velocities of the partner. With c
+    = v / sqrt(2 k_B T / m), and u in units of that speed, u = exp(-c^2) / sqrt(pi) + (c + 1 / (2 c)) erf(c)
+    in 3D, and u = sqrt(pi)/2 exp(-c^2 / 2) [(1 + c^2) I_0(c^2 / 2) + c^2 I_1(c^2 / 2)] in 2D, the mean of
+    Rice's distribution. The mean of nu(v) over all speeds is nu. The formula is exact in equilibrium at zero
+    density. At higher density it is multiplied by chi, as in Enskog theory.
 
     Examples
     --------
@@ -127,11 +129,11 @@ def free_time_pdf(
     Notes
     -----
     int f nu(v)^2 exp(-nu(v) t) dv / nu, with f Maxwell's distribution and nu(v) of `collision_rate_at_speed`.
-    Speeds before a collision are distributed as f(v) nu(v), and so are the speeds after it, because the
-    motion is reversible. The mean of the distribution is 1 / nu. It falls more slowly than an exponential,
-    since slow particles collide less often. By quadrature of Gauss and Legendre, to 1e-9. Consecutive
-    collisions are assumed to be independent: at a packing fraction of 0.05 there are 2 % fewer of the
-    shortest flights.
+    The distribution of speeds before a collision is f(v) nu(v). The distribution after a collision is the
+    same, because the motion is reversible. The mean of the distribution is 1 / nu. It decreases more slowly
+    than an exponential, because slow particles collide less often. The integral is computed by Gauss-Legendre
+    quadrature to 1e-9. Consecutive collisions are assumed to be independent. At a packing fraction of 0.05
+    the shortest flights are 2 % less frequent.
 
     Examples
     --------

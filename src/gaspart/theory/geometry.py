@@ -13,13 +13,13 @@ import numpy as np
 from gaspart.errors import SceneError
 from gaspart.scene.limits import ball_volume
 
-# Checks of the arguments of all formulas of this package.
+# Validation of the arguments of all formulas in this package.
 
 
 Numbers: TypeAlias = float | np.ndarray
 """A number, or an array of them."""
 Values: TypeAlias = Any
-"""Result of a function of `Numbers`: a number from numbers, an array of their shape from arrays."""
+"""Result of a function of `Numbers`: a number for numbers, an array of the same shape for arrays."""
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -40,21 +40,21 @@ _RANGES = {
     "side_over_diameter": (1.0, math.inf, "must be finite and at least 1"),
     "count": (1.0, math.inf, "must be finite and at least 1"),
 }
-"""Smallest and largest value of arguments, by name, and the rule in words."""
+"""Smallest and largest allowed value for each argument name, and the rule in words."""
 
 
 def check_ranges(function: Callable[P, R]) -> Callable[P, R]:
-    """Return a function that raises SceneError for an argument out of the range of its name.
+    """Return a function that raises SceneError for an argument outside of its range.
 
     Parameters
     ----------
     function : callable
-        Formula, whose arguments have names of `_RANGES` or no range.
+        Formula. The ranges of its arguments are found by name in `_RANGES`; other names have no range.
 
     Returns
     -------
     callable
-        The formula with checks. SceneError is a ValueError.
+        Formula with validation of its arguments. SceneError is a ValueError.
     """
     names = tuple(inspect.signature(function).parameters)
 
@@ -78,7 +78,7 @@ def checked_range(name: str, value: Any, least: float, most: float, rule: str) -
     value : array_like
         Number or numbers.
     least, most : float
-        Ends of the range, which belong to it.
+        Ends of the allowed range, inclusive.
     rule : str
         Rule in words, for the message.
 

@@ -1,8 +1,8 @@
-"""Inelastic smooth particles: Haff's law of cooling, and gases that random kicks heat.
+"""Smooth inelastic particles: Haff's law of cooling, and gases heated by random kicks.
 
-Time is counted in collisions per particle, s = 2 N_coll / N. The collision rate, and with it the density,
-then has no influence. Gases are homogeneous, velocities nearly Maxwellian and particles uncorrelated: dilute
-gases before clustering.
+Time is counted in collisions per particle, s = 2 N_coll / N. Then the collision rate, and with it the
+density, has no influence. Gases are homogeneous, velocities nearly Maxwellian, and particles uncorrelated.
+These conditions hold in dilute gases before clustering.
 """
 
 import numpy as np
@@ -11,13 +11,15 @@ from gaspart.theory.enskog import collision_rate
 from gaspart.theory.geometry import Numbers, Values, check_ranges, checked_dimension
 
 DISCHARGE_EXPONENT = 1.5
-"""Exponent of the width of an orifice, minus some diameters of the grains, in the flow rate of grains in two
-dimensions: the width times the speed of a free fall from an arch as wide. In three dimensions it is 5/2
-(Beverloo, Leniger & van de Velde, Chem. Eng. Sci. 15, 260 (1961))."""
+"""Exponent of the effective width of an orifice in the flow rate of grains in two dimensions. The effective
+width is the width minus a few diameters of the grains. The flow rate is the effective width times the speed
+of free fall from an arch of this width. In three dimensions it is 5/2 (Beverloo, Leniger & van de Velde,
+Chem. Eng. Sci. 15, 260 (1961)).
+"""
 
 
 def fourth_cumulant(restitution: Numbers, dimension: int) -> Values:
-    """Compute the fourth cumulant of the smooth inelastic gas that cools homogeneously.
+    """Compute the fourth cumulant of a smooth inelastic gas that cools homogeneously.
 
     Parameters
     ----------
@@ -41,8 +43,8 @@ def fourth_cumulant(restitution: Numbers, dimension: int) -> Values:
     Notes
     -----
     a2 = 16 (1-e) (1-2e^2) / (9 + 24 d + (8d - 41) e + 30 e^2 (1-e)) [1]_, to first order in a2. Quadrature of
-    the collision integral gives the same to this order (tested). The value is 0.01 or so below results of
-    direct simulation at e < 0.6.
+    the collision integral gives the same to this order (tested). The value is about 0.01 below the results of
+    direct simulation for e < 0.6.
 
     References
     ----------
@@ -88,8 +90,8 @@ def cooling_rate(restitution: Numbers, dimension: int) -> Values:
     Notes
     -----
     (1 - e^2) / d (1 + a2 / 4), with a2 of `fourth_cumulant`. The factor (1 - e^2) / d is exact for Maxwellian
-    velocities, which the gas leaves within some collisions. The dissipation per time is 1 + 3 a2 / 16 times
-    the Maxwellian one, collisions per time are 1 - a2 / 16 times the Maxwellian ones [1]_.
+    velocities. Within a few collisions the gas deviates from them. The dissipation per time is 1 + 3 a2 / 16
+    times its Maxwellian value, and the collision rate is 1 - a2 / 16 times its Maxwellian value [1]_.
 
     References
     ----------
@@ -107,7 +109,7 @@ def cooling_rate(restitution: Numbers, dimension: int) -> Values:
 
 @check_ranges
 def cooling_rate_finite_size_factor(count: Numbers, dimension: int) -> Values:
-    """Compute the cooling rate of few particles divided by the cooling rate of many.
+    """Compute the cooling rate of N particles divided by its value for many particles.
 
     Parameters
     ----------
@@ -128,10 +130,10 @@ def cooling_rate_finite_size_factor(count: Numbers, dimension: int) -> Values:
 
     Notes
     -----
-    d N / (d (N - 1) + 1), with the temperature T about the centre of mass. Relative velocities have the
-    variance 2T N / (N - 1). At a fixed energy all velocities are uniform on a sphere in D = d (N - 1)
-    dimensions. A contact then takes D / (D + 1) of the energy that it takes at Maxwellian velocities (exact
-    for nearly elastic contacts, which leave the velocities so distributed).
+    d N / (d (N - 1) + 1), with the temperature T relative to the centre of mass. Relative velocities have the
+    variance 2T N / (N - 1). At a fixed energy, the velocities are uniformly distributed on a sphere in D = d
+    (N - 1) dimensions. The mean energy loss per contact is then D / (D + 1) times its value for Maxwellian
+    velocities (exact for nearly elastic contacts, which do not change this distribution).
 
     Examples
     --------
@@ -154,7 +156,7 @@ def haff_time(restitution: Numbers, dimension: int, collision_rate: Numbers) -> 
     dimension : {2, 3}
         Discs or spheres.
     collision_rate : float or ndarray, [1/time]
-        Collision rate of a particle of the elastic gas at the initial temperature T_0.
+        Collision rate of a particle in the elastic gas at the initial temperature T_0.
 
     Returns
     -------
@@ -170,8 +172,9 @@ def haff_time(restitution: Numbers, dimension: int, collision_rate: Numbers) -> 
 
     Notes
     -----
-    T decreases by d ln T = -`cooling_rate` ds, and collisions become rarer in proportion to sqrt(T) [1]_. So
-    1 / t_H is half of `cooling_rate` times the collision rate, which is 1 - a2 / 16 of the elastic rate.
+    The temperature changes by d ln T = -`cooling_rate` ds, and the collision rate is proportional to sqrt(T)
+    [1]_. So 1 / t_H is half of `cooling_rate` times the collision rate, which is 1 - a2 / 16 times the
+    elastic rate.
 
     References
     ----------
@@ -188,7 +191,7 @@ def haff_time(restitution: Numbers, dimension: int, collision_rate: Numbers) -> 
 
 
 def driven_cumulant(restitution: Numbers, dimension: int) -> Values:
-    """Compute the fourth cumulant of the smooth inelastic gas in the steady state under white noise.
+    """Compute the fourth cumulant of a smooth inelastic gas in the steady state under white noise.
 
     Parameters
     ----------
@@ -216,8 +219,9 @@ def driven_cumulant(restitution: Numbers, dimension: int) -> Values:
     Notes
     -----
     a2 = 16 (1-e) (1-2e^2) / (73 + 56 d - (24 d + 105) e + 30 e^2 (1-e)) [1]_. Derived again (tested): the
-    moments mu_2 ~ 1 + 3 a2/16 and mu_4 ~ d + 3/2 + e^2 + a2 (3 (10 d + 39 + 10 e^2)/32 + (d-1)/(1-e)) give it
-    from mu_4 = (d+2) mu_2, and `fourth_cumulant` from mu_4 = (d+2) (1 + a2) mu_2.
+    moments are mu_2 ~ 1 + 3 a2/16 and mu_4 ~ d + 3/2 + e^2 + a2 (3 (10 d + 39 + 10 e^2)/32 + (d-1)/(1-e)).
+    The condition mu_4 = (d+2) mu_2 gives this formula, and mu_4 = (d+2) (1 + a2) mu_2 gives
+    `fourth_cumulant`.
 
     References
     ----------
@@ -236,7 +240,7 @@ def driven_cumulant(restitution: Numbers, dimension: int) -> Values:
 
 @check_ranges
 def finite_size_cumulant(cumulant: Numbers, count: Numbers, dimension: int) -> Values:
-    """Compute the fourth cumulant that few particles have.
+    """Compute the fourth cumulant of N particles from its value for many particles.
 
     Parameters
     ----------
@@ -259,9 +263,10 @@ def finite_size_cumulant(cumulant: Numbers, count: Numbers, dimension: int) -> V
 
     Notes
     -----
-    (1 + a2) D / (D + 2) - 1 with D = d (N - 1). <(v^2)^2> is the mean over time of the square of the mean of
-    v^2 over the particles; velocities are about the centre of mass. Exact for a2 = 0: at a fixed energy all
-    velocities are uniform on a sphere in D dimensions. Corrections are of the order a2/N.
+    (1 + a2) D / (D + 2) - 1 with D = d (N - 1). <(v^2)^2> is the time average of the squared mean of v^2 over
+    the particles. Velocities are relative to the centre of mass. The formula is exact for a2 = 0: at a fixed
+    energy, the velocities are uniformly distributed on a sphere in D dimensions. Corrections are of the order
+    a2/N.
 
     Examples
     --------
@@ -277,7 +282,7 @@ def finite_size_cumulant(cumulant: Numbers, count: Numbers, dimension: int) -> V
 def driven_temperature(
     restitution: Numbers, dimension: int, power: Numbers, packing_fraction: Numbers
 ) -> Values:
-    """Compute the steady temperature of the smooth inelastic gas that white noise heats.
+    """Compute the steady temperature of a smooth inelastic gas that is heated by white noise.
 
     Parameters
     ----------
@@ -304,16 +309,17 @@ def driven_temperature(
 
     Notes
     -----
-    Contacts take (1 - e^2)/2 nu T (1 + 3 a2/16) per particle and time, where nu = nu_1 sqrt(T) is Enskog's
-    rate of the elastic gas: T^(3/2) = 2 power / ((1 - e^2) nu_1 (1 + 3 a2/16)).
+    Contacts dissipate (1 - e^2)/2 nu T (1 + 3 a2/16) per particle and time, where nu = nu_1 sqrt(T) is
+    Enskog's collision rate of the elastic gas: T^(3/2) = 2 power / ((1 - e^2) nu_1 (1 + 3 a2/16)).
 
-    It holds for N particles too, with T about the centre of mass of N - 1: kicks that keep the momentum give
-    them power (1 - 1/N) each, and each has N - 1 partners instead of N (dilute; the energy fluctuates by 0.8
-    to 1.2 times as much as at equilibrium, which changes the mean of T^(3/2) by 0.1/N at most). Molecular
-    chaos: velocities are uncorrelated before contacts. Kicks let pairs collide again that have just collided
-    and lost their relative velocity. They also drive long waves, which renormalise T [1]_. T is 1 % higher
-    for discs of e = 0.4 at a packing fraction of 0.01. At 0.001 the difference is below 0.2 %, which cannot
-    be measured.
+    The formula also holds for N particles, with T relative to the centre of mass defined by N - 1. Kicks that
+    conserve the momentum transfer the power (1 - 1/N) to each particle, and each particle has N - 1 partners
+    instead of N. (This is for dilute gases. The energy fluctuates by 0.8 to 1.2 times as much as in
+    equilibrium, which changes the mean of T^(3/2) by at most 0.1/N.) Molecular chaos is assumed: velocities
+    are uncorrelated before contacts. Because of the kicks, pairs that have just collided and lost their
+    relative velocity can collide again. The kicks also drive long waves, which renormalise T [1]_. T is 1 %
+    higher for discs with e = 0.4 at a packing fraction of 0.01. At 0.001 the difference is below the
+    resolution of 0.2 %.
 
     References
     ----------

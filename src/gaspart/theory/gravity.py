@@ -1,8 +1,8 @@
-"""Gases under gravity: ideal gas in a box of finite height, hydrostatics of discs and spheres.
+"""Gases under gravity: ideal gas in a finite box, and hydrostatics of discs and spheres.
 
-Discs and spheres are dense fluids. Heights z are the heights of the particles' centres above the lowest
-position that a centre can reach; `height` is the highest. A field is given by w = m g / (k_B T) of a
-particle, the inverse of its scale height (1 / length).
+The discs and spheres may form dense fluids. Heights z are heights of the centres above the lowest possible
+position of a centre. `height` is the highest possible position. The field is given by w = m g / (k_B T), the
+inverse scale height of a particle (1 / length).
 """
 
 import math
@@ -85,7 +85,7 @@ def ideal_mean_height(height: float, weight: Numbers) -> Values:
     array([5.    , 1.9322])
     """
     x = np.asarray(weight, dtype=float) * height
-    small = np.abs(x) < 1e-4  # where the two terms cancel; next is x^3 / 720
+    small = np.abs(x) < 1e-4  # both terms cancel here; the next term is x^3 / 720
     safe = np.where(small, 1.0, x)
     return height * np.where(small, 0.5 - x / 12.0, 1.0 / safe + np.exp(-safe) / np.expm1(-safe))
 
@@ -113,8 +113,8 @@ def ideal_heat_capacity(x: Numbers, dimension: int) -> Values:
 
     Notes
     -----
-    d/2 + 1 - x^2 e^x / (e^x - 1)^2 (exact; canonical): d/2 without gravity, and d/2 + 1 in a box far higher
-    than the gas, whose potential energy increases with T too.
+    d/2 + 1 - x^2 e^x / (e^x - 1)^2 (exact; canonical). This is d/2 without gravity. It is d/2 + 1 in a box
+    much higher than the gas, because the potential energy also increases with T.
 
     Examples
     --------
@@ -136,7 +136,7 @@ def ideal_energy_moments(
     Parameters
     ----------
     energy : float, [energy]
-        Kinetic and potential energy of all particles, with the floor at 0.
+        Kinetic plus potential energy of all particles; the floor has potential energy 0.
     count : int
         Number N of particles.
     height : float, [length]
@@ -164,12 +164,12 @@ def ideal_energy_moments(
 
     Notes
     -----
-    Exact. The number of states with potential energy U is proportional to p(U) (E - U)^{dN/2 - 1}, where p is
-    the density of a sum of N independent potential energies, each uniform between 0 and force * height. There
-    are walls on all sides, so no momentum is conserved. p is computed as the N-fold convolution, by Fourier
-    transform, of a single density times e^{-bU}, which puts its peak at the right energy; the factor e^{bU}
-    is put back afterwards. From both moments follow T = 2 <K> / (dN) and, in the limit of many particles, the
-    heat capacity, `lebowitz_percus_verlet`.
+    The result is exact. The number of states with potential energy U is proportional to p(U) (E - U)^{dN/2 -
+    1}. Here p is the density of a sum of N independent potential energies, each uniform between 0 and force *
+    height. There are walls on all sides, so no momentum is conserved. p is computed by Fourier transform, as
+    the N-fold convolution of a single density times e^{-bU}. The factor e^{-bU} moves the peak to the right
+    energy, and the factor e^{bU} is restored afterwards. Both moments give T = 2 <K> / (dN) and, for many
+    particles, the heat capacity, see `lebowitz_percus_verlet`.
 
     Examples
     --------
@@ -185,13 +185,14 @@ def ideal_energy_moments(
     if top == 0.0:
         return energy, 0.0
     inverse = 1.0 / _canonical_temperature(energy / count, top, dimension)
-    # The sum's grid holds 12 standard deviations of it (that of one term is below T and top / sqrt 12).
+    # The grid covers 12 standard deviations of the sum (the deviation of one term is below T and top / sqrt
+    # 12).
     mean = count * ideal_mean_height(top, inverse)
     spread = math.sqrt(count) * min(1.0 / inverse, top / math.sqrt(12.0))
     step = 24.0 * spread / points
     potential = mean + step * (np.arange(points) - points // 2)
     frequency = 2.0 * np.pi * np.fft.fftfreq(points, step)
-    # Fourier transform of one term's density, proportional to e^{-bU} between 0 and top, about its mean.
+    # Fourier transform of the density of one term, proportional to e^{-bU} between 0 and top, about its mean.
     transform = -np.expm1(-(inverse + 1j * frequency) * top) / (inverse + 1j * frequency)
     transform *= inverse / -math.expm1(-inverse * top) * np.exp(1j * frequency * mean / count)
     tilted = np.fft.fftshift(np.fft.ifft(transform**count).real)
@@ -205,9 +206,9 @@ def ideal_energy_moments(
 
 
 def _canonical_temperature(energy: float, top: float, dimension: int) -> float:
-    """Return the temperature at which a particle of an ideal gas has this mean energy.
+    """Return the temperature at which an ideal-gas particle has this mean energy, by bisection.
 
-    By bisection; `top` is m g height.
+    `top` is m g height.
     """
     half = 0.5 * dimension
     low, high = 0.5 * energy / (half + 1.0), energy / half
@@ -268,16 +269,17 @@ def lebowitz_percus_verlet(mean: Numbers, variance: Numbers, count: int, dimensi
 def hydrostatic_profiles(
     z: np.ndarray, numbers: ArrayLike, weights: ArrayLike, dimension: int, diameter: float = 1.0
 ) -> np.ndarray:
-    """Compute the density profiles of species of equal size by hydrostatics.
+    """Compute the density profiles of species of equal size from hydrostatics.
 
     Parameters
     ----------
     z : ndarray, shape (Z,), [length]
         Evenly spaced heights.
     numbers : array_like, shape (S,), [1/length^(d-1)]
-        Particles of each species per area (length in 2D) of the column between the first and the last height.
+        Number of particles of each species per area (per length in 2D) of the column between the first and
+        the last height.
     weights : array_like, shape (S,), [1/length]
-        Reduced weight w_i = m_i g / (k_B T) of a particle of each species.
+        Reduced weight w_i = m_i g / (k_B T) of a particle, for each species.
     dimension : {2, 3}
         Discs or spheres.
     diameter : float, default 1.0, [length]
@@ -286,21 +288,21 @@ def hydrostatic_profiles(
     Returns
     -------
     ndarray, shape (S, Z), [1/length^d]
-        Number densities, of which each integrates (trapezoids) to its number.
+        Number densities. The integral of each density by the trapezoidal rule is its number.
 
     Raises
     ------
     SceneError
         If an argument is out of range.
     ValueError
-        If there is no such column.
+        If no such column exists.
 
     Notes
     -----
-    The chemical potential of every species is uniform, ln eta_i + mu_excess(eta) + w_i z = c_i, where eta is
-    the packing fraction of all particles and mu_excess belongs to the reference equation of state. The sum of
-    these equations is dP/dz = -sum of m_i g rho_i. It is a local approximation: good where the density
-    changes little over a diameter (error of order (w diameter)^2).
+    The chemical potential of every species is uniform: ln eta_i + mu_excess(eta) + w_i z = c_i. Here eta is
+    the packing fraction of all particles, and mu_excess follows from the reference equation of state. The sum
+    of these equations is dP/dz = -sum of m_i g rho_i. This is a local approximation. It is accurate if the
+    density changes little over a diameter (error of order (w diameter)^2).
 
     Examples
     --------
@@ -314,8 +316,8 @@ def hydrostatic_profiles(
     numbers, weights = np.asarray(numbers, dtype=float), np.asarray(weights, dtype=float)
     fields = -weights[:, None] * (z - z[0])
     volume = particle_volume(dimension, diameter)
-    # Start dilute; each round scales the activities by what is missing. It converges from below, because the
-    # density grows more slowly than the activity.
+    # Start dilute; each iteration scales the activities by the ratio of required to computed numbers. It
+    # converges from below, because the density grows more slowly than the activity.
     logarithms = np.log(numbers * volume / np.trapezoid(np.exp(fields), z, axis=1))
     for _ in range(2000):
         parts = np.exp(logarithms[:, None] + fields)

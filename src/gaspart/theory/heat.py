@@ -1,7 +1,7 @@
-"""Heat between walls: gas from free flight to Fourier's law, electrons among vibrating scatterers.
+"""Heat transport between walls: gases at any Knudsen number, and electrons among scatterers with modes.
 
-The walls are diffuse with full accommodation unless said otherwise; k_B = 1. Fluxes are energies per area (in
-2D per length) and time, from the hot wall to the cold wall.
+The walls are diffuse with full accommodation unless stated otherwise; k_B = 1. Fluxes are energies per area
+(in 2D per length) and time, from the hot wall to the cold wall.
 """
 
 from __future__ import annotations
@@ -27,26 +27,32 @@ from gaspart.theory.geometry import (
 from gaspart.theory.state import HIGHEST_PACKING_FRACTION, compressibility_factor
 
 TEMPERATURE_JUMP = 2.127
-"""T_gas - T_wall divided by l_0 dT/dn at a diffuse wall, hard spheres, l_0 = 1 / (sqrt 2 pi n sigma^2):
-2.4001 sqrt(pi) / 2, Sone, Ohwada and Aoki, Phys. Fluids A 1, 363 (1989). Moments of the linearised Boltzmann
-equation, derived again, come within 0.5 % of this value and converge (tested)."""
+"""Temperature jump coefficient at a diffuse wall for hard spheres: T_gas - T_wall divided by l_0 dT/dn, with
+l_0 = 1 / (sqrt 2 pi n sigma^2). It is 2.4001 sqrt(pi) / 2, Sone, Ohwada and Aoki, Phys. Fluids A 1, 363
+(1989). Moments of the linearised Boltzmann equation, derived again, differ from this value by less than 0.5 %
+and converge to it (tested).
+"""
 ELEMENTARY_JUMP = 15.0 / 8.0
-"""`TEMPERATURE_JUMP` by Maxwell's elementary argument, 2 gamma / (gamma + 1) / Pr with gamma = 5/3 and
-Pr = 2/3: particles arrive with the distribution of the gas far from the wall. A measurement must distinguish
-the two."""
+"""`TEMPERATURE_JUMP` by Maxwell's elementary argument, 2 gamma / (gamma + 1) / Pr with gamma = 5/3 and Pr =
+2/3. The argument assumes that particles arrive with the distribution of the gas far from the wall. A
+measurement must distinguish the two.
+"""
 INTERPOLATED = 0.08
-"""Relative error that `interpolated_flux`, and the interpolated stress, may have between their limits. Runs
-of the DSMC engine between walls at 2 and at 1 gave 0.929(7) of the flux at a Knudsen number of 1 and 0.942(5)
-at 0.3, and 0.956(15) of the stress at 0.3."""
+"""Maximum relative error of `interpolated_flux` and `interpolated_stress` between their limits. Runs of the
+DSMC engine between walls at temperatures 2 and 1 gave 0.929(7) of the interpolated flux at a Knudsen number
+of 1, and 0.942(5) at 0.3. They gave 0.956(15) of the interpolated stress at 0.3.
+"""
 METAL_GAP, METAL_BEND, METAL_BEND_ERROR = 10.0, 0.044, 0.0046
-"""Gap, in mean free paths, between walls at 2 and at 1; the second-order coefficient of the temperature of
-electrons among scatterers with modes against position over the gap, without the outermost tenths; and its
-standard error. Computed by the program `electrons`: 10 metals of 20 000 electrons, for 800 or 1200 mean free
-times. A linear T^0.85 would have 0.037, T^(3/2) of a gas -0.12."""
+"""Gap, in mean free paths, between walls at temperatures 2 and 1. The second number is the second-order
+coefficient of the temperature of electrons among scatterers with modes, as a function of position divided by
+the gap, without the outermost tenths. The third number is its standard error. The values were computed by the
+program `electrons`: 10 metals of 20 000 electrons, for 800 or 1200 mean free times. The coefficient is 0.037
+for a linear T^0.85, and -0.12 for a linear T^(3/2) of a gas.
+"""
 
 
 FULL = (1.0, 1.0)
-"""Accommodation of two walls that draw the velocities of all particles."""
+"""Accommodation coefficients of two walls that draw new velocities for all particles."""
 
 
 @check_ranges
@@ -59,7 +65,7 @@ def free_molecular_flux(
     components: str = "all",
     accommodation: tuple[float, float] = FULL,
 ) -> Values:
-    """Compute the heat flux through a gas whose particles collide with the walls only.
+    """Compute the heat flux through a gas whose particles collide only with the walls.
 
     Parameters
     ----------
@@ -76,8 +82,8 @@ def free_molecular_flux(
     components : {"all", "normal"}, default "all"
         Components of the velocity that a wall changes.
     accommodation : tuple of float, default (1.0, 1.0), [1]
-        Fractions a_1 and a_2 of particles whose velocities the hot and the cold wall draw; they mirror the
-        others.
+        Accommodation coefficients a_1 and a_2 of the hot and the cold wall: fractions of particles that
+        receive a new velocity; the others are reflected specularly.
 
     Returns
     -------
@@ -93,12 +99,12 @@ def free_molecular_flux(
 
     Notes
     -----
-    (d + 1) n sqrt(T_1 T_2 / (2 pi m)) (sqrt T_1 - sqrt T_2), exact (closed form). A particle brings (d + 1) T
-    / 2 from a wall. If a wall changes the normal component alone [1]_, it brings T: the flux is 2 / (d + 1)
-    of the former, 1/2 in 3D and 2/3 in 2D. With accommodation [2]_ the flux at the same rate of hits is a_1
-    a_2 / (a_1 + a_2 - a_1 a_2) of the flux at full accommodation. At the same density, which is returned, it
-    is a_1 a_2 (sqrt T_1 + sqrt T_2) / (a_1 (2 - a_2) sqrt T_2 + a_2 (2 - a_1) sqrt T_1) of it: most particles
-    have the temperature of the wall that accommodates better.
+    (d + 1) n sqrt(T_1 T_2 / (2 pi m)) (sqrt T_1 - sqrt T_2), exact (closed form). A particle carries (d + 1)
+    T / 2 from a wall. If a wall changes only the normal component [1]_, a particle carries T. Then the flux
+    is multiplied by 2 / (d + 1), 1/2 in 3D and 2/3 in 2D. With partial accommodation [2]_, the flux at the
+    same hit rate is multiplied by a_1 a_2 / (a_1 + a_2 - a_1 a_2). The returned flux is for the same density.
+    It is multiplied by a_1 a_2 (sqrt T_1 + sqrt T_2) / (a_1 (2 - a_2) sqrt T_2 + a_2 (2 - a_1) sqrt T_1),
+    because most particles have the temperature of the wall with the larger accommodation.
 
     References
     ----------
@@ -121,7 +127,7 @@ def free_molecular_flux(
 
 @check_ranges
 def dilute_fourier_flux(length: float, hot: float, cold: float, diameter: float = 1.0) -> float:
-    """Compute the heat flux through dilute spheres in a wide gap by Fourier's law.
+    """Compute the heat flux through dilute spheres in a wide gap from Fourier's law.
 
     Parameters
     ----------
@@ -146,9 +152,9 @@ def dilute_fourier_flux(length: float, hot: float, cold: float, diameter: float 
 
     Notes
     -----
-    (2/3) lambda_0 (T_1^(3/2) - T_2^(3/2)) / length, with the conductivity lambda_0 proportional to sqrt T. It
-    is exact in the limit of a wide gap and a dilute gas, with the accuracy of lambda_0. It does not depend on
-    the density (Maxwell 1860).
+    (2/3) lambda_0 (T_1^(3/2) - T_2^(3/2)) / length, with the conductivity lambda_0 proportional to sqrt T.
+    The formula is exact in the limit of a wide gap and a dilute gas, apart from the accuracy of lambda_0. It
+    does not depend on the density (Maxwell 1860).
 
     Examples
     --------
@@ -189,10 +195,11 @@ def interpolated_flux(length: float, density: float, hot: float, cold: float, di
 
     Notes
     -----
-    1 / (1 / free + 1 / fluid), of the flux of free flight (`free_molecular_flux`) and of Fourier's law
-    without temperature jumps (`dilute_fourier_flux`) [1]_. It is right in both limits and an approximation
-    between them. For small differences of temperature it is 4 % above the flux with temperature jumps at a
-    Knudsen number of 0.1, and 7 % above the flux of the DSMC engine at 1 (`INTERPOLATED`).
+    1 / (1 / free + 1 / fluid), where `free` is the flux of free molecular flow (`free_molecular_flux`) and
+    `fluid` the flux of Fourier's law without temperature jumps (`dilute_fourier_flux`) [1]_. The formula is
+    correct in both limits and an approximation between them. For small temperature differences, it is 4 %
+    above the flux with temperature jumps at a Knudsen number of 0.1, and 7 % above the flux of the DSMC
+    engine at a Knudsen number of 1 (`INTERPOLATED`).
 
     References
     ----------
@@ -211,12 +218,12 @@ def interpolated_flux(length: float, density: float, hot: float, cold: float, di
 
 @check_ranges
 def steady_part(time: Numbers, length: float, diffusivity: float) -> Values:
-    """Compute the difference of temperature between the halves of a slab divided by its steady value.
+    """Compute the temperature difference between the halves of a slab divided by its steady value.
 
     Parameters
     ----------
     time : array_like, [time]
-        Time since the walls of the slab have different temperatures.
+        Time since the walls have had different temperatures.
     length : float, [length]
         Width of the slab.
     diffusivity : float, [length^2/time]
@@ -234,9 +241,9 @@ def steady_part(time: Numbers, length: float, diffusivity: float) -> Values:
 
     Notes
     -----
-    1 - (8 / pi^2) sum exp(-(2 pi k)^2 diffusivity time / length^2) / k^2 over k = 1, 3, 5, ...; the slab
-    starts from a uniform temperature. The deviation of that temperature from the walls' mean is the same in
-    both halves. Solution of the heat equation with constant coefficients (exact).
+    1 - (8 / pi^2) sum exp(-(2 pi k)^2 diffusivity time / length^2) / k^2 over k = 1, 3, 5, ... The slab
+    initially has a uniform temperature. The difference of the initial temperature from the mean of the walls
+    affects both halves equally. This is the exact solution of the heat equation with constant coefficients.
     """
     odd = np.arange(1.0, 200.0, 2.0)
     decay = (2.0 * np.pi * odd) ** 2 * diffusivity / length**2
@@ -275,7 +282,7 @@ def conducting_slab(
     diameter: float = 1.0,
     jump: float = TEMPERATURE_JUMP,
 ) -> Slab:
-    """Compute the profiles of spheres between walls by Fourier's law with temperature jumps.
+    """Compute the profiles of spheres between walls from Fourier's law with temperature jumps.
 
     Parameters
     ----------
@@ -295,7 +302,7 @@ def conducting_slab(
     Returns
     -------
     Slab
-        Positions, temperatures and number densities there, and the flux, of spheres of mass 1.
+        Positions, temperatures and number densities, and the heat flux, for spheres of mass 1.
 
     Raises
     ------
@@ -306,11 +313,11 @@ def conducting_slab(
 
     Notes
     -----
-    q = -lambda(n, T) dT/dx with Enskog's conductivity and a uniform pressure n T Z(eta) (computed). In the
-    dilute limit, without jumps, T^(3/2) is linear and q = (2/3) lambda_0 (T_1^(3/2) - T_2^(3/2)) / length
-    (closed form). At each wall the temperature of the gas differs from the wall's by the jump: good to the
-    square of the Knudsen number. The layer of a mean free path next to a wall, where no fluid theory holds,
-    is not described.
+    q = -lambda(n, T) dT/dx with Enskog's conductivity and a uniform pressure n T Z(eta) (computed
+    numerically). In the dilute limit, without jumps, T^(3/2) is linear and q = (2/3) lambda_0 (T_1^(3/2) -
+    T_2^(3/2)) / length (closed form). At each wall, the temperature of the gas differs from the temperature
+    of the wall by the jump. The errors are of second order in the Knudsen number. The Knudsen layer next to a
+    wall, about a mean free path thick, is not described.
 
     Examples
     --------
@@ -328,7 +335,7 @@ def conducting_slab(
         eta = packing_fraction(slab.density[[0, -1]], 3, diameter)
         slope = slab.flux / enskog_conductivity(eta, 3, diameter, 1.0) / np.sqrt(ends)
         shift = jump * mean_free_path(eta, 3, diameter) * slope
-        ends = 0.5 * (ends + np.array([hot - shift[0], cold + shift[1]]))  # half way: steps do not overshoot
+        ends = 0.5 * (ends + np.array([hot - shift[0], cold + shift[1]]))  # half steps do not overshoot
     return slab
 
 
@@ -336,13 +343,13 @@ def _slab_without_jumps(length: float, density: float, hot: float, cold: float, 
     """Return the slab of a gas without temperature jumps at its walls."""
     temperature = np.linspace(hot, cold, 401)
     eta = np.linspace(0.0, 0.45, 4001)
-    table = number_density(eta, 3, diameter) * compressibility_factor(eta, 3)  # pressure over temperature
+    table = number_density(eta, 3, diameter) * compressibility_factor(eta, 3)  # pressure / temperature
     steps = -np.diff(temperature)
 
     def at(pressure: float) -> tuple[np.ndarray, np.ndarray, float]:
         local = np.interp(pressure / temperature, table, eta)
         conductivity = enskog_conductivity(local, 3, diameter, 1.0) * np.sqrt(temperature)
-        weights = 0.5 * (conductivity[1:] + conductivity[:-1]) * steps  # flux times dx
+        weights = 0.5 * (conductivity[1:] + conductivity[:-1]) * steps  # heat flux times dx
         number = number_density(local, 3, diameter)
         return number, weights, 0.5 * (number[1:] + number[:-1]) @ weights / weights.sum()
 
@@ -355,7 +362,7 @@ def _slab_without_jumps(length: float, density: float, hot: float, cold: float, 
     return Slab(position, temperature, number, float(weights.sum() / length))
 
 
-# Shock before a piston in a gas at rest: jump of density, temperature and pressure.
+# Shock in front of a piston in a gas at rest: jump of density, temperature and pressure.
 
 
 @with_guidance
@@ -425,14 +432,15 @@ def shock_before_piston(
     Raises
     ------
     SceneError
-        If an argument is out of range, or if the gas behind the front is denser than Z is known.
+        If an argument is out of range, or if the gas behind the front is denser than the range of the
+        equation of state.
 
     Notes
     -----
-    The jump conditions of Rankine and Hugoniot, with the front at D, in the frame of the gas at rest: mass n
-    (D - u) = n_0 D, momentum P - P_0 = m n_0 D u, energy d (T - T_0) / 2 = (P + P_0) (1/n_0 - 1/n) / 2. The
-    equation of state is P = n T Z (`compressibility_factor`). For a steady shock it is the only
-    approximation.
+    The jump conditions of Rankine and Hugoniot for a front with velocity D, in the frame of the gas at rest,
+    are: mass n (D - u) = n_0 D, momentum P - P_0 = m n_0 D u, energy d (T - T_0) / 2 = (P + P_0) (1/n_0 -
+    1/n) / 2. The equation of state is P = n T Z (`compressibility_factor`). For a steady shock the equation
+    of state is the only approximation.
 
     Examples
     --------
@@ -450,14 +458,14 @@ def shock_before_piston(
     ahead = density * temperature * float(compressibility_factor(eta, d))
 
     def behind(ratio: float) -> Shock:
-        """Return the shock by mass, momentum and energy alone, for a ratio of densities."""
+        """Return the shock from conservation of mass, momentum and energy, for a density ratio."""
         front = speed * ratio / (ratio - 1.0)
         pressure = ahead + mass * density * front * speed
         gained = (pressure + ahead) * (1.0 - 1.0 / ratio) / density
         return Shock(front, eta * ratio, temperature + gained / d, pressure)
 
     def excess(ratio: float) -> float:
-        """Return its pressure less the pressure of the equation of state."""
+        """Return the pressure of this shock minus the pressure of the equation of state."""
         shock = behind(ratio)
         factor = float(compressibility_factor(shock.packing_fraction, d))
         return shock.pressure - ratio * density * shock.temperature * factor

@@ -1,6 +1,6 @@
-"""Chemical potentials of mixtures of additive hard discs and spheres, from their equations of state.
+"""Chemical potentials of mixtures of additive hard discs and spheres, from equations of state.
 
-They are in units of k_B T, beyond the potentials of an ideal gas. Arguments are as in `mixtures`.
+They are in units of k_B T, relative to an ideal gas. Arguments are as in `mixtures`.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from gaspart.theory.geometry import Numbers, check_ranges, particle_volume
 from gaspart.theory.mixtures import Sizes, checked_mixture, contact_coefficients, virial_sum
 
 _STEP, _WIDE = 1e-3, 1e-2
-"""Steps of central differences of the free energy, and of its second derivatives, divided by the number of
-all particles.
+"""Steps of central differences of the free energy and of its second derivatives, divided by the total number
+of particles.
 """
-_NODES = 32  # of the integral over the packing fraction
+_NODES = 32  # number of nodes of the integral over the packing fraction
 
 
 def mixture_chemical_potentials(
@@ -38,14 +38,15 @@ def mixture_chemical_potentials(
     diameters : array_like, shape (S,), [length]
         Diameters of the species, in any unit.
     fractions : array_like, shape (S,), optional, [1]
-        Number fractions, which are normalised. Default: equal. One may be 0: a species at infinite dilution.
+        Number fractions, which are normalised. Default: equal. A fraction may be 0: a species at infinite
+        dilution.
     theory : {"santos", "linear", "boublik"}, default "santos"
         Equation of state, as for `mixture_compressibility_factor`.
 
     Returns
     -------
     ndarray, shape (S,), [1]
-        Potentials mu_i / k_B T, beyond an ideal gas.
+        Potentials mu_i / k_B T, relative to an ideal gas.
 
     Raises
     ------
@@ -54,7 +55,7 @@ def mixture_chemical_potentials(
 
     Notes
     -----
-    The derivative of F = N k_B T int_0^eta (Z - 1) / eta' d eta' by the number N_i at a constant volume
+    The derivative of F = N k_B T int_0^eta (Z - 1) / eta' d eta' with respect to N_i at constant volume
     (exact thermodynamics), with Z of `mixture_compressibility_factor`.
 
     Examples
@@ -70,7 +71,7 @@ def mixture_chemical_potentials(
 def mixture_insertion_correction(
     packing_fraction: float, dimension: int, diameters: Sizes, counts: Sizes, theory: str = "santos"
 ) -> np.ndarray:
-    """Compute the shift of the insertion potential in a periodic container of finite numbers.
+    """Compute the shift of the insertion potential of a mixture due to finite particle numbers.
 
     Parameters
     ----------
@@ -88,8 +89,8 @@ def mixture_insertion_correction(
     Returns
     -------
     ndarray, shape (S,), [1]
-        -ln P_i - mu_i / k_B T to the first order in 1 divided by the numbers. P_i is the chance that a random
-        position in the container is free for one more particle of species i.
+        -ln P_i - mu_i / k_B T to first order in the inverse numbers, in a periodic container. P_i is the
+        probability that a random position in the container is free for one more particle of species i.
 
     Raises
     ------
@@ -98,16 +99,17 @@ def mixture_insertion_correction(
 
     See Also
     --------
-    insertion_finite_size_correction : Correction for equal particles, which agrees (tested).
+    insertion_finite_size_correction : Correction for equal particles, with which this result agrees (tested).
 
     Notes
     -----
-    -ln P_i is the change of the free energy by one particle. The free energy of finite numbers is F + (1/2)
-    ln(det G / prod N_a), where G are the covariances of the numbers in an open container: its saddle point,
-    as in `state.finite_size_correction`. In an ideal gas G is diagonal and equal to the numbers. With H the
-    second derivatives of F beyond the ideal gas, the result is
+    -ln P_i is the change of the free energy when one particle is added. For finite numbers the free energy is
+    F + (1/2) ln(det G / prod N_a). Here G are the covariances of the numbers in an open container. The
+    formula follows from the saddle point of the grand partition function, as in
+    `state.finite_size_correction`. In an ideal gas G is diagonal and equal to the numbers. With the matrix H
+    of second derivatives of F relative to the ideal gas, the result is
 
-        H_ii / 2 - (1/2) d ln det(1 + N H) / dN_i,    N the diagonal matrix of the numbers.
+        H_ii / 2 - (1/2) d ln det(1 + N H) / dN_i,    where N is the diagonal matrix of the numbers.
 
     Examples
     --------
@@ -133,7 +135,8 @@ def _free_energy(
 ) -> tuple[np.ndarray, Callable[[np.ndarray], float]]:
     """Return the fractions (S,), and F / k_B T as a function of numbers (S,).
 
-    The volume stays the same. F is per particle at first: at numbers equal to the fractions.
+    The volume is constant. It is chosen such that F is per particle if the numbers are equal to the
+    fractions.
     """
     eta, sizes, parts = checked_mixture(theory, packing_fraction, dimension, diameters, fractions)
     powers = (sizes / sizes.max()) ** np.arange(dimension + 1)[:, None]
@@ -156,7 +159,7 @@ def _free_energy(
 def _gradient(
     function: Callable[[np.ndarray], float | np.ndarray], at: np.ndarray, step: float
 ) -> np.ndarray:
-    """Return (S, ...) derivatives by each of the numbers, by central differences of fourth order."""
+    """Return derivatives (S, ...) with respect to each number, by central differences of fourth order."""
     derivatives = []
     for shift in step * np.eye(len(at)):
         near = np.subtract(function(at + shift), function(at - shift))
@@ -165,12 +168,10 @@ def _gradient(
     return np.array(derivatives)
 
 
-# Structure of mixtures of additive hard spheres, by Percus and Yevick's equation.
+# Structure of mixtures of additive hard spheres, from the Percus-Yevick equation.
 
 
-_RADIAL_NODES = (
-    80  # of Gauss and Legendre, per species: exact to rounding up to k = 100 in the largest diameter
-)
+_RADIAL_NODES = 80  # Gauss-Legendre nodes per species: exact to rounding up to k = 100 / largest diameter
 
 
 @check_ranges
@@ -182,7 +183,7 @@ def percus_yevick_partial_factors(
     Parameters
     ----------
     wave_number : array_like, [1/length]
-        Wave numbers k, in the inverse of the unit of the diameters.
+        Wave numbers k, in inverse units of the diameters.
     packing_fraction : float, [1]
         Packing fraction eta, from 0 to 0.539.
     diameters : array_like, shape (S,), [length]
@@ -194,7 +195,7 @@ def percus_yevick_partial_factors(
     -------
     ndarray, shape (..., S, S), [1]
         S_ab(k) = <rho_a(k) rho_b(-k)> / sqrt(N_a N_b) of each pair of species. In an ideal gas it is 1 for
-        equal indices and 0 for others.
+        equal species and 0 otherwise.
 
     Raises
     ------
@@ -203,7 +204,7 @@ def percus_yevick_partial_factors(
 
     Notes
     -----
-    Lebowitz's solution [1]_ as factorised by Baxter [2]_. The inverse matrix is Q^H Q with
+    Lebowitz's solution [1]_ in Baxter's factorised form [2]_. The inverse matrix is Q^H Q with
 
         Q_ab = delta_ab - 2 pi sqrt(rho_a rho_b) int q_ab(r) e^{ikr} dr from (sigma_a - sigma_b) / 2 to
         sigma_ab,
@@ -212,8 +213,8 @@ def percus_yevick_partial_factors(
 
         a_a = (1 - xi_3 + 3 xi_2 sigma_a) / (1 - xi_3)^2,    b_a = -(3/2) xi_2 sigma_a^2 / (1 - xi_3)^2,
 
-    and xi_n = (pi / 6) sum rho sigma^n. The sum of sqrt(x_a x_b) S_ab is S(k) of all particles. Tested: equal
-    spheres have S(k) of `percus_yevick_structure_factor`, and k = 0 gives Percus and Yevick's
+    and xi_n = (pi / 6) sum rho sigma^n. The sum of sqrt(x_a x_b) S_ab is S(k) of all particles. Tested: for
+    equal spheres the result is S(k) of `percus_yevick_structure_factor`, and k = 0 gives the Percus-Yevick
     compressibility.
 
     References
@@ -236,14 +237,14 @@ def percus_yevick_partial_factors(
     slope = (-1.5 * second * sizes**2 / rest**2)[:, None, None]
     between = (0.5 * np.add.outer(sizes, sizes))[..., None]
     nodes, weights = np.polynomial.legendre.leggauss(_RADIAL_NODES)
-    r = between - sizes[None, :, None] * 0.5 * (1.0 - nodes)  # from the difference of the radii, b wide
+    r = between - sizes[None, :, None] * 0.5 * (1.0 - nodes)  # from the difference of the radii
     inside = 0.5 * square * (r**2 - between**2) + slope * (r - between)
     integral = (inside * np.exp(1j * k * r)) @ weights * 0.5 * sizes[None, :]
     factor = np.eye(len(sizes)) - 2.0 * np.pi * np.sqrt(np.outer(density, density)) * integral
     return np.linalg.inv((factor.conj().swapaxes(-1, -2) @ factor).real)
 
 
-# Transport of heat in dilute mixtures of spheres.
+# Heat transport in dilute mixtures of spheres.
 
 
 @check_ranges
@@ -278,18 +279,18 @@ def dilute_mixture_conductivity(
 
     Notes
     -----
-    Chapman and Enskog's conductivity in the first approximation [1]_: kappa = -4 x L^-1 x with
+    The first approximation of Chapman and Enskog [1]_ is kappa = -4 x L^-1 x with
 
         L_ii = -4 x_i^2 / kappa_i - sum_k x_i x_k c_ik (15/2 m_i^2 + 13/4 m_k^2 + 4 m_i m_k),
 
         L_ik = x_i x_k c_ik m_i m_k (55/4 - 7),    c_ik = 16 / (25 n D_ik (m_i + m_k)^2),
 
-        kappa_i = 75 / (64 sigma_i^2) sqrt(k_B T / (pi m_i)) of each species alone,
+        kappa_i = 75 / (64 sigma_i^2) sqrt(k_B T / (pi m_i)) for each species alone,
 
         n D_ik = 3 / (8 sigma_ik^2) sqrt(k_B T / (2 pi mu_ik)), with the reduced mass mu_ik.
 
-    The ratios A and B of collision integrals are 1 for spheres. Two species are tested against the formula of
-    Hirschfelder, Curtiss and Bird [2]_. Higher approximations add 2.5 % for one species.
+    The ratios A and B of collision integrals are 1 for spheres. For two species the result was tested against
+    the formula of Hirschfelder, Curtiss and Bird [2]_. For one species, higher approximations add 2.5 %.
 
     References
     ----------

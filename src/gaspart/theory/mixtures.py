@@ -1,15 +1,15 @@
 """Mixtures of additive hard discs and spheres: equations of state, contact values, collision rates.
 
 All functions take the packing fraction (a number) of the mixture, the diameters (S,) of its species in any
-unit and their number fractions (S,), which are normalised. A polydisperse gas is a mixture of as many species
-as there are sizes. In every theory here a contact value is a polynomial in
+unit, and their number fractions (S,), which are normalised. A polydisperse gas is a mixture with one species
+per particle size. In every theory here, the contact value is a polynomial in
 
     z_ij = sigma_i sigma_j / sigma_ij <sigma^(d-1)> / <sigma^d>,    sigma_ij = (sigma_i + sigma_j) / 2,
 
-whose coefficients depend on the packing fraction alone (Santos, Yuste and Lopez de Haro 2002: their
-"universality"). The virial theorem then gives Z in terms of moments of the diameters. All theories are exact
-to the second virial coefficient and for point particles (z = 0), where g = 1 / (1 - eta). "santos" is exact
-also for equal sizes (z = 1), up to the uncertainty of the pure fluid's reference.
+whose coefficients depend only on the packing fraction (the "universality" of Santos, Yuste and Lopez de Haro
+2002). The virial theorem then gives Z from moments of the diameters. All theories are exact up to the second
+virial coefficient, and for point particles (z = 0), where g = 1 / (1 - eta). "santos" is also exact for equal
+sizes (z = 1), up to the uncertainty of the reference equation of the pure fluid.
 """
 
 import math
@@ -32,7 +32,7 @@ from gaspart.theory.state import HIGHEST_PACKING_FRACTION, contact_value
 MIXTURE_THEORIES = {"boublik": (3,), "linear": (2, 3), "santos": (2, 3)}
 """Theories of mixtures and the dimensions in which they exist (see `mixture_contact_values`)."""
 Sizes: TypeAlias = Sequence[float] | np.ndarray
-"""(S,) positive numbers."""
+"""Positive numbers, shape (S,)."""
 
 
 def contact_coefficients(theory: str, eta: Numbers, dimension: int, pure: Numbers | None) -> tuple[Any, ...]:
@@ -47,7 +47,7 @@ def contact_coefficients(theory: str, eta: Numbers, dimension: int, pure: Number
     dimension : {2, 3}
         Discs or spheres.
     pure : array_like or None, [1]
-        Contact value of equal particles at `eta`. None: the value of `contact_value`.
+        Contact value of equal particles at `eta`. Default (None): `contact_value`.
 
     Returns
     -------
@@ -60,7 +60,7 @@ def contact_coefficients(theory: str, eta: Numbers, dimension: int, pure: Number
     pure = contact_value(eta, dimension)[()] if pure is None else pure
     if theory == "linear":
         return point, pure - point
-    wall = 1.0 + 2.0 ** (dimension - 1) * eta * pure  # of a fluid of equal particles at a hard wall: its Z
+    wall = 1.0 + 2.0 ** (dimension - 1) * eta * pure  # Z of the pure fluid: the contact value at a hard wall
     square = 0.5 * (wall + point) - pure
     return point, pure - point - square, square
 
@@ -75,7 +75,7 @@ def checked_mixture(
     theory : {"santos", "linear", "boublik"}
         Theory of the mixture, which must exist in this dimension.
     packing_fraction : float, [1]
-        Packing fraction, in the range of the pure fluid's reference.
+        Packing fraction, in the range of the reference equation of the pure fluid.
     dimension : {2, 3}
         Discs or spheres.
     diameters : array_like, shape (S,), [length]
@@ -122,9 +122,9 @@ def _numbers(name: str, values: Sizes) -> np.ndarray:
 
 
 def _moment(parts: np.ndarray, sizes: np.ndarray, power: int) -> float:
-    """Return the mean of a power of the diameters, rounded once.
+    """Return the mean of a power of the diameters, with a single rounding.
 
-    The sums of BLAS depend on the processor, and lengths of runs follow from this mean.
+    Sums of BLAS depend on the processor, and this mean determines the lengths of runs.
     """
     return math.fsum(parts * np.prod([sizes] * power, axis=0)) if power else math.fsum(parts)
 
@@ -162,7 +162,8 @@ def mixture_compressibility_factor(
     Raises
     ------
     SceneError
-        If an argument is out of range. Packing fractions end where the pure fluid's reference ends.
+        If an argument is out of range. The packing fraction ends at the limit of the reference equation of
+        the pure fluid.
 
     See Also
     --------
@@ -212,7 +213,7 @@ def virial_sum(coefficients: Sequence[float], moments: Sequence[float]) -> float
     dimension = len(moments) - 1
     ratio, total = moments[dimension - 1] / moments[dimension], 0.0
     for power, coefficient in enumerate(coefficients):
-        rest = dimension - power  # <sigma_i^k sigma_j^k sigma_ij^(d-k)>, by the binomial theorem
+        rest = dimension - power  # <sigma_i^k sigma_j^k sigma_ij^(d-k)>, from the binomial theorem
         terms = (math.comb(rest, n) * moments[power + n] * moments[dimension - n] for n in range(rest + 1))
         total += coefficient * ratio**power * sum(terms) / 2.0**rest
     return total
@@ -251,16 +252,17 @@ def mixture_contact_values(
     Raises
     ------
     SceneError
-        If an argument is out of range. Packing fractions end where the pure fluid's reference ends.
+        If an argument is out of range. The packing fraction ends at the limit of the reference equation of
+        the pure fluid.
 
     Notes
     -----
     - "boublik": 1 / (1 - eta) + (3/2) eta z / (1 - eta)^2 + (1/2) eta^2 z^2 / (1 - eta)^3 [1]_ [2]_ [3]_,
-      with z of the module `mixtures`.
-    - "linear": the contact value of equal particles, from `contact_value`, at z = 1 and a straight line in z
+      with z as defined in the module `mixtures`.
+    - "linear": a straight line in z, through the contact value of equal particles (`contact_value`) at z = 1
       [4]_.
-    - "santos": a parabola through both of these values and through the exact contact value at a hard wall, z
-      = 2, by the same authors [5]_.
+    - "santos": a parabola through the values at z = 0 and z = 1 and through the exact contact value at a hard
+      wall, z = 2, by the same authors [5]_.
 
     References
     ----------
@@ -314,13 +316,13 @@ def mixture_collision_rates(
     masses : float or array_like, shape (S,), default 1.0, [mass]
         Masses of the particles: a number for all species, or one for each.
     contact : ndarray, shape (S, S), optional, [1]
-        Contact values g_ij, in place of the theory's.
+        Contact values g_ij, instead of the theory's.
 
     Returns
     -------
     ndarray, shape (S, S), [1/time]
-        Collisions of one particle of species i with particles of species j per time. The sum over j is the
-        collision rate of a particle.
+        Collisions of one particle of species i with all particles of species j per time. The sum over j is
+        the collision rate of a particle.
 
     Raises
     ------
@@ -330,7 +332,7 @@ def mixture_collision_rates(
     Notes
     -----
     S rho_j sigma_ij^(d-1) g_ij sqrt(k_B T / (2 pi mu_ij)), with S = 2 pi (2D) or 4 pi (3D) and the reduced
-    mass mu_ij. It is exact with exact contact values [1]_.
+    mass mu_ij. The formula is exact if the contact values are exact [1]_.
 
     References
     ----------
@@ -369,7 +371,7 @@ def enskog_mutual_diffusion(
     masses: Numbers | Sizes = 1.0,
     contact: np.ndarray | None = None,
 ) -> float:
-    """Compute Maxwell and Stefan's coefficient of mutual diffusion of two species.
+    """Compute the Maxwell-Stefan coefficient of mutual diffusion of two species.
 
     Parameters
     ----------
@@ -388,12 +390,12 @@ def enskog_mutual_diffusion(
     masses : float or array_like, shape (2,), default 1.0, [mass]
         Masses of the particles: a number for both species, or one for each.
     contact : ndarray, shape (2, 2), optional, [1]
-        Contact values g_ij, in place of the theory's.
+        Contact values g_ij, instead of the theory's.
 
     Returns
     -------
     float, [length^2/time]
-        D_12. The unit of length is the unit of the diameters.
+        Coefficient D_12. The unit of length is the unit of the diameters.
 
     Raises
     ------
@@ -402,13 +404,13 @@ def enskog_mutual_diffusion(
 
     Notes
     -----
-    Enskog's coefficient in the first approximation of Sonine polynomials [1]_,
+    Enskog's coefficient in the first Sonine approximation [1]_ is
 
         D_12 = d k_B T x_2 / (4 mu_12 nu_12),
 
     with nu_12 of `mixture_collision_rates` and the reduced mass mu_12. For spheres it is 3 / (8 n sigma_12^2
-    g_12) sqrt(k_B T / (2 pi mu_12)). It does not contain the thermodynamic factor. Higher approximations add
-    2 % for equal masses, up to 13 % for a few light particles among heavy ones.
+    g_12) sqrt(k_B T / (2 pi mu_12)). The coefficient does not include the thermodynamic factor. Higher
+    approximations add 2 % for equal masses, up to 13 % for a few light particles among heavy ones.
 
     References
     ----------

@@ -1,30 +1,32 @@
-r"""Long-time tails of discs' viscosity and conductivity: pairs of hydrodynamic modes in a periodic container.
+r"""Long-time tails of the viscosity and conductivity of discs, from pairs of hydrodynamic modes.
 
-Of long waves the stress is m rho u_x u_y, and the heat flux, less the enthalpy that the momentum carries, rho
-T s u + p u, with the velocity u, the entropy s of a particle and the pressure p relative to their means (k_B
-= 1). So these fluxes correlate as pairs of modes of the wave vectors k and -k do: shear with the kinematic
-viscosity nu, heat with D_T = lambda / (rho c_p), and sound with the speed c and the attenuation Gamma
-(`modes.sound_attenuation`). In an infinite fluid they grow with the logarithm of time, by
+The container is periodic. For long waves the stress is m rho u_x u_y. The heat flux, minus the enthalpy that
+the momentum carries, is rho T s u + p u. Here u is the velocity, and the entropy per particle s and the
+pressure p are relative to their means (k_B = 1). So these fluxes correlate as pairs of modes with wave
+vectors k and -k. There are shear modes with the kinematic viscosity nu, heat modes with D_T = lambda / (rho
+c_p), and sound modes with the speed c and the attenuation Gamma (`modes.sound_attenuation`). In an infinite
+fluid the integrals grow with the logarithm of time, by
 
 .. math:: \frac{1}{32\pi}\left(\frac1\nu + \frac1\Gamma\right) k_BT \quad\text{and}\quad
           \frac{1}{8\pi}\left(\frac{k_BT c_p}{m(\nu+D_T)} + \frac{c^2}{\Gamma}\right)
 
-for each factor e. The method is due to Ernst, Hauge and van Leeuwen, Phys. Rev. A 4, 2055 (1971), and J.
-Stat. Phys. 15, 7 (1976); the amplitudes were derived again and not compared with the papers (tested against
-the linearised equations of the fluid). The term of c^2 is energy which travels with the sound.
+each time that the time increases by a factor e. The method is due to Ernst, Hauge and van Leeuwen, Phys. Rev.
+A 4, 2055 (1971), and J. Stat. Phys. 15, 7 (1976). The amplitudes were derived again and not compared with the
+papers (tested against the linearised equations of the fluid). The term with c^2 is energy that travels with
+the sound.
 
-Corrections of the next order in 1/t have no free parameter. (a) The flux's own correlation still lasts: its
-kinetic part relaxes with the rates r_i and weights a_i of the linearised Boltzmann operator. (b) Modes make a
-flux by collisions, and so later: collisions of particles 1 and 2 in the modes psi and phi conserve the sums
-psi(1) + psi(2) and phi(1) + phi(2), from which follows, for the part i of a flux j,
+The corrections of the next order in 1/t have no free parameter. (a) The kinetic part of the flux has its own
+correlation. It relaxes with the rates r_i and weights a_i of the linearised Boltzmann operator. (b) Modes
+create a flux through collisions, so the flux is delayed. Collisions of particles 1 and 2 in the modes psi and
+phi conserve the sums psi(1) + psi(2) and phi(1) + phi(2). From this follows, for the part i of a flux j,
 
 .. math:: \langle i(1)+i(2)|\,T\,|\psi(1)\phi(2)+\psi(2)\phi(1)\rangle = 2 r_i \langle i|\psi\phi\rangle ,
 
-so that each of the two vertices is <j|psi phi> times F(p) = sum a_i r_i / (r_i + p), the Laplace transform of
-a delay of mean sum a_i / r_i: 2.06 collisions of a particle for the heat flux, 1.02 for the stress. (c) The
-modes belong to a gas whose fluxes relax (`modes.Relaxation`). What remains are waves as short as the mean
-free path, Burnett's terms, and corrections of Enskog's coefficients. Everything is in diameters, masses and
-k_B T.
+so each of the two vertices is <j|psi phi> times F(p) = sum a_i r_i / (r_i + p). F(p) is the Laplace transform
+of a delay with the mean sum a_i / r_i, which is 2.06 collisions of a particle for the heat flux and 1.02 for
+the stress. (c) The modes belong to a gas whose fluxes relax (`modes.Relaxation`). Neglected are waves as
+short as the mean free path, Burnett terms, and corrections to Enskog's coefficients. All quantities are in
+units of the diameter, the mass and k_B T.
 """
 
 from __future__ import annotations
@@ -49,16 +51,17 @@ from gaspart.theory.state import compressibility_factor, speed_of_sound
 
 QUANTITIES = ("viscosity", "conductivity")
 _SHORTEST = 2.0
-"""Largest k l: there exp(-(k l)^4) is 1e-7."""
+"""Largest k l; there the factor exp(-(k l)^4) is 1e-7."""
 _SMALLEST = 40.0
-"""Exponent of decay: pairs that have decayed by exp(-40) at the first time are left out."""
+"""Decay exponent above which pairs of modes are neglected: they have decayed by exp(-40) at the first time.
+"""
 
 
 @check_ranges
 def transport_modes(
     time: Numbers, packing_fraction: float, count: int, quantity: str, shortest: float = 1.0
 ) -> Values:
-    """Compute Green and Kubo's integral of discs in a periodic square from pairs of modes.
+    """Compute the Green-Kubo integral of discs in a periodic square from pairs of modes.
 
     Parameters
     ----------
@@ -71,12 +74,13 @@ def transport_modes(
     quantity : {"viscosity", "conductivity"}
         Transport coefficient.
     shortest : float, default 1.0, [1]
-        Shortest length of modes in mean free paths: they end smoothly at the wave number 1 / length.
+        Shortest length of modes, in mean free paths. Modes are cut off smoothly at the wave number 1 /
+        length.
 
     Returns
     -------
     float or ndarray, same shape as `time`
-        Integral until each time: [mass/time] for the viscosity, [1/time] for the conductivity.
+        Integral up to each time: [mass/time] for the viscosity, [1/time] for the conductivity.
 
     Raises
     ------
@@ -87,16 +91,16 @@ def transport_modes(
 
     See Also
     --------
-    transport_uniform_mode : Term k = 0 of free momentum and energy.
+    transport_uniform_mode : Term k = 0, which exists if momentum and energy are not fixed.
     transport_logarithmic_slope : Growth in an infinite fluid.
 
     Notes
     -----
-    The kinetic part and the pairs of modes of the module `mode_pairs`. Within the first collisions of a
-    particle waves as short as its path contribute, which are no modes, so only differences between later
-    times have a meaning. The change by another `shortest` is an uncertainty of the theory. Twice this length
-    changes the result: at a packing fraction of 0.3 by 12 % of the growth of the conductivity from 10
-    collisions on, and by 2 % of the growth from 20 on.
+    The result includes the kinetic part and the pairs of modes (module `mode_pairs`). During the first
+    collisions of a particle, waves as short as its mean free path contribute, which are not hydrodynamic
+    modes. So only differences between later times are meaningful. The change of the result with `shortest` is
+    an uncertainty of the theory. Doubling this length at a packing fraction of 0.3 changes the growth of the
+    conductivity by 12 % after 10 collisions, and by 2 % after 20 collisions.
 
     References
     ----------
@@ -129,7 +133,7 @@ def transport_modes(
 
 @check_ranges
 def transport_uniform_mode(time: Numbers, packing_fraction: float, count: int, quantity: str) -> Values:
-    """Compute the term k = 0 of `transport_modes`, which fixed momentum and energy remove.
+    """Compute the term k = 0 of `transport_modes`, absent at fixed momentum and energy.
 
     Parameters
     ----------
@@ -145,7 +149,7 @@ def transport_uniform_mode(time: Numbers, packing_fraction: float, count: int, q
     Returns
     -------
     float or ndarray, same shape as `time`
-        Integral until each time: [mass/time] for the viscosity, [1/time] for the conductivity.
+        Integral up to each time: [mass/time] for the viscosity, [1/time] for the conductivity.
 
     Raises
     ------
@@ -154,9 +158,9 @@ def transport_uniform_mode(time: Numbers, packing_fraction: float, count: int, q
 
     Notes
     -----
-    rho / N (k_B T) for the viscosity, or rho / N (c_p + c^2) for the conductivity, times the time less the
-    delays of both vertices. Until sound has crossed a container of N discs, its integral differs from the
-    integral of an infinite fluid by this term.
+    The term is rho / N (k_B T) for the viscosity and rho / N (c_p + c^2) for the conductivity, multiplied by
+    the time minus the delays of both vertices. Until sound has crossed a container with N discs, the integral
+    of the container differs from the integral of an infinite fluid by this term.
 
     Examples
     --------
@@ -178,7 +182,7 @@ def transport_uniform_mode(time: Numbers, packing_fraction: float, count: int, q
 
 @check_ranges
 def transport_logarithmic_slope(packing_fraction: float, quantity: str) -> float:
-    """Compute the growth of the integral of an infinite fluid of discs while time grows e-fold.
+    """Compute the growth of the Green-Kubo integral of an infinite fluid per factor e of time.
 
     Parameters
     ----------
@@ -190,7 +194,8 @@ def transport_logarithmic_slope(packing_fraction: float, quantity: str) -> float
     Returns
     -------
     float
-        Growth for a factor e of time: [mass/time] for the viscosity, [1/time] for the conductivity.
+        Growth when the time increases by a factor e: [mass/time] for the viscosity, [1/time] for the
+        conductivity.
 
     Raises
     ------
@@ -199,8 +204,9 @@ def transport_logarithmic_slope(packing_fraction: float, quantity: str) -> float
 
     Notes
     -----
-    (1/nu + 1/Gamma) / (32 pi) for the viscosity, [c_p / (nu + D_T) + c^2 / Gamma] / (8 pi) for the
-    conductivity, in diameters, masses and k_B T. Derivation and symbols: module `mode_pairs`.
+    (1/nu + 1/Gamma) / (32 pi) for the viscosity, and [c_p / (nu + D_T) + c^2 / Gamma] / (8 pi) for the
+    conductivity, in units of the diameter, the mass and k_B T. The module `mode_pairs` has the derivation and
+    the symbols.
 
     Examples
     --------
@@ -219,17 +225,17 @@ def transport_logarithmic_slope(packing_fraction: float, quantity: str) -> float
 
 
 def _relaxation(packing_fraction: float, quantity: str) -> Relaxation:
-    """Return the relaxation of a quantity's flux; raise SceneError for another quantity."""
+    """Return the relaxation of the flux of a quantity; raise SceneError for another quantity."""
     if quantity not in QUANTITIES:
         raise SceneError("quantity", quantity, f"must be {' or '.join(QUANTITIES)}")
     return Relaxation.of(packing_fraction, quantity)
 
 
 def _wave_numbers(eta: float, count: int, first: float, shortest: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return squares (M,) of the wave numbers that matter at the first time, and their weights.
+    """Return squared wave numbers (M,) that matter at the first time, and their weights.
 
-    The container is a periodic square, and 0 is left out. A weight is the number of wave vectors with this
-    square times exp(-(k l)^4), with the shortest length l.
+    The container is a periodic square. The wave number 0 is excluded. A weight is the number of wave vectors
+    with this square, multiplied by exp(-(k l)^4) with the shortest length l.
     """
     density = float(number_density(eta, 2))
     unit = 2.0 * math.pi * math.sqrt(density / count)
@@ -251,7 +257,7 @@ _Pairs: TypeAlias = list[tuple[np.ndarray, np.ndarray]]
 def _viscosity_pairs(eta: float, along: Modes, across: Modes) -> _Pairs:
     """Return weights and decays (n, m, M) of pairs of modes in the stress.
 
-    They belong to u_x u_y divided by its mean square, averaged over the directions of k.
+    They are for u_x u_y divided by its mean square, averaged over the directions of k.
     """
     longitudinal, transverse = along.amplitude[:, 2], across.amplitude[:, 0]
     return [
@@ -264,14 +270,14 @@ def _viscosity_pairs(eta: float, along: Modes, across: Modes) -> _Pairs:
 def _conductivity_pairs(eta: float, along: Modes, across: Modes) -> _Pairs:
     """Return weights and decays (n, m, M) of pairs of modes in the heat flux.
 
-    They belong to (rho T s + p) u, times the density.
+    They are for (rho T s + p) u, multiplied by the density.
     """
     z, capacity = float(compressibility_factor(eta, 2)), heat_capacities(eta, 2)[0]
-    slope = float(speed_of_sound(eta, 2)) ** 2 - z**2 / capacity  # of the pressure against the density
+    slope = float(speed_of_sound(eta, 2)) ** 2 - z**2 / capacity  # dp / d rho
     carried = (slope - z) / math.sqrt(slope) * along.amplitude[:, 0]
     carried = carried + (capacity + z) / math.sqrt(capacity) * along.amplitude[:, 1]
     moved = along.amplitude[:, 2]
-    crossed = carried * moved  # of k and -k: the velocity along k changes its sign
+    crossed = carried * moved  # pair of k and -k: the velocity along k changes its sign
     return [
         (0.5 * _squares(carried, across.amplitude[:, 0]), _sums(along, across)),
         (0.5 * (_squares(carried, moved) - crossed[:, None] * crossed[None, :]), _sums(along, along)),
@@ -284,15 +290,15 @@ def _squares(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 
 def _sums(first: Modes, second: Modes) -> np.ndarray:
-    """Return the decays (n, m, M) of pairs."""
+    """Return the decay rates (n, m, M) of pairs."""
     return first.decay[:, None] + second.decay[None, :]
 
 
 def _integrate_delayed(decay: np.ndarray, time: float, relaxation: Relaxation) -> np.ndarray:
-    """Return the integrals until a time of exp(decay t), delayed by both vertices.
+    """Return the integrals up to a time of exp(decay t), delayed by both vertices.
 
-    This is the inverse Laplace transform of F(p)^2 / (p - decay) / p, as divided differences of (exp(p t) -
-    1) / p. The result has the shape of `decay`.
+    This is the inverse Laplace transform of F(p)^2 / (p - decay) / p, computed from divided differences of
+    (exp(p t) - 1) / p. The result has the shape of `decay`.
     """
 
     def integral(p: np.ndarray) -> np.ndarray:
@@ -302,7 +308,7 @@ def _integrate_delayed(decay: np.ndarray, time: float, relaxation: Relaxation) -
     poles = -relaxation.rates
     shares = relaxation.weights * relaxation.rates
     ends = integral(poles)
-    alike = (time * np.exp(poles * time) - ends) / poles  # the derivative
+    alike = (time * np.exp(poles * time) - ends) / poles  # derivative
     to_pole = [(integral(decay) - end) / (decay - pole) for pole, end in zip(poles, ends, strict=True)]
     total = np.zeros(decay.shape, dtype=complex)
     for i, first in enumerate(poles):

@@ -1,17 +1,18 @@
-r"""The long-time velocity autocorrelation in a periodic container: a sum over the hydrodynamic modes.
+r"""Long-time velocity autocorrelation in a periodic container: a sum over hydrodynamic modes.
 
-The velocity of a tagged particle spreads over the modes of the fluid. Each mode decays while the particle
-diffuses away from its starting position. With wave vectors k of the container's lattice, the total momentum
-of N particles being zero,
+The velocity of a tagged particle spreads to the modes of the fluid. Each mode decays while the particle
+diffuses away from its initial position. For zero total momentum of N particles, and with the wave vectors k
+that the container permits, there are
 
 .. math:: C(t) = \frac{1}{d N} \sum_{k \ne 0} e^{-D k^2 t} [(d-1) e^{-\nu k^2 t}
           + e^{-\Gamma k^2 t / 2} \cos(c k t)] ,
 
-d - 1 shear modes with the kinematic viscosity nu, and sound with the speed c and the attenuation Gamma = [2
-(d-1)/d eta + zeta] / rho + (gamma - 1) lambda / (rho c_p). If the total momentum is free, the term k = 0 is
-1/N. In an infinite fluid the sum over shear modes is an integral, the known tail ((d-1) / (d rho)) [4 pi (D +
-nu) t]^(-d/2) (Ernst, Hauge and van Leeuwen, Phys. Rev. Lett. 25, 1254 (1970)); sound decays faster. Transport
-coefficients are Enskog's. Everything is in diameters, masses and k_B T.
+d - 1 shear modes with the kinematic viscosity nu, and sound modes with the speed c and the attenuation Gamma
+= [2 (d-1)/d eta + zeta] / rho + (gamma - 1) lambda / (rho c_p). If the total momentum is not fixed, the term
+k = 0 is 1/N. In an infinite fluid the sum over shear modes is an integral, the known tail ((d-1) / (d rho))
+[4 pi (D + nu) t]^(-d/2) (Ernst, Hauge and van Leeuwen, Phys. Rev. Lett. 25, 1254 (1970)); sound decays
+faster. The transport coefficients come from Enskog theory. All quantities are in units of the diameter, the
+mass and k_B T.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ from gaspart.theory.geometry import Numbers, Values, check_ranges, checked_dimen
 from gaspart.theory.state import compressibility_factor, speed_of_sound
 
 _SMALLEST = 40.0
-"""Exponent of decay: modes that have decayed by exp(-40) at the first time are left out."""
+"""Decay exponent above which modes are neglected: they have decayed by exp(-40) at the first time."""
 
 
 @check_ranges
@@ -53,8 +54,8 @@ def sound_attenuation(packing_fraction: float, dimension: int) -> float:
     Returns
     -------
     float, [length^2/time]
-        Gamma, by which sound of the wave number k decays as exp(-Gamma k^2 t / 2), in diameters and diameters
-        sqrt(m / k_B T).
+        Attenuation Gamma, in units of diameters and diameters sqrt(m / k_B T). Sound with the wave number k
+        decays as exp(-Gamma k^2 t / 2).
 
     Raises
     ------
@@ -64,7 +65,7 @@ def sound_attenuation(packing_fraction: float, dimension: int) -> float:
     Notes
     -----
     Gamma = [2 (d-1)/d eta + zeta] / rho + (gamma - 1) lambda / (rho c_p). The heat capacities come from
-    `modes.heat_capacities`; the transport coefficients Enskog's.
+    `modes.heat_capacities`, and the transport coefficients from Enskog theory.
 
     Examples
     --------
@@ -80,7 +81,7 @@ def sound_attenuation(packing_fraction: float, dimension: int) -> float:
 
 
 def heat_capacities(packing_fraction: float, dimension: int) -> tuple[float, float]:
-    """Compute the heat capacities of a particle at constant volume and at constant pressure.
+    """Compute the heat capacities per particle at constant volume and at constant pressure.
 
     Parameters
     ----------
@@ -97,7 +98,7 @@ def heat_capacities(packing_fraction: float, dimension: int) -> tuple[float, flo
         c_p, with c_p - c_v = Z^2 / (d rho Z / d rho) (exact).
     """
     z = float(compressibility_factor(packing_fraction, dimension))
-    slope = float(speed_of_sound(packing_fraction, dimension)) ** 2 - 2.0 * z**2 / dimension  # of rho Z
+    slope = float(speed_of_sound(packing_fraction, dimension)) ** 2 - 2.0 * z**2 / dimension  # (rho Z)'
     return 0.5 * dimension, 0.5 * dimension + z**2 / slope
 
 
@@ -121,7 +122,7 @@ def velocity_autocorrelation_modes(
     Returns
     -------
     float or ndarray, same shape as `time`, [1]
-        C(t) divided by C(0), with the term 1/N of free momentum.
+        C(t) divided by C(0), with the term 1/N of a momentum that is not fixed.
 
     Raises
     ------
@@ -137,7 +138,7 @@ def velocity_autocorrelation_modes(
     Notes
     -----
     The sum over hydrodynamic modes of the module `modes`. It is valid after many collisions of a particle,
-    for any time that sound takes to cross the container.
+    for any time that sound needs to cross the container.
 
     References
     ----------
@@ -154,7 +155,7 @@ def velocity_autocorrelation_modes(
 
 @check_ranges
 def diffusion_modes(time: Numbers, packing_fraction: float, dimension: int, count: int) -> Values:
-    """Compute the integral of `velocity_autocorrelation_modes` over time, except for a constant.
+    """Compute the time integral of `velocity_autocorrelation_modes`, except for a constant.
 
     Parameters
     ----------
@@ -170,7 +171,7 @@ def diffusion_modes(time: Numbers, packing_fraction: float, dimension: int, coun
     Returns
     -------
     float or ndarray, same shape as `time`, [length^2/time]
-        Integral, in diameters and diameters sqrt(m / k_B T).
+        Integral, in units of diameters and diameters sqrt(m / k_B T).
 
     Raises
     ------
@@ -181,7 +182,8 @@ def diffusion_modes(time: Numbers, packing_fraction: float, dimension: int, coun
 
     Notes
     -----
-    The diffusion of particles before modes describe them is unknown, so only differences have a meaning.
+    The diffusion before modes describe the motion is unknown, so only differences between times are
+    meaningful.
 
     Examples
     --------
@@ -194,7 +196,7 @@ def diffusion_modes(time: Numbers, packing_fraction: float, dimension: int, coun
 
 
 def _sum(time: Numbers, eta: float, dimension: int, count: int, integrated: bool) -> Values:
-    """Return C(t), or its integral, from all wave vectors but 0.
+    """Return C(t), or its integral, from all wave vectors except 0.
 
     Only wave vectors that matter at the earliest time are included.
     """
@@ -207,7 +209,7 @@ def _sum(time: Numbers, eta: float, dimension: int, count: int, integrated: bool
 
 
 def wave_vectors(dimension: int, most: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the squares of integer vectors without 0, and how many vectors have each square.
+    """Return the squares of nonzero integer vectors, and the number of vectors for each square.
 
     Parameters
     ----------
@@ -253,7 +255,7 @@ def sum_of_modes(
     Returns
     -------
     float or ndarray, same shape as `time`
-        Sum over the modes and all wave vectors k but 0.
+        Sum over the modes and all nonzero wave vectors k.
 
     Raises
     ------
@@ -276,25 +278,67 @@ def sum_of_modes(
     return (weights @ terms.real @ numbers).reshape(np.shape(time))[()]
 
 
-# Hydrodynamic modes of discs whose stress and heat flux relax, beyond the limit of long waves.
+def diffusion_by_modes(
+    side: float, count: int, dimension: int, cells: int, path: float, spreading: float
+) -> float:
+    """Estimate the contribution of the fluctuating flow to the self-diffusion of a kinetic equation.
+
+    Parameters
+    ----------
+    side : float, [length]
+        Side of the periodic cube or square.
+    count : int
+        Number N of particles.
+    dimension : {2, 3}
+        Discs or spheres.
+    cells : int
+        Number of cells along each side.
+    path : float, [length]
+        Mean free path.
+    spreading : float, [length^2/time]
+        Kinematic viscosity plus diffusion coefficient, nu + D.
+
+    Returns
+    -------
+    float, [time]
+        Contribution to D, divided by k_B T / m.
+
+    Notes
+    -----
+    (1 / d N) sum over k of (d - 1) / [(nu + D) k^2]. This is the integral of the shear modes in `modes`,
+    which transport particles [1]_. The sum includes the wave vectors k that the cells resolve, up to half of
+    `cells` along each side, and only waves longer than 2 pi mean free paths. With a single cell no mode
+    contributes, because collision partners are drawn at any distance. This is a hydrodynamic estimate with a
+    relative uncertainty of a half.
+
+    References
+    ----------
+    .. [1] A. Donev, J. B. Bell, A. de la Fuente and A. L. Garcia, Phys. Rev. Lett. 106, 204501 (2011).
+    """
+    squares, numbers = wave_vectors(dimension, int(min(0.5 * cells, 0.5 * side / (math.pi * path))))
+    waves = (2.0 * math.pi / side) ** 2 * squares
+    return float((dimension - 1.0) / (dimension * count * spreading) * (numbers / waves).sum())
+
+
+# Hydrodynamic modes of discs with relaxing stress and heat flux, beyond the limit of long waves.
 #
-# Fourier's law and Newton's law hold if nothing changes within a time between collisions. For sound in a
-# simulated container it does: c k times the relaxation time of the heat flux is 0.6 for the longest wave
-# of 256 discs of packing fraction 0.3. So the fluxes are variables here. Density, temperature and
-# velocity, each over its root mean square, obey the linearised equations of continuity, momentum and
-# energy; the kinetic part of each flux consists of parts i that relax with the rates r_i of the linearised
-# Boltzmann operator (`boltzmann.flux_relaxation`),
+# Fourier's law and Newton's law of viscosity hold if nothing changes within the time between collisions.
+# Sound in a simulated container changes faster: c k times the relaxation time of the heat flux is 0.6 for the
+# longest wave of 256 discs at a packing fraction of 0.3. So the fluxes are independent variables here.
+# Density, temperature and velocity, each divided by its root mean square, obey the linearised equations of
+# continuity, momentum and energy. The kinetic part of each flux consists of parts i that relax with the rates
+# r_i of the linearised Boltzmann operator (`boltzmann.flux_relaxation`),
 #
 # .. math:: \dot q_i = -r_i q_i - i k \sqrt{\kappa_i r_i / (\rho c_v)}\, T , \qquad \sum_i \kappa_i =
 # \kappa ,
 #
-# and the parts of the stress relax in the same way. What collisions transfer at once, the rest of Enskog's
-# coefficients, stays a coefficient. Static correlations are exact: the matrices are symmetric. Burnett's
-# coupling of the fluxes with each other is left out. Units: diameters, masses and k_B T.
+# and the parts of the stress relax in the same way. Collisions transfer the rest of Enskog's coefficients
+# instantaneously; it remains a coefficient. Static correlations are exact: the matrices are symmetric. The
+# Burnett coupling between the fluxes is neglected. Units: diameters, masses and k_B T.
 
 
 _FAINT = 1e-3
-"""Weight of a part of a flux below which it is left out."""
+"""Weight of a part of a flux below which the part is neglected."""
 
 
 @dataclass(frozen=True)
@@ -302,12 +346,12 @@ class Modes:
     """Hydrodynamic modes of M wave numbers.
 
     Correlations of the f hydrodynamic variables are sums over the modes n of amplitude[n, a] amplitude[n, b]
-    exp(decay t). Modes of the relaxing fluxes have small amplitudes in long waves.
+    exp(decay t). For long waves, the modes of the relaxing fluxes have small amplitudes.
 
     Parameters
     ----------
     decay : ndarray of complex, shape (n, M), [1/time]
-        Decay of each mode, which changes as exp(decay t).
+        Decay rate of each mode, which changes as exp(decay t).
     amplitude : ndarray of complex, shape (n, f, M), [1]
         Amplitude of each mode in the hydrodynamic variables.
     """
@@ -318,16 +362,16 @@ class Modes:
 
 @dataclass(frozen=True)
 class Relaxation:
-    """Relaxation of the parts of a flux.
+    """Relaxation of the kinetic parts of a flux.
 
     Parameters
     ----------
     rates : ndarray, shape (K,), [1/time]
         Rates of the parts.
     weights : ndarray, shape (K,), [1]
-        Weights of the parts, of sum 1.
+        Weights of the parts; their sum is 1.
     slow : float
-        Transport coefficient that the parts make.
+        Contribution of the parts to the transport coefficient.
     total : float
         Complete transport coefficient.
     """
@@ -339,7 +383,7 @@ class Relaxation:
 
     @classmethod
     def of(cls, packing_fraction: float, quantity: str) -> Relaxation:
-        """Return the relaxation of a flux of discs, by Enskog's theory.
+        """Return the relaxation of a flux of discs, from Enskog theory.
 
         Parameters
         ----------
@@ -369,12 +413,12 @@ class Relaxation:
 
     @property
     def parts(self) -> np.ndarray:
-        """Contribution of each part to the coefficient, (K,)."""
+        """Contribution of each part to the coefficient, shape (K,)."""
         integrals = self.weights / self.rates
         return self.slow * integrals / integrals.sum()
 
     def integral(self, time: np.ndarray) -> np.ndarray:
-        """Return the integral of the kinetic part's correlation until each time.
+        """Return the integral of the correlation of the kinetic part up to each time.
 
         Parameters
         ----------
@@ -390,7 +434,7 @@ class Relaxation:
 
 
 def transverse_modes(packing_fraction: float, wave_numbers: np.ndarray) -> Modes:
-    """Compute the modes of shear, in the velocity across k.
+    """Compute the shear modes, in the velocity perpendicular to k.
 
     Parameters
     ----------
@@ -402,13 +446,13 @@ def transverse_modes(packing_fraction: float, wave_numbers: np.ndarray) -> Modes
     Returns
     -------
     Modes
-        Modes, with the velocity across k as variable.
+        Modes; the variable is the velocity perpendicular to k.
     """
     return _modes(transverse_matrix(packing_fraction, wave_numbers), 1)
 
 
 def longitudinal_modes(packing_fraction: float, wave_numbers: np.ndarray) -> Modes:
-    """Compute the modes of sound and heat, in density, temperature and the velocity along k.
+    """Compute the sound and heat modes, in density, temperature and the velocity along k.
 
     Parameters
     ----------
@@ -420,13 +464,13 @@ def longitudinal_modes(packing_fraction: float, wave_numbers: np.ndarray) -> Mod
     Returns
     -------
     Modes
-        Modes, with density, temperature and the velocity along k as variables.
+        Modes; the variables are density, temperature and the velocity along k.
     """
     return _modes(longitudinal_matrix(packing_fraction, wave_numbers), 3)
 
 
 def transverse_matrix(packing_fraction: float, wave_numbers: np.ndarray) -> np.ndarray:
-    """Compute the matrix of the velocity across k and the parts of the stress.
+    """Compute the matrix for the velocity perpendicular to k and the parts of the stress.
 
     Parameters
     ----------
@@ -438,7 +482,7 @@ def transverse_matrix(packing_fraction: float, wave_numbers: np.ndarray) -> np.n
     Returns
     -------
     ndarray of complex, shape (M, n, n), [1/time]
-        Time derivatives of the variables, as a linear function of them.
+        Time derivatives of the variables as a linear function of the variables.
     """
     density, stress = float(number_density(packing_fraction, 2)), Relaxation.of(packing_fraction, "viscosity")
     matrix = _matrix(wave_numbers, 1, [(0, stress, density)])
@@ -447,7 +491,7 @@ def transverse_matrix(packing_fraction: float, wave_numbers: np.ndarray) -> np.n
 
 
 def longitudinal_matrix(packing_fraction: float, wave_numbers: np.ndarray) -> np.ndarray:
-    """Compute the matrix of density, temperature, velocity along k, heat flux and stress.
+    """Compute the matrix for density, temperature, velocity along k, heat flux and stress.
 
     Parameters
     ----------
@@ -459,8 +503,8 @@ def longitudinal_matrix(packing_fraction: float, wave_numbers: np.ndarray) -> np
     Returns
     -------
     ndarray of complex, shape (M, n, n), [1/time]
-        Time derivatives of the variables, as a linear function of them. Heat flux and stress have several
-        parts.
+        Time derivatives of the variables as a linear function of the variables. Heat flux and stress each
+        consist of several parts.
     """
     eta = packing_fraction
     density, z = float(number_density(eta, 2)), float(compressibility_factor(eta, 2))
@@ -470,7 +514,7 @@ def longitudinal_matrix(packing_fraction: float, wave_numbers: np.ndarray) -> np
     matrix = _matrix(wave_numbers, 3, [(1, flux, heat), (2, stress, density)])
     for variable, coupling in ((0, math.sqrt(speed**2 - z**2 / capacity)), (1, z / math.sqrt(capacity))):
         matrix[:, variable, 2] = matrix[:, 2, variable] = -1j * wave_numbers * coupling
-    along = float(enskog_longitudinal_viscosity(eta, 2))  # its slow part is that of the shear viscosity
+    along = float(enskog_longitudinal_viscosity(eta, 2))  # slow part: as for the shear viscosity
     matrix[:, 1, 1] = -(wave_numbers**2) * (flux.total - flux.slow) / heat
     matrix[:, 2, 2] = -(wave_numbers**2) * (along - stress.slow) / density
     return matrix
@@ -479,10 +523,10 @@ def longitudinal_matrix(packing_fraction: float, wave_numbers: np.ndarray) -> np
 def _matrix(
     wave_numbers: np.ndarray, variables: int, fluxes: list[tuple[int, Relaxation, float]]
 ) -> np.ndarray:
-    """Return the (M, n, n) matrix of hydrodynamic variables, followed by the parts of the fluxes.
+    """Return the (M, n, n) matrix for hydrodynamic variables, followed by the parts of the fluxes.
 
-    The hydrodynamic variables' own block is still 0. Each flux is a tuple: the variable that it carries, its
-    relaxation, and the density or heat capacity of this variable.
+    The block of the hydrodynamic variables among themselves is still 0. Each flux is a tuple: the variable
+    that it transports, its relaxation, and the density or heat capacity of this variable.
     """
     size = variables + sum(len(flux.rates) for _, flux, _ in fluxes)
     matrix, index = np.zeros((len(wave_numbers), size, size), complex), variables
@@ -498,7 +542,8 @@ def _matrix(
 def _modes(matrix: np.ndarray, variables: int) -> Modes:
     """Return all modes of symmetric matrices.
 
-    Their left eigenvectors are the right eigenvectors, of product 1 without complex conjugation.
+    The left eigenvectors are equal to the right eigenvectors. Their product, without complex conjugation, is
+    normalised to 1.
     """
     decay, modes = np.linalg.eig(matrix)
     modes = modes / np.sqrt((modes**2).sum(axis=1))[:, None, :]

@@ -1,7 +1,7 @@
-"""Saturation of random sequential insertion, and the chance that an attempt fails.
+"""Saturation of random sequential insertion, and the probability that an attempt fails.
 
-Particles of diameter sigma are placed one after another at uniformly random points, and stay if they overlap
-no other.
+Particles of diameter sigma are placed one after another at uniformly random positions. A particle stays if it
+overlaps with no other.
 """
 
 from __future__ import annotations
@@ -21,20 +21,21 @@ from gaspart.theory.geometry import (
 )
 
 RSA_SATURATION = {2: 0.547074, 3: 0.384131}
-"""Packing fraction at which no further particle fits, infinite container (Zhang, Torquato 2013, as public
-programs quote it: 0.5470735 and 0.3841307)."""
+"""Packing fraction at which no further particle fits, in an infinite container (Zhang, Torquato 2013, as
+quoted by public programs: 0.5470735 and 0.3841307).
+"""
 RSA_SATURATION_UNCERTAINTY = {2: 3e-6, 3: 3e-6}
-"""Standard uncertainty of RSA_SATURATION: a few units of the last digit. It is not verified, and is a
-hundredth of the uncertainty of what is measured here.
+"""Standard uncertainty of `RSA_SATURATION`, a few units of the last digit. It was not verified; it is a
+hundredth of the uncertainty of measurements with this program.
 """
 
-# Excess at hard walls, in diameters per side: saturation (1 + c sigma / L)^d for centres in [0, L]^d.
-# Computed: fits to insertions to saturation at L/sigma = 4 ... 24 (3D) and 100 (2D).
+# Excess at hard walls, in diameters per side: the saturation is multiplied by (1 + c sigma / L)^d for centres
+# in [0, L]^d. Computed from fits to insertions until saturation at L/sigma = 4 ... 24 (3D) and 100 (2D).
 _WALL_EXCESS = {2: 0.75, 3: 0.64}
 _WALL_EXCESS_UNCERTAINTY = {2: 0.04, 3: 0.005}
 
-# Second-order coefficient of the available fraction, (2^d)^2 / 2 - (3/2) b_3: exp(-mu_excess / k_B T) to
-# eta^2.
+# Second-order coefficient of the available fraction, (2^d)^2 / 2 - (3/2) b_3, from exp(-mu_excess / k_B T) to
+# order eta^2.
 _AVAILABLE_SECOND = {2: 6.0 * math.sqrt(3.0) / math.pi, 3: 17.0}
 
 
@@ -43,7 +44,7 @@ def _shape_factor(excess: float, dimension: int, side_over_diameter: float, boun
     if boundary == "centres_to_walls":
         return (1.0 + excess / side_over_diameter) ** dimension
     if boundary == "wall":
-        # Centres have L - sigma; the particles are counted in the volume L^d.
+        # Centres can move over L - sigma; the packing fraction refers to the volume L^d.
         return ((side_over_diameter - 1.0 + excess) / side_over_diameter) ** dimension
     raise ValueError(f"boundary: {boundary!r} (must be 'periodic', 'wall' or 'centres_to_walls')")
 
@@ -61,7 +62,8 @@ def insertion_saturation(
     side_over_diameter : float, optional, [1]
         Side L of the container divided by the diameter sigma, at least 1. Default: an infinite container.
     boundary : {"periodic", "wall", "centres_to_walls"}, default "periodic"
-        Faces of the container, and what they stop: surfaces ("wall") or centres of particles.
+        Faces of the container, and what they stop: surfaces ("wall") or centres ("centres_to_walls") of
+        particles.
 
     Returns
     -------
@@ -81,12 +83,13 @@ def insertion_saturation(
 
     Notes
     -----
-    - "periodic": the infinite value eta_s of `RSA_SATURATION` at every L, with fluctuations only.
-    - "centres_to_walls": source A's rule. Centres are in [0, L]^d and particles are counted completely, so
-      the value is eta_s (1 + c sigma / L)^d. Computed: c = 0.64 in 3D for L / sigma >= 4, and c = 0.75 in 2D
-      for L / sigma about 100.
-    - "wall": particles are completely inside. The value is the same with centres in L - sigma, so that the
-      packing fraction stays below the infinite value.
+    - "periodic": the infinite value eta_s of `RSA_SATURATION` for every L; the actual values fluctuate about
+      it.
+    - "centres_to_walls": the convention of source A. Centres are in [0, L]^d and the complete volume of the
+      particles counts, so the value is eta_s (1 + c sigma / L)^d. Computed: c = 0.64 in 3D for L / sigma >=
+      4, and c = 0.75 in 2D for L / sigma about 100.
+    - "wall": particles are completely inside. The number of particles is the same as for centres in a side of
+      L - sigma, so the packing fraction is below the infinite value.
 
     Examples
     --------
@@ -148,7 +151,7 @@ def insertion_saturation_uncertainty(
 
 
 def available_fraction(packing_fraction: Numbers, dimension: int) -> Values:
-    """Compute the chance that a random attempt to insert a particle succeeds.
+    """Compute the probability that a random attempt to insert a particle succeeds.
 
     Parameters
     ----------
@@ -160,7 +163,7 @@ def available_fraction(packing_fraction: Numbers, dimension: int) -> Values:
     Returns
     -------
     ndarray, same shape as `packing_fraction`, [1]
-        Chance that no particle is in the way.
+        Probability of no overlap.
 
     Raises
     ------
@@ -169,10 +172,10 @@ def available_fraction(packing_fraction: Numbers, dimension: int) -> Values:
 
     Notes
     -----
-    1 - 2^d eta + c_2 eta^2, with c_2 = 6 sqrt 3 / pi (2D) or 17 (3D). The fraction is exact to eta^2, where
-    insertion and equilibrium still agree [1]_ [2]_. So c_2 follows from B2 and B3 (tested). The value is for
-    an infinite or periodic container. The third order is neglected, which limits it to about 1 % at eta =
-    0.05 in 3D and 0.1 in 2D.
+    1 - 2^d eta + c_2 eta^2, with c_2 = 6 sqrt 3 / pi (2D) or 17 (3D). The fraction is exact to order eta^2,
+    up to which random insertion and equilibrium agree [1]_ [2]_. So c_2 follows from B2 and B3 (tested). The
+    value is for an infinite or periodic container. The third order is neglected. This limits the range for an
+    accuracy of about 1 % to eta = 0.05 in 3D and 0.1 in 2D.
 
     References
     ----------
@@ -227,31 +230,35 @@ def failures_per_particle(packing_fraction: Numbers, dimension: int) -> Values:
 
 # Freezing of hard discs and spheres, and the pressure of their crystals.
 #
-# Diameter 1 and k_B T = 1: number densities in 1 / sigma^d, pressures in k_B T / sigma^d.
+# Units: diameter 1 and k_B T = 1; number densities in 1 / sigma^d, pressures in k_B T / sigma^d.
 
 
 COEXISTENCE_PRESSURE = {2: 9.185, 3: 11.5727}
-"""Pressure P sigma^d / k_B T at which fluid and ordered phase coexist, infinite system.
+"""Pressure P sigma^d / k_B T at which the fluid and the ordered phase of an infinite system coexist.
 
 Discs (liquid and hexatic): Bernard and Krauth, Phys. Rev. Lett. 107, 155704 (2011); Engel and others, Phys.
-Rev. E 87, 042134 (2013); there written beta P (2 sigma)^2 with sigma the radius. The equal-area
-construction of their pressures of 1024^2 discs (`theory.literature`) gives 9.1850. Spheres (fluid and
-face-centred cubic): 11.5727(10), Fernandez and others, Phys. Rev. Lett. 108, 165701 (2012), abstract;
-11.5681 by equal pressures and chemical potentials of the equations that etomica fits to simulations of the
-fluid and of a crystal without vacancies.
+Rev. E 87, 042134 (2013), where it is written as beta P (2 sigma)^2 with the radius sigma. The equal-area
+construction for their pressures of 1024^2 discs (`theory.literature`) gives 9.1850. Spheres (fluid and
+face-centred cubic): 11.5727(10), Fernandez and others, Phys. Rev. Lett. 108, 165701 (2012), abstract. Equal
+pressures and chemical potentials of etomica's equations give 11.5681; etomica fitted them to simulations of
+the fluid and of a crystal without vacancies.
 """
 COEXISTENCE_DENSITY = {2: (0.700 * 4.0 / np.pi, 0.716 * 4.0 / np.pi), 3: (0.939, 1.0375)}
-"""Number densities of the fluid that freezes and of the ordered phase that melts; sources as above."""
+"""Number densities of the freezing fluid and of the melting ordered phase; the sources are the same as above.
+"""
 CRYSTAL_OF_1024_DISCS = (0.725, 9.382, 0.024)
-"""Packing fraction, pressure and its uncertainty of 1024 discs in a crystal, in a periodic container of
-sides 1 to sqrt(3) / 2: P V_0 / N k_B T = 8.125(21), Zollweg and Chester, Phys. Rev. B 46, 11186 (1992),
-figure 1, as read in jellyfysh/HistoricDisks."""
+"""Packing fraction, pressure and uncertainty of the pressure for a crystal of 1024 discs, in a periodic
+container with a side ratio of 1 to sqrt(3) / 2: P V_0 / N k_B T = 8.125(21), Zollweg and Chester, Phys. Rev.
+B 46, 11186 (1992), figure 1, as digitised in jellyfysh/HistoricDisks.
+"""
 ETOMICA_CRYSTAL_UNCERTAINTY = 1.6e-5
-"""Relative uncertainty of `etomica_crystal` from 0.527 on: its largest difference from ten runs of DynamO."""
+"""Relative uncertainty of `etomica_crystal` above 0.527: its largest difference from ten runs of DynamO."""
 _ETOMICA = [-0.4338711486444215, 0.390812049911003, 0.595451683236023, 18.59059648880398, -288.1675745716088]
 _ETOMICA += [3206.943027086472, -21037.60905875148, 83177.92071175583, -180636.8017944632, 170205.791013758]
 LOWEST_CRYSTAL = {2: 0.70, 3: 0.49}
-"""Packing fraction below which the crystals' equations are not drawn: no crystal lives there for long."""
+"""Packing fraction below which the equations of crystals are not plotted, because crystals do not persist
+there.
+"""
 
 
 def coexistence_packing_fractions(dimension: int) -> np.ndarray:
@@ -274,7 +281,7 @@ def coexistence_packing_fractions(dimension: int) -> np.ndarray:
 
     Notes
     -----
-    The values are from `COEXISTENCE_DENSITY`, which has the sources.
+    The values come from `COEXISTENCE_DENSITY`, which has the sources.
 
     Examples
     --------
@@ -286,7 +293,7 @@ def coexistence_packing_fractions(dimension: int) -> np.ndarray:
 
 
 def _expansion(eta: Numbers, dimension: int) -> np.ndarray:
-    """Return alpha = V / V_closest - 1, after the check of the range."""
+    """Return alpha = V / V_closest - 1, after checking the range."""
     eta = np.asarray(eta, dtype=float)
     if not np.all((eta >= LOWEST_CRYSTAL[dimension]) & (eta < CLOSE_PACKING[dimension])):
         low, high = LOWEST_CRYSTAL[dimension], CLOSE_PACKING[dimension]
@@ -314,8 +321,8 @@ def speedy_crystal(packing_fraction: Numbers) -> Values:
 
     Notes
     -----
-    Z = 3/(1-z) - 0.5921 (z - 0.7072)/(z - 0.601) with z = eta / eta_c [1]_, by SklogWiki's table of its
-    coefficients.
+    Z = 3/(1-z) - 0.5921 (z - 0.7072)/(z - 0.601) with z = eta / eta_c [1]_. The coefficients are copied from
+    SklogWiki.
 
     References
     ----------
@@ -332,7 +339,7 @@ def speedy_crystal(packing_fraction: Numbers) -> Values:
 
 
 def etomica_crystal(packing_fraction: Numbers) -> Values:
-    """Compute Z of the face-centred cubic crystal of spheres without vacancies by etomica's fit.
+    """Compute Z of the face-centred cubic crystal of spheres without vacancies, from etomica's fit.
 
     Parameters
     ----------
@@ -351,10 +358,10 @@ def etomica_crystal(packing_fraction: Numbers) -> Values:
 
     Notes
     -----
-    Z = 3/x + c_0 + c_1 x + ... + c_9 x^9 with x = 1 - eta / eta_c. The coefficients are those that etomica
-    fits to simulations of its authors from 0.524 on [1]_. From 0.527 to 0.545 it is within
-    `ETOMICA_CRYSTAL_UNCERTAINTY` of runs of DynamO with 1.1e6 spheres, whose errors are 3 to 6e-6
-    (`literature`, tested). Speedy's equation is below these runs by 2 to 5e-4.
+    Z = 3/x + c_0 + c_1 x + ... + c_9 x^9 with x = 1 - eta / eta_c. etomica fitted the coefficients to
+    simulations of its authors above 0.524 [1]_. From 0.527 to 0.545 the difference from runs of DynamO with
+    1.1e6 spheres is at most `ETOMICA_CRYSTAL_UNCERTAINTY`; the errors of these runs are 3 to 6e-6
+    (`literature`, tested). Speedy's equation is lower than these runs by 2 to 5e-4.
 
     References
     ----------
@@ -371,7 +378,7 @@ def etomica_crystal(packing_fraction: Numbers) -> Values:
 
 
 def alder_hoover_young_crystal(packing_fraction: Numbers, dimension: int) -> Values:
-    """Compute Z of a crystal by its free-volume limit and a fit beyond it.
+    """Compute Z of a crystal from its free-volume limit and fitted corrections.
 
     Parameters
     ----------
@@ -399,8 +406,8 @@ def alder_hoover_young_crystal(packing_fraction: Numbers, dimension: int) -> Val
     2/alpha + 1.90(1) + 0.67(7) alpha (by SklogWiki) + 1.5 alpha^2 (not verified; 0.4 % below
     `CRYSTAL_OF_1024_DISCS`, 1.2 % without this term). Spheres, face-centred cubic: 3/alpha + 2.566 + 0.55
     alpha (2.56 and 0.56 by SklogWiki) - 1.19 alpha^2 + 5.95 alpha^3 (not verified; within 0.15 % of Speedy's
-    fit). The free-volume term is exact at close packing. The fits are accurate to some 0.3 %. An equation to
-    draw: no claim depends on it.
+    fit). The free-volume term is exact at close packing. The fits are accurate to about 0.3 %. The equation
+    is only plotted; no claim depends on it.
 
     References
     ----------
@@ -419,7 +426,7 @@ def alder_hoover_young_crystal(packing_fraction: Numbers, dimension: int) -> Val
 
 @check_ranges
 def crystal_finite_size_correction(compressibility_factor: Values, count: Values) -> Values:
-    """Compute the difference between Z of a finite periodic crystal and of the infinite one.
+    """Compute the difference in Z between a finite periodic crystal and the infinite crystal.
 
     Parameters
     ----------
@@ -440,10 +447,10 @@ def crystal_finite_size_correction(compressibility_factor: Values, count: Values
 
     Notes
     -----
-    -(Z - 1) / N, for a crystal whose centre of mass is free. The centre of mass explores the complete volume
-    V, the other N - 1 particles explore their free volumes: Q_N ~ V v_f^(N-1), so Z_N = 1/N + (1 - 1/N) Z.
-    Exact towards close packing. Elsewhere there are further, unknown terms of order 1/N, about V / V_c - 1
-    times this term.
+    -(Z - 1) / N, for a crystal whose centre of mass is free. The centre of mass can move in the complete
+    volume V, and the other N - 1 particles in their free volumes: Q_N ~ V v_f^(N-1), so Z_N = 1/N + (1 - 1/N)
+    Z. The formula is exact at close packing. At lower density there are further, unknown terms of order 1/N,
+    about V / V_c - 1 times as large.
 
     Examples
     --------

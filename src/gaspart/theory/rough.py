@@ -1,7 +1,7 @@
-"""Rough particles: energies of rotation and translation, from their start to the steady ratio.
+"""Rough particles: energies of rotation and translation, from the initial values to the steady ratio.
 
 Time is counted in collisions per particle, s = 2 N_coll / N. Gases are homogeneous, velocities nearly
-Maxwellian and particles uncorrelated: dilute gases before clustering.
+Maxwellian, and particles uncorrelated. These conditions hold in dilute gases before clustering.
 """
 
 from functools import cache
@@ -14,7 +14,7 @@ from gaspart.theory.granular import checked_restitution
 
 
 def rough_matrix(inertia: float, tangential: float, normal: float = 1.0) -> np.ndarray:
-    """Compute the matrix of the exchange of energy between translation and rotation of rough discs.
+    """Compute the matrix that describes the exchange of translational and rotational energy of rough discs.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ def rough_matrix(inertia: float, tangential: float, normal: float = 1.0) -> np.n
     Returns
     -------
     ndarray, shape (2, 2), [1]
-        M of d(T_tr, T_rot)/ds = M (T_tr, T_rot), with s collisions of a particle.
+        Matrix M in d(T_tr, T_rot)/ds = M (T_tr, T_rot), with s collisions of a particle.
 
     Raises
     ------
@@ -39,7 +39,7 @@ def rough_matrix(inertia: float, tangential: float, normal: float = 1.0) -> np.n
     -----
     M = [[-2A, 2B], [4B, -4C]] with A = (1 - normal^2)/4 + h (1 - h)/2, B = h^2 / 2q, C = h (1 - h/q) / 2q and
     h = q (1 + tangential) / (2q + 2) [1]_ [2]_ (exact averages over Maxwellian velocities and spins, tested).
-    T_tr = m <v^2> / 2, T_rot = I <w^2>. In a perfectly rough gas T_tr - T_rot decays at the rate 3q /
+    T_tr = m <v^2> / 2, T_rot = I <w^2>. In a perfectly rough gas, T_tr - T_rot decays at the rate 3q /
     (1+q)^2.
 
     References
@@ -75,7 +75,7 @@ def rough_temperatures(
     normal: float = 1.0,
     start: tuple[float, float] = (1.0, 0.0),
 ) -> np.ndarray:
-    """Compute the temperatures of translation and rotation of rough discs after some collisions.
+    """Compute the translational and rotational temperatures of rough discs after some collisions.
 
     Parameters
     ----------
@@ -88,12 +88,12 @@ def rough_temperatures(
     normal : float, default 1.0, [1]
         Coefficient of normal restitution, from 0 to 1.
     start : tuple of float, default (1.0, 0.0), [energy]
-        T_tr and T_rot at s = 0.
+        Initial values of T_tr and T_rot.
 
     Returns
     -------
     ndarray, shape (2, ...), [energy]
-        T_tr and T_rot, each of the shape of `collisions`.
+        T_tr and T_rot, each with the shape of `collisions`.
 
     Raises
     ------
@@ -102,7 +102,7 @@ def rough_temperatures(
 
     Notes
     -----
-    `rough_matrix` integrated.
+    The result is the solution of the linear equation with `rough_matrix`.
 
     Examples
     --------
@@ -118,7 +118,7 @@ def rough_temperatures(
 
 
 def rough_ratio(inertia: float, tangential: float, normal: float = 1.0) -> float:
-    """Compute the ratio of the temperatures of rotation and translation that rough discs approach.
+    """Compute the steady ratio of the rotational and translational temperatures of rough discs.
 
     Parameters
     ----------
@@ -132,17 +132,17 @@ def rough_ratio(inertia: float, tangential: float, normal: float = 1.0) -> float
     Returns
     -------
     float, [1]
-        T_rot / T_tr, cooling or not; 1 if the discs are elastic and perfectly rough.
+        T_rot / T_tr, for cooling and for elastic discs; 1 if the discs are elastic and perfectly rough.
 
     Raises
     ------
     ValueError
-        If the discs are smooth, so that their spins never change, or if an argument is out of range.
+        If the discs are smooth, because their spins then never change, or if an argument is out of range.
 
     Notes
     -----
-    The slower eigenvector of `rough_matrix`. For rough discs that cool it is right to 5 % only;
-    `rough_cooling` has values of direct simulation.
+    The ratio is given by the eigenvector of `rough_matrix` with the slower decay. For cooling rough discs it
+    is accurate to only 5 %; `rough_cooling` has values from direct simulation.
 
     Examples
     --------
@@ -159,17 +159,18 @@ def rough_ratio(inertia: float, tangential: float, normal: float = 1.0) -> float
 
 @cache
 def rough_cooling() -> np.ndarray:
-    """Return the ratio of the temperatures of rough discs that cool, by direct simulation.
+    """Return the temperature ratio of cooling rough discs from direct simulation.
 
     Returns
     -------
     ndarray, shape (n, 5), [1]
-        In each row inertia, tangential and normal restitution, T_rot / T_tr, and its standard uncertainty.
+        Each row contains the inertia, the tangential and normal restitution, T_rot / T_tr, and its standard
+        uncertainty.
 
     Notes
     -----
-    `rough_ratio` gives this ratio to 5 % only. Velocities and spins are not Maxwellian there, and not
-    independent. Computed by direct simulation of the homogeneous Boltzmann equation
+    The accuracy of `rough_ratio` is only 5 % here. The reason is that velocities and spins are correlated and
+    not Maxwellian. The values were computed by direct simulation of the homogeneous Boltzmann equation
     (`boltzmann.rough_discs`).
 
     Examples
@@ -187,7 +188,7 @@ ROUGH_START_UNCERTAINTY = 0.002
 
 @check_ranges
 def rough_start_excess(inertia: float, collisions: Numbers) -> Values:
-    """Return the deviation of rough discs from Maxwellian exchange of energy, after a start without spin.
+    """Return the deviation of rough discs from Maxwellian energy exchange, for a start without spin.
 
     Parameters
     ----------
@@ -200,7 +201,7 @@ def rough_start_excess(inertia: float, collisions: Numbers) -> Values:
     -------
     ndarray, same shape as `collisions`, [1]
         T_tr - T_rot of perfectly rough discs divided by the initial temperature, minus exp(-3 q s / (1 +
-        q)^2); NaN where it was not computed.
+        q)^2). NaN if it was not computed.
 
     Raises
     ------
@@ -209,8 +210,8 @@ def rough_start_excess(inertia: float, collisions: Numbers) -> Values:
 
     Notes
     -----
-    The exponential is the result of Maxwellian velocities [1]_. Computed by direct simulation of the
-    homogeneous Boltzmann equation (`boltzmann.rough_start`). The standard uncertainty is
+    The exponential is the result for Maxwellian velocities [1]_. The values were computed by direct
+    simulation of the homogeneous Boltzmann equation (`boltzmann.rough_start`). The standard uncertainty is
     `ROUGH_START_UNCERTAINTY`.
 
     References
@@ -232,12 +233,13 @@ def rough_start_excess(inertia: float, collisions: Numbers) -> Values:
 
 @check_ranges
 def rough_wall_difference(time: Numbers, inertia: float) -> Values:
-    """Compute the difference of temperatures of rough particles that collide with two rough walls only.
+    """Compute the temperature difference of rough particles that collide only with two rough walls.
 
     Parameters
     ----------
     time : array_like, [1]
-        Reduced time t sqrt(k_B T / m) / h, with h the distance between the walls for centres.
+        Reduced time t sqrt(k_B T / m) / h, with the distance h between the walls that is accessible to
+        centres.
     inertia : float, [1]
         Reduced moment of inertia q = I / (m R^2), positive.
 
@@ -255,13 +257,14 @@ def rough_wall_difference(time: Numbers, inertia: float) -> Values:
 
     Notes
     -----
-    The particles are perfectly rough and have no spin at first; the walls are parallel. A wall hit turns the
-    pair (v, sqrt(q) R w) of a tangential velocity and its spin, seen from the wall, by the angle a, cos a =
-    (1 - q)/(1 + q) [1]_. After K hits v is v(0) cos(K a), and the difference is the mean of cos(2 K a). For
-    uniform positions its mean at a given normal speed is linear between the times of integer K. As a Fourier
-    series, and averaged over Maxwellian normal velocities, it is the sum over integers j of (sin a / (a + pi
-    j))^2 exp(-2 (a + pi j)^2 time^2). Exact; the sum ends at j = 1000, which matters (2e-4) only for times
-    below 0.002.
+    The particles are perfectly rough and initially have no spin. The walls are parallel. A wall hit rotates
+    the pair (v, sqrt(q) R w) by the angle a, with cos a = (1 - q)/(1 + q) [1]_. Here v is a tangential
+    velocity and w the corresponding spin, relative to the wall. After K hits v is v(0) cos(K a), and the
+    difference is the mean of cos(2 K a). For uniform positions, its mean at a given normal speed is linear in
+    time between the times of integer K. Written as a Fourier series and averaged over Maxwellian normal
+    velocities, it is the sum over integers j of (sin a / (a + pi j))^2 exp(-2 (a + pi j)^2 time^2). The
+    result is exact. The sum is truncated at j = 1000, which causes an error (2e-4) only for times below
+    0.002.
 
     References
     ----------

@@ -1,6 +1,6 @@
-"""Gas between two walls with slip, free flight, viscous heating and normal stresses.
+"""Gas between two parallel walls: slip, free molecular flow, viscous heating and normal stresses.
 
-The walls slide past each other, or a force drives the gas along them. They are diffuse with full
+The walls slide relative to each other, or a force drives the gas along them. They are diffuse with full
 accommodation, a distance `length` apart, and their velocities differ by `velocity`; k_B = 1.
 """
 
@@ -11,22 +11,24 @@ from gaspart.theory.geometry import Numbers, Values, check_ranges
 from gaspart.theory.heat import FULL
 
 VELOCITY_SLIP = 1.1113
-"""Coefficient of slip at a diffuse wall for hard spheres: u_gas - u_wall divided by l_0 du/dn, with l_0 = 1 /
+"""Slip coefficient at a diffuse wall for hard spheres: u_gas - u_wall divided by l_0 du/dn, with l_0 = 1 /
 (sqrt 2 pi n sigma^2). It is 1.2540 sqrt(pi) / 2: Ohwada, Sone and Aoki, Phys. Fluids A 1, 1588 (1989).
 Moments of the linearised Boltzmann equation, derived again, converge to it (tested).
 """
 ELEMENTARY_SLIP = 0.9975
-"""Coefficient of slip as `VELOCITY_SLIP`, by Maxwell's elementary argument: (mu / p) sqrt(pi T / 2 m) with
-the viscosity mu. There particles arrive with the distribution of the gas far from the wall. A measurement
-must distinguish both.
+"""Slip coefficient as `VELOCITY_SLIP`, from Maxwell's elementary argument: (mu / p) sqrt(pi T / 2 m) with the
+viscosity mu. The argument assumes that particles arrive with the distribution of the gas far from the wall. A
+measurement must distinguish the two values.
 """
 NORMAL_STRESSES = (-1.2, 1.6, -0.4)
-"""(P_xx / p - 1) / a^2, and the same for yy and zz, of a flow u along y that changes along x; a = -P_xy / p.
+"""Normal stresses (P_xx / p - 1) / a^2, and the same for yy and zz, in a flow u along y that varies along x;
+a = -P_xy / p.
 
-Moments of the steady Boltzmann equation: (p / mu) (P_ij - p delta_ij) = -dM_ij/dx, for yy less 2 P_xy du/dx,
-with the viscosity mu. The transport of P_ij along x is M = 2/5 q (3, 1, 1) for xx, yy, zz, with Fourier's
-heat flux q, and dq/dx = mu (du/dx)^2. To the second order in a; exact for Maxwell molecules. For spheres the
-products of stresses are neglected, and Sonine polynomials beyond the first.
+They follow from moments of the steady Boltzmann equation: (p / mu) (P_ij - p delta_ij) = -dM_ij/dx, with the
+additional term -2 P_xy du/dx for yy. Here mu is the viscosity. The transport of P_ij along x is M = 2/5 q (3,
+1, 1) for xx, yy, zz, with Fourier's heat flux q, and dq/dx = mu (du/dx)^2. The values are correct to second
+order in a, and exact for Maxwell molecules. For spheres, products of stresses and Sonine polynomials beyond
+the first are neglected.
 """
 
 
@@ -51,7 +53,7 @@ def free_molecular_stress(
     mass : float, default 1.0, [mass]
         Mass m of a particle.
     accommodation : (float, float), default (1.0, 1.0), [1]
-        Accommodation a_1 and a_2 of the walls.
+        Accommodation coefficients a_1 and a_2 of the walls.
 
     Returns
     -------
@@ -65,7 +67,7 @@ def free_molecular_stress(
 
     Notes
     -----
-    n velocity sqrt(m T / 2 pi), times a_1 a_2 / (a_1 + a_2 - a_1 a_2). Exact (closed form).
+    n velocity sqrt(m T / 2 pi), multiplied by a_1 a_2 / (a_1 + a_2 - a_1 a_2). Exact (closed form).
 
     Examples
     --------
@@ -85,7 +87,7 @@ def slip_flow_stress(length: Numbers, density: Numbers, velocity: Numbers, diame
     Parameters
     ----------
     length : array_like, [length]
-        Distance of the walls.
+        Distance between the walls.
     density : array_like, [1/length^3]
         Number density.
     velocity : array_like, [length/time]
@@ -105,8 +107,8 @@ def slip_flow_stress(length: Numbers, density: Numbers, velocity: Numbers, diame
 
     Notes
     -----
-    mu velocity / (length + 2 `VELOCITY_SLIP` l_0), with the viscosity mu. To the first order in `velocity`
-    and l_0 / length.
+    mu velocity / (length + 2 `VELOCITY_SLIP` l_0), with the viscosity mu. The formula is of first order in
+    `velocity` and l_0 / length.
 
     Examples
     --------
@@ -122,14 +124,14 @@ def slip_flow_stress(length: Numbers, density: Numbers, velocity: Numbers, diame
 def channel_velocity(
     height: Numbers, length: Numbers, density: Numbers, force: Numbers, diameter: float = 1.0
 ) -> Values:
-    """Compute the velocity of dilute spheres that a force drives along two walls at rest.
+    """Compute the velocity of dilute spheres that a force drives along two resting walls.
 
     Parameters
     ----------
     height : array_like, [length]
         Height above one of the walls.
     length : array_like, [length]
-        Distance of the walls.
+        Distance between the walls.
     density : array_like, [1/length^3]
         Number density.
     force : array_like, [mass length/time^2]
@@ -149,9 +151,9 @@ def channel_velocity(
 
     Notes
     -----
-    Poiseuille's parabola with slip: density force / (2 mu) [height (length - height) + `VELOCITY_SLIP` l_0
-    length], with the viscosity mu. To the first order in `force` and l_0 / length. The next order in l_0 adds
-    0.6 density force l_0^2 / mu [1]_.
+    The profile is Poiseuille's parabola with slip: density force / (2 mu) [height (length - height) +
+    `VELOCITY_SLIP` l_0 length], with the viscosity mu. It is of first order in `force` and l_0 / length. The
+    next order in l_0 adds 0.6 density force l_0^2 / mu [1]_.
 
     References
     ----------
@@ -173,14 +175,14 @@ def channel_velocity(
 def free_flight_drift(
     time: Numbers, length: float, force: float = 1.0, temperature: float = 1.0, mass: float = 1.0
 ) -> Values:
-    """Compute the mean velocity along two walls of particles that collide only with the walls.
+    """Compute the mean velocity, along two walls, of particles that collide only with the walls.
 
     Parameters
     ----------
     time : array_like, [time]
-        Time since a force on each particle was switched on in equilibrium.
+        Time since a force on each particle was switched on; before that the gas was in equilibrium.
     length : float, [length]
-        Distance of the walls.
+        Distance between the walls.
     force : float, default 1.0, [mass length/time^2]
         Force on each particle.
     temperature : float, default 1.0, [energy]
@@ -200,10 +202,11 @@ def free_flight_drift(
 
     Notes
     -----
-    Exact (closed form). The drift is force / mass times the mean time since a particle was last at a wall,
-    limited to `time`. This mean is the integral over t of the fraction of particles that were at no wall for
-    t: the average of 1 - abs(v) t / length, if positive, over Maxwell's distribution. The drift grows with
-    the logarithm of time, without limit, because many particles cross slowly.
+    Exact (closed form). The drift is force / mass times the mean time since a particle last hit a wall,
+    limited to `time`. This mean is an integral over t of the fraction of particles that have not hit a wall
+    for the time t. The fraction is the average of 1 - abs(v) t / length, if positive, over Maxwell's
+    distribution. The drift grows with the logarithm of time without limit, because many particles cross
+    slowly.
 
     Examples
     --------
@@ -229,7 +232,7 @@ def interpolated_stress(
     Parameters
     ----------
     length : array_like, [length]
-        Distance of the walls.
+        Distance between the walls.
     density : array_like, [1/length^3]
         Number density.
     velocity : array_like, [length/time]
@@ -249,9 +252,9 @@ def interpolated_stress(
 
     Notes
     -----
-    1 / (1 / free + 1 / fluid), of the stress of free flight and the stress without slip, in the form of
-    Sherman [1]_. To the first order in `velocity` the stress is correct in both limits. Between the limits it
-    is an approximation: 2 % above the stress with slip at a Knudsen number of 0.1.
+    1 / (1 / free + 1 / fluid), where `free` is the stress of free molecular flow and `fluid` the stress
+    without slip, in Sherman's form [1]_. To first order in `velocity` the formula is correct in both limits.
+    Between the limits it is an approximation: 2 % above the stress with slip at a Knudsen number of 0.1.
 
     References
     ----------
@@ -270,7 +273,7 @@ def interpolated_stress(
 
 @check_ranges
 def viscous_heating(packing_fraction: Numbers, dimension: int) -> Values:
-    """Compute Enskog's viscosity divided by twice the conductivity.
+    """Compute Enskog's viscosity divided by twice the thermal conductivity.
 
     Parameters
     ----------
@@ -291,9 +294,10 @@ def viscous_heating(packing_fraction: Numbers, dimension: int) -> Values:
 
     Notes
     -----
-    Between two walls T + this ratio times u^2 is the same everywhere, with the velocity u relative to the
-    position where T is highest. The result is exact if the ratio of the two coefficients is constant; both
-    grow with the square root of T. The ratio is 2 / 15 in the first Sonine approximation of dilute spheres.
+    Between two walls, T plus this ratio times u^2 is uniform. The velocity u is relative to the position of
+    the highest temperature. The result is exact if the ratio of the two coefficients is constant; both are
+    proportional to the square root of T. The ratio is 2 / 15 in the first Sonine approximation of dilute
+    spheres.
 
     Examples
     --------

@@ -17,9 +17,13 @@ from gaspart.theory.geometry import Numbers, Values, check_ranges, checked_dimen
 _TABLES = Path(__file__).parent / "data"
 
 KURTOSIS_RELAXATION_RATE = {2: 0.4360, 3: 0.4748}
-"""Final decay rate of K - K_eq, per collision per particle (computed; homogeneous Boltzmann equation)."""
+"""Final decay rate of the kurtosis difference K - K_eq, per collision of a particle (computed; homogeneous
+Boltzmann equation).
+"""
 RELAXATION_UNCERTAINTY = 3e-4
-"""Standard uncertainty of the tabulated kurtosis and never-hit fraction (computed, Monte Carlo)."""
+"""Standard uncertainty of the tabulated kurtosis and of the tabulated fraction without collision (computed,
+Monte Carlo).
+"""
 
 
 @check_ranges
@@ -37,7 +41,7 @@ def mean_speed(
     mass : float, default 1.0, [mass]
         Mass m of a particle.
     count : int, optional
-        Number N of particles at the fixed energy d N k_B T / 2. Default: an infinite number.
+        Number N of particles at the fixed total energy d N k_B T / 2. Default: infinite.
 
     Returns
     -------
@@ -69,7 +73,7 @@ def mean_speed(
 
 
 def mean_speed_factor(freedoms: float) -> float:
-    """Compute the ratio of mean speeds at fixed energy and in Maxwell's distribution.
+    """Compute the mean speed at fixed energy divided by the value for Maxwell's distribution.
 
     Parameters
     ----------
@@ -79,7 +83,7 @@ def mean_speed_factor(freedoms: float) -> float:
     Returns
     -------
     float, [1]
-        <abs(v)> of a velocity component at fixed energy divided by the value in Maxwell's distribution with
+        <abs(v)> of a velocity component at fixed energy divided by its value for Maxwell's distribution with
         the same <v^2>: sqrt(n) Gamma(n) / Gamma(n + 1/2) (exact).
     """
     half = 0.5 * freedoms
@@ -113,8 +117,8 @@ def maxwell_pdf(speed: Numbers, dimension: int, temperature: float = 1.0, mass: 
 
     Notes
     -----
-    With u = v sqrt(m / k_B T): u exp(-u^2/2) in 2D, sqrt(2/pi) u^2 exp(-u^2/2) in 3D, times sqrt(m / k_B T)
-    (exact).
+    With u = v sqrt(m / k_B T): u exp(-u^2/2) in 2D and sqrt(2/pi) u^2 exp(-u^2/2) in 3D, each multiplied by
+    sqrt(m / k_B T) (exact).
 
     Examples
     --------
@@ -137,7 +141,7 @@ def maxwell_cdf(
     mass: float = 1.0,
     freedoms: float | None = None,
 ) -> Values:
-    """Compute the fraction of particles that are slower than a speed, in equilibrium.
+    """Compute the fraction of particles slower than a given speed in equilibrium.
 
     Parameters
     ----------
@@ -150,8 +154,8 @@ def maxwell_cdf(
     mass : float, default 1.0, [mass]
         Mass m of a particle.
     freedoms : float, optional
-        Number D of degrees of freedom of equal particles at the fixed energy D k_B T / 2 together, more than
-        d. Default: Maxwell's distribution.
+        Number D of degrees of freedom, more than d, of equal particles with the fixed total energy D k_B T /
+        2. Default: Maxwell's distribution.
 
     Returns
     -------
@@ -166,9 +170,9 @@ def maxwell_cdf(
     Notes
     -----
     The incomplete gamma function P(d/2, m v^2 / 2 k_B T) (exact). With `freedoms` the velocities are uniform
-    on a sphere in D dimensions, d of which belong to one particle, and x = m v^2 / (D k_B T) has a beta
-    distribution: I_x(d/2, (D - d)/2) (exact). D is d N, or d (N - 1) for velocities relative to the centre of
-    mass times sqrt(N / (N - 1)).
+    on a sphere in D dimensions. d of these dimensions belong to one particle, and x = m v^2 / (D k_B T) has a
+    beta distribution: I_x(d/2, (D - d)/2) (exact). D is d N. For velocities relative to the centre of mass,
+    multiplied by sqrt(N / (N - 1)), D is d (N - 1).
 
     Examples
     --------
@@ -189,7 +193,7 @@ def maxwell_cdf(
 
 @check_ranges
 def maxwell_ppf(probability: Numbers, dimension: int, temperature: float = 1.0, mass: float = 1.0) -> Values:
-    """Compute the speed below which a fraction of the particles lies: the inverse of `maxwell_cdf`.
+    """Compute the speed below which a given fraction of the particles lies; inverse of `maxwell_cdf`.
 
     Parameters
     ----------
@@ -234,9 +238,9 @@ def kurtosis(dimension: int, count: int | None = None, zero_momentum: bool = Fal
     dimension : {2, 3}
         Discs or spheres.
     count : int, optional
-        Number N of particles at fixed energy. Default: an infinite number.
+        Number N of particles at fixed energy. Default: infinite.
     zero_momentum : bool, default False
-        Hold the total momentum at zero. Without `count` this argument has no effect.
+        Fix the total momentum at zero. Without `count` this argument has no effect.
 
     Returns
     -------
@@ -251,8 +255,8 @@ def kurtosis(dimension: int, count: int | None = None, zero_momentum: bool = Fal
     Notes
     -----
     (d+2)/d, which is 2 in 2D and 5/3 in 3D (exact). With `count` the velocities are uniform on a sphere in D
-    = d N dimensions, or d (N-1) if the total momentum is held at zero, and a particle's kurtosis is (d+2)/d
-    times D/(D+2) (exact).
+    = d N dimensions, or D = d (N-1) for zero total momentum. Then the kurtosis of a particle is (d+2)/d times
+    D/(D+2) (exact).
 
     Examples
     --------
@@ -269,7 +273,7 @@ def kurtosis(dimension: int, count: int | None = None, zero_momentum: bool = Fal
 
 @check_ranges
 def kurtosis_scatter(dimension: int, count: int) -> tuple[float, float]:
-    """Compute the scatter in equilibrium of the kurtosis of N particles at one time.
+    """Compute the equilibrium scatter of the instantaneous kurtosis of N particles.
 
     Parameters
     ----------
@@ -292,10 +296,10 @@ def kurtosis_scatter(dimension: int, count: int) -> tuple[float, float]:
 
     Notes
     -----
-    Velocities are uniform on a sphere in D = d N dimensions (exact). The kurtosis is N sum(q) / (sum e)^2
+    The velocities are uniform on a sphere in D = d N dimensions (exact). The kurtosis is N sum(q) / (sum e)^2
     with e = v^2 and q = e^2. At constant energy it does not depend on sum(e). So its moment of order m is N^m
-    <sum(q)^m> / <(sum e)^2m> of independent normal velocities, whose <e^k> is d (d+2) ... (d+2k-2). If the
-    total momentum is fixed at zero, the scatter changes by the relative amount 1/N (neglected).
+    <sum(q)^m> / <(sum e)^2m> for independent normal velocities, for which <e^k> is d (d+2) ... (d+2k-2). If
+    the total momentum is fixed at zero, the scatter changes by the relative amount 1/N (neglected).
 
     Examples
     --------
@@ -350,10 +354,10 @@ def initial_kurtosis_slope(dimension: int) -> float:
 @with_guidance
 @dataclass(frozen=True)
 class Relaxation:
-    """Relaxation of a gas in which all speeds are equal at first.
+    """Relaxation of a gas in which all speeds are equal at the start.
 
-    The clock is s, the number of collisions per particle so far, 2 N_collisions / N. On this clock the curves
-    do not depend on diameter, speed or density (Enskog theory).
+    The independent variable is s, the number of collisions per particle since the start, 2 N_collisions / N.
+    As functions of s the curves do not depend on diameter, speed or density (Enskog theory).
 
     Parameters
     ----------
@@ -362,7 +366,7 @@ class Relaxation:
     collisions_table : ndarray, shape (n,)
         Values of s.
     equilibrium_table : ndarray, shape (n,)
-        Collisions per particle of a gas in equilibrium at the same times.
+        Collisions per particle at the same times in a gas in equilibrium.
     log_excess_table : ndarray, shape (n,)
         Logarithm of K_eq - K divided by its initial value, with the kurtosis K.
     log_never_hit_table : ndarray, shape (n,)
@@ -376,9 +380,10 @@ class Relaxation:
 
     Notes
     -----
-    From the homogeneous Boltzmann equation, computed by Monte Carlo, and good to `RELAXATION_UNCERTAINTY` up
-    to `longest`. Beyond it the last decay is continued, which stays within this error. The number of
-    particles is infinite: a finite gas at fixed energy ends at `kurtosis(dimension, count)` instead.
+    The curves were computed from the homogeneous Boltzmann equation by Monte Carlo. They are accurate to
+    `RELAXATION_UNCERTAINTY` up to `longest`. Beyond `longest` the final exponential decay is extrapolated,
+    which stays within this error. The number of particles is infinite. A finite gas at fixed energy reaches
+    `kurtosis(dimension, count)` instead.
 
     Examples
     --------
@@ -425,7 +430,7 @@ class Relaxation:
         Returns
         -------
         ndarray, same shape as `s`, [1]
-            Kurtosis: 1 at first, (d+2)/d in the end.
+            Kurtosis: 1 at the start, (d+2)/d at the end.
 
         Raises
         ------
@@ -484,7 +489,7 @@ class Relaxation:
         Returns
         -------
         ndarray, same shape as `s`, [1]
-            Ratio: 1 at first, `mean_speed(d) / sqrt(d)` in the end.
+            Ratio: 1 at the start, `mean_speed(d) / sqrt(d)` at the end.
 
         Raises
         ------
@@ -503,12 +508,12 @@ class Relaxation:
         return end + (np.interp(s, self.collisions_table, self.mean_speed_table) - end) * decay
 
     def collisions(self, equilibrium_collisions: Numbers) -> Values:
-        """Compute s at the time when a gas in equilibrium has had some collisions per particle.
+        """Compute s from the collisions per particle in a gas in equilibrium at the same time.
 
         Parameters
         ----------
         equilibrium_collisions : array_like, [1]
-            Collisions per particle nu t of a gas in equilibrium at the same energy, with nu =
+            Collisions per particle nu t in a gas in equilibrium at the same energy, with nu =
             `enskog.collision_rate`.
 
         Returns
@@ -523,8 +528,8 @@ class Relaxation:
 
         Notes
         -----
-        s is larger than the argument, because particles of equal speeds collide more often: by 2.3 % in 3D
-        and 1.6 % in 2D at first. Good to 0.5 %.
+        s is larger than the argument, because particles of equal speeds collide more often: initially by 2.3
+        % in 3D and 1.6 % in 2D. The accuracy is 0.5 %.
 
         Examples
         --------
@@ -566,8 +571,8 @@ def relaxation(dimension: int) -> Relaxation:
         _TABLES / f"relaxation_{checked_dimension(dimension)}d.csv", delimiter=",", skiprows=1, unpack=True
     )
     end = kurtosis(dimension)
-    # In one tick of the table's clock a particle collides <v_12> / v_rms times, <v_12> the mean relative
-    # speed.
+    # per unit of the table's clock a particle collides <v_12> / v_rms times, with the mean relative speed
+    # <v_12>
     ticks = math.sqrt(2.0) * mean_speed(dimension) / math.sqrt(dimension)
     return Relaxation(
         dimension=dimension,

@@ -1,7 +1,8 @@
-"""Reference equation of state: value, uncertainty and shift by a finite system.
+"""Reference equation of state: value, uncertainty, and shift in a finite system.
 
-Discs: virial series to B10 and a linear tail. Spheres: Kolafa, Labik and Malijevsky. Fluid branch only.
-Everything here is dimensionless and depends on the packing fraction alone.
+The equation of discs is the virial series to B10 with a linear tail. The equation of spheres is Kolafa, Labik
+and Malijevsky's. Only the fluid branch is included. All quantities are dimensionless and depend only on the
+packing fraction.
 """
 
 import numpy as np
@@ -17,22 +18,23 @@ from gaspart.theory.virial import (
 )
 
 HIGHEST_PACKING_FRACTION = {2: STABLE_DISCS, 3: METASTABLE_SPHERES}
-"""Packing fraction where the reference ends: the limit of the liquid in 2D, the end of the data in 3D
-(metastable from 0.4915)."""
+"""Largest packing fraction of the reference: the limit of the liquid in 2D, and the end of the data in 3D
+(metastable above 0.4915).
+"""
 
-# Relative standard uncertainty of the equation of spheres, up to each packing fraction and beyond: its
-# largest difference from the independent equation that etomica fits to its authors' simulations
-# (github.com/etomica/etomica, HardSphereFluid.java, commit 6c23860). 193 runs of DynamO with up to
-# 2e6 spheres, up to 0.471, agree with it (tested).
+# Relative standard uncertainty of the equation of spheres, up to each packing fraction. It is the largest
+# difference from the independent equation that etomica fitted to its authors' simulations
+# (github.com/etomica/etomica, HardSphereFluid.java, commit 6c23860). 193 runs of DynamO with up to 2e6
+# spheres, up to 0.471, agree with it (tested).
 _SPHERES_ERROR = np.array([0.445059, 0.523599]), np.array([4.3e-6, 1e-5, 1.1e-4])
-# What the series of discs lacks near freezing, or a little more: 0.140 at eta = 0.67 and 0.267 at 0.68, by
-# the pressures of 224 and 870 discs of Li and others, J. Chem. Phys. 157, 234111 (2022), continued to
-# infinity as 1/N, and 1.2 at 0.70, the pressure of coexistence.
+# Upper estimate of the error of the series of discs near freezing: 0.140 at eta = 0.67 and 0.267 at 0.68,
+# from the pressures of 224 and 870 discs by Li and others, J. Chem. Phys. 157, 234111 (2022), extrapolated in
+# 1/N to infinity; and 1.2 at 0.70, from the coexistence pressure.
 _NEAR_FREEZING = 0.036, 0.6478, 45
-# Step of the central differences of `_slope_and_curvature`: truncation and rounding both below 1e-6 of the
-# result.
+# Step of the central differences in `_slope_and_curvature`: truncation and rounding errors are both below
+# 1e-6 of the result.
 _STEP = 1e-4
-_NODES = 32  # of an integral over ln(eta), whose integrand is a polynomial in eta
+_NODES = 32  # number of nodes of an integral over ln(eta), whose integrand is a polynomial in eta
 
 
 def virial_with_tail(packing_fraction: Numbers, dimension: int = 2) -> Values:
@@ -57,8 +59,8 @@ def virial_with_tail(packing_fraction: Numbers, dimension: int = 2) -> Values:
 
     Notes
     -----
-    `partial_sum` and `virial.linear_tail` (literature and a computed extrapolation). Discs: the reference, to
-    eta = 0.70. Spheres: only a check of the reference at low density.
+    `partial_sum` plus `virial.linear_tail` (literature and a computed extrapolation). For discs this is the
+    reference, up to eta = 0.70. For spheres it only tests the reference at low density.
 
     Examples
     --------
@@ -93,7 +95,7 @@ def compressibility_factor(packing_fraction: Numbers, dimension: int) -> Values:
     See Also
     --------
     compressibility_uncertainty : Standard uncertainty of this value.
-    finite_contact_value : Pairs in contact of a finite number of particles.
+    finite_contact_value : Contact value of pairs for a finite number of particles.
 
     Notes
     -----
@@ -132,12 +134,12 @@ def compressibility_uncertainty(packing_fraction: Numbers, dimension: int) -> Va
 
     Notes
     -----
-    Discs, in quadrature: the uncertainties of the coefficients; the slope of the tail; the difference to
-    Liu's independent equation, but no more than the complete tail, because at low density the series is the
-    better of the two; and what both lack near freezing, 0.4 % at eta = 0.65 and 10 % at 0.70.
-    Spheres, the sharper of two bounds: the difference to another equation (4.3e-6 of Z up to eta = 0.445,
-    1e-5 up to 0.524), or the difference to the virial series to B10 plus its tail and the uncertainties of
-    the coefficients (below 1e-6 for eta < 0.1).
+    Discs: four contributions are added in quadrature. They are the uncertainties of the coefficients; the
+    slope of the tail; the difference from Liu's independent equation, limited to the complete tail, because
+    the series is more accurate at low density; and an error that both equations share near freezing, 0.4 % at
+    eta = 0.65 and 10 % at 0.70. Spheres: the smaller of two bounds. One is the difference from another
+    equation (4.3e-6 of Z up to eta = 0.445, 1e-5 up to 0.524). The other is the difference from the virial
+    series to B10 plus its tail and the uncertainties of the coefficients (below 1e-6 for eta < 0.1).
 
     Examples
     --------
@@ -182,7 +184,7 @@ def contact_value(packing_fraction: Numbers, dimension: int) -> Values:
     Notes
     -----
     g(sigma) = (Z - 1) / (2^(d-1) eta) by the virial theorem (exact), with Z of `compressibility_factor`. At
-    eta = 0 the value is its limit 1.
+    eta = 0 the value is the limit 1.
 
     Examples
     --------
@@ -193,12 +195,12 @@ def contact_value(packing_fraction: Numbers, dimension: int) -> Values:
     eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
     excess = compressibility_factor(eta, dimension) - 1.0
     first_order = 2.0 ** (dimension - 1) * eta
-    # Below 1e-8 the excess is lost in the rounding of Z, while g - 1 is less than 3 eta.
+    # Below 1e-8, Z - 1 is lost in the rounding of Z; g - 1 is less than 3 eta there.
     return np.where(eta > 1e-8, excess / np.where(eta > 1e-8, first_order, 1.0), 1.0)
 
 
 def _slope_and_curvature(eta: np.ndarray, dimension: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the first and second derivative of eta Z(eta) by differences (central, except at the ends)."""
+    """Return the first and second derivative of eta Z(eta) by (mostly central) differences."""
     centre = np.clip(eta, _STEP, HIGHEST_PACKING_FRACTION[dimension] - _STEP)
     low, mid, high = (
         (centre + shift) * compressibility_factor(centre + shift, dimension) for shift in (-_STEP, 0.0, _STEP)
@@ -262,7 +264,7 @@ def speed_of_sound(packing_fraction: Numbers, dimension: int) -> Values:
 
     Notes
     -----
-    sqrt(d(eta Z)/d eta + 2 Z^2 / d), with the heat capacity d/2 of a particle (exact).
+    sqrt(d(eta Z)/d eta + 2 Z^2 / d); the heat capacity per particle is d/2 (exact).
 
     Examples
     --------
@@ -281,7 +283,7 @@ def adiabatic_temperature(packing_fraction: Numbers, initial: Numbers, dimension
     Parameters
     ----------
     packing_fraction : float or ndarray, [1]
-        Packing fraction eta after the compression, above 0, to 0.70 for discs, to 0.539 for spheres.
+        Packing fraction eta after the compression, above 0, up to 0.70 for discs and 0.539 for spheres.
     initial : float or ndarray, [1]
         Packing fraction before the compression, in the same range.
     dimension : {2, 3}
@@ -299,8 +301,8 @@ def adiabatic_temperature(packing_fraction: Numbers, initial: Numbers, dimension
 
     Notes
     -----
-    exp(2/d times the integral of Z over ln eta), since d/2 N k_B dT = -P dV (exact), with Z of
-    `compressibility_factor`; (V_0 / V)^(2/d) where Z is 1.
+    exp(2/d times the integral of Z over ln eta), because d/2 N k_B dT = -P dV (exact), with Z of
+    `compressibility_factor`. It is (V_0 / V)^(2/d) if Z is 1.
 
     Examples
     --------
@@ -322,7 +324,7 @@ def adiabatic_temperature(packing_fraction: Numbers, initial: Numbers, dimension
 def finite_size_correction(
     packing_fraction: Numbers, dimension: int, count: int, ensemble: str = "dynamics"
 ) -> Values:
-    """Compute the difference between Z of a finite periodic system and of the infinite system.
+    """Compute the difference in Z between a finite periodic system and the infinite system.
 
     Parameters
     ----------
@@ -333,7 +335,7 @@ def finite_size_correction(
     count : int
         Number N of particles, at least 2.
     ensemble : {"dynamics", "canonical"}, default "dynamics"
-        Periodic run of fixed energy with zero total momentum, or the canonical ensemble.
+        Periodic run at fixed energy with zero total momentum ("dynamics"), or the canonical ensemble.
 
     Returns
     -------
@@ -349,28 +351,28 @@ def finite_size_correction(
 
     Notes
     -----
-    Neglected are terms of order 1/N^2, and exponentially small terms, which matter if the side is only a few
-    diameters (`finite_size_remainder`).
+    Terms of order 1/N^2 are neglected. Exponentially small terms are also neglected; they matter if the side
+    is only a few diameters (`finite_size_remainder`).
 
-    "canonical": in a periodic container the grand partition function is exp(P V / k_B T) up to terms that
-    fall exponentially with the side. The saddle point gives for N particles
+    "canonical": in a periodic container the grand partition function is exp(P V / k_B T), up to terms that
+    decrease exponentially with the side. For N particles the saddle point gives
 
         ln Q_N = [P V - N mu] / k_B T - (1/2) ln(2 pi <dN^2>),    <dN^2> = N k_B T / P',   P' = dP / d rho,
 
-    and minus the volume derivative at fixed N, with d rho / dV = - rho / V, is
+    and minus its derivative with respect to V at fixed N, with d rho / dV = - rho / V, is
 
         P_N = P - k_B T (rho / 2V) P'' / P',    so    Z_N - Z = - (eta / 2N) (eta Z)'' / (eta Z)'   (in eta).
 
-    Checks (tested): to first order in eta it is -b_2 eta / N, exact because only N (N-1) / 2 pairs exist; for
-    hard rods on a ring it is exact at every density.
+    Checks (tested): to first order in eta the result is -b_2 eta / N, which is exact because only N (N-1) / 2
+    pairs exist. For hard rods on a ring it is exact at every density.
 
-    "dynamics": the quantity that Z = 1 + sum (dr . dp) / (2 E t), with absolute values, measures, where E is
-    the kinetic energy and the total momentum is zero, as in a periodic run. Configurations have the
-    distribution of the canonical ensemble. Two particles of a set with zero total momentum have <v_12^2> = 2
-    <v^2> N / (N-1), and the collisional virial is proportional to it: contacts occur at a rate proportional
-    to the normal speed, and each gives an impulse proportional to it. So Z_N - 1 is the canonical value times
-    N / (N-1), and the first order in eta has no correction at all. If the total momentum is not zero, E is
-    the energy of the motion about it.
+    "dynamics": the mean of Z = 1 + sum (dr . dp) / (2 E t), with absolute values. E is the kinetic energy,
+    and the total momentum is zero, as in a periodic run. The configurations are distributed as in the
+    canonical ensemble. Two particles of a system with zero total momentum have <v_12^2> = 2 <v^2> N / (N-1).
+    The collisional virial is proportional to it, because the contact rate and the impulse are both
+    proportional to the normal speed. So Z_N - 1 is the canonical value times N / (N-1), and to first order in
+    eta there is no correction. If the total momentum is not zero, E is the energy relative to the centre of
+    mass.
 
     Examples
     --------
@@ -395,7 +397,7 @@ def finite_size_correction(
 
 @check_ranges
 def constant_enthalpy_factor(packing_fraction: Numbers, dimension: int, count: Numbers) -> Values:
-    """Compute the ratio of pressures of few particles behind a piston and of the infinite fluid.
+    """Compute the pressure of N particles under a piston divided by the infinite fluid's.
 
     Parameters
     ----------
@@ -419,14 +421,15 @@ def constant_enthalpy_factor(packing_fraction: Numbers, dimension: int, count: N
     Notes
     -----
     The ensemble of constant pressure and enthalpy [1]_ has the weight Q(V) (H - P V)^(f/2 - 1), with f
-    degrees of freedom. The mean of its derivative by V vanishes: <d ln Q / dV> = P (f/2 - 1) <1 / (H - P V)>.
-    Expanded to second order in V - V_0, whose variance is s V_0^2 / N with 1/s = y' + 2 Z^2 / d, y = eta
-    Z(eta), and with the canonical correction of Q (`finite_size_correction`) and f = d N, the ratio is
+    degrees of freedom. The mean of the derivative of the weight with respect to V vanishes: <d ln Q / dV> = P
+    (f/2 - 1) <1 / (H - P V)>. This is expanded to second order in V - V_0. The variance of V is s V_0^2 / N
+    with 1/s = y' + 2 Z^2 / d and y = eta Z(eta). With the canonical correction of Q
+    (`finite_size_correction`) and f = d N, the ratio is
 
         1 + (s / N) [y' / Z + (2 / d) y' - eta y'' Z / (d y')].
 
-    The factor is 1 + 1/N for an ideal gas, which is exact. To first order in 1/N. The temperature is 2 <E> /
-    (d N).
+    For an ideal gas the factor is 1 + 1/N, which is exact. The formula is of first order in 1/N. The
+    temperature is 2 <E> / (d N).
 
     References
     ----------

@@ -1,8 +1,8 @@
 """Structure of the fluid of spheres: pair distribution and structure factor.
 
-The theories are Percus and Yevick's equation and the correction of Verlet and Weis. Lengths are in diameters,
-wave numbers in inverse diameters, packing fractions eta are numbers. There is no such closed form for discs:
-Percus and Yevick's equation is solved in odd dimensions only.
+The theories are the Percus-Yevick equation and the correction of Verlet and Weis. Lengths are in diameters
+and wave numbers in inverse diameters. Packing fractions eta are numbers. For discs no such closed form
+exists, because the Percus-Yevick equation has a closed solution in odd dimensions only.
 """
 
 from functools import cache
@@ -12,16 +12,18 @@ import numpy as np
 from gaspart.theory.equations import METASTABLE_SPHERES, carnahan_starling
 from gaspart.theory.geometry import Numbers, Values, check_ranges, checked_packing_fraction
 
-_NODES = 64  # on a circle around each zero, of `_PART` of the distance to the nearest other one
+_NODES = 64  # on a circle around each zero; radius: `_PART` times the distance to the nearest zero
 _PART = 0.35
 _FURTHEST = 5
-"""Diameters up to which g(r) is computed: its parts grow exponentially beyond, and cancel."""
+"""Largest distance, in diameters, at which g(r) is computed. Beyond it, the terms grow exponentially and
+cancel.
+"""
 _SMALL = 1e-3  # wave number below which a quotient of small numbers is replaced by its limit
 
 
 @check_ranges
 def percus_yevick_structure_factor(wave_number: Numbers, packing_fraction: float) -> Values:
-    """Compute S(k) of spheres by Percus and Yevick's equation.
+    """Compute S(k) of spheres from the Percus-Yevick equation.
 
     Parameters
     ----------
@@ -42,9 +44,9 @@ def percus_yevick_structure_factor(wave_number: Numbers, packing_fraction: float
 
     Notes
     -----
-    The direct correlation function is -(a + b r + a eta r^3 / 2) inside of the diameter and 0 beyond, with a
-    = (1 + 2 eta)^2 / (1 - eta)^4, b = -6 eta (1 + eta / 2)^2 / (1 - eta)^4 [1]_ [2]_. The integral is
-    computed by Gauss-Legendre quadrature, exact to rounding up to k = 100. S(0) belongs to
+    The direct correlation function is -(a + b r + a eta r^3 / 2) inside the diameter and 0 outside, with a =
+    (1 + 2 eta)^2 / (1 - eta)^4, b = -6 eta (1 + eta / 2)^2 / (1 - eta)^4 [1]_ [2]_. The integral is computed
+    by Gauss-Legendre quadrature, exact to rounding up to k = 100. S(0) is consistent with
     `percus_yevick_compressibility`.
 
     References
@@ -71,7 +73,7 @@ def percus_yevick_structure_factor(wave_number: Numbers, packing_fraction: float
 
 @check_ranges
 def percus_yevick_rdf(distance: Numbers, packing_fraction: float) -> Values:
-    """Compute g(r) of spheres by Percus and Yevick's equation, up to 5 diameters.
+    """Compute g(r) of spheres from the Percus-Yevick equation, up to 5 diameters.
 
     Parameters
     ----------
@@ -83,7 +85,7 @@ def percus_yevick_rdf(distance: Numbers, packing_fraction: float) -> Values:
     Returns
     -------
     float or ndarray, same shape as `distance`, [1]
-        Pair distribution g(r), which is 0 inside of the diameter.
+        Pair distribution g(r), which is 0 inside the diameter.
 
     Raises
     ------
@@ -95,9 +97,9 @@ def percus_yevick_rdf(distance: Numbers, packing_fraction: float) -> Values:
     Notes
     -----
     r g(r) is the inverse of Wertheim's Laplace transform [1]_. With L = (1 + eta / 2) t + 1 + 2 eta and S =
-    (1 - eta)^2 t^3 + 6 eta (1 - eta) t^2 + 18 eta^2 t - 12 eta (1 + 2 eta), it is the sum over n < r of the
-    residues of (-12 eta)^(n-1) t (L / S)^n e^{t (r - n)} at the three zeros of S. The residues are computed
-    together, as an integral over circles around all three zeros.
+    (1 - eta)^2 t^3 + 6 eta (1 - eta) t^2 + 18 eta^2 t - 12 eta (1 + 2 eta), it is a sum over n < r. The terms
+    are the residues of (-12 eta)^(n-1) t (L / S)^n e^{t (r - n)} at the three zeros of S. The residues are
+    computed together, as an integral over circles around all three zeros.
 
     References
     ----------
@@ -128,7 +130,7 @@ def percus_yevick_rdf(distance: Numbers, packing_fraction: float) -> Values:
 def _circles(eta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return nodes (n,) on circles around the zeros of S, their weights, and L / S.
 
-    The weights are those parts of the integrals divided by 2 pi i.
+    The weights are for integrals divided by 2 pi i.
     """
     linear = 6.0 * eta * (1.0 - eta)
     cubic = np.array([(1.0 - eta) ** 2, linear, 18.0 * eta**2, -12.0 * eta * (1.0 + 2.0 * eta)])
@@ -142,12 +144,12 @@ def _circles(eta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 @cache
 def _verlet_weis(eta: float) -> tuple[float, float, float, float]:
-    """Return the parameters of Verlet and Weis's g(r) at a packing fraction.
+    """Return the parameters of the g(r) of Verlet and Weis at a packing fraction.
 
-    They are the packing fraction and the diameter of the fluid of Percus and Yevick, and the amplitude and
-    the inverse range of the part that is added to its g(r). At this amplitude and range the contact value and
-    the compressibility are Carnahan and Starling's: 1 + 24 eta times the integral of r^2 (g - 1) is S(0), in
-    which the added part is 12 eta A / mu.
+    They are the packing fraction and the diameter of the Percus-Yevick fluid, and the amplitude and the
+    inverse range of the term that is added to its g(r). With this amplitude and range, the contact value and
+    the compressibility are equal to Carnahan and Starling's. S(0) is 1 + 24 eta times the integral of r^2 (g
+    - 1), to which the added term contributes 12 eta A / mu.
     """
     effective = eta - eta**2 / 16.0
     diameter = (effective / eta) ** (1.0 / 3.0)
@@ -160,7 +162,7 @@ def _verlet_weis(eta: float) -> tuple[float, float, float, float]:
 
 
 def _overlapping(k: np.ndarray, eta: float, effective: float, diameter: float) -> np.ndarray:
-    """Return the structure of pairs between the smaller diameter and 1.
+    """Return the contribution to S(k) of pairs between the smaller diameter and 1.
 
     The result is 24 eta times the integral of r^2 g(r) sin(kr) / (kr).
     """
@@ -185,7 +187,7 @@ def verlet_weis_rdf(distance: Numbers, packing_fraction: float) -> Values:
     Returns
     -------
     float or ndarray, same shape as `distance`, [1]
-        Pair distribution g(r), which is 0 inside of the diameter.
+        Pair distribution g(r), which is 0 inside the diameter.
 
     Raises
     ------
@@ -196,10 +198,10 @@ def verlet_weis_rdf(distance: Numbers, packing_fraction: float) -> Values:
 
     Notes
     -----
-    g(r) of Percus and Yevick at the packing fraction eta - eta^2 / 16, with the smaller diameter that belongs
-    to it, and A / r exp(-mu (r - 1)) cos(mu (r - 1)) beyond contact [1]_. A and mu follow here from the
-    conditions that the contact value and the compressibility are Carnahan and Starling's (as in a public
-    program of integral equations), not from fitted formulas.
+    g(r) is the Percus-Yevick function at the packing fraction eta - eta^2 / 16, with the corresponding
+    smaller diameter, plus A / r exp(-mu (r - 1)) cos(mu (r - 1)) beyond contact [1]_. A and mu do not come
+    from fitted formulas. They follow from the conditions that the contact value and the compressibility are
+    equal to Carnahan and Starling's (as in a public program for integral equations).
 
     References
     ----------
@@ -232,7 +234,7 @@ def verlet_weis_structure_factor(wave_number: Numbers, packing_fraction: float) 
     Returns
     -------
     float or ndarray, same shape as `wave_number`, [1]
-        S(k) that belongs to `verlet_weis_rdf`.
+        S(k) that corresponds to `verlet_weis_rdf`.
 
     Raises
     ------
@@ -243,8 +245,8 @@ def verlet_weis_structure_factor(wave_number: Numbers, packing_fraction: float) 
 
     Notes
     -----
-    The Fourier transform of `verlet_weis_rdf` in closed form, except for the pairs nearer than a diameter,
-    which are taken away by a numerical integral.
+    The Fourier transform of `verlet_weis_rdf` is a closed form, except for pairs closer than a diameter,
+    whose contribution is subtracted by numerical integration.
 
     Examples
     --------
@@ -256,7 +258,7 @@ def verlet_weis_structure_factor(wave_number: Numbers, packing_fraction: float) 
     effective, diameter, amplitude, rate = _of(eta)
     k = np.asarray(wave_number, dtype=float)
     safe = np.maximum(k, _SMALL)
-    # the integral of e^{-mu x} cos(mu x) e^{i k x} from 0
+    # integral of e^{-mu x} cos(mu x) e^{i k x} from 0
     wave = 0.5 / (rate * (1.0 - 1j) - 1j * safe) + 0.5 / (rate * (1.0 + 1j) - 1j * safe)
     added = 24.0 * eta * amplitude * (np.exp(1j * safe) * wave).imag / safe
     overlap = _overlapping(k, eta, effective, diameter)
@@ -264,7 +266,7 @@ def verlet_weis_structure_factor(wave_number: Numbers, packing_fraction: float) 
 
 
 def _of(packing_fraction: float) -> tuple[float, float, float, float]:
-    """Return `_verlet_weis` of a packing fraction that is in range; raise an error otherwise."""
+    """Return `_verlet_weis` for a packing fraction within the range; raise an error otherwise."""
     eta = float(checked_packing_fraction(packing_fraction, METASTABLE_SPHERES))
     if eta <= 0.0:
         raise ValueError(f"packing_fraction: {eta:g} (must be above 0)")

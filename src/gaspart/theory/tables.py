@@ -1,4 +1,4 @@
-"""Tables of values that programs have measured: this program and others."""
+"""Tables of measured values, by this program and by other programs."""
 
 from __future__ import annotations
 
@@ -19,36 +19,35 @@ from gaspart.theory.state import (
 
 
 def literature(quantity: str, dimension: int) -> np.recarray:
-    """Return values of hard discs and spheres that programs of others have measured and published.
+    """Return published values of hard discs and spheres that other programs measured.
 
     Parameters
     ----------
     quantity : str
-        For spheres "Z", "Z_crystal" (face-centred cubic), "diffusion", "viscosity" or "conductivity"; for
-        discs "pressure", from the liquid to the hexatic.
+        For spheres "Z", "Z_crystal" (face-centred cubic), "diffusion", "viscosity" or "conductivity". For
+        discs "pressure", from the liquid to the hexatic phase.
     dimension : {2, 3}
         Discs or spheres.
 
     Returns
     -------
     numpy.recarray
-        A row for each value. Its fields, which are attributes of the array, are `packing_fraction`; `count`,
-        the number of particles; `container` ("cube", "square", or the sides of "29 x 30" discs of a
-        triangular lattice), periodic; `value` and its standard `error`, with diameter = mass = k_B T = 1;
-        `source`.
+        One row per value. The fields are attributes of the array: `packing_fraction`; `count`, the number of
+        particles; `container`, periodic: "cube", "square", or the sides of a triangular lattice such as "29 x
+        30" discs; `value` and its standard `error`, with diameter = mass = k_B T = 1; `source`.
 
     Raises
     ------
     SceneError
-        If the table does not have the quantity.
+        If the table does not contain the quantity.
 
     See Also
     --------
-    measurements : Values that this program has measured.
+    measurements : Values measured by this program.
 
     Notes
     -----
-    No value is corrected for its number of particles. The provenance of all values is in `data/README.md`.
+    No value is corrected for the number of particles. The provenance of all values is in `data/README.md`.
 
     Examples
     --------
@@ -61,7 +60,7 @@ def literature(quantity: str, dimension: int) -> np.recarray:
 
 
 def measurements(quantity: str, dimension: int) -> np.recarray:
-    """Return values of hard discs and spheres that this program has measured, to be cited.
+    """Return values of hard discs and spheres measured by this program, for citation.
 
     Parameters
     ----------
@@ -73,26 +72,26 @@ def measurements(quantity: str, dimension: int) -> np.recarray:
     Returns
     -------
     numpy.recarray
-        A row for each value, with the fields and units of `literature`. `source` is the figure of the
+        One row per value, with the fields and units of `literature`. `source` is the figure of the
         reproduction.
 
     Raises
     ------
     SceneError
-        If the table does not have the quantity.
+        If the table does not contain the quantity.
 
     See Also
     --------
-    literature : Values that programs of others have measured.
+    literature : Values measured by other programs.
 
     Notes
     -----
-    All values are of fluids. "Z" and "contact_value" are values of the infinite system: the effect of finite
-    numbers is subtracted to the first order in 1/N. "viscosity", "bulk_viscosity" and "conductivity" are by
-    Green and Kubo until 16 collisions of a particle (30 in dense gases). "diffusion" is N / (N - 1) times the
-    diffusion of particles whose total momentum is zero. The last four are values of `count` particles; for
-    discs they grow with the logarithm of time and of the container. The commit and the command that made the
-    table are in `data/README.md`.
+    All values are for fluids. "Z" and "contact_value" are for the infinite system; the finite-size effect is
+    subtracted to first order in 1/N. "viscosity", "bulk_viscosity" and "conductivity" are Green-Kubo
+    integrals up to 16 collisions of a particle (30 in dense gases). "diffusion" is N / (N - 1) times the
+    diffusion coefficient of particles with zero total momentum. The last four quantities are for `count`
+    particles. For discs they grow with the logarithm of time and of the container. `data/README.md` states
+    the commit and the command that made the table.
 
     Examples
     --------
@@ -105,7 +104,7 @@ def measurements(quantity: str, dimension: int) -> np.recarray:
 
 
 def small_systems(quantity: str, dimension: int) -> np.recarray:
-    """Return what this program has measured of few particles in a periodic square or cube.
+    """Return values measured by this program for few particles in a periodic square or cube.
 
     Parameters
     ----------
@@ -117,26 +116,26 @@ def small_systems(quantity: str, dimension: int) -> np.recarray:
     Returns
     -------
     numpy.recarray
-        A row for each system, with the fields of `literature`.
+        One row per system, with the fields of `literature`.
 
     Raises
     ------
     SceneError
-        If the table does not have the quantity.
+        If the table does not contain the quantity.
 
     See Also
     --------
-    finite_contact_value : Contact value between the rows of the table.
+    finite_contact_value : Contact value interpolated between the rows of the table.
 
     Notes
     -----
-    Diameter = mass = k_B T = 1, with k_B T = 2 E / (d (N - 1)). "contact_value": density of pairs at contact
-    divided by N (N - 1) / V^2. "Z" and "collision_rate" follow from it exactly (`finite_contact_value`): Z is
-    the canonical value, which `gaspart.analysis.compressibility_factor` measures; the rate is 2 N_coll / (N
-    t). "diffusion": slope of the mean-squared displacement relative to the centre of mass, divided by 2 d.
-    Errors are standard deviations by independent runs. Six rows of dense spheres have several states, and no
-    run changes from one state to another. Their errors, 4 to 86 %, are standard deviations of single runs.
-    Recipe and seeds are in `data/README.md`.
+    Units are diameter = mass = k_B T = 1, with k_B T = 2 E / (d (N - 1)). "contact_value": density of pairs
+    at contact divided by N (N - 1) / V^2. "Z" and "collision_rate" follow from it exactly
+    (`finite_contact_value`): Z is the canonical value, which `gaspart.analysis.compressibility_factor`
+    measures; the rate is 2 N_coll / (N t). "diffusion": slope of the mean-squared displacement relative to
+    the centre of mass, divided by 2 d. Errors are standard deviations over independent runs. In six rows,
+    dense spheres have several states, and no run changes from one state to another. Their errors, 4 to 86 %,
+    are standard deviations of single runs. Recipe and seeds are in `data/README.md`.
 
     Examples
     --------
@@ -167,13 +166,13 @@ def _read(table: str) -> np.recarray:
 
 # Chemical potential of the fluid, from the reference equation of state.
 #
-# It is in units of k_B T, beyond the potential of an ideal gas. The activity is eta e^{mu_excess}, which
-# is eta when dilute.
+# It is in units of k_B T, relative to an ideal gas. The activity is eta e^{mu_excess}, which is eta in a
+# dilute gas.
 
 
 _LOWEST = 1e-9
 """Packing fraction below which the fluid is an ideal gas to nine digits."""
-_STEP = 2e-3  # of central differences of the compressibility
+_STEP = 2e-3  # step of central differences of the compressibility
 
 
 def excess_free_energy(packing_fraction: Numbers, dimension: int) -> Values:
@@ -198,9 +197,9 @@ def excess_free_energy(packing_fraction: Numbers, dimension: int) -> Values:
 
     Notes
     -----
-    The integral from 0 to eta of (Z - 1) / eta' (exact thermodynamics), with Z of `compressibility_factor`,
-    by Gauss and Legendre. N times its negative is the logarithm of the configuration integral Q of source C,
-    Eq. 46, of a large container.
+    The integral of (Z - 1) / eta' from 0 to eta (exact thermodynamics), with Z of `compressibility_factor`,
+    by Gauss-Legendre quadrature. Multiplied by -N, it is the logarithm of the configuration integral Q of
+    source C, Eq. 46, for a large container.
 
     Examples
     --------
@@ -274,7 +273,8 @@ def chemical_potential_uncertainty(packing_fraction: Numbers, dimension: int) ->
 
     Notes
     -----
-    The uncertainty of Z at this packing fraction and below, of one sign throughout (computed estimate).
+    The uncertainty of Z at this and all lower packing fractions, assumed to have the same sign everywhere
+    (computed estimate).
 
     Examples
     --------
@@ -311,7 +311,7 @@ def activity(packing_fraction: Numbers, dimension: int) -> Values:
 
     See Also
     --------
-    packing_fraction_at : Inverse of this function.
+    packing_fraction_at : Inverse function.
 
     Notes
     -----
@@ -328,7 +328,7 @@ def activity(packing_fraction: Numbers, dimension: int) -> Values:
 
 @check_ranges
 def insertion_finite_size_correction(packing_fraction: Numbers, dimension: int, count: int) -> Values:
-    """Compute the shift of the insertion potential in a periodic container of N particles.
+    """Compute the shift of the insertion potential due to the finite number of particles.
 
     Parameters
     ----------
@@ -342,8 +342,8 @@ def insertion_finite_size_correction(packing_fraction: Numbers, dimension: int, 
     Returns
     -------
     ndarray, same shape as `packing_fraction`, [1]
-        -ln P_N - mu_excess / (k_B T), to the first order in 1/N. P_N is the chance that a random position in
-        the container is free for another particle.
+        -ln P_N - mu_excess / (k_B T), to first order in 1/N, in a periodic container. P_N is the probability
+        that a random position in the container is free for another particle.
 
     Raises
     ------
@@ -358,9 +358,10 @@ def insertion_finite_size_correction(packing_fraction: Numbers, dimension: int, 
     -----
     With the configuration integral Q_N as in `state.finite_size_correction`, P_N = Q_(N+1) / (V Q_N) is
 
-        (1 / 2N) [1 / S - 1 + eta S' / S],    S = `reduced_compressibility`, S' its derivative by eta
+        (1 / 2N) [1 / S - 1 + eta S' / S],    where S = `reduced_compressibility` and S' is its derivative
+        with respect to eta
 
-    [1]_. The correction is zero in the first order in the density, which is exact.
+    [1]_. To first order in the density the correction is zero, which is exact.
 
     References
     ----------
@@ -409,11 +410,11 @@ def packing_fraction_at(activity: Numbers, dimension: int) -> Values:
     SceneError
         If `dimension` is not 2 or 3, or if an activity is negative or not finite.
     ValueError
-        If an activity is above the reference's range.
+        If an activity is above the range of the reference equation.
 
     See Also
     --------
-    activity : Inverse of this function.
+    activity : Inverse function.
 
     Examples
     --------

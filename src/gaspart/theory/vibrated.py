@@ -1,39 +1,40 @@
-"""Dilute beds of inelastic discs on a vibrating floor, under gravity.
+"""Dilute beds of inelastic discs on a vibrating floor under gravity.
 
-The energy balance of a nearly elastic gas: isothermal and Maxwellian, its density exponential in the height,
-with small and fast vibrations, slow compared with the particles (Kumaran, Phys. Rev. E 57, 5660 (1998);
-McNamara and Luding, Phys. Rev. E 58, 813 (1998), who show that losses at the floor count). All results here
-are derived from the averages over Maxwellian velocities, and tested against them. Discs have mass 1 and
-diameter d. `layers` is N d / width, or (N - 1) d / width for a finite bed, since no disc meets itself.
-Contacts with the floor are as inelastic as contacts of particles. All results are exact to the first order in
-`packing_fraction`, the packing fraction that an ideal gas would have at the floor, pi N d^2 g / (4 width T).
+The results follow from the energy balance of a nearly elastic gas. The gas is isothermal and Maxwellian, and
+its density is exponential in the height. Vibrations are small, fast, and slow compared with the particles
+(Kumaran, Phys. Rev. E 57, 5660 (1998); McNamara and Luding, Phys. Rev. E 58, 813 (1998), who show that losses
+at the floor matter). All results are derived from averages over Maxwellian velocities, and tested against
+them. Discs have mass 1 and diameter d. `layers` is N d / width. For a finite bed it is (N - 1) d / width,
+because a disc does not collide with itself. Contacts with the floor have the same restitution as contacts of
+particles. All results are exact to first order in `packing_fraction`, the packing fraction of an ideal gas at
+the floor, pi N d^2 g / (4 width T).
 """
 
 import math
 
 from gaspart.theory.geometry import Numbers, Values, checked_range
 
-# Of the first order in the packing fraction: 2/3 of that of the contact value, b_3 / 2 of discs (Rowlinson
-# 1964), less 4/3, since the volume of the discs lifts the bed.
+# Coefficient of first order in the packing fraction: 2/3 of the coefficient of the contact value, b_3 / 2 for
+# discs (Rowlinson 1964), minus 4/3, because the volume of the discs raises the bed.
 _FIRST_ORDER = (8.0 / 3.0 - 2.0 * math.sqrt(3.0) / math.pi) * 2.0 / 3.0 - 4.0 / 3.0
 
 
 def bed_loss(layers: Numbers, restitution: Numbers, packing_fraction: Numbers = 0.0) -> Values:
-    """Compute the power that the bed loses in inelastic contacts, divided by N g sqrt(T).
+    """Compute the power dissipated by inelastic contacts in the bed, divided by N g sqrt(T).
 
     Parameters
     ----------
     layers : array_like, [1]
-        Number of layers N d / width, or (N - 1) d / width for a finite bed; must not be negative.
+        Number of layers N d / width, or (N - 1) d / width for a finite bed; not negative.
     restitution : array_like, [1]
         Coefficient of restitution e, from 0 to 1.
     packing_fraction : array_like, default 0.0, [1]
-        Packing fraction eta that an ideal gas would have at the floor, from 0 to 1.
+        Packing fraction eta of an ideal gas at the floor, from 0 to 1.
 
     Returns
     -------
     float or ndarray, [1]
-        Loss: the small parameter of the theory.
+        Dissipated power, the small parameter of the theory.
 
     Raises
     ------
@@ -42,10 +43,10 @@ def bed_loss(layers: Numbers, restitution: Numbers, packing_fraction: Numbers = 
 
     Notes
     -----
-    (1 - e^2) (sqrt(pi) layers / 2 + 1 / sqrt(2 pi)). The first term belongs to contacts of particles. Their
-    loss (1 - e^2) sqrt(pi) d n^2 T^(3/2) per area, with n = N g / (T width) exp(-g z / T), is integrated over
-    z. At a packing fraction eta the term is 1 - 0.2907 eta times this. The second term belongs to the floor:
-    a particle arrives with a mean energy T across the floor, at the rate sqrt(T / 2 pi) n(0).
+    (1 - e^2) (sqrt(pi) layers / 2 + 1 / sqrt(2 pi)). The first term is due to contacts between particles.
+    Their loss per area, (1 - e^2) sqrt(pi) d n^2 T^(3/2) with n = N g / (T width) exp(-g z / T), is
+    integrated over z. At a packing fraction eta this term is multiplied by 1 - 0.2907 eta. The second term is
+    due to the floor: particles arrive with a mean normal energy T at the rate sqrt(T / 2 pi) n(0).
 
     Examples
     --------
@@ -66,7 +67,7 @@ def bed_height(packing_fraction: Numbers) -> Values:
     Parameters
     ----------
     packing_fraction : array_like, [1]
-        Packing fraction that an ideal gas would have at the floor, from 0 to 1.
+        Packing fraction of an ideal gas at the floor, from 0 to 1.
 
     Returns
     -------
@@ -80,7 +81,7 @@ def bed_height(packing_fraction: Numbers) -> Values:
 
     Notes
     -----
-    From the virial of a bed whose pressure is n T (1 + 2 eta).
+    The result follows from the virial theorem for a bed with the pressure n T (1 + 2 eta).
 
     Examples
     --------
@@ -92,16 +93,16 @@ def bed_height(packing_fraction: Numbers) -> Values:
 
 
 def sawtooth_temperature(layers: Numbers, restitution: Numbers, packing_fraction: Numbers = 0.0) -> Values:
-    """Compute T / V^2 of a bed over a floor that moves up at speed V.
+    """Compute T / V^2 of a bed on a floor that moves up at speed V.
 
     Parameters
     ----------
     layers : array_like, [1]
-        Number of layers N d / width, or (N - 1) d / width for a finite bed; must not be negative.
+        Number of layers N d / width, or (N - 1) d / width for a finite bed; not negative.
     restitution : array_like, [1]
         Coefficient of restitution, from 0 to 1.
     packing_fraction : array_like, default 0.0, [1]
-        Packing fraction that an ideal gas would have at the floor, from 0 to 1.
+        Packing fraction of an ideal gas at the floor, from 0 to 1.
 
     Returns
     -------
@@ -115,7 +116,7 @@ def sawtooth_temperature(layers: Numbers, restitution: Numbers, packing_fraction
 
     Notes
     -----
-    The inverse square of `bed_loss`. The power of the floor is N g V exactly: V times the mean force, which
+    The inverse square of `bed_loss`. The power of the floor is exactly N g V: V times the mean force, which
     is the weight. The next order is V / sqrt(T) = `bed_loss`.
 
     Examples
@@ -128,16 +129,16 @@ def sawtooth_temperature(layers: Numbers, restitution: Numbers, packing_fraction
 
 
 def sine_temperature(layers: Numbers, restitution: Numbers, packing_fraction: Numbers = 0.0) -> Values:
-    """Compute T / <U^2> of a bed over a floor whose velocity U averages to zero.
+    """Compute T / <U^2> of a bed on a floor whose velocity U averages to zero.
 
     Parameters
     ----------
     layers : array_like, [1]
-        Number of layers N d / width, or (N - 1) d / width for a finite bed; must not be negative.
+        Number of layers N d / width, or (N - 1) d / width for a finite bed; not negative.
     restitution : array_like, [1]
         Coefficient of restitution e, from 0 to 1.
     packing_fraction : array_like, default 0.0, [1]
-        Packing fraction that an ideal gas would have at the floor, from 0 to 1.
+        Packing fraction of an ideal gas at the floor, from 0 to 1.
 
     Returns
     -------
@@ -151,8 +152,8 @@ def sine_temperature(layers: Numbers, restitution: Numbers, packing_fraction: Nu
 
     Notes
     -----
-    sqrt(8 / pi) / `bed_loss`. The power of the floor is N g <U^2> sqrt(8 / (pi T)) to the lowest order in U^2
-    / T. Without the floor's loss this is 4 sqrt(2) / (pi layers (1 - e^2)).
+    sqrt(8 / pi) / `bed_loss`. To lowest order in U^2 / T the power of the floor is N g <U^2> sqrt(8 / (pi
+    T)). Without losses at the floor, the result is 4 sqrt(2) / (pi layers (1 - e^2)).
 
     Examples
     --------

@@ -16,8 +16,8 @@ HIGHEST_ORDER = 10
 """Order up to which all virial coefficients are known."""
 _TABLES = Path(__file__).parent / "data"
 
-# b_1 to b_4, exact. Discs: B2 = 2A, B3 and B4 as in source C, Eq. 48 (Rowlinson 1964, Hemmer 1965).
-# Spheres: Boltzmann's B4, of which 2707 pi + 438 sqrt 2 - 4131 arccos(1/3) over 4480 pi is B4 / B2^3.
+# b_1 to b_4, exact. Discs: B2 = 2A, B3 and B4 as in source C, Eq. 48 (Rowlinson 1964, Hemmer 1965). Spheres:
+# B4 by Boltzmann: B4 / B2^3 is (2707 pi + 438 sqrt 2 - 4131 arccos(1/3)) / (4480 pi).
 _EXACT = {
     2: (
         1.0,
@@ -38,7 +38,7 @@ _EXACT = {
 
 @cache
 def _all_coefficients(dimension: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return all known coefficients b_n, and their standard uncertainties, as read-only arrays."""
+    """Return all known coefficients b_n and their standard uncertainties as read-only arrays."""
     exact = np.array(_EXACT[dimension])
     order, ratio, uncertainty = np.loadtxt(
         _TABLES / f"virial_{dimension}d.csv", delimiter=",", skiprows=1, unpack=True
@@ -76,7 +76,7 @@ def virial_coefficients(dimension: int, order: int = HIGHEST_ORDER) -> tuple[np.
 
     Notes
     -----
-    Exact to B4 (closed forms). B5 to B10 are from Clisby and McCoy [1]_ (literature).
+    The coefficients are exact up to B4 (closed forms). B5 to B10 are from Clisby and McCoy [1]_ (literature).
 
     References
     ----------
@@ -161,7 +161,7 @@ def partial_sum_uncertainty(packing_fraction: Numbers, order: int, dimension: in
 
     Notes
     -----
-    The errors of the coefficients are taken as independent. The error of truncation is not included.
+    The errors of the coefficients are assumed to be independent. The truncation error is not included.
 
     Examples
     --------
@@ -175,7 +175,7 @@ def partial_sum_uncertainty(packing_fraction: Numbers, order: int, dimension: in
 
 
 def linear_tail(packing_fraction: Numbers, dimension: int) -> Values:
-    """Compute the terms beyond B10 if b_n continues linearly with the last known difference.
+    """Compute the terms beyond B10, if b_n grows linearly with the last known difference.
 
     Parameters
     ----------
@@ -200,9 +200,9 @@ def linear_tail(packing_fraction: Numbers, dimension: int) -> Values:
 
     Notes
     -----
-    Computed: an extrapolation. b_(10+k) = b_10 + k (b_10 - b_9), so the tail is eta^10 [b_10 / (1-eta) +
-    (b_10 - b_9) / (1-eta)^2]. In 2D the differences converge (0.989, 0.967, 0.953, 0.944), which makes this a
-    good estimate up to eta = 0.65. In 3D they still grow by about 2 each time, which makes it a lower bound.
+    The result is a computed extrapolation: b_(10+k) = b_10 + k (b_10 - b_9), so the tail is eta^10 [b_10 /
+    (1-eta) + (b_10 - b_9) / (1-eta)^2]. In 2D the differences converge (0.989, 0.967, 0.953, 0.944), so this
+    is a good estimate up to eta = 0.65. In 3D they still grow by about 2 per order, so this is a lower bound.
 
     Examples
     --------
@@ -238,7 +238,8 @@ def linear_tail_uncertainty(packing_fraction: Numbers, dimension: int) -> Values
 
     Notes
     -----
-    The uncertainty of b_10 and the uncertainty of the slope: its last change and the uncertainty of b_10.
+    It combines the uncertainty of b_10 and the uncertainty of the slope. The latter combines the last change
+    of the slope and the uncertainty of b_10.
 
     Examples
     --------

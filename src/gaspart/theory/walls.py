@@ -1,23 +1,24 @@
-r"""Hard particles between hard walls: what a container shifts in the pressure that its walls feel.
+r"""Hard particles between hard walls: effect of a finite container on the pressure on its walls.
 
-The container has walls on w of its d axes. Centres move only within l_k = L_k - sigma on each of these axes:
-this is the volume V to which the fluid's thermodynamics applies. With the surface tension gamma
-of the fluid at the plane of the centres, the free energy tau of an edge (3D; a corner in 2D) and kappa of a
-corner (3D), the grand potential is
+The container has walls on w of its d axes. Centres move only within l_k = L_k - sigma on each of these axes.
+The thermodynamics of the fluid applies to the volume V that centres can reach. The fluid has the surface
+tension gamma at the plane of the centres, the free energy tau of an edge (3D; of a corner in 2D), and the
+free energy kappa of a corner (3D). With these the grand potential is
 
 .. math:: \Omega / V = -P + \gamma s_1 + \tau s_2 + \kappa s_3, \quad
           s_1 = \sum_i 2 / l_i, \quad s_2 = \sum_{i<j} 4 / l_i l_j, \quad s_3 = 8 / l_1 l_2 l_3 .
 
-Its derivative by the chemical potential is the number of particles, by one of the lengths the force on a
-wall:
+Its derivative with respect to the chemical potential is the number of particles. Its derivative with respect
+to one of the lengths is the force on a wall:
 
 .. math:: N / V = \rho + \Gamma s_1 + \Gamma_\tau s_2 + \Gamma_\kappa s_3, \qquad
           F / A = P - 2 (w-1) \gamma / l - 2 (w-1)(w-2) \tau / l^2 ,
 
-the force for equal lengths. Gamma = - rho (d gamma / d rho) / (dP / d rho), the others follow by the same
-rule, and rho is the density of a bulk fluid of the same chemical potential. Between two walls (w = 1) there
-are no edges, and the pressure on the walls is P. gamma, tau and kappa are exact to fifth order in the
-density, by cluster integrals (`clusters`). Everything here is in diameters and k_B T.
+this is the force for equal lengths. Gamma = - rho (d gamma / d rho) / (dP / d rho), and the other adsorptions
+follow by the same rule. rho is the density of a bulk fluid with the same chemical potential. Between two
+walls (w = 1) there are no edges, and the pressure on the walls is P. gamma, tau and kappa are exact to fifth
+order in the density, from cluster integrals (`clusters`). All quantities are in units of the diameter and k_B
+T.
 """
 
 import math
@@ -37,7 +38,7 @@ from gaspart.theory.geometry import (
 from gaspart.theory.state import compressibility_factor, compressibility_uncertainty
 
 _DENSEST = 0.49
-"""Packing fraction where the polynomials below end."""
+"""Maximum packing fraction of the polynomials below."""
 _SECOND_ORDER = {2: (-1.0 / 3.0, 1.0 / 16.0), 3: (-math.pi / 8.0, 1.0 / 15.0, -1.0 / 96.0)}
 """Coefficients of rho^2 in gamma, tau and kappa, from the overlap of two centres in a box (exact)."""
 _SHAPES: dict[int, tuple[tuple[float, ...], ...]] = {
@@ -48,24 +49,26 @@ _SHAPES: dict[int, tuple[tuple[float, ...], ...]] = {
         (1.0, -27.49, 137.6, -114.7),
     ),
 }
-"""Polynomials in eta: gamma, tau and kappa times (1 - eta)^d divided by their second order. From the cluster
-integrals of three to five centres (`film.cluster_integrals`, 6 to 12 million samples of each, with the
-integral of the bulk, which is known, as a control variate) and the virial coefficients; good to one or two of
-the last digit, the last of each row to 0.1, 0.6 and 4 in 3D."""
+"""Polynomials in eta: gamma, tau and kappa times (1 - eta)^d divided by their second order. They follow from
+the virial coefficients and the cluster integrals of three to five centres (`film.cluster_integrals`, 6 to 12
+million samples each; the known bulk integral is a control variate). The last digit is accurate to one or two
+units. In 3D the last coefficients of the rows are accurate to 0.1, 0.6 and 4.
+"""
 _OPPOSITE = np.array(
     [[0.1, 0.2, 0.3, 0.4, 0.49], [-6.7, -5.05, -3.15, -2.6, -2.2], [3.0, 1.9, 1.75, 1.35, 1.0]]
 )
-"""Relative change of the pressure by the opposite wall at the distance L: packing fractions, a and b of
-exp(a - b (L - 3)). This is the envelope of the differences between the module's equations and
-`film.white_bear_slit` of spheres at L from 2 to 5 and eta from 0.1 to 0.4, continued to 0.49."""
+"""Relative change of the pressure due to the opposite wall at the distance L: packing fractions, a and b of
+exp(a - b (L - 3)). This is the envelope of the differences between the equations of this module and
+`film.white_bear_slit`, for spheres with L from 2 to 5 and eta from 0.1 to 0.4, extrapolated to 0.49.
+"""
 _FREEZING = {2: 0.70, 3: 0.49}
-"""Packing fractions that make discs and spheres comparable in `_opposite`."""
+"""Packing fractions at which discs and spheres are treated as equivalent in `_opposite`."""
 SHORTEST = 2.0
-"""Shortest distance of walls, in diameters, for which `wall_pressure` states anything."""
+"""Minimum distance between walls, in diameters, for `wall_pressure`."""
 LARGEST_UNCERTAINTY = 0.1
-"""Relative uncertainty above which `wall_pressure` states nothing."""
-_STEP = 1e-4  # of the central differences, in packing fraction
-_STRETCH = 1e-3  # and in length, relative to it
+"""Maximum relative uncertainty for `wall_pressure`; above it an error is raised."""
+_STEP = 1e-4  # step of the central differences in the packing fraction
+_STRETCH = 1e-3  # relative step in length
 
 
 def _element(packing_fraction: Numbers, dimension: int, kind: int, further: float = 0.0) -> Values:
@@ -97,8 +100,8 @@ def surface_tension(packing_fraction: Numbers, dimension: int) -> Values:
     Returns
     -------
     ndarray, same shape as `packing_fraction`, [1]
-        Surface tension gamma sigma^(d-1) / k_B T (negative), with the area of the wall counted where centres
-        touch.
+        Surface tension gamma sigma^(d-1) / k_B T (negative). The area of the wall is the area that centres
+        can touch.
 
     Raises
     ------
@@ -107,8 +110,8 @@ def surface_tension(packing_fraction: Numbers, dimension: int) -> Values:
 
     Notes
     -----
-    Exact to fifth order in the density, times (1 - eta)^-d (computed, `clusters`). Spheres: 0.3 % above White
-    Bear II [1]_ at eta = 0.2, 1.2 % at 0.3 (tested).
+    The result is exact to fifth order in the density, multiplied by (1 - eta)^-d (computed, `clusters`). For
+    spheres it is above White Bear II [1]_ by 0.3 % at eta = 0.2 and by 1.2 % at 0.3 (tested).
 
     References
     ----------
@@ -146,8 +149,8 @@ def surface_tension_uncertainty(packing_fraction: Numbers, dimension: int) -> Va
 
     Notes
     -----
-    The contribution of the first neglected coefficient, which is assumed to be as large as the larger of the
-    last two known ones.
+    The uncertainty is the contribution of the first neglected coefficient, which is assumed to equal the
+    larger of the last two known coefficients.
 
     Examples
     --------
@@ -164,14 +167,14 @@ def surface_tension_uncertainty(packing_fraction: Numbers, dimension: int) -> Va
 def wall_pressure(
     length: float, density: float, count: int, dimension: int, axes: int
 ) -> tuple[float, float]:
-    """Compute the mean pressure of particles on the walls of a container, and its uncertainty.
+    """Compute the mean pressure of N particles on the walls of a container, and its uncertainty.
 
     Parameters
     ----------
     length : float, [1]
         Side of the container along each walled axis, in diameters, at least 2.
     density : float, [1/length^d]
-        Particles per volume that centres can touch, in units of the diameter.
+        Number of particles per volume accessible to centres, in units of the diameter.
     count : int
         Number N of particles.
     dimension : {2, 3}
@@ -182,25 +185,26 @@ def wall_pressure(
     Returns
     -------
     pressure : float, [1]
-        Force on a wall divided by the area that centres can touch, in k_B T / sigma^d.
+        Force on a wall divided by the area accessible to centres, in k_B T / sigma^d.
     uncertainty : float, [1]
         Standard uncertainty of the pressure, in k_B T / sigma^d.
 
     Raises
     ------
     SceneError
-        If walls are at less than two diameters, if the uncertainty would be above a tenth of the pressure, or
-        if another argument is out of range.
+        If the distance between walls is below two diameters, if the uncertainty exceeds a tenth of the
+        pressure, or if another argument is out of range.
     ValueError
         If the container does not have this number of axes, or if the fluid would be denser than eta = 0.49.
 
     Notes
     -----
-    Canonical ensemble: the equations of the module `walls`, and the canonical correction of first order in
-    1/N, surfaces included. The uncertainty has these contributions: the equation of state; surfaces, edges
-    and corners, estimated as in `surface_tension_uncertainty`; the effect of opposite walls on each other,
-    which decreases exponentially with their distance (from four diameters on it begins at the sixth order in
-    the density); and the square of the relative correction in 1/N, for the next order.
+    The result is for the canonical ensemble: the equations of the module `walls` with the canonical
+    correction of first order in 1/N, including surfaces. The uncertainty has four contributions. The first is
+    the equation of state. The second is surfaces, edges and corners, estimated as in
+    `surface_tension_uncertainty`. The third is the effect of opposite walls on each other, which decreases
+    exponentially with their distance (beyond four diameters it begins at sixth order in the density). The
+    fourth is the square of the relative correction in 1/N, for the next order.
 
     Examples
     --------
@@ -233,9 +237,9 @@ def wall_pressure(
 
 
 def _opposite(eta: float, dimension: int, length: float) -> float:
-    """Return the relative change of the pressure on a wall by the opposite wall.
+    """Return the relative change of the pressure on a wall due to the opposite wall.
 
-    Discs are taken as spheres of the same density relative to freezing.
+    Discs are treated as spheres at the same density relative to freezing.
     """
     fractions, amplitudes, decays = _OPPOSITE
     dense = eta * _FREEZING[3] / _FREEZING[dimension]
@@ -244,9 +248,9 @@ def _opposite(eta: float, dimension: int, length: float) -> float:
 
 
 class _Container:
-    """Fluid in a container with walls, by the packing fraction of the bulk.
+    """Fluid in a container with walls, as a function of the bulk packing fraction.
 
-    sides : distances of the walls for centres
+    sides : distances between the walls for centres
     further : coefficients for `_element`
 
     All quantities are per volume.
@@ -263,20 +267,20 @@ class _Container:
         self.elements = sums[: len(sides)]
 
     def surplus(self, eta: float) -> float:
-        """Return the grand potential without the contribution of the bulk."""
+        """Return the grand potential without the bulk contribution."""
         parts = zip(self.elements, range(self.dimension), self.further, strict=False)
         return sum(float(_element(eta, self.dimension, kind, more)) * size for size, kind, more in parts)
 
     def rise(self, eta: float) -> float:
-        """Return d eta / d mu times the volume of a particle.
+        """Return d eta / d mu multiplied by the volume of a particle.
 
-        The rise is rho / (dP / d rho), in the bulk fluid.
+        It is rho / (dP / d rho) in the bulk fluid.
         """
         slope = _slope(lambda x: x * compressibility_factor(x, self.dimension), eta)
         return float(number_density(eta, self.dimension)) / slope
 
     def particles(self, eta: float) -> float:
-        """Return the number of particles: rho and the adsorption."""
+        """Return the number of particles: bulk density plus adsorption."""
         unit = float(number_density(1.0, self.dimension))
         return eta * unit - self.rise(eta) * _slope(self.surplus, eta) / unit
 
@@ -285,7 +289,7 @@ class _Container:
         return self.rise(eta) * _slope(self.particles, eta) / float(number_density(1.0, self.dimension))
 
     def bulk(self, particles: float) -> float:
-        """Return the packing fraction of the bulk that gives this number of particles, by bisection."""
+        """Return the bulk packing fraction that gives this number of particles, by bisection."""
         low, high = 3.0 * _STEP, _DENSEST - 3.0 * _STEP
         if self.particles(high) < particles:
             raise ValueError(f"density: {particles} (the fluid would be denser than {_DENSEST})")
@@ -313,12 +317,12 @@ def _in_container(
 
 
 def _canonical(stretch: Callable[[float], _Container], density: float, count: int) -> float:
-    """Return the difference of the pressures of `count` particles and of the grand canonical ensemble.
+    """Return the canonical minus the grand canonical pressure of `count` particles.
 
     The saddle point gives the term of N particles in the grand partition function: ln Q_N = -Omega - N mu -
-    ln(2 pi dN/dmu) / 2. The result is the derivative of the last term by the length of the first axis at
-    fixed N, surfaces included; to first order in 1/N, as `state.finite_size_correction`, which holds for a
-    periodic container.
+    ln(2 pi dN/dmu) / 2. The result is the derivative of the last term with respect to the length of the first
+    axis at fixed N, including surfaces. It is of first order in 1/N, as in `state.finite_size_correction` for
+    a periodic container.
     """
     logarithms = []
     for factor in (1.0 + _STRETCH, 1.0 - _STRETCH):

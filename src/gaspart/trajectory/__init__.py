@@ -1,1 +1,1 @@
-"""Runs written to files: AMBER format, recipes, checkpoints, resuming, export, provenance."""
+"""Trajectory files: AMBER format, recipes, checkpoints, continuation, export, provenance."""

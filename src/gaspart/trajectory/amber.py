@@ -1,8 +1,8 @@
-"""File format of trajectories: AMBER NetCDF, https://ambermd.org/netcdf/nctraj.xhtml, version 1.0.
+"""File format of trajectories: AMBER NetCDF 1.0, https://ambermd.org/netcdf/nctraj.xhtml.
 
-A netCDF-3 file is a header, which the netCDF library makes, and then `frames` of equal size. A checksum
-(CRC-32) in the header detects damage; other readers ignore it. It is computed for the header without the
-number of frames.
+A netCDF-3 file consists of a header, which the netCDF library makes, and `frames` of equal size. A checksum
+(CRC-32) in the header detects damage. Other readers ignore it. The checksum excludes the number of frames in
+the header.
 """
 
 from __future__ import annotations
@@ -34,12 +34,12 @@ NOTE = (
 )
 _ALONG = {field.name: field.metadata.get("along", ()) for field in fields(Tally)}
 MAGIC = b"CDF\x02"
-"""First bytes of a netCDF-3 file of 64-bit offsets."""
+"""First bytes of a netCDF-3 file with 64-bit offsets."""
 FRAME_COUNT_AT = 4
-"""Offset of the number of frames in a netCDF-3 header, a big-endian uint32."""
+"""Offset of the number of frames in a netCDF-3 header; this number is a big-endian uint32."""
 WORD = 4
-"""Bytes of a checksum, and of all numbers that count in a netCDF-3 header."""
-_HEAD = 1024  # bytes from the start of a file within which the attributes of `BOOKKEEPING` lie
+"""Size in bytes of a checksum, and of every count in a netCDF-3 header."""
+_HEAD = 1024  # the attributes `BOOKKEEPING` are within this number of bytes from the start of a file
 _VECTORS = ("atom", "spatial")
 _ORIGIN = "cell_origin"
 _EXTRA: dict[str, tuple[str, tuple[str, ...], dict[str, str]]] = {
@@ -53,14 +53,15 @@ _EXTRA: dict[str, tuple[str, tuple[str, ...], dict[str, str]]] = {
     "pair_collisions": (">f8", ("pair",), {"long_name": "collisions of each pair of species so far"}),
     "piston": (">f8", ("motion",), {"long_name": "place along its axis, and velocity, of the piston"}),
 }
-"""Variables that only some files have, as in `Layout`, in their order."""
+"""Variables that only some files have, as in `Layout`, in their order in the file."""
 INITIAL: tuple[str, ...] = tuple(
     f"initial_{name}" for name in ("positions", "velocities", "spins", "piston", "displaced", "vibrations")
 )
-"""Variables of a run with a given initial state, of all particles of the scene: parts of a State."""
+"""Variables of a run with a prescribed initial state. They are parts of a State, for all particles of the
+scene."""
 _OF_INITIAL = ("particle", "component")
 BOOKKEEPING = ("header_bytes", "header_crc32", "frame_bytes")
-"""Attributes by which a file is checked: sizes of the header and of a frame, and the header's checksum."""
+"""Attributes for checking a file: sizes of the header and of a frame, and checksum of the header."""
 MOST_FRAMES = 2**31 - 1
 _UNFINISHED = bytes(2 * WORD) + struct.pack(">I", 10)
 """First bytes of a file before its first word is written: no frames, and the tag of dimensions."""
@@ -69,21 +70,22 @@ _FIRST_NAME = struct.pack(">I", 5) + b"frame"
 
 
 def counters(engine: Engine, tallies: Iterable[OptionalTally] = ()) -> tuple[str, ...]:
-    """Return the names of the sums since time 0 that a file of this engine has.
+    """Return the names of the cumulative sums in a file of this engine.
 
-    Each sum is a variable. Sums that only other engines make are left out: they would be zero.
+    Sums start at time 0. Each sum is a variable. Sums that only other engines compute are left out, because
+    they would be zero.
 
-    tallies : optional tallies of the run
+    tallies : optional tallies of the run.
     """
     absent = {name for kind in ENGINES.values() for name in kind.counters} - set(engine.counters)
     return tuple(name for name in tallied_fields(tallies) if name not in {"time", *absent})
 
 
 def cell(scene: Scene, lengths: np.ndarray, piston: np.ndarray | None) -> dict[str, np.ndarray]:
-    """Return the variables of the cell of a frame, which may end at a piston.
+    """Return the variables that describe the cell of a frame; it may end at a piston.
 
-    In two dimensions the cell is as high as its longest side. Readers take it for periodic along z as well,
-    and some refuse to look farther than half of the smallest side.
+    In two dimensions the cell is as high as its longest side. Readers assume that the cell is periodic along
+    z as well. Some of them limit distances to half of the smallest side.
     """
     sides, origin = np.full(3, float(np.max(lengths))), np.zeros(3)
     sides[: len(lengths)] = lengths
@@ -98,20 +100,20 @@ def cell(scene: Scene, lengths: np.ndarray, piston: np.ndarray | None) -> dict[s
 
 
 def face_names(dimension: int, walls: int = 0) -> list[str]:
-    """Return the names (2d + walls,) of faces and interior walls, in the counters' order."""
+    """Return the names (2d + walls,) of faces and interior walls, in the order of counters."""
     faces = [f"{axis} {end}" for axis in "xyz"[:dimension] for end in ("low", "high")]
     return faces + [f"wall {n}" for n in range(walls)]
 
 
 class Layout:
-    """Variables of a frame, in their order in the file: name -> (type, dimensions, attributes).
+    """Variables of a frame in file order: (type, dimensions, attributes) by name.
 
     count : number of particles in the file
     extra : names of the variables of `_EXTRA` that the file has
     walls : number of interior walls
     counters : names of the counters of the file
     sums : names of the sums of the correlations
-    axes : lengths of the axes that not every file has, which are axes of optional tallies, `lag` and `pair`
+    axes : lengths of the axes that not every file has: axes of optional tallies, `lag` and `pair`
     keep : key of `KEPT`
     """
 
@@ -166,7 +168,7 @@ class Layout:
 
     @property
     def frame(self) -> np.dtype:
-        """Type of a frame in the file; every variable fills complete words, without padding."""
+        """Type of a frame in the file. Every variable occupies complete words, without padding."""
         return np.dtype([(name, kind, self.shape(name)) for name, (kind, _, _) in self.variables.items()])
 
     def header(
@@ -175,7 +177,9 @@ class Layout:
         particles: Mapping[str, np.ndarray],
         initial: Mapping[str, np.ndarray] | None = None,
     ) -> bytes:
-        """Return a file without frames, whose first attributes are `BOOKKEEPING`.
+        """Return the bytes of a file without frames.
+
+        The first attributes are `BOOKKEEPING`.
 
         particles : radius, mass and type of each particle
         initial : properties of the particles at time 0 if the user supplied them, in double precision
@@ -212,14 +216,14 @@ class Layout:
             for name, size in zip(_OF_INITIAL, initial[INITIAL[0]].shape, strict=True):
                 file.createDimension(name, size)
         for name, (kind, dimensions, _) in fixed.items():
-            file.createVariable(name, kind, dimensions)  # filled, so that the padding is defined
+            file.createVariable(name, kind, dimensions)  # filled, so that padding bytes are defined
         file["radius"].units = "angstrom"
         for name, (kind, dimensions, extra) in self.variables.items():
             file.createVariable(name, kind[1:], ("frame", *dimensions), fill_value=False).setncatts(extra)
         for name, (kind, _, values) in fixed.items():
             file[name][:] = np.array(values, dtype=kind)
         written = bytes(file.close())
-        return written[: _frames_begin(written)]  # the library may return more memory than it has used
+        return written[: _frames_begin(written)]  # the library may return a larger buffer than it has used
 
 
 def _initial_axes(name: str, values: np.ndarray) -> tuple[str, ...]:
@@ -230,7 +234,7 @@ def _initial_axes(name: str, values: np.ndarray) -> tuple[str, ...]:
 def _frames_begin(header: bytes) -> int:
     """Return the offset of the first variable of a frame, time.
 
-    The position is the last value before the name of the next variable.
+    The offset is stored as the last value before the name of the next variable.
     """
     after = b"cell_lengths"
     (begin,) = struct.unpack_from(">Q", header, header.index(struct.pack(">I", len(after)) + after) - 8)
@@ -240,13 +244,15 @@ def _frames_begin(header: bytes) -> int:
 def _value_at(header: bytes | bytearray, name: str) -> int:
     """Return the offset of the value of a numerical attribute.
 
-    The value follows its name, padded to words, its type and count.
+    The value is preceded by its name, padded to words, its type, and its count.
     """
     return header.index(name.encode()) + -(-len(name) // WORD) * WORD + 2 * WORD
 
 
 def stored_header(file: BinaryIO) -> bytes:
-    """Return the header of a file with 0 frames, as `Layout.header` made it.
+    """Return the header of a file, with the number of frames set to 0.
+
+    This is the header as `Layout.header` made it.
 
     Raises ValueError, with the violated rule, for a damaged file and for a file of another program.
     """
@@ -279,7 +285,7 @@ def frame_bytes(header: bytes) -> int:
 
 
 def same_header(file: BinaryIO, header: bytes) -> bool:
-    """Return True if a file begins with this header, for any number of frames."""
+    """Return True if a file begins with this header, apart from the number of frames."""
     after = FRAME_COUNT_AT + WORD
     file.seek(0)
     stored = file.read(len(header))
@@ -287,10 +293,10 @@ def same_header(file: BinaryIO, header: bytes) -> bool:
 
 
 def is_blank(file: BinaryIO) -> bool:
-    """Return True if a file is empty, or its header was never finished.
+    """Return True if a file is empty, or if its header is incomplete.
 
-    The first word of a header is written last. The following bytes are compared too, since a file of zeros
-    may belong to any program.
+    The first word of a header is written last. The following bytes are compared too, because a file of zeros
+    may belong to another program.
     """
     file.seek(0)
     start = file.read(len(_UNFINISHED) + WORD + len(_FIRST_NAME))
@@ -299,24 +305,23 @@ def is_blank(file: BinaryIO) -> bool:
     )
 
 
-# Frames of a trajectory file, behind its header.
-#
-# They are appended during the run, and the number of frames in the header is raised when a frame is complete,
-# so that a file cut short at any moment is readable. A checksum (CRC-32) at the end of each frame, which
-# depends on the header and on the frame's position too, detects damage.
+# Frames of a trajectory file, after its header. They are appended during the run. The number of frames in the
+# header is increased when a frame is complete, so that a file truncated at any moment is readable. A checksum
+# (CRC-32) at the end of each frame detects damage. It depends on the header and on the position of the frame,
+# too.
 
 
-_CHUNK = 1 << 24  # bytes that are read at once
+_CHUNK = 1 << 24  # number of bytes per read
 
 
 def frame_count(file: BinaryIO) -> int:
-    """Return the number of complete frames from the header of a file."""
+    """Read the number of complete frames from the header of a file."""
     file.seek(FRAME_COUNT_AT)
     return struct.unpack(">I", file.read(WORD))[0]
 
 
 def _frame_checksum(frame: bytes | memoryview, number: int, header_checksum: int) -> bytes:
-    """Return the last word of a frame: the checksum of the bytes before it."""
+    """Return the last word of a frame: the checksum of the preceding bytes."""
     start = zlib.crc32(struct.pack(">I", number), header_checksum)
     return struct.pack(">I", zlib.crc32(frame[:-WORD], start))
 
@@ -324,7 +329,7 @@ def _frame_checksum(frame: bytes | memoryview, number: int, header_checksum: int
 def damaged_frame(file: int, header: bytes, numbers: range, checksum: int | None = None) -> int | None:
     """Return the first frame that is damaged or truncated; None if all are correct.
 
-    All frames are read. The CRC-32 takes about as long as copying them from memory.
+    All frames are read. Computing the CRC-32 takes about as long as copying the frames in memory.
 
     file : descriptor
     numbers : frames to test
@@ -343,14 +348,17 @@ def damaged_frame(file: int, header: bytes, numbers: range, checksum: int | None
 
 
 def frames_of(file: BinaryIO, header: bytes, count: int) -> Iterator[memoryview]:
-    """Yield the bytes of the first frames of an open file."""
+    """Yield the bytes of the first `count` frames of an open file."""
     size = frame_bytes(header)
     for n in range(count):
         yield memoryview(bytearray(read_at(file.fileno(), size, len(header) + n * size)))
 
 
 class CheckedFrames:
-    """Record of the undamaged frames of an open trajectory: each is checked once, before use."""
+    """Record of the undamaged frames of an open trajectory.
+
+    Each frame is checked once, before its first use.
+    """
 
     def __init__(self, file: BinaryIO, header: bytes, frames: int) -> None:
         self._header, self._checksum = header, zlib.crc32(header)
@@ -359,7 +367,10 @@ class CheckedFrames:
         self.close = weakref.finalize(self, os.close, self._file)
 
     def find_damage(self, numbers: np.ndarray) -> int | None:
-        """Return the first of these frames that is damaged, or None. May raise OSError."""
+        """Return the first of these frames that is damaged, or None.
+
+        May raise OSError.
+        """
         new = np.unique(numbers[~self._checked[numbers]])
         for part in np.split(new, np.flatnonzero(np.diff(new) > 1) + 1) if new.size else []:
             stretch = range(int(part[0]), int(part[-1]) + 1)
@@ -371,7 +382,7 @@ class CheckedFrames:
 
 
 class Frames:
-    """Frames of an unbuffered open file. Frames after the first `kept` ones are removed.
+    """Frames of an unbuffered open file; only the first `kept` frames are kept.
 
     If `kept` is 0, the header is written too. Every method may raise OSError.
     """
@@ -388,7 +399,10 @@ class Frames:
         file.seek(0, os.SEEK_END)
 
     def _begin(self, header: bytes) -> None:
-        """Write the header, its first word last: if that is present, the header is complete."""
+        """Write the header with its first word last.
+
+        If the first word is present, the header is complete.
+        """
         self._file.truncate(0)
         self._file.seek(0)
         try:
@@ -406,12 +420,13 @@ class Frames:
         for name in self._frame.dtype.names[:-1]:
             array = np.asarray(values[name])
             there = self._frame[name]
-            components = there[..., : array.shape[-1]] if array.ndim else there  # 2D leaves z = 0
+            # in two dimensions, z remains 0
+            components = there[..., : array.shape[-1]] if array.ndim else there
             components[...] = array
         self.append_bytes(self._frame.reshape(1).view(np.uint8).data)
 
     def append_bytes(self, data: memoryview) -> None:
-        """Write one frame of a file, with the checksum for its header and position."""
+        """Write one frame from its bytes, with the checksum for this header and position."""
         data[-WORD:] = _frame_checksum(data, self.count, self._header_checksum)
         self._write(data)
         self.count += 1
@@ -426,5 +441,5 @@ class Frames:
         write_at(self._file.fileno(), struct.pack(">I", self.count), FRAME_COUNT_AT)
 
     def sync(self) -> None:
-        """Return when all data are on the disk."""
+        """Return when all data are on disk."""
         os.fsync(self._file.fileno())

@@ -1,4 +1,4 @@
-"""Trajectory for xarray, whose frames are checked against checksums before values are returned."""
+"""Trajectory store for xarray that verifies checksums of frames before it returns values."""
 
 from __future__ import annotations
 
@@ -18,15 +18,16 @@ from gaspart.trajectory.amber import CheckedFrames
 from gaspart.trajectory.opening import damage
 
 _EVEN = 1e-9
-"""Relative deviation of a frame's time from a multiple of the interval, beyond which the frame is checked."""
+"""Relative deviation of a frame's time from a multiple of the interval, above which the frame is checked."""
 
 
 _LARGE = 1000
-"""Numbers in a frame, above which frames with a step are read one by one: netCDF takes many times as long."""
+"""Numbers per frame, above which a slice of frames with a step is read frame by frame; netCDF is many times
+slower."""
 
 
 class Trajectory(xr.Dataset):
-    """Open trajectory, a Dataset that answers a missing name with the probable one."""
+    """Open trajectory: a Dataset whose error for a missing name suggests the probable name."""
 
     __slots__ = ()
 
@@ -34,16 +35,16 @@ class Trajectory(xr.Dataset):
         try:
             return super().__getattr__(name)
         except AttributeError:
-            if name.startswith("_"):  # also of an instance that is not complete yet
+            if name.startswith("_"):  # true also for an instance under construction
                 raise
             raise MissingName(type(self), name, map(str, self.variables)) from None
 
 
 class CheckedStore(NetCDF4DataStore):
-    """Variables of a trajectory. Variables of frames are read through the checksums of frames.
+    """Variables of a trajectory; checksums of frames are verified before use.
 
-    Times are read when the file is opened. Only times that are not multiples of `interval` are read through
-    the checksums; otherwise opening a file would read the whole file.
+    Times are read when the file is opened. Checksums are verified only for frames whose times are not
+    multiples of `interval`. Otherwise opening a file would read the whole file.
     """
 
     def __init__(self, file: netCDF4.Dataset, path: Path, frames: CheckedFrames, interval: float) -> None:
@@ -61,7 +62,7 @@ class CheckedStore(NetCDF4DataStore):
             raise SceneError("file", str(self._path), damage(damaged))
 
     def open_store_variable(self, name: str, var: netCDF4.Variable) -> xr.Variable:
-        """Return a variable that is read as it is used."""
+        """Return a variable that is read on demand."""
         variable = super().open_store_variable(name, var)
         if variable.dims[:1] != ("frame",) or name == "time":
             return variable
@@ -71,7 +72,7 @@ class CheckedStore(NetCDF4DataStore):
 
 
 class _CheckedArray(BackendArray):
-    """Variable of frames. Any part of it can be read."""
+    """Variable of frames, of which any slice can be read."""
 
     def __init__(self, variable: netCDF4.Variable, store: CheckedStore) -> None:
         self._variable, self._store = variable, store

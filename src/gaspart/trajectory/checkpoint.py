@@ -19,9 +19,9 @@ from gaspart.files import FileKind, open_regular, place, remove_own, scratch_bes
 _DIGEST, _FRAMES = "trajectory header", "trajectory frames"
 _MARKS = tuple(f"{name}.npy".encode() for name in (_DIGEST, _FRAMES))
 """Names of parts that every checkpoint has, at its beginning and in the directory at its end."""
-_NEAR = 1 << 16  # bytes from either end within which they are
-_LEAST = 64  # bytes; a shorter file has not even the first name
-_COMMENT_LENGTH, _CHECKSUM = struct.Struct("<H"), struct.Struct("<I")  # the end of a zip file
+_NEAR = 1 << 16  # these parts are within this number of bytes from either end
+_LEAST = 64  # in bytes; a shorter file does not contain the first name
+_COMMENT_LENGTH, _CHECKSUM = struct.Struct("<H"), struct.Struct("<I")  # record at the end of a zip file
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ def checkpoint_path(path: Path) -> Path:
 
 
 def _is_checkpoint(path: Path) -> bool:
-    """Return True if a file was written by `write_checkpoint`, even if it was damaged since."""
+    """Return True if `write_checkpoint` wrote a file, even if the file was damaged later."""
     with open_regular(path) as file:
         start = file.read(_NEAR)
         size = file.seek(0, os.SEEK_END)
@@ -63,7 +63,7 @@ def _digest(header: bytes) -> str:
 
 
 def remove_checkpoint(path: Path) -> None:
-    """Remove a checkpoint that is not needed, or an incomplete one; no other file."""
+    """Remove an unnecessary or incomplete checkpoint; other files are not removed."""
     remove_own(path, CHECKPOINT)
 
 
@@ -71,8 +71,8 @@ def write_checkpoint(path: Path, header: bytes, frames: int, arrays: dict[str, A
     """Write the checkpoint of a run, identified by the header of its trajectory.
 
     The file is a zip file of arrays (.npz). Its comment, at the end, is a checksum of all bytes before the
-    comment. May raise OSError, and SceneError for a file at `path` that is no checkpoint, which is never
-    replaced.
+    comment. A file at `path` that is no checkpoint is never replaced: SceneError is raised. May raise
+    OSError.
     """
     with scratch_beside(path) as new:
         with new.open("r+b") as file:
@@ -87,7 +87,7 @@ def write_checkpoint(path: Path, header: bytes, frames: int, arrays: dict[str, A
 
 
 def read_checkpoint(path: Path, header: bytes) -> Checkpoint | None:
-    """Return the checkpoint of the run with this header; None if it is missing or unusable."""
+    """Return the checkpoint of the run with this header; None if missing or unusable."""
     try:
         return _checkpoint(path, header)
     except SceneError:
@@ -95,12 +95,14 @@ def read_checkpoint(path: Path, header: bytes) -> Checkpoint | None:
 
 
 def kept_beside(path: Path, header: bytes, otherwise: str) -> Checkpoint | None:
-    """Return the checkpoint that was stored with a trajectory of this header, or None.
+    """Return the checkpoint that was stored with a trajectory, or None.
 
-    Raises SceneError for a checkpoint that cannot be used: it must not be replaced silently by less exact
-    data.
+    The trajectory has this header.
 
-    otherwise : what is possible without it, for the message
+    Raises SceneError for a checkpoint that cannot be used, because less exact data must not replace it
+    silently.
+
+    otherwise : text for the message: the alternative without the checkpoint.
     """
     try:
         return _checkpoint(checkpoint_path(path), header)
@@ -109,9 +111,9 @@ def kept_beside(path: Path, header: bytes, otherwise: str) -> Checkpoint | None:
 
 
 def _checkpoint(path: Path, header: bytes) -> Checkpoint | None:
-    """Read a checkpoint like `read_checkpoint`, but raise SceneError for an unusable one.
+    """Read a checkpoint like `read_checkpoint`, but raise SceneError if it is unusable.
 
-    The checkpoint is unusable if it is damaged, belongs to another run, or is another kind of file.
+    It is unusable if it is damaged, belongs to another run, or is a file of another kind.
     """
     try:
         with open_regular(path) as file:
@@ -146,7 +148,7 @@ def _is_intact(file: BinaryIO) -> bool:
 def _checksum(file: BinaryIO, size: int | None = None) -> int:
     """Compute the checksum of a file, or of its first `size` bytes.
 
-    The next read of the file continues after these bytes.
+    The next read of the file starts after these bytes.
     """
     remaining = file.seek(0, os.SEEK_END) if size is None else size
     file.seek(0)

@@ -1,7 +1,8 @@
-"""Time correlations, accumulated during a run, which need no stored frames.
+"""Time correlations that are accumulated during a run, without stored frames.
 
-The functions are exact: all pairs of samples up to a largest lag are included, in double precision. For the
-largest lag L and K velocity components, the memory has L + 1 samples, and a sample costs about L K additions.
+The correlation functions include all pairs of samples up to a largest lag, in double precision. For the
+largest lag L and K velocity components, L + 1 samples are in memory, and each sample costs about L K
+additions.
 """
 
 from __future__ import annotations
@@ -27,13 +28,13 @@ SUMS = {
     "squared_displacement_sum": "|r(t) - r(0)|^2",
     "displacement_velocity_sum": "(r(t) - r(0)).(v(t) + v(0))",
 }
-"""Sums over pairs of samples, by lag, of means over particles."""
+"""Averages over particles that are summed over pairs of samples, by lag."""
 STRESS = {"shear": ACTION, "rotational": ACTION, "collisional": ACTION, "bulk": ACTION, "heat": HEAT}
 """Correlated fluxes of the stress tensor and the heat flux, with the units of their time integrals G.
 
-These are means over the shear components of the symmetric part, over the components of the antisymmetric
-part, and over the shear components of the collisional part; 1/d of the trace; the mean over the components of
-the heat flux.
+The fluxes are: the mean over the shear components of the symmetric part; the mean over the components of the
+antisymmetric part; the mean over the shear components of the collisional part; 1/d of the trace; and the mean
+over the components of the heat flux.
 """
 CORRELATED = {
     "product": "J(0) J(t), J = dG/dt over an interval",
@@ -41,7 +42,7 @@ CORRELATED = {
     "ends": "(J(0) + J(t)) / 2, J = dG/dt over an interval",
     "change": "G(t) - G(0)",
 }
-"""Summands over pairs of samples; the last two only for `bulk`, whose mean is not zero."""
+"""Terms that are summed over pairs of samples. The last two are only for `bulk`, whose mean is not zero."""
 _PREFIX = "correlator "  # prefix of its arrays in a checkpoint
 
 
@@ -87,7 +88,7 @@ class Correlations:
 
     @property
     def first(self) -> int:
-        """Number of the first sample, in intervals from time 0.
+        """Index of the first sample, in intervals from time 0.
 
         Examples
         --------
@@ -110,7 +111,7 @@ class Correlations:
         return (StressTally(),) if self.stress else ()
 
     def to_json(self) -> str:
-        """Return the text of the correlations in the attributes of a file.
+        """Return the settings as text for the attributes of a file.
 
         Returns
         -------
@@ -203,7 +204,7 @@ def stress_units() -> dict[str, str]:
 
 
 def meaning_of(name: str) -> str:
-    """Return the summand of a sum in words.
+    """Return a description of the terms in a sum.
 
     Parameters
     ----------
@@ -213,7 +214,7 @@ def meaning_of(name: str) -> str:
     Returns
     -------
     str
-        The summand.
+        The description.
     """
     if name in SUMS:
         return f"mean over moving particles of {SUMS[name]}"
@@ -222,10 +223,10 @@ def meaning_of(name: str) -> str:
 
 
 class _Correlator:
-    """Sums over all pairs of samples, up to a largest lag.
+    """Sums over all pairs of samples up to a largest lag.
 
-    The last axis of `earlier` has the latest samples, one for each lag. The last axis of `sums` is the lag
-    too.
+    The last axis of `earlier` has the most recent samples, one for each lag. The last axis of `sums` is the
+    lag, too.
     """
 
     def __init__(self, settings: Correlations, earlier: tuple[int, ...], sums: tuple[int, ...]) -> None:
@@ -235,11 +236,11 @@ class _Correlator:
 
     @property
     def next(self) -> int:
-        """Number of the next sample, in intervals from time 0."""
+        """Index of the next sample, in intervals from time 0."""
         return self._first + self._samples
 
     def _add(self, now: np.ndarray, add_products: Callable[..., None], terms: float | np.ndarray) -> None:
-        """Add the next sample: its products with the earlier samples, divided by the number of terms."""
+        """Add the products of the next sample with earlier samples, divided by the number of terms."""
         slots = self._earlier.shape[-1]
         slot, used = self._samples % slots, min(self._samples + 1, slots)
         self._earlier[..., slot] = now
@@ -250,12 +251,12 @@ class _Correlator:
         self._samples += 1
 
     def checkpoint(self) -> dict[str, Any]:
-        """Return arrays from which `restore` continues to the same bits."""
+        """Return arrays from which `restore` continues with identical bits."""
         arrays = {"samples": np.array(self._samples), "earlier": self._earlier, "sums": self._sums}
         return {_PREFIX + name: values for name, values in arrays.items()}
 
     def restore(self, arrays: dict[str, np.ndarray]) -> None:
-        """Continue from a checkpoint of a correlator of the same settings."""
+        """Continue from the checkpoint of a correlator with the same settings."""
         self._samples = int(arrays[_PREFIX + "samples"])
         self._earlier[...] = arrays[_PREFIX + "earlier"]
         self._sums[...] = arrays[_PREFIX + "sums"]
@@ -264,11 +265,11 @@ class _Correlator:
 class Correlator(_Correlator):
     """Correlations of the motion of the particles.
 
-    Velocities and positions of all moving particles are used. They are relative to the centre of mass
-    along axes where its velocity is conserved (`Scene.conserved_axes`), and to the mean velocity of faces
-    that slide. The subtraction lowers the mean square for a particle of mass m by the factor 1 - m / M, where
-    M is the mass of all particles. If masses differ, or if not all axes are conserved, components are
-    multiplied so that the sums are lower by 1 - 1 / N.
+    Velocities and positions of all moving particles are used. Along axes with conserved momentum
+    (`Scene.conserved_axes`), they are relative to the centre of mass. They are also relative to the mean
+    velocity of sliding faces. The subtraction reduces the mean square of a particle of mass m by the factor 1
+    - m / M, where M is the total mass. If masses differ, or if momentum is not conserved along all axes,
+    components are rescaled so that all sums are reduced by the factor 1 - 1 / N.
 
     Parameters
     ----------
@@ -336,9 +337,9 @@ class Correlator(_Correlator):
 
 
 def _scale(weights: np.ndarray, conserved: np.ndarray) -> np.ndarray:
-    """Return factors (M, d) of components relative to the centre of mass.
+    """Return rescaling factors (M, d) for components relative to the centre of mass.
 
-    weights : (M, 1), m / M
+    weights : (M, 1), mass of each particle divided by the total mass.
     """
     count = len(weights)
     if count < 2 or not conserved.any():
@@ -351,8 +352,8 @@ def _scale(weights: np.ndarray, conserved: np.ndarray) -> np.ndarray:
 class StressCorrelator(_Correlator):
     """Correlations of the stress tensor and the heat flux, each averaged over an interval.
 
-    The impulses last no time, but the mean over an interval is finite. The first sample has no mean and does
-    not count.
+    Impulses are instantaneous, but their mean over an interval is finite. The first sample has no preceding
+    interval, and is not counted.
     """
 
     def __init__(self, settings: Correlations, dimension: int) -> None:
@@ -366,7 +367,7 @@ class StressCorrelator(_Correlator):
 
     @property
     def next(self) -> int:
-        """Number of the next sample, in intervals from time 0."""
+        """Index of the next sample, in intervals from time 0."""
         return super().next + self._begun
 
     def add(self, simulation: Simulation) -> None:
@@ -398,12 +399,12 @@ class StressCorrelator(_Correlator):
         return {"correlated_samples": float(self._samples), **named}
 
     def checkpoint(self) -> dict[str, Any]:
-        """Return arrays from which `restore` continues to the same bits."""
+        """Return arrays from which `restore` continues with identical bits."""
         begun = {_PREFIX + "latest": self._latest, _PREFIX + "begun": np.array(self._begun)}
         return {**super().checkpoint(), **begun}
 
     def restore(self, arrays: dict[str, np.ndarray]) -> None:
-        """Continue from a checkpoint of a correlator of the same settings."""
+        """Continue from the checkpoint of a correlator with the same settings."""
         super().restore(arrays)
         self._latest, self._begun = arrays[_PREFIX + "latest"].copy(), bool(arrays[_PREFIX + "begun"])
 

@@ -1,7 +1,7 @@
 """Export of frames to the formats of other programs: GSD (HOOMD), extended XYZ and LAMMPS data.
 
-Positions and velocities come from the trajectory's frames, in single precision: particles that touched may
-overlap by 1e-7 of a diameter. Walls, faces and gravity are not part of these formats.
+Positions and velocities come from the frames of the trajectory, in single precision. Touching particles may
+therefore overlap by 1e-7 of a diameter. Walls, faces and gravity are not part of these formats.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ from gaspart.trajectory.opening import check_frames, open_netcdf_file, run_path
 from gaspart.trajectory.recipe import read_recipe
 
 ALL = "all"
-"""Word for all frames of a trajectory."""
+"""Keyword for all frames of a trajectory."""
 
 
 def _is_xyz(path: Path) -> bool:
-    """Return True if a file is an XYZ file written by gaspart."""
+    """Return True if gaspart wrote a file, and the file is an XYZ file."""
     with path.open("rb") as file:
         return b" Program=gaspart\n" in file.read(1000)
 
@@ -59,13 +59,14 @@ _SYMBOLS = (
     "Cl",
     "Ar",
 )
-"""Names of species in an XYZ file: readers such as ASE accept chemical symbols only."""
-_ROWS = 4096  # of a table that are formatted at once
+"""Names of species in an XYZ file. They are chemical symbols, because readers such as ASE accept no other
+names."""
+_ROWS = 4096  # number of table rows that are formatted at once
 
 
 @dataclass(frozen=True)
 class Snapshot:
-    """Frame of a trajectory, with N particles.
+    """Frame of a trajectory with N particles.
 
     Attributes
     ----------
@@ -122,7 +123,7 @@ def export(trajectory: str | Path, path: str | Path, frame: int | str = -1, over
     Raises
     ------
     SceneError
-        If the suffix is another one, the frame does not exist, or a file cannot be read or written.
+        If the suffix is unknown, the frame does not exist, or a file cannot be read or written.
 
     Examples
     --------
@@ -146,9 +147,9 @@ def export(trajectory: str | Path, path: str | Path, frame: int | str = -1, over
 
 
 def _snapshots(path: Path, frame: int | str) -> Iterator[Snapshot]:
-    """Return one frame, or all, read one after the other.
+    """Return an iterator over one frame, or over all frames.
 
-    Frames that cannot be exported raise at once.
+    Errors for frames that cannot be exported are raised immediately.
     """
     recipe = read_recipe(path)
     recipe.require_all(path)
@@ -159,23 +160,26 @@ def _snapshots(path: Path, frame: int | str) -> Iterator[Snapshot]:
     elif not -there <= count_of("frame", frame, least=-there) < there:
         raise SceneError("frame", frame, f"must be one of {there} frames")
     else:
-        frame = int(frame) % there  # netCDF counts -1 from the allocated frames of an unfinished file
+        # in an unfinished file, netCDF counts -1 from the end of the allocated frames
+        frame = int(frame) % there
         numbers = range(frame, frame + 1)
     check_frames(path, numbers)
     return _read(path, numbers)
 
 
 def _read(path: Path, numbers: range) -> Iterator[Snapshot]:
-    """Yield the frames of a trajectory with these numbers."""
+    """Yield the frames of a trajectory with these indices."""
     scene = read_recipe(path).scene
     with open_netcdf_file(path) as file:
         diameters, types = 2.0 * np.asarray(file["radius"][:]), np.asarray(file["type"][:])
         masses = np.resize(per_particle(scene, "mass"), scene.capacity)[: len(types)].astype(float)
         for n in numbers:
             positions = np.asarray(file["coordinates"][n], dtype=float)
-            inside = np.isfinite(positions).all(axis=1)  # False for absent numbers in scenes with open faces
+            # False for numbers without a particle in scenes with open faces
+            inside = np.isfinite(positions).all(axis=1)
             piston = np.asarray(file["piston"][n]) if scene.has_piston else None
-            # not read: files of early versions have the whole container, and discs in cells of their diameter
+            # not read from the file: in early versions, cells had the length of the whole container, and
+            # cells of discs the height of a diameter
             cell = amber.cell(scene, np.array(scene.container.lengths), piston)
             yield Snapshot(
                 positions=positions[inside],
@@ -194,10 +198,10 @@ def _read(path: Path, numbers: range) -> Iterator[Snapshot]:
 
 
 def _write_gsd(path: Path, snapshots: Iterator[Snapshot]) -> None:
-    """Write frames of HOOMD's schema.
+    """Write frames in HOOMD's schema.
 
-    `log/time` is the time. `log/cell_origin` is the lower corner of the box in the scene's coordinates, which
-    a piston moves. The step is the number of the frame.
+    `log/time` is the time. `log/cell_origin` is the lower corner of the box in the scene's coordinates; a
+    piston may move it. The step is the index of the frame.
     """
     hoomd = optional("gsd.hoomd", "gsd", "GSD files")
     with path.open("rb") as scratch, hoomd.open(descriptor_path(scratch), "w") as file:
@@ -206,9 +210,9 @@ def _write_gsd(path: Path, snapshots: Iterator[Snapshot]) -> None:
 
 
 def _gsd_frame(frame: Any, snapshot: Snapshot) -> Any:
-    """Fill a frame with its origin in the middle of the box.
+    """Fill a GSD frame; its origin is the middle of the box.
 
-    The box of discs has no thickness.
+    The box of discs has zero thickness.
     """
     sides = np.where([False, False, snapshot.dimension == 2], 0.0, snapshot.lengths)
     frame.configuration.dimensions = snapshot.dimension
@@ -227,9 +231,9 @@ def _gsd_frame(frame: Any, snapshot: Snapshot) -> Any:
 
 
 def _shapes(snapshot: Snapshot) -> list[dict]:
-    """Return the sphere of each type, {} if its particles differ.
+    """Return the shape of each type; {} if its particles differ in size.
 
-    A file without any size means a diameter of 1.
+    In a file without sizes, readers assume a diameter of 1.
     """
     shapes: list[dict] = []
     for n in range(int(snapshot.types.max(initial=0)) + 1):
@@ -239,7 +243,7 @@ def _shapes(snapshot: Snapshot) -> list[dict]:
 
 
 def _write_xyz(path: Path, snapshots: Iterator[Snapshot]) -> None:
-    """Write extended XYZ, with the container's boundary, and the ids of particles."""
+    """Write extended XYZ, with the boundary conditions of the container, and particle ids."""
     columns = "species:S:1:pos:R:3:velo:R:3:radius:R:1:masses:R:1:id:I:1"
     with path.open("w", encoding="ascii") as file:
         for snapshot in snapshots:
@@ -259,7 +263,7 @@ def _write_xyz(path: Path, snapshots: Iterator[Snapshot]) -> None:
 def _write_data(path: Path, snapshots: Iterator[Snapshot]) -> None:
     """Write LAMMPS data of atom_style sphere.
 
-    The density is the density of a ball of the particle's mass and diameter.
+    The density is the particle's mass divided by the volume of a ball of its diameter.
     """
     (snapshot,) = snapshots
     count = len(snapshot.positions)
@@ -284,7 +288,7 @@ def _write_data(path: Path, snapshots: Iterator[Snapshot]) -> None:
 
 
 def _rows(template: str, *columns: np.ndarray) -> Iterator[str]:
-    """Format the rows of a table in blocks, faster than single rows."""
+    """Format the rows of a table in blocks, which is faster than row by row."""
     for first in range(0, len(columns[0]), _ROWS):
         block = [column[first : first + _ROWS].tolist() for column in columns]
         yield template * len(block[0]) % tuple(chain.from_iterable(zip(*block, strict=True)))

@@ -40,8 +40,8 @@ def last_state(path: str | Path) -> State:
     ------
     SceneError
         If `open_trajectory` rejects the file, or if a stored checkpoint is damaged or belongs to another run.
-        Without a checkpoint: if the last frame lacks particles (`follow`) or properties of particles
-        (`keep`), or if it does not determine the state (a scene with sticky faces).
+        If there is no checkpoint, also if the last frame lacks particles (`follow`) or properties of
+        particles (`keep`), or if it does not determine the state (a scene with sticky faces).
 
     Notes
     -----
@@ -77,7 +77,7 @@ def last_state(path: str | Path) -> State:
 
 
 def _of_frame(recipe: Recipe, frame: xr.Dataset) -> State:
-    """Return the state of a frame that has all particles."""
+    """Return the state from a frame that contains all particles."""
     scene, time = recipe.scene, float(frame["time"])
     positions, velocities = (frame[name].values.astype(float) for name in ("coordinates", "velocities"))
     spins, vibrations = (

@@ -1,10 +1,9 @@
-"""Kernels compiled for this processor, in place of the kernels that came with the package.
+"""Kernels compiled for this processor, instead of the kernels in the package.
 
 The kernels of a wheel run on every processor of the level x86-64-v3. On a processor with AVX-512, kernels
-compiled for this processor are faster and give the same bits. A run that took so long that another one of its
-kind would gain more than the compilation costs compiles them after its end. The kernels are stored in the
-kernel cache. Kernels of this user in the cache have precedence over kernels of the package, so the next
-process uses them.
+compiled for this processor are faster, with the same bits. They are compiled at the end of a long run, if a
+similar run would save more time than the compilation costs. The kernels are stored in the user's kernel
+cache. This cache has precedence over the kernels of the package, so the next process uses them.
 """
 
 from __future__ import annotations
@@ -21,20 +20,22 @@ from gaspart.kernels.compile import cache
 from gaspart.workers import in_processes
 
 Kernel = tuple[str, str, tuple]
-"""Module and name of a kernel, and the types of its arguments."""
+"""Module and name of a kernel, and types of its arguments."""
 
 GAIN = 1.2
-"""Speed of the event-driven engine with native kernels, divided by its speed with a wheel's kernels.
+"""Speed of the event-driven engine with native kernels, divided by its speed with the wheel's kernels.
 
 Measured on a processor with AVX-512, 1000 spheres at a packing fraction of 0.2.
 """
 COMPILATION = 20.0
 """CPU time of compiling the kernels of a run, in seconds."""
-_STORED = "native"  # folder of the cache with an empty file for each set of kernels that was compiled
+_STORED = "native"  # folder in the cache with an empty file for each compiled set of kernels
 
 
 def pays(seconds: float, features: dict[str, bool]) -> bool:
-    """Return True if a run of this length gains more by native kernels than they cost.
+    """Return True if native kernels save more time than their compilation costs.
+
+    `seconds` is the CPU time of a run.
 
     features : features of the processor by their LLVM names.
     """
@@ -42,12 +43,12 @@ def pays(seconds: float, features: dict[str, bool]) -> bool:
 
 
 def replace_shipped_kernels(seconds: float) -> bool:
-    """Compile the kernels of this process for this processor, if that pays.
+    """Compile the kernels of this process for this processor, if this saves time.
 
     seconds : CPU time of the run that has ended.
 
-    Returns True if native kernels were stored. Nothing is compiled without kernels of a package, where
-    numba's own settings name the processor, and while another process compiles the same kernels.
+    Returns True if native kernels were stored. Nothing is compiled in three cases: no kernels of a package
+    are in use; numba's own settings name a processor; or another process is compiling the same kernels.
     """
     if not (cache.FOLDER / cache.LIST).exists() or not pays(seconds, _features()):
         return False
@@ -58,7 +59,7 @@ def replace_shipped_kernels(seconds: float) -> bool:
     try:
         stamp.parent.mkdir(exist_ok=True)
         stamp.touch(exist_ok=False)
-    except OSError:  # they are stored, or the cache cannot be written
+    except OSError:  # the kernels are stored already, or the cache is not writable
         return False
     results: list[Any] = []
     try:
@@ -71,7 +72,7 @@ def replace_shipped_kernels(seconds: float) -> bool:
 
 
 def _features() -> dict[str, bool]:
-    """Return the features of this processor, or no features if numba's settings name a processor."""
+    """Return the features of this processor; none if numba's settings name a processor."""
     config = cache.load_numba().config
     if config.CPU_NAME is not None or config.CPU_FEATURES is not None:
         return {}
@@ -79,7 +80,7 @@ def _features() -> dict[str, bool]:
 
 
 def loaded_kernels() -> list[Kernel]:
-    """Return the kernels that this process has read from the cache or the package."""
+    """Return the kernels that this process loaded from the cache or the package."""
     kernels = {
         (function.__module__, function.__name__, types)
         for function in _dispatchers()
@@ -90,7 +91,7 @@ def loaded_kernels() -> list[Kernel]:
 
 
 def _dispatchers() -> list[Any]:
-    """Return all compiled functions of the modules of `kernels` that this process has imported."""
+    """Return all compiled functions in modules of `kernels` that this process imported."""
     modules = [module for name, module in list(sys.modules.items()) if name.startswith("gaspart.kernels.")]
     return [
         value
@@ -110,11 +111,11 @@ def _stamp(kernels: list[Kernel]) -> Path | None:
 
 
 def compile_kernels(send: Callable[[Any], None], kernels: list[Kernel]) -> int:
-    """Compile kernels for this processor in a separate process; return their number.
+    """Compile kernels for this processor in a separate process, and return their number.
 
     Kernels that are in the cache are not compiled again.
     """
-    cache.FOLDER = Path(os.devnull)  # this process reads no kernel of the package
+    cache.FOLDER = Path(os.devnull)  # this process must not load kernels of the package
     for module, name, types in kernels:
         getattr(import_module(module), name).compile(types)
     return len(kernels)

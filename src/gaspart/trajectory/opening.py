@@ -1,4 +1,4 @@
-"""File of a trajectory: its name while it is written, kind, lock, and opening."""
+"""Trajectory file: its name during the run, its kind, its lock, and opening."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 
 
 PARTIAL = ".partial"
-"""Suffix of a trajectory that is being written."""
+"""Suffix of a trajectory during the run."""
 
 
 def partial_path(path: Path) -> Path:
-    """Return the path of a trajectory while it is written.
+    """Return the path of a trajectory during the run.
 
     Raises SceneError for a path without a name.
     """
@@ -34,7 +34,7 @@ def partial_path(path: Path) -> Path:
 
 
 def is_blank(path: Path) -> bool:
-    """Return True if nothing was written to the file yet."""
+    """Return True if nothing has been written to the file yet."""
     with open_regular(path) as file:
         return amber.is_blank(file)
 
@@ -51,7 +51,7 @@ UNFINISHED = FileKind("an unfinished trajectory", lambda path: is_blank(path) or
 
 @contextmanager
 def writing(path: Path) -> Iterator[None]:
-    """Raise SceneError for OSError: a full disk, a read-only folder, and the like."""
+    """Convert OSError in this context to SceneError, for example for a full disk."""
     try:
         yield
     except OSError as error:
@@ -64,13 +64,14 @@ def open_locked(partial: Path) -> Iterator[BinaryIO]:
     """Open the partial file to read and write, without a buffer, locked by this process.
 
     The file may be closed within the block, for example before it is renamed; the lock remains. Raises
-    SceneError for a file that gaspart did not write, for a link, and for a file with a second name, because a
-    change would appear under the second name, too.
+    SceneError for a file that gaspart did not write, and for a link. Raises it also for a file with a second
+    name (hard link), because changes would appear under the second name, too.
     """
-    with suppress(FileNotFoundError):  # another process has finished it just now
+    with suppress(FileNotFoundError):  # another process has just finished it
         may_replace(partial, UNFINISHED, overwrite=True)
     with _alone(partial), open(partial, "r+b", buffering=0, opener=_open_or_create) as file:
-        may_replace(partial, UNFINISHED, overwrite=True)  # again: it may have appeared before it was opened
+        # checked again: the file may have appeared in the meantime
+        may_replace(partial, UNFINISHED, overwrite=True)
         if os.fstat(file.fileno()).st_nlink > 1:
             rule = "is a file with a second name (a hard link), which would change too; copy it instead"
             raise SceneError("path", str(partial), rule)
@@ -78,14 +79,17 @@ def open_locked(partial: Path) -> Iterator[BinaryIO]:
             yield file
         finally:
             file.close()
-            with suppress(FileNotFoundError):  # it was renamed
+            with suppress(FileNotFoundError):  # the file was renamed
                 if not partial.lstat().st_size:
                     partial.unlink()
 
 
 @contextmanager
 def _alone(partial: Path) -> Iterator[None]:
-    """Hold the lock of a partial file. Raises SceneError if another process has locked it."""
+    """Hold the lock of a partial file.
+
+    Raises SceneError if another process has locked it.
+    """
     try:
         with only_process(partial):
             yield
@@ -94,7 +98,7 @@ def _alone(partial: Path) -> Iterator[None]:
 
 
 def _open_or_create(path: str, flags: int) -> int:
-    """Open a file that may not exist yet, and is no link."""
+    """Open a file, or create it if it does not exist; links are rejected."""
     return os.open(path, flags | os.O_CREAT | NO_LINK, 0o666)
 
 
@@ -106,11 +110,14 @@ def replica_path(path: Path, number: int) -> Path:
     return path.with_name(f"{path.stem}-{number}{path.suffix}")
 
 
-# Opening the file of a trajectory; its header and its number of frames are checked against its size.
+# Opening the file of a trajectory. Its header and its number of frames are compared with its size.
 
 
 def run_path(value: object) -> Path:
-    """Return the path of a trajectory that a user gives. Raises SceneError for other values."""
+    """Return the path of a trajectory that a user provides.
+
+    Raises SceneError for other values.
+    """
     if isinstance(value, str | os.PathLike):
         return Path(value)
     raise not_a_trajectory(value)
@@ -126,10 +133,10 @@ def not_a_trajectory(value: object) -> SceneError:
 
 @contextmanager
 def open_verified(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
-    """Open a trajectory: the file, its header and its number of frames.
+    """Open a trajectory; return the file, its header and its number of frames.
 
-    Header and frames are compared with the file. Raises SceneError for a file of another kind, truncated, or
-    damaged in its header.
+    Header and number of frames are compared with the size of the file. Raises SceneError for a file of
+    another kind, a truncated file, or a damaged header.
     """
     try:
         with open_regular(path) as file:
@@ -137,11 +144,12 @@ def open_verified(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
                 raise ValueError("nothing was written to it yet; start the run again with `gaspart run`")
             header, frames = amber.stored_header(file), frame_count(file)
             expected = len(header) + frames * amber.frame_bytes(header)
-            size = os.fstat(file.fileno()).st_size  # last: another replica may append frames meanwhile
+            # read last, because another replica may append frames meanwhile
+            size = os.fstat(file.fileno()).st_size
             if size < expected:
                 rule = f"is truncated: {size} bytes, where {frames} frames need {expected}"
                 raise ValueError(rule)
-            if size > expected and path.suffix != PARTIAL:  # a partial file may end within a frame
+            if size > expected and path.suffix != PARTIAL:  # a partial file may end inside a frame
                 rule = f"is damaged: {size} bytes, where {frames} frames need {expected}"
                 raise ValueError(rule)
             yield file, header, frames
@@ -160,9 +168,9 @@ def open_verified(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
 
 
 def open_netcdf(path: Path) -> netCDF4.Dataset:
-    """Open a trajectory of gaspart as a netCDF4.Dataset, which the caller closes.
+    """Open a trajectory of gaspart as a netCDF4.Dataset; the caller must close it.
 
-    Raises SceneError for a file of another kind, truncated, or damaged in its header.
+    Raises SceneError for a file of another kind, a truncated file, or a damaged header.
     """
     return open_checked(path)[0]
 
@@ -170,7 +178,7 @@ def open_netcdf(path: Path) -> netCDF4.Dataset:
 def open_checked(path: Path) -> tuple[netCDF4.Dataset, CheckedFrames]:
     """Open a trajectory like `open_netcdf`, with the record of its checked frames.
 
-    The caller closes both.
+    The caller must close both.
     """
     with open_verified(path) as (file, header, frames):
         return open_descriptor(file), CheckedFrames(file, header, frames)
@@ -185,13 +193,16 @@ def open_descriptor(file: BinaryIO) -> netCDF4.Dataset:
 
 @contextmanager
 def open_netcdf_file(path: Path) -> Iterator[netCDF4.Dataset]:
-    """Open a trajectory like `open_netcdf`, and close it after the block."""
+    """Open a trajectory like `open_netcdf`; it is closed at the end of the block."""
     with open_netcdf(path) as file:
         yield file
 
 
 def check_frames(path: Path, numbers: range | None = None) -> None:
-    """Read some frames of a trajectory, or all. Raises SceneError if one is damaged."""
+    """Read some frames of a trajectory, or all.
+
+    Raises SceneError if a frame is damaged.
+    """
     with open_verified(path) as (file, header, frames):
         selection = range(frames) if numbers is None else range(numbers.start, min(numbers.stop, frames))
         damaged = damaged_frame(file.fileno(), header, selection)
@@ -200,5 +211,5 @@ def check_frames(path: Path, numbers: range | None = None) -> None:
 
 
 def damage(frame: int) -> str:
-    """Return the message about a frame whose checksum is wrong."""
+    """Return the message about a frame with a wrong checksum."""
     return f"frame {frame} is damaged: its checksum does not match"

@@ -14,7 +14,7 @@ _NAME = "pair collisions"  # name of the array in a checkpoint
 
 
 def pairs_of(scene: Scene) -> list[tuple[int, int]]:
-    """Return the pairs of species by their numbers, the lower one first.
+    """Return the pairs of species by their indices, the lower index first.
 
     Raises SceneError for single particles.
     """
@@ -33,7 +33,7 @@ def pair_names(scene: Scene) -> list[str]:
 class PairCounter:
     """Collisions of each pair of species since time 0, in a simulation that records its events.
 
-    counts : (pairs,), as in `pairs_of`
+    counts : (pairs,), in the order of `pairs_of`.
     """
 
     def __init__(self, simulation: Simulation) -> None:
@@ -48,12 +48,13 @@ class PairCounter:
         simulation.record_events = True
 
     def take(self) -> None:
-        """Count the events since the last call, and forget them."""
+        """Count the events since the last call, and discard them."""
         particles = self._simulation.events["particles"]
-        species = self._species[particles[particles[:, 1] >= 0]]  # without hits of faces and walls
+        # only pairs, without hits of faces and walls
+        species = self._species[particles[particles[:, 1] >= 0]]
         numbers = self._number[species[:, 0], species[:, 1]]
         self.counts += np.bincount(numbers, minlength=len(self.counts))
-        self._simulation.record_events = True  # a new, empty list
+        self._simulation.record_events = True  # start a new, empty list
 
     def checkpoint(self) -> dict[str, np.ndarray]:
         """Return arrays from which `restore` continues."""

@@ -1,4 +1,4 @@
-"""Provenance of a file: versions, and the revision of the program that wrote it."""
+"""Provenance of a file: versions, and git revision of the program that wrote it."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ _PACKAGES = ("numpy", "numba", "netCDF4")
 
 
 def _git(*arguments: str) -> str | None:
-    """Return the output of git about the folder of this package, or None.
+    """Return the output of a git command in the folder of this package, or None.
 
-    If git is missing or fails, the result is absent (None). Git takes no optional locks: a killed git would
-    leave `.git/index.lock`, which blocks later commits. For `git describe --dirty` a lock is not optional.
-    Raises OSError if git could not be started for lack of file descriptors or memory: the contents of a
-    trajectory must not depend on that.
+    If git is missing or fails, the result is absent (None). Optional locks of git are disabled, because a
+    killed git would leave `.git/index.lock`, which blocks later commits. For `git describe --dirty` the lock
+    is not optional. OSError is raised if git could not be started for lack of file descriptors or memory,
+    because the contents of a trajectory must not depend on this.
     """
     command = ["git", "-C", str(Path(__file__).parent), *arguments]
     environment = {**os.environ, "LC_ALL": "C", "GIT_OPTIONAL_LOCKS": "0"}
@@ -39,10 +39,10 @@ def _git(*arguments: str) -> str | None:
 
 @cache
 def git_revision() -> str:
-    """Return the commit of the checkout from which the package runs; "" outside of a checkout.
+    """Return the commit of the checkout that contains the package; "" without a checkout.
 
-    `-modified` is appended if files were edited since. A package that is installed inside a repository, but
-    is not tracked by it, has no commit.
+    The suffix `-modified` is appended if files were edited since the commit. A package that is installed in a
+    repository, but not tracked by it, has no commit.
     """
     if _git("ls-files", "--error-unmatch", Path(__file__).with_name("__init__.py").name) is None:
         return ""
@@ -63,6 +63,6 @@ def versions() -> dict[str, str]:
         try:
             attributes[f"{package}_version"] = version(package)
         except PackageNotFoundError:
-            os.scandir(Path(__file__).parent).close()  # OSError where a folder could not be searched either
+            os.scandir(Path(__file__).parent).close()  # OSError if a folder could not be searched, too
             attributes[f"{package}_version"] = "unknown"
     return attributes

@@ -1,4 +1,4 @@
-"""Trajectories as datasets with dimensions, coordinates and units, read on demand."""
+"""Trajectories as datasets with dimensions, coordinates and units; values are read on demand."""
 
 from __future__ import annotations
 
@@ -44,9 +44,9 @@ _UNITS = {field.name: field.metadata["units"] for field in fields(Tally) if "uni
 
 
 def open_trajectory(path: str | Path) -> xr.Dataset:
-    """Open a trajectory, or the finished part of a `.partial` one, as an xarray.Dataset.
+    """Open a trajectory, or the finished part of a `.partial` file, as an xarray.Dataset.
 
-    Values are read as they are used. Close the Dataset, or use it in a `with` statement.
+    Values are read on demand. Close the Dataset, or use it in a `with` statement.
 
     Parameters
     ----------
@@ -56,16 +56,16 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     Returns
     -------
     Dataset
-        Dimensions frame, atom, spatial (d) and face (2d), and lag for a run with correlations. The
-        coordinates are: time (frame), and radius, mass and type (atom). Plots over frames have the time as
-        their axis. Lengths and times are in the scene's units, counters are cumulative since time 0. Spins of
-        discs are (frame, atom), of spheres (frame, atom, spatial).
+        The dimensions are frame, atom, spatial (d) and face (2d); a run with correlations also has lag. The
+        coordinates are time (frame), and radius, mass and type (atom). Plots over frames have the time as
+        their axis. Lengths and times are in the scene's units. Counters are cumulative since time 0. Spins
+        have the shape (frame, atom) for discs, and (frame, atom, spatial) for spheres.
 
     Raises
     ------
     SceneError
-        If the file is unreadable, truncated, damaged in its header, or not written by gaspart. When values of
-        a frame are read for the first time: if that frame is damaged.
+        If the file is unreadable, truncated, damaged in its header, or not written by gaspart. When a frame
+        is read for the first time, also if this frame is damaged.
 
     Notes
     -----
@@ -73,11 +73,11 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     dimension and, unless faces are open, count, packing_fraction and number_density. The attribute
     given_start is 1 if the run starts from a state that the user supplied.
 
-    With open faces the atoms are numbers of particles. Coordinates and velocities of a number that no
-    particle has in a frame are NaN.
+    With open faces, each atom is a particle number. If no particle has this number in a frame, coordinates
+    and velocities are NaN.
 
-    The checksum of a frame covers all of its variables, so that a frame is read as a whole. Opening a file
-    reads only the times of its frames.
+    The checksum of a frame covers all of its variables, so that a frame is read as a whole. When a file is
+    opened, only the times of its frames are read.
 
     Examples
     --------
@@ -106,7 +106,8 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     attributes = {**data.attrs, **_following(recipe)}
     if "spins" in data and scene.dimension == 2:
         data["spins"] = data["spins"].isel(spatial=2)
-    named = [name for name in ("time", "radius", "mass", "type") if name in data]  # no masses before 0.3
+    # files before version 0.3 have no masses
+    named = [name for name in ("time", "radius", "mass", "type") if name in data]
     data = data.isel(spatial=slice(scene.dimension)).set_coords(named)
     faces = amber.face_names(scene.dimension, len(scene.walls))
     if "piston" in data:
@@ -118,7 +119,7 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
         lags = recipe.correlations.interval * np.arange(data.sizes["lag"])
         coordinates["lag"] = ("lag", lags, {"units": "time"})
     coordinates["frame"] = ("frame", data["time"].values, {"long_name": "time", "units": "time"})
-    data = data.assign_coords(coordinates)  # at once: each call copies everything
+    data = data.assign_coords(coordinates)  # in one call, because each call copies everything
     for key, variable in data.variables.items():
         name = str(key)
         unit = variable.attrs.get("units", "1")
@@ -136,7 +137,7 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
 
 
 def _following(recipe: Recipe) -> dict[str, float]:
-    """Return the attributes that follow from a scene and its start."""
+    """Return the attributes that are derived from a scene and its start."""
     scene = recipe.scene
     start = {GIVEN_START: 1} if recipe.initial is not None else {}
     names = ("dimension", *(() if scene.is_open else ("count", "packing_fraction", "number_density")))
@@ -144,7 +145,7 @@ def _following(recipe: Recipe) -> dict[str, float]:
 
 
 def _with_piston(data: xr.Dataset) -> xr.Dataset:
-    """Return a dataset with the motion of a piston as two variables with units."""
+    """Return a dataset in which the motion of a piston is two variables with units."""
     position, velocity = (data["piston"].isel(motion=n, drop=True) for n in (0, 1))
     position.attrs, velocity.attrs = (
         {"units": unit, "long_name": f"{name} of the piston along its axis"}

@@ -38,9 +38,9 @@ ROUNDING = 1e-9
 
 
 def multiple(key: str, value: float, unit_key: str, unit: float) -> int:
-    """Return the ratio of `value` to `unit`, an integer of at least 1 up to rounding.
+    """Return the ratio of `value` to `unit`, which must be a positive integer.
 
-    Raises SceneError for any other ratio.
+    Rounding errors are tolerated. Raises SceneError for any other ratio.
     """
     ratio = round(value / unit) if value / unit < 2**53 else 0
     if ratio < 1 or abs(value - ratio * unit) > ROUNDING * value:
@@ -50,17 +50,17 @@ def multiple(key: str, value: float, unit_key: str, unit: float) -> int:
 
 @dataclass(frozen=True)
 class Recipe(Contents):
-    """Everything that determines a trajectory; making it raises SceneError for invalid settings.
+    """Everything that determines a trajectory; invalid settings raise SceneError.
 
-    It is the scene, the engine, the length of the run and the `Contents` of its file.
+    A recipe has the scene, the engine, the length of the run, and the `Contents` of its file.
 
     Attributes
     ----------
-    duration, sample_interval : in the scene's time; duration is an integer multiple of sample_interval, which
-        for the time-stepped engine is an integer multiple of time_step
-    until : criterion that ends the run in place of a duration, which is then None
-    initial : state at time 0, if it does not follow from scene and seed; the file holds it
-    replica : its number, from 1, and the number of all replicas of the run, if there are several
+    duration, sample_interval : in the scene's time. The duration is an integer multiple of sample_interval.
+        With the time-stepped engine, sample_interval is an integer multiple of time_step.
+    until : criterion that ends the run instead of a duration; the duration is then None.
+    initial : state at time 0, if scene and seed do not determine it. The file contains this state.
+    replica : number of the replica, from 1, and number of replicas of the run, if there are several.
     """
 
     scene: Scene
@@ -105,7 +105,7 @@ class Recipe(Contents):
                 raise SceneError("pairs", True, 'collisions of pairs are counted by the "event" engine')
 
     def _check_correlations(self, correlations: Correlations) -> None:
-        """Raise SceneError for correlations that this run cannot have."""
+        """Raise SceneError for correlations that are impossible in this run."""
         if not correlations.stress:
             refuse_sheared(self.scene, "carries particles along: correlations need stress")
         interval = "correlations.interval", correlations.interval
@@ -121,7 +121,7 @@ class Recipe(Contents):
 
     @property
     def samples_per_frame(self) -> int:
-        """Number of samples in an interval of frames: 1, unless samples for correlations are closer."""
+        """Number of samples per frame interval: 1, unless correlations need closer samples."""
         if self.correlations is None:
             return 1
         return multiple(
@@ -132,7 +132,7 @@ class Recipe(Contents):
     def frames(self) -> int:
         """Number of frames of the complete trajectory, including the frame at time 0.
 
-        For a run until it is accurate it is the maximum number.
+        For a run until an accuracy is reached, it is the maximum number.
         """
         if self.until:
             return self.until.most_frames(self.sample_interval) or amber.MOST_FRAMES
@@ -141,7 +141,7 @@ class Recipe(Contents):
 
     @property
     def longest(self) -> float:
-        """Duration of the run; for a run until it is accurate, the maximum duration."""
+        """Duration of the run; for a run until an accuracy is reached, the maximum duration."""
         return (self.frames - 1) * self.sample_interval if self.duration is None else self.duration
 
     @property
@@ -151,13 +151,13 @@ class Recipe(Contents):
 
     @property
     def asked(self) -> tuple[OptionalTally, ...]:
-        """Optional tallies that its simulation must make."""
+        """Optional tallies that the simulation must make."""
         tallies = self.correlations.tallies if self.correlations else ()
         return tuple(dict.fromkeys((*self.tallies, *tallies)))
 
     @property
     def tallied(self) -> tuple[OptionalTally, ...]:
-        """All optional tallies of its frames, including the tallies of its scene."""
+        """All optional tallies in the frames, including the tallies of the scene."""
         able = (tally for tally in scene_tallies(self.scene) if tally.name in self.engine.tallies)
         return (*able, *self.asked)
 
@@ -187,7 +187,7 @@ class Recipe(Contents):
         return amber.Layout(count, dimension, extra, walls, counters, sums, axes, self.keep)
 
     def require_all(self, path: Path) -> None:
-        """Raise SceneError if its trajectory, at `path`, lacks positions or velocities."""
+        """Raise SceneError if the trajectory at `path` lacks positions or velocities."""
         if self.keep is not None:
             raise SceneError("keep", self.keep, f"{path} holds nothing else of its particles")
 
@@ -201,20 +201,20 @@ class Recipe(Contents):
             **{f"predicted_{key}": value for key, value in self.engine.predictions(self.scene).items()},
             **self._length(),
             "sample_interval": self.sample_interval,
-            "displacements": np.int32(self.displacements),  # also if False
+            "displacements": np.int32(self.displacements),  # also if the value is False
             **super().attributes(),
             **dict(zip(("replica", "replicas"), map(np.int32, self.replica or ()), strict=False)),
         }
 
     def _length(self) -> dict:
-        """Return the attributes that state when the run ends."""
+        """Return the attributes that state the end of the run."""
         if self.until is None:
             return {"duration": self.duration}
         longest = self.until.at_most
         return {"until": self.until.to_json()} | ({} if longest is None else {"at_most": longest})
 
     def _initial(self) -> dict[str, np.ndarray]:
-        """Return the variables of the given initial state, if there is one."""
+        """Return the variables of the prescribed initial state, if there is one."""
         if self.initial is None:
             return {}
         absent = set() if self.scene.rough else {"initial_spins"}
@@ -222,9 +222,9 @@ class Recipe(Contents):
         return {name: np.array(part) for name, part in parts.items() if part is not None}
 
     def header(self, revision: str) -> bytes:
-        """Return the file before its first frame, as made by the present program.
+        """Return the bytes of the file before its first frame, as this program makes them.
 
-        revision : git revision of the program, "" without one
+        revision : git revision of the program; "" without a revision.
         """
         from gaspart.kernels.compile.policy import source_digest
 
@@ -232,7 +232,7 @@ class Recipe(Contents):
         groups = [len(scene.species)] * len(scene.particles) + list(range(len(scene.species)))
         counts = [1] * len(scene.particles) + [kind.count for kind in scene.species]
         each = {name: per_particle(scene, name) for name in ("radius", "mass")}
-        particles = {  # includes particles that may enter later, which are all alike
+        particles = {  # includes particles that may enter later; these are identical
             name: np.resize(values, scene.capacity)[: self.stored_count]
             for name, values in {**each, "type": np.repeat(groups, counts)}.items()
         }
@@ -259,14 +259,19 @@ def _is_numbered(seed: int | tuple[int, ...], replica: int, replicas: int) -> bo
 
 
 def read_recipe(path: str | Path) -> Recipe:
-    """Read the recipe of a trajectory, finished or not. Raises SceneError if it has no recipe."""
+    """Read the recipe of a finished or unfinished trajectory.
+
+    Raises SceneError if it has no recipe.
+    """
     path = Path(path)
     with open_netcdf_file(path) as file:
         return stored_recipe(file, path)
 
 
 def stored_recipe(file: netCDF4.Dataset, path: Path) -> Recipe:
-    """Return the recipe of an open trajectory. Raises SceneError if it has no recipe.
+    """Return the recipe of an open trajectory.
+
+    Raises SceneError if it has no recipe.
 
     path : path of the trajectory, for messages
     """
@@ -287,12 +292,12 @@ def stored_recipe(file: netCDF4.Dataset, path: Path) -> Recipe:
         )
     except SceneError:
         raise
-    except (KeyError, TypeError, ValueError) as error:  # for a forged header
+    except (KeyError, TypeError, ValueError) as error:  # a forged header could have this
         raise SceneError("file", str(path), f"has an attribute that cannot be used: {error}") from None
 
 
 def _stored_initial(file: netCDF4.Dataset, scene: Scene) -> State | None:
-    """Return the given initial state of an open trajectory, or None."""
+    """Return the prescribed initial state of an open trajectory, or None."""
     if amber.INITIAL[0] not in file.variables:
         return None
     parts = {_part(name): np.array(file[name][:]) for name in amber.INITIAL if name in file.variables}
@@ -300,12 +305,12 @@ def _stored_initial(file: netCDF4.Dataset, scene: Scene) -> State | None:
 
 
 def _part(name: str) -> str:
-    """Return the name of the part of a State for a variable of `amber.INITIAL`."""
+    """Return the name of the part of a State that a variable of `amber.INITIAL` stores."""
     return name.removeprefix("initial_")
 
 
 def stored_revision(path: Path) -> str:
-    """Return the git revision at which a trajectory was begun; "" outside of a checkout."""
+    """Return the git revision at which a trajectory was begun; "" without a revision."""
     with open_netcdf_file(path) as file:
         return getattr(file, "git_revision", "")
 

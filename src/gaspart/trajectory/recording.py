@@ -1,4 +1,4 @@
-"""Loop of a run: advance to the time of a frame, write it, and checkpoint."""
+"""Main loop of a run: advance to the next frame, write it, store checkpoints."""
 
 from __future__ import annotations
 
@@ -24,25 +24,25 @@ from gaspart.trajectory.recipe import Recipe, multiple
 from gaspart.trajectory.until import examined_before, examined_from, is_examined
 
 Progress = Callable[[float, float, int], None]
-"""Callback with the time reached, the duration, and the collisions so far.
+"""Callback whose arguments are the present time, the duration, and the number of collisions so far.
 
-For a run until it is accurate the duration is the present estimate.
+For a run until an accuracy is reached, the duration is the present estimate.
 """
 Examine = Callable[[int], float | None]
-"""Function of a number of frames that returns the error after these frames divided by the required error.
+"""Function that returns the error after a number of frames, divided by the required error.
 
-The result is infinite if unknown, and None while another replica does not have this number of frames.
+The result is infinite if the error is unknown. As long as another replica has fewer frames, None is returned.
 """
 
-_SEGMENT = 0.1  # seconds of work between two looks at the clock and at signals, to within a factor of 2
-_PROGRESS = 0.5  # seconds between two reports of progress
-_LOOK = 0.05  # seconds between two looks at other replicas
+_SEGMENT = 0.1  # seconds of work between checks of clock and signals, within a factor of 2
+_PROGRESS = 0.5  # seconds between progress reports
+_LOOK = 0.05  # seconds between checks of other replicas
 
 
 class Recording:
-    """Simulation in progress, the file of its frames, and the finished trajectory's path.
+    """Simulation in progress, file of its frames, and path of the finished trajectory.
 
-    Neither checkpoints nor the division into segments changes a bit of the result.
+    Checkpoints, and the division into segments, change no bit of the result.
 
     every : time between checkpoints, in seconds
     examine : for a run that ends when it is accurate
@@ -80,10 +80,10 @@ class Recording:
             self._note()
 
     def finish(self, keep: bool = False) -> None:
-        """Write all missing frames and then, with `keep`, a checkpoint.
+        """Write all missing frames, and finally a checkpoint if `keep` is True.
 
-        Raises SimulationError if an invariant is violated, and OSError. In the first case the state is stored
-        next to the trajectory, in `.failed.npz`. A signal takes effect after a checkpoint was written.
+        Raises OSError. Raises SimulationError if an invariant is violated; the state is then stored next to
+        the trajectory, in `.failed.npz`. A signal takes effect after a checkpoint has been written.
         """
         try:
             with defer_signals() as signals:
@@ -98,7 +98,7 @@ class Recording:
         set_note("")
 
     def _keep_failed(self) -> str:
-        """Store the state of a failed run, unless another file has its path.
+        """Store the state of a failed run, unless another file exists at its path.
 
         Returns the message about the stored state.
         """
@@ -110,9 +110,9 @@ class Recording:
         return f"its state is kept in {failed}"
 
     def _is_complete(self, signals: Deferral) -> bool:
-        """Return True if the file has all frames. Waits for other replicas.
+        """Return True if the file has all frames; wait for other replicas.
 
-        The result depends on the frames alone, so that a run that was cut short ends at the same frame.
+        The result depends only on the frames. A run that was interrupted therefore ends at the same frame.
         """
         count = self._frames.count
         if count >= self._recipe.frames:
@@ -126,18 +126,18 @@ class Recording:
         return excess <= 1.0
 
     def _estimate(self, frames: int, excess: float) -> float:
-        """Return the time at which a run is expected to be accurate.
+        """Return the time at which a run is expected to reach its accuracy.
 
-        Errors decrease as 1 / sqrt(time), and examinations are at certain frames only.
+        Errors decrease as 1 / sqrt(time). Accuracies are tested only at certain frames.
 
-        excess : present error divided by the required error
+        excess : present error divided by the required error.
         """
         required_frames = frames * excess**2 if math.isfinite(excess) else 0.0
         expected = examined_from(min(max(required_frames, frames + 1.0), self._recipe.frames))
         return min((expected - 1) * self._recipe.sample_interval, self._recipe.longest)
 
     def _estimate_again(self) -> None:
-        """Estimate the duration of a continued run, to report it.
+        """Estimate the duration of a continued run for progress reports.
 
         The result of the run does not change.
         """
@@ -147,7 +147,7 @@ class Recording:
                 self._duration = self._estimate(before, excess)
 
     def _finish_frame(self, signals: Deferral) -> None:
-        """Take the missing samples until the next frame, and write the frame."""
+        """Take the missing samples of the present frame interval, and write the frame."""
         frame, correlator = self._frames.count, self._correlator
         last = frame * self._recipe.samples_per_frame
         while correlator and correlator.next < last:
@@ -162,13 +162,13 @@ class Recording:
         self._between_segments(signals)
 
     def _reach(self, number: int, interval: float, signals: Deferral) -> None:
-        """Advance to the time number x interval."""
+        """Advance to the time `number` x `interval`."""
         for _ in self._approach(number, interval):
             signals.unsaved = True
             self._between_segments(signals)
 
     def _between_segments(self, signals: Deferral) -> None:
-        """Report progress, write a checkpoint and deliver a signal, if one of these is due."""
+        """Report progress, write a checkpoint, and deliver a signal, if due."""
         now = time.monotonic()
         if self._progress and now - self._reported >= _PROGRESS:
             collisions = self._simulation.tally.collisions
@@ -181,9 +181,9 @@ class Recording:
             self._save()
 
     def _save(self) -> None:
-        """Write a checkpoint, from which the run can continue to the same bits."""
+        """Write a checkpoint, from which the run can continue with identical bits."""
         self._simulation.check_invariants()
-        self._frames.sync()  # before the checkpoint, which counts them
+        self._frames.sync()  # before the checkpoint, which stores their number
         write_checkpoint(checkpoint_path(self._path), self._frames.header, self._frames.count, self._arrays())
         self._note()
         self._saved = time.monotonic()
@@ -200,12 +200,12 @@ class Recording:
         set_note(f"`{command}` continues it from time {self._simulation.time:g}{end}")
 
     def _approach(self, number: int, interval: float) -> Iterator[None]:
-        """Advance to the time number x interval by segments."""
+        """Advance to the time `number` x `interval` in segments."""
         simulation, recipe = self._simulation, self._recipe
         if step := recipe.engine.quantum:
             goal = number * multiple("interval", interval, "time_step", step)
             while (done := round(simulation.time / step)) < goal:
-                # half a step more than required, so that rounding does not cost a step
+                # half a step beyond the goal, so that rounding does not omit a step
                 self._advance(goal * step, until=(min(goal, done + self._segment) + 0.5) * step)
                 yield
             return
@@ -218,9 +218,9 @@ class Recording:
             self._pairs.take()
 
     def _advance(self, goal: float, **limits: Any) -> None:
-        """Advance by one segment towards the time `goal`, and adapt the length of the next one.
+        """Advance by a segment towards the time `goal`, and adapt the length of segments.
 
-        The next segment is to take about `_SEGMENT` seconds.
+        The next segment should take about `_SEGMENT` seconds.
         """
         begun = time.monotonic()
         self._simulation.advance(**limits)

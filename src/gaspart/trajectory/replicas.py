@@ -1,9 +1,9 @@
 """Replicas of a run: their seeds and their files.
 
-Replica k of `run.nc` has the seed of the run with k behind it, and the file `run-k.nc`. Replicas that end
-when they are accurate end together, at a test of all. Each replica reads the files of the others. The frames
-that it examines do not change any more, so that its decision depends neither on the order in which the
-replicas advance nor on kills.
+Replica k of `run.nc` has the seed of the run followed by k, and the file `run-k.nc`. Replicas that run until
+an accuracy is reached end together, at a test of their mean. Each replica reads the files of the others. The
+frames in a test do not change any more. Therefore the decision does not depend on the order in which replicas
+advance, or on interruptions.
 """
 
 from __future__ import annotations
@@ -48,8 +48,8 @@ def in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
     Raises
     ------
     SceneError
-        If the number is invalid, or if all replicas would be identical: they start from one state, and no
-        random numbers follow.
+        If the number is invalid, or if all replicas would be identical, because they start from the same
+        state and draw no random numbers.
     """
     if count_of("replicas", replicas, least=1, most=MOST_REPLICAS) == 1:
         return [recipe]
@@ -60,22 +60,22 @@ def in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
 
 
 def differ(scene: Scene, engine: Engine, has_initial: bool = False) -> bool:
-    """Return True if runs with other seeds are other runs.
+    """Return True if runs with different seeds differ.
 
-    Replicas differ if random numbers are drawn for the first state, or later.
+    They differ if random numbers are drawn for the initial state, or later.
     """
     drawn = not has_initial and (scene.vibrates or any(kind.count for kind in scene.species))
     return drawn or engine.draws(scene)
 
 
 def _seed(recipe: Recipe, number: int) -> tuple[int, ...]:
-    """Return the seed of one of the replicas of a run."""
+    """Return the seed of a replica."""
     seed = recipe.seed if isinstance(recipe.seed, tuple | list) else (recipe.seed,)
     return (*seed, number)
 
 
 def of_all(recipe: Recipe) -> tuple[Recipe, int]:
-    """Return the recipe of the whole run of a replica, and the number of its replicas.
+    """Return the recipe of the run that a replica belongs to, and the number of replicas.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def of_all(recipe: Recipe) -> tuple[Recipe, int]:
     """
     if recipe.replica is None:
         return recipe, 1
-    assert isinstance(recipe.seed, tuple)  # by `Recipe`
+    assert isinstance(recipe.seed, tuple)  # checked by `Recipe`
     seed = recipe.seed[:-1]
     return replace(recipe, seed=seed[0] if len(seed) == 1 else seed, replica=None), recipe.replica[1]
 
@@ -107,7 +107,7 @@ def replica_paths(path: str | Path, replicas: int) -> list[Path]:
     Returns
     -------
     list of Path
-        The path itself, or of several replicas ``run-1.nc``, ``run-2.nc`` ... of ``run.nc``.
+        The path itself, or, for several replicas of ``run.nc``, the paths ``run-1.nc``, ``run-2.nc`` ...
 
     Examples
     --------
@@ -122,7 +122,7 @@ def replica_paths(path: str | Path, replicas: int) -> list[Path]:
 
 
 def path_of_all(path: Path, recipe: Recipe) -> Path:
-    """Return the path of the run that a file is or has a replica of.
+    """Return the path of the run to which a file belongs.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ def path_of_all(path: Path, recipe: Recipe) -> Path:
 
 
 def beside(path: Path, recipe: Recipe) -> list[tuple[Path, Recipe]]:
-    """Return the paths, finished, and the recipes of all replicas of a run.
+    """Return the paths of the finished files, and the recipes, of all replicas of a run.
 
     Parameters
     ----------
@@ -165,7 +165,7 @@ def beside(path: Path, recipe: Recipe) -> list[tuple[Path, Recipe]]:
 
 
 def find_run(path: str | Path) -> tuple[Path, Recipe]:
-    """Return a file of the run at a path, finished or not, and its recipe.
+    """Return a file of the run at a path, finished or unfinished, and its recipe.
 
     The result is the file at the path itself, or the first of several replicas.
 
@@ -182,7 +182,7 @@ def find_run(path: str | Path) -> tuple[Path, Recipe]:
     Raises
     ------
     SceneError
-        As `read_recipe`.
+        If `read_recipe` raises it.
     """
     path = Path(path)
     first = replica_paths(path, 2)[0] if path.name else path
@@ -193,7 +193,7 @@ def find_run(path: str | Path) -> tuple[Path, Recipe]:
 
 
 def files_of(path: str | Path) -> list[Path]:
-    """Return the files of the run at a path, each finished or not.
+    """Return the files of the run at a path, finished or unfinished.
 
     Parameters
     ----------
@@ -203,12 +203,12 @@ def files_of(path: str | Path) -> list[Path]:
     Returns
     -------
     list of Path
-        The result is one file, or the files of all replicas.
+        One file, or the files of all replicas.
 
     Raises
     ------
     SceneError
-        If a file is missing or of another run, and as `read_recipe`.
+        If a file is missing or belongs to another run, or if `read_recipe` raises it.
     """
     first, recipe = find_run(path)
     if recipe.replica is None:
@@ -228,7 +228,7 @@ def files_of(path: str | Path) -> list[Path]:
 
 
 def _places(path: Path) -> tuple[Path, Path]:
-    """Return the possible paths of a trajectory: finished, and unfinished."""
+    """Return the possible paths of a trajectory: finished and unfinished."""
     return path, partial_path(path)
 
 
@@ -245,8 +245,8 @@ def find_replicas(files: Sequence[tuple[Path, Recipe]], frames: int) -> list[Pat
     Returns
     -------
     list of Path or None
-        The files, finished or not; None if a replica has fewer frames, or was begun with another recipe. A
-        single run is at its path.
+        The files, finished or unfinished. None if a replica has fewer frames, or was begun with another
+        recipe. A single run is at its path.
     """
     if len(files) == 1:
         return [files[0][0]]
@@ -255,9 +255,9 @@ def find_replicas(files: Sequence[tuple[Path, Recipe]], frames: int) -> list[Pat
 
 
 def _with_frames(path: Path, recipe: Recipe, frames: int) -> Path | None:
-    """Return the file of a replica that has this number of frames; None without one."""
+    """Return the file of a replica that has this number of frames, or None."""
     for candidate in _places(path):
-        with suppress(SceneError, OSError, struct.error):  # not there yet, or empty
+        with suppress(SceneError, OSError, struct.error):  # the file does not exist yet, or is empty
             with open_regular(candidate) as file:
                 enough = frame_count(file) >= frames
             if enough and begun_as(candidate, recipe):
@@ -282,7 +282,7 @@ def opened_together(paths: Sequence[Path]) -> Iterator[list[xr.Dataset]]:
     Raises
     ------
     SceneError
-        As `open_trajectory`.
+        If `open_trajectory` raises it.
     """
     with ExitStack() as stack:
         yield [stack.enter_context(open_trajectory(path)) for path in paths]

@@ -1,9 +1,9 @@
-"""Trajectories: written during the run, continued after a kill, readable by common tools.
+"""Trajectories: written during the run, continued after an interruption.
 
-A run writes `path.partial`, and regularly `path.checkpoint.npz`, from which it can continue to the same bits.
-When it is complete, the file is renamed to `path`. The content of the file does not depend on when or where
-it was made. If the checkpoint is stored with the file, it is then the state at the end, from which a longer
-run continues (`extend`).
+A run writes `path.partial`, and regularly the checkpoint `path.checkpoint.npz`, from which it can continue
+with identical bits. When the run is complete, the file is renamed to `path`. The content of the file does not
+depend on the time or the machine of the run. If the last checkpoint is stored with the file, it is the final
+state, from which a longer run can continue (`extend`).
 """
 
 from __future__ import annotations
@@ -53,19 +53,18 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# Extension of a finished run: the same recipe with a longer duration.
-#
-# The frames of the shorter run are the first frames of the longer one, and the state at its end, if its
-# checkpoint was kept, is the state from which the longer one continues. Both get the header of the longer
-# run: its duration is part of it, and the checksums of all frames depend on it. The shorter file is not
-# touched until the longer one is complete, so that a kill at any moment loses neither.
+# Extension of a finished run: the same recipe with a longer duration. The frames of the shorter run are the
+# first frames of the longer run. If the checkpoint of the shorter run was stored, the longer run continues
+# from this final state. The frames get the header of the longer run, because its duration is part of the
+# header, and the checksums of all frames depend on it. The shorter file is not changed until the longer run
+# is complete, so that an interruption at any moment loses neither.
 
 
 def longer(path: Path, duration: float) -> Recipe:
     """Return the recipe of a trajectory with a longer duration.
 
-    Raises SceneError for a file that is not an undamaged trajectory of this version of the program, and for a
-    duration that is not longer or that the recipe rejects.
+    Raises SceneError if the file is not an undamaged trajectory of this version of the program. Raises
+    SceneError also if the duration is not longer, or if the recipe rejects it.
     """
     recipe = read_recipe(path)
     if not begun_as(path, recipe):
@@ -77,15 +76,15 @@ def longer(path: Path, duration: float) -> Recipe:
     rule = f"must be longer than the {reached:g} that {path.name} has"
     duration = number("duration", duration, rule, above=reached)
     extended = replace(recipe, duration=duration, until=None)
-    if extended.frames <= frames:  # longer by a rounding error
+    if extended.frames <= frames:  # longer only by a rounding error
         raise SceneError("duration", duration, rule)
     return extended
 
 
 def is_beginning(path: Path, recipe: Recipe) -> bool:
-    """Return True if the file at `path` is the beginning of a wanted run.
+    """Return True if the file at `path` is the beginning of a requested run.
 
-    The two runs then differ only by the shorter duration of the file.
+    The two runs then differ only in their duration; the file is shorter.
     """
     try:
         stored, revision = read_recipe(path), stored_revision(path)
@@ -98,11 +97,12 @@ def is_beginning(path: Path, recipe: Recipe) -> bool:
 
 
 def take_over(path: Path, recipe: Recipe, frames: Frames) -> Checkpoint | None:
-    """Copy the frames and the last state of a shorter run to the longer one.
+    """Copy the frames and the final state of a shorter run to the longer run.
 
-    The shorter run is at `path`, the longer one is begun in `frames`. Returns None, and changes nothing, if
-    there is no such run, or if its last state was not stored. The checkpoint of the shorter run is replaced
-    last, so after an earlier kill the copy is repeated. Raises SceneError for a damaged file, and OSError.
+    The shorter run is at `path`. The longer run is begun in `frames`. If there is no shorter run, or if its
+    final state was not stored, the function returns None and changes nothing. The checkpoint of the shorter
+    run is replaced last. If the copy is interrupted, it can therefore be repeated. Raises OSError, and
+    SceneError for a damaged file.
     """
     if not (path.exists() and is_beginning(path, recipe)):
         return None
@@ -122,15 +122,15 @@ def take_over(path: Path, recipe: Recipe, frames: Frames) -> Checkpoint | None:
 
 
 Examiner: TypeAlias = "Callable[[Sequence[xr.Dataset], Until, int], float]"
-"""Function that examines the first frames of a run, or of all its replicas.
+"""Function that computes the errors in the first frames of a run, or of all its replicas.
 
-It returns the largest error divided by the required error, inf if unknown, 0 to give up.
+It returns the largest error divided by the required error; inf if it is unknown, 0 to end the run.
 """
-_LOOK = 0.05  # seconds between two looks at other replicas
+_LOOK = 0.05  # seconds between checks of other replicas
 
 
 class Content(Enum):
-    """Content of a file, compared with a run that is wanted."""
+    """Content of a file, compared with the requested run."""
 
     NOTHING = "there is no file, or an empty one"
     BEGUN = "this run, unfinished"
@@ -155,19 +155,19 @@ _ACTIONS: dict[Content, Action | dict[Content, Action]] = {
     },
     Content.SHORTER: {
         Content.NOTHING: Action.REPLACE,
-        Content.BEGUN: Action.WRITE,  # it is being extended
+        Content.BEGUN: Action.WRITE,  # the run is being extended
         Content.OTHER: Action.REPLACE,
     },
     Content.COMPLETE: Action.NONE,
     Content.OTHER: Action.REPLACE,
 }
-"""Action by the content at the path, and where that does not decide, by the content of the partial file."""
+"""Action by the content at the path; if this is not sufficient, also by the content of the partial file."""
 
 
 def is_finished(recipe: Recipe, path: Path, examiner: Examiner | None, overwrite: bool) -> bool:
     """Return True if a run is complete at `path`.
 
-    Raises SceneError if it may not be begun or continued.
+    Raises SceneError if the run must not be begun or continued.
     """
     partial, content = partial_path(path), _content(path, recipe, examiner)
     action = _ACTIONS[content]
@@ -181,7 +181,7 @@ def is_finished(recipe: Recipe, path: Path, examiner: Examiner | None, overwrite
 
 
 def _difference(path: Path, recipe: Recipe, content: Content) -> str:
-    """Return the difference between the file of a run and the wanted run, as text."""
+    """Return the difference between the file of a run and the requested run, as text."""
     try:
         stored = read_recipe(path)
     except SceneError:
@@ -221,7 +221,7 @@ def _partial_content(partial: Path, recipe: Recipe) -> Content:
 
     Raises SceneError for a file of another kind.
     """
-    with suppress(FileNotFoundError):  # another process has finished it just now
+    with suppress(FileNotFoundError):  # another process has just finished it
         if may_replace(partial, UNFINISHED, overwrite=True) and not is_blank(partial):
             if begun_as(partial, recipe):
                 return Content.BEGUN
@@ -230,9 +230,9 @@ def _partial_content(partial: Path, recipe: Recipe) -> Content:
 
 
 def is_complete(recipe: Recipe, path: Path, frames: int, examiner: Examiner | None) -> bool:
-    """Return True if a trajectory with this number of frames is complete.
+    """Return True if a trajectory with this number of frames is complete; wait for replicas.
 
-    Waits for other replicas.
+    The accuracy can be tested only when the other replicas have these frames, too.
     """
     examine = examination(recipe, path, examiner)
     if frames == recipe.frames or examine is None or not is_examined(frames):
@@ -243,9 +243,9 @@ def is_complete(recipe: Recipe, path: Path, frames: int, examiner: Examiner | No
 
 
 def examination(recipe: Recipe, path: Path, examiner: Examiner | None) -> Examine | None:
-    """Return the examination of the first frames of a run until it is accurate.
+    """Return the function that tests the accuracy in the first frames of a run.
 
-    Returns None for other runs. A run of several replicas is examined with the others.
+    Without required accuracies, None is returned. All replicas of a run are tested together.
     """
     until = recipe.until
     if until is None:
@@ -264,23 +264,23 @@ def examination(recipe: Recipe, path: Path, examiner: Examiner | None) -> Examin
         except SceneError:
             if find_replicas(files, frames) == paths:
                 raise
-            return None  # the process of another one has just renamed it, or cut it to its checkpoint
+            return None  # another process has just renamed the file, or truncated it to its checkpoint
 
     return examine
 
 
 @dataclass(frozen=True)
 class WriteOptions:
-    """Options of writing a trajectory, on which its content does not depend.
+    """Options for writing a trajectory; its content does not depend on them.
 
-    Making it raises SceneError for a negative time.
+    A negative time raises SceneError.
 
     Attributes
     ----------
     checkpoint_seconds : time between checkpoints
     progress : callback about the progress of the run
-    overwrite : whether another run's file may be replaced
-    examiner : for a recipe that ends when it is accurate
+    overwrite : True if the file of another run may be replaced
+    examiner : function that tests accuracies, for a recipe that ends at an accuracy
     keep_checkpoint : True if the last checkpoint is stored with the file
     """
 
@@ -295,21 +295,21 @@ class WriteOptions:
 
 
 def record(recipe: Recipe, path: str | Path, options: WriteOptions) -> Path:
-    """Make the trajectory of a recipe at `path`; return `path`.
+    """Write the trajectory of a recipe at `path`, and return `path`.
 
-    The exceptions are explained in `gaspart.run` (`gaspart.runs`).
+    For exceptions, see `gaspart.run` (`gaspart.runs`).
     """
     path = output_path(path)
-    if path.suffix != ".nc" and not path.is_dir():  # `gaspart check` knows the format by it
+    if path.suffix != ".nc" and not path.is_dir():  # `gaspart check` recognises the format by this suffix
         raise SceneError("path", str(path), "must end in .nc: a trajectory is a netCDF file")
     return _carry_out(recipe, path, options)
 
 
 def resume(path: str | Path, options: WriteOptions) -> Path:
-    """Finish the run that left `path.partial`, only from its files; return `path`.
+    """Finish the interrupted run of `path.partial` from its files, and return `path`.
 
-    Raises SceneError if there is nothing to resume, if another version of the program began the run, and for
-    a file at `path` that is not a complete trajectory of gaspart.
+    Raises SceneError if there is nothing to resume, if another version of the program began the run, or if
+    the file at `path` is not a complete trajectory of gaspart.
     """
     path = run_path(path)
     partial = partial_path(path)
@@ -319,10 +319,10 @@ def resume(path: str | Path, options: WriteOptions) -> Path:
     except SceneError:
         if partial.exists():
             raise
-        # not before: another process may finish the run at any moment
+        # checked only now, because another process may finish the run at any moment
         rule = f"there is no {partial.name} to continue"
         if path.exists():
-            check_frames(path)  # raises SceneError for a damaged file, and one of another program
+            check_frames(path)  # raises SceneError for a damaged file, or a file of another program
             recipe = read_recipe(path)
             with open_regular(path) as file:
                 frames = frame_count(file)
@@ -345,13 +345,13 @@ def begun(partial: Path) -> Recipe:
 
 
 def extend(path: str | Path, duration: float, options: WriteOptions) -> Path:
-    """Continue the complete run at `path` to a longer duration; return `path`.
+    """Continue the complete run at `path` to a longer duration, and return `path`.
 
-    The file then has the bytes of an uninterrupted run of that duration. The run continues from the
-    checkpoint of its end, which `keep_checkpoint` stores. Without this checkpoint it is repeated from its
-    start. A run with a checkpoint also stores the next one. An extension that was cut short is continued, by
-    this or by `resume`. Raises SceneError like `longer`, for another run that is unfinished at the path, and
-    for a checkpoint that is damaged or of another run.
+    The resulting file has the bytes of an uninterrupted run of the longer duration. The run continues from
+    its final checkpoint, which `keep_checkpoint` stores. Without this checkpoint the run is repeated from its
+    start. If the run has a checkpoint, the extended run has a checkpoint, too. An interrupted extension is
+    continued by this function or by `resume`. Raises SceneError like `longer`. Raises SceneError also if
+    another unfinished run is at the path, or if the checkpoint is damaged or belongs to another run.
     """
     path = Path(path)
     partial, checkpoint = partial_path(path), checkpoint_path(path)
@@ -361,11 +361,13 @@ def extend(path: str | Path, duration: float, options: WriteOptions) -> Path:
     recipe = longer(path, duration)
     if not partial.exists():
         with open_verified(path) as (_, header, _):
-            kept_beside(path, header, "to run it again from its start")  # named here, if it is damaged
+            # the message then names this file, if it is damaged
+            kept_beside(path, header, "to run it again from its start")
     with writing(path):
         kept = options.keep_checkpoint or checkpoint.exists()
         with open_locked(partial) as file:
-            if amber.is_blank(file):  # this file states what is under way, whenever it is cut short
+            # this file states the requested duration, whenever the work is interrupted
+            if amber.is_blank(file):
                 Frames(file, recipe.layout, recipe.header(stored_revision(path)))
             elif not begun_as(partial, recipe):
                 rule = "is of another unfinished run, or to another duration; resume it or move it away"
@@ -396,13 +398,14 @@ def _finish(recipe: Recipe, path: Path, options: WriteOptions) -> None:
             if not partial.exists() and not options.keep_checkpoint:
                 remove_checkpoint(checkpoint)
             return
-        may_replace(checkpoint, CHECKPOINT, overwrite=True)  # before the work; each checkpoint asks it again
+        # tested before the work; each checkpoint tests it again
+        may_replace(checkpoint, CHECKPOINT, overwrite=True)
         simulation = simulation_of(recipe)
         with open_locked(partial) as file:
             # again: another process may have finished or begun a run before the lock
             if not is_finished(recipe, path, options.examiner, options.overwrite):
                 _record(recipe, simulation, file, path, options)
-                file.close()  # Windows renames no open file
+                file.close()  # Windows cannot rename open files
                 place(partial, path, TRAJECTORY, options.overwrite or is_beginning(path, recipe))
                 if not options.keep_checkpoint:
                     remove_checkpoint(checkpoint)
@@ -411,7 +414,7 @@ def _finish(recipe: Recipe, path: Path, options: WriteOptions) -> None:
 def _can_keep(partial: Path, frames: int, overwrite: bool) -> bool:
     """Return True if the first frames are undamaged.
 
-    Raises SceneError if not, unless they may be replaced.
+    If they are damaged, raises SceneError unless they may be replaced.
     """
     try:
         check_frames(partial, range(frames))

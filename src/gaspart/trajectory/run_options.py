@@ -1,11 +1,12 @@
-"""Options of a run that determine what its file holds, each declared once.
+"""Options of a run that determine the contents of its file, each declared once.
 
-A field of `Contents` states type, meaning, default, attribute in the file, and what excludes it. The checks
-and attributes of a `Recipe`, the keys of a config, the options of `gaspart run` and of the command that a
-file states, and their reference follow. A tally that a run can request declares itself (`state.tally`): a run
-has it as an object, the command line and configs as the text of its settings.
+A field of `Contents` states the type, meaning and default of an option, its attribute in the file, and the
+reasons that exclude it. The following are derived from this declaration: the checks and attributes of a
+`Recipe`, the keys of a config, the options of `gaspart run`, the options in the command that a file states,
+and the reference of these. A tally that a run can request is declared in `state.tally`. In Python it is an
+object. On the command line and in configs it is the text of its settings.
 
-Planning imports this module, so slow imports are made inside functions.
+The planning of a workflow imports this module, so slow imports are made inside functions.
 """
 
 from __future__ import annotations
@@ -29,31 +30,31 @@ if TYPE_CHECKING:
 AnyTally = TypeVar("AnyTally", bound=OptionalTally)
 
 KEPT = {"positions": "coordinates", "velocities": "velocities"}
-"""Choices of `keep`, and the variable of a frame that each is."""
+"""Choices of `keep`, with the variable of a frame that each choice stores."""
 
 REQUESTED = {name: tally for name, tally in TALLIES.items() if tally.form}
-"""Tallies that an option requests by its text, by name."""
+"""Tallies that an option requests by text, by name."""
 
 
 # Values of the options, and their attributes in a file.
 
 
 def _to_int32(value: int) -> Any:
-    """Return an attribute that is a 32-bit integer."""
+    """Convert a value to an attribute that is a 32-bit integer."""
     import numpy as np
 
     return np.int32(value)
 
 
 def _read_correlations(value: str | Mapping[str, Any]) -> Correlations:
-    """Make the correlations that an attribute of a file, or the argument of a job, states."""
+    """Make correlations from an attribute of a file, or from the argument of a job."""
     from gaspart.trajectory.correlator import Correlations
 
     return Correlations.from_json(value) if isinstance(value, str) else Correlations(**value)
 
 
 def _check_correlations(key: str, value: Any) -> Correlations:
-    """Return correlations, or raise SceneError for another value."""
+    """Return correlations; raise SceneError for another value."""
     from gaspart.trajectory.correlator import Correlations
 
     if not isinstance(value, Correlations):
@@ -62,7 +63,10 @@ def _check_correlations(key: str, value: Any) -> Correlations:
 
 
 def _check_tallies(key: str, value: Any) -> tuple[OptionalTally, ...]:
-    """Return requested tallies in the order of their declarations, or raise SceneError."""
+    """Return requested tallies in the order of their declarations.
+
+    Raises SceneError for another value.
+    """
     tallies = value if isinstance(value, Iterable) and not isinstance(value, str) else (value,)
     requested: dict[str, OptionalTally] = {}
     for tally in tallies:
@@ -80,7 +84,7 @@ def tallies_to_json(tallies: Iterable[OptionalTally]) -> str:
 
 
 def tallies_from_json(text: str) -> tuple[OptionalTally, ...]:
-    """Return the tallies that an attribute `tallies` states, the inverse of `tallies_to_json`.
+    """Make the tallies from an attribute `tallies`; the inverse of `tallies_to_json`.
 
     Raises SceneError for an unknown name, and TypeError for an unknown setting.
     """
@@ -95,9 +99,9 @@ def tallies_from_json(text: str) -> tuple[OptionalTally, ...]:
 
 
 def stored_tally(attributes: Mapping[str, Any], kind: type[AnyTally]) -> AnyTally | None:
-    """Return the tally of a class that the attributes of a trajectory state, or None.
+    """Return the tally of a class from the attributes of a trajectory, or None.
 
-    Raises SceneError and TypeError as `tallies_from_json`.
+    Raises SceneError and TypeError like `tallies_from_json`.
     """
     tallies = tallies_from_json(attributes.get("tallies", "[]"))
     return next((tally for tally in tallies if isinstance(tally, kind)), None)
@@ -137,7 +141,7 @@ _PAIRS = "count the collisions of each pair of species, with which `contact_valu
 
 @dataclass(frozen=True, kw_only=True)
 class Contents:
-    """Contents of the file of a run. An invalid value raises SceneError.
+    """Contents of the file of a run; an invalid value raises SceneError.
 
     Attributes
     ----------
@@ -184,7 +188,7 @@ class Contents:
                 object.__setattr__(self, item.name, item.metadata["kind"].check(item.name, value))
 
     def check_scene(self, scene: Scene, until: bool) -> None:
-        """Raise SceneError for an option that a scene, or an end `until` accuracies, excludes."""
+        """Raise SceneError for an option that the scene or `until` excludes."""
         if self.follow is not None and self.follow > scene.count:
             rule = f"must be at most {scene.count}, the number of particles"
             raise SceneError("follow", self.follow, rule)
@@ -197,12 +201,12 @@ class Contents:
 
     @property
     def kept(self) -> tuple[str, ...]:
-        """Data that only such a file has, as `needs` of observables name them."""
+        """Data that this file has, named as in `needs` of observables."""
         fluxes = self.correlations is not None and self.correlations.stress
         return ("fluxes",) * fluxes + ("pairs",) * self.pairs
 
     def attributes(self) -> dict[str, Any]:
-        """Return the attributes of the file for all options that are not at their default."""
+        """Return the attributes of the file for all options with non-default values."""
         values = {item: getattr(self, item.name) for item in fields(Contents)}
         return {item.name: item.metadata["store"](value) for item, value in values.items() if value}
 
@@ -214,7 +218,8 @@ OPTIONS: dict[str, Kind] = {
         for tally in REQUESTED.values()
     },
 }
-"""Kind, meaning and default of each option of the command line, by its name, in the order of the help."""
+"""Kind, meaning and default of each option of the command line, by its name, in the order of the help text.
+"""
 
 
 def required_contents(needs: Collection[str]) -> dict[str, bool]:
@@ -223,7 +228,7 @@ def required_contents(needs: Collection[str]) -> dict[str, bool]:
 
 
 def stored_contents(attributes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the fields of `Contents` that the attributes of a file state.
+    """Return the fields of `Contents` from the attributes of a file.
 
     Raises SceneError, TypeError or ValueError for an attribute that cannot be used.
     """
@@ -237,8 +242,8 @@ def stored_contents(attributes: Mapping[str, Any]) -> dict[str, Any]:
 def recipe_fields(settings: Mapping[str, Any]) -> dict[str, Any]:
     """Return the fields of a recipe for settings in plain values.
 
-    Objects take the place of texts and mappings. Raises SceneError for the text of a tally, or correlations,
-    that are invalid.
+    Texts and mappings are converted to objects. Raises SceneError for an invalid text of a tally, or for
+    invalid correlations.
 
     settings : fields of `Recipe`, with correlations as a mapping, and texts of tallies by their names
     """
@@ -250,7 +255,10 @@ def recipe_fields(settings: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def contents_of(settings: Mapping[str, Any]) -> Contents:
-    """Return the contents of the file of a run with settings in plain values, as `recipe_fields`."""
+    """Return the `Contents` of a run's file from settings in plain values.
+
+    The settings are explained in `recipe_fields`.
+    """
     names = {item.name for item in fields(Contents)}
     values = recipe_fields(
         {name: value for name, value in settings.items() if name in names | REQUESTED.keys()}
@@ -268,20 +276,20 @@ def stated_options(contents: Contents) -> dict[str, Any]:
 
 
 def scene_tallies(scene: Scene) -> tuple[OptionalTally, ...]:
-    """Return the tallies that every run of a scene has, if its engine makes them."""
+    """Return the tallies that every run of a scene has, if its engine can make them."""
     return tuple(tally() for tally in TALLIES.values() if tally.fact and getattr(scene, tally.fact))
 
 
 def tallied_fields(tallies: Iterable[OptionalTally]) -> list[str]:
-    """Return the names of the fields of `Tally` that a run with some optional tallies has."""
+    """Return the names of the fields of `Tally` that a run with these optional tallies has."""
     present = {None, *(tally.name for tally in tallies)}
     return [item.name for item in fields(Tally) if item.metadata.get("only") in present]
 
 
 def tally_axes(tally: OptionalTally, scene: Scene) -> dict[str, int]:
-    """Return the lengths of the axes of the fields of a tally, by name, without `face`.
+    """Return the length of each axis of a tally's fields, by name, except `face`.
 
-    A setting of the tally states the length of the axis with its name in the singular.
+    The length of an axis is a setting of the tally whose name is the plural of the axis.
     """
     lengths = {key.removesuffix("s"): length for key, length in asdict(tally).items()}
     lengths |= {"axis": scene.dimension, "direction": scene.dimension, "species": row_count(scene)}

@@ -1,4 +1,4 @@
-"""Runs that end when accurate: their required accuracies, and the numbers of frames at the tests."""
+"""Runs until accuracies are reached: required accuracies, and frame numbers of tests."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from gaspart.scene.faces import wall_of
 
 _ACCURACIES = 1e-8, 1.0
 _FIRST = 64, 96
-"""Numbers of frames at the first two examinations; each later one has twice those of two before.
+"""Numbers of frames at the first two tests. Each later test has twice the number of the test before the last.
 
 The ratios of successive numbers are 3/2 and 4/3.
 """
@@ -23,7 +23,10 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Requirement:
-    """Accuracy in the form of a file; see `gaspart.Accuracy`, which knows the observables."""
+    """Required accuracy in the form of a file.
+
+    See `gaspart.Accuracy`, which validates observables.
+    """
 
     observable: str
     accuracy: float
@@ -48,7 +51,7 @@ class Requirement:
 
     @property
     def name(self) -> str:
-        """Observable, with its face if one is prescribed, as on the command line."""
+        """Observable, with its face if prescribed, as on the command line."""
         return self.observable if self.face is None else f"{self.observable}:{self.face}"
 
 
@@ -73,9 +76,9 @@ class Until:
             object.__setattr__(self, "at_most", longest)
 
     def most_frames(self, sample_interval: float) -> int | None:
-        """Return the number of frames of the longest run, including time 0; None without a limit.
+        """Return the maximum number of frames, including time 0; None without a limit.
 
-        Raises SceneError for a longest duration without a frame after time 0.
+        Raises SceneError if the maximum duration has no frame after time 0.
         """
         if self.at_most is None:
             return None
@@ -95,12 +98,15 @@ class Until:
 
     @classmethod
     def from_dict(cls, values: dict) -> Until:
-        """Convert a mapping, the inverse of `dataclasses.asdict`. Raises SceneError."""
+        """Make an instance from a mapping, the inverse of `dataclasses.asdict`.
+
+        Raises SceneError.
+        """
         return cls(tuple(Requirement(**entry) for entry in values["accuracies"]), values["at_most"])
 
     @classmethod
     def from_json(cls, text: str, at_most: float | None) -> Until:
-        """Convert a text, the inverse of `to_json`.
+        """Make an instance from a text, the inverse of `to_json`.
 
         Raises SceneError, and TypeError or ValueError for another text.
         """
@@ -108,7 +114,7 @@ class Until:
 
 
 def examined_frames() -> Iterator[int]:
-    """Yield the numbers of frames at which a run is examined: 64, 96, 128, 192 ..."""
+    """Yield the numbers of frames at which accuracies are tested: 64, 96, 128, 192 ..."""
     first, second = _FIRST
     while True:
         yield first
@@ -117,16 +123,16 @@ def examined_frames() -> Iterator[int]:
 
 
 def is_examined(frames: int) -> bool:
-    """Return True if a run is examined at this number of frames."""
+    """Return True if accuracies are tested at this number of frames."""
     return next(count for count in examined_frames() if count >= frames) == frames
 
 
 def examined_before(frames: int) -> int | None:
-    """Return the number of frames of the last examination before `frames`, or None."""
+    """Return the number of frames of the last test before `frames`, or None."""
     earlier = list(takewhile(lambda count: count < frames, examined_frames()))
     return earlier[-1] if earlier else None
 
 
 def examined_from(frames: float) -> int:
-    """Return the number of frames of the first examination with at least `frames` frames."""
+    """Return the number of frames of the first test with at least `frames` frames."""
     return next(count for count in examined_frames() if count >= frames)

@@ -8,8 +8,8 @@ from engines.dsmc.steps import advanced, make
 from scenes import gas
 
 import gaspart as gp
-from gaspart.engines.dsmc.defaults import contact_values
 from gaspart.scene.limits import ball_volume
+from gaspart.theory.discretisation import contact_values
 
 
 @pytest.mark.parametrize("packing_fraction", [0.1, 0.4])

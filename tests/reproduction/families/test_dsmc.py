@@ -14,7 +14,7 @@ from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import from_rows
 from gaspart.theory import erpenbeck_wood_ratio
-from gaspart.theory.dsmc import cell_factor, step_factor
+from gaspart.theory.discretisation import cell_factor, step_factor
 
 ERROR = 0.003
 

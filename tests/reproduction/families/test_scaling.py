@@ -20,7 +20,7 @@ from gaspart.reproduction.families.scaling import figure as draw_scaling
 from gaspart.reproduction.families.scaling import measure as measure_scaling
 from gaspart.reproduction.families.scaling.claims import ideal_boxes, remarks
 from gaspart.reproduction.points.points import all_points, figure_points
-from gaspart.theory import dsmc as partition
+from gaspart.theory import partition
 from gaspart.yaml_text import read_yaml
 
 ROOT = Path(__file__).parents[3]

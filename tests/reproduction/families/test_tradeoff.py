@@ -10,10 +10,9 @@ from reproduction.families.drawn import Points, draw, shows, varied
 
 from gaspart import theory
 from gaspart.reproduction.claims import judge
-from gaspart.reproduction.families.tradeoff import choices, figure, maps, measure
+from gaspart.reproduction.families.tradeoff import ENGINES, PARTS, figure, maps, measure
 from gaspart.reproduction.families.tradeoff import claims as claims_of_tradeoff
 from gaspart.reproduction.families.tradeoff import figure as draw_tradeoff
-from gaspart.reproduction.families.tradeoff.choices import ENGINES, PARTS
 from gaspart.reproduction.families.tradeoff.maps import QUANTITIES
 from gaspart.reproduction.families.tradeoff.measure import _orders, frontier, speed_accuracy, time_to_accuracy
 from gaspart.reproduction.families.tradeoff.uniform import OBSERVABLES
@@ -149,8 +148,8 @@ def map_measurement(accuracy):
     every = np.ones((5, 1, 1, 1))
     bound = np.full((2, 5, 4), np.nan)
     bound[:, :, 1:] = np.array([0.03, 0.04, 0.05])
-    slow = [choices.relaxation_time(float(theory.contact_value(eta, 3))) for eta in FRACTIONS]
-    relaxing = np.full((5, 4), choices.relaxation_time(1.0))
+    slow = [claims_of_tradeoff.relaxation_time(float(theory.contact_value(eta, 3))) for eta in FRACTIONS]
+    relaxing = np.full((5, 4), claims_of_tradeoff.relaxation_time(1.0))
     relaxing[:, 2] = slow
     bound[1, :, 2] = 0.5
     flow = np.stack([np.full((5, 4), 2.0) * np.array([1.0, 0.99, 1.02, 1.03]), relaxing])

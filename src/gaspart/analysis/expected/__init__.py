@@ -1,1 +1,1 @@
-"""Theory for a run, by the equation that its engine solves, for its number of particles."""
+"""Theory for a run, for the equation of its engine and its number of particles."""

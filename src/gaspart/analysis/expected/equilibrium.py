@@ -1,4 +1,4 @@
-"""Numbers and rates of a gas in equilibrium: pressures, collisions, contact values, speeds."""
+"""Theory of a gas in equilibrium: pressures, collision rates, contact values and speeds."""
 
 from __future__ import annotations
 
@@ -10,57 +10,59 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from gaspart import theory
-from gaspart.analysis import bulk, observables
-from gaspart.analysis.bulk import BOLTZMANN, ENSKOG, EXACT
+from gaspart.analysis import observables
 from gaspart.analysis.flow import FLOW
 from gaspart.analysis.run import Run
 from gaspart.engines import Engine, engine_from_dict
-from gaspart.engines.dsmc import defaults as rates
 from gaspart.scene.gas import Mixture
+from gaspart.theory import bulk, discretisation
+from gaspart.theory.bulk import BOLTZMANN, ENSKOG, EXACT
 from gaspart.theory.geometry import unit_sphere_surface
 from gaspart.theory.speeds import mean_speed_factor
 from gaspart.trajectory.pairs import pairs_of
 
-# What is known of the engine of a run, and of its number of particles.
+# Theory depends on the engine of a run and on its number of particles.
 #
-# A run of the DSMC engine is that of the Boltzmann or the Enskog equation, not of spheres that touch, and
-# is compared with these. Where a value is that of a finite number N of particles, k_B T is that of their d
-# (N - 1) degrees of freedom of flight about the centre of mass. The uncertainty contains what cells and
-# steps of the engine do; it is NaN where it is not known, as of an approximation.
+# The DSMC engine solves the Boltzmann or the Enskog equation, so its runs are compared with these equations,
+# not with hard spheres. Values for a finite number N of particles use the temperature k_B T of the d (N - 1)
+# translational degrees of freedom relative to the centre of mass. The uncertainty includes the errors of
+# cells and time steps of the engine. It is NaN if it is unknown, for example for an approximation.
 
 
 Expected: TypeAlias = tuple[Any, Any, str]
-"""Values, their uncertainties, and the source."""
+"""Values, their uncertainties, and the source of the theory."""
 OF_NUMBER = "of this number of particles"
 LEAST_OF_MIXTURE = 10
-"""Least number of particles of several sizes for which a theory is stated: terms of second order in 1/N are
-not known."""
+"""Minimum number of particles of several sizes for which a theory is stated; the terms of second order in 1/N
+are unknown.
+"""
 SOURCES = {EXACT: "Enskog", BOLTZMANN: "Boltzmann equation", ENSKOG: "Enskog equation"}
-"""Names of the kinetic theory of each equation; for particles that touch it is an approximation."""
+"""Names of the kinetic theory of each equation; for the exact dynamics, Enskog's theory is an approximation.
+"""
 
 
 def engine_of(run: Run) -> Engine | None:
-    """Return the engine that made a run; None if the frames do not state it."""
+    """Return the engine of a run; None if the frames do not state it."""
     text = run.data.attrs.get("engine")
     return engine_from_dict(json.loads(text)) if text else None
 
 
 def equation_of(run: Run) -> str:
-    """Return the equation that the engine of a run solves; `EXACT` without an engine."""
+    """Return the equation that a run's engine solves; `EXACT` for a run without an engine."""
     engine = engine_of(run)
     return engine.equation if engine else EXACT
 
 
 def bias_of(run: Run, kind: str) -> float:
-    """Return the relative error due to cells and steps, as the engine states it."""
+    """Return the relative error due to cells and time steps, as computed by the engine."""
     engine = engine_of(run)
     return engine.bias(run.scene, kind) if engine else 0.0
 
 
 def partners(run: Run) -> float:
-    """Return the fraction (N - 1) / N of partners.
+    """Return (N - 1) / N, the number of collision partners divided by N.
 
-    A particle has N - 1 others where the equation of state has N.
+    A particle has N - 1 partners, but the equation of state assumes N.
     """
     return 1.0 - 1.0 / run.count
 
@@ -68,10 +70,11 @@ def partners(run: Run) -> float:
 def contact_of_number(run: Run, packing_fraction: float, dimension: int) -> tuple[float, float] | None:
     """Return the contact value of the N particles of a periodic gas, and its uncertainty.
 
-    None where theory does not state it: for few particles at high density (`theory.finite_contact_value`).
+    Return None if theory does not give it, for few particles at a high density
+    (`theory.finite_contact_value`).
     """
     lengths = np.array(run.scene.container.lengths)
-    volume = packing_fraction * float(lengths.prod()) / run.count  # of a particle
+    volume = packing_fraction * float(lengths.prod()) / run.count  # volume of a particle
     diameter = (volume / theory.particle_volume(dimension)) ** (1.0 / dimension)
     try:
         side = float(lengths.min()) / diameter
@@ -81,10 +84,10 @@ def contact_of_number(run: Run, packing_fraction: float, dimension: int) -> tupl
 
 
 def scale_of_number(run: Run, mixture: Mixture) -> float | None:
-    """Return the contact value of N particles divided by the value of infinitely many.
+    """Return the contact value for N particles divided by the value for infinitely many particles.
 
-    The ratio is taken from equal particles. None for fewer than `LEAST_OF_MIXTURE` particles, and where it is
-    not known for equal ones.
+    The ratio for equal particles is used. Return None for fewer than `LEAST_OF_MIXTURE` particles, or if the
+    ratio for equal particles is unknown.
     """
     eta, d = mixture.packing_fraction, mixture.dimension
     if run.count < LEAST_OF_MIXTURE or (contact := contact_of_number(run, eta, d)) is None:
@@ -98,7 +101,7 @@ _SANTOS = "Santos, Yuste and Lopez de Haro 2002, an approximation"
 def compressibility_factor(run: Run) -> Expected | None:
     """Compute the expected Z at fixed energy.
 
-    It is 1 by the Boltzmann equation; by the Enskog equation it is exact for its N (N - 1) / 2 pairs.
+    By the Boltzmann equation Z is 1. By the Enskog equation Z is exact for the N (N - 1) / 2 pairs.
     """
     equation = equation_of(run)
     if equation == BOLTZMANN:
@@ -129,7 +132,7 @@ def _enskog_contacts(mixture: Mixture) -> tuple[np.ndarray, np.ndarray, np.ndarr
     filled = float((numbers * theory.particle_volume(mixture.dimension) * diameters**mixture.dimension).sum())
     densities = numbers * mixture.packing_fraction / filled
     distances = 0.5 * np.add.outer(diameters, diameters)
-    return numbers, distances, rates.contact_values(densities, 0.5 * diameters, mixture.dimension)
+    return numbers, distances, discretisation.contact_values(densities, 0.5 * diameters, mixture.dimension)
 
 
 def _pairs_of_enskog(mixture: Mixture) -> float:
@@ -147,7 +150,7 @@ def _pairs_of_enskog(mixture: Mixture) -> float:
 
 
 def collision_rate(run: Run) -> Expected | None:
-    """Compute the expected collision rate at fixed energy; exact but for the contact value."""
+    """Compute the expected collision rate at fixed energy; it is exact apart from the contact value."""
     gas, equation = run.moving_fluid, equation_of(run)
     if gas is None:
         return None
@@ -171,9 +174,9 @@ def contact_values(run: Run) -> Expected | None:
 
 
 def pair_rates(run: Run) -> Expected | None:
-    """Compute the expected collisions of a particle of the first species of each pair.
+    """Compute the expected collisions of a particle of the first species with each second species.
 
-    It has N_j - delta_ij partners.
+    The particle has N_j - delta_ij partners.
     """
     mixture = None if run.is_subset else _mixture_of_species(run)
     if mixture is None or (scale := scale_of_number(run, mixture)) is None:
@@ -185,7 +188,7 @@ def pair_rates(run: Run) -> Expected | None:
 
 
 def _mixture_of_species(run: Run) -> Mixture | None:
-    """Return the mixture, if each species is of one size and differs from the others."""
+    """Return the mixture, if each species has a single size and differs from all others."""
     mixture = run.mixture
     if mixture is None or len(mixture.counts) != len(run.scene.species) or equation_of(run) != EXACT:
         return None
@@ -193,10 +196,10 @@ def _mixture_of_species(run: Run) -> Mixture | None:
 
 
 def wall_pressure(run: Run, touched: np.ndarray) -> Expected | None:
-    """Compute the expected pressure on walls of one distance.
+    """Compute the expected pressure on two walls a given distance apart.
 
-    It is the pressure of the fluid between hard walls; for points N k_B T divided by the volume that centres
-    can reach. `touched` (d,) are the sides of this volume.
+    For hard particles it is the pressure of the fluid between hard walls. For point particles it is N k_B T
+    divided by the accessible volume. `touched` (d,) are the side lengths of the accessible volume.
     """
     walled, lengths = ~run.periodic, np.array(run.scene.container.lengths)
     gas, equation = run.scene.gas, equation_of(run)
@@ -212,7 +215,7 @@ def wall_pressure(run: Run, touched: np.ndarray) -> Expected | None:
         value, error = theory.wall_pressure(
             sides[0] / gas.diameter, density, gas.count, gas.dimension, int(walled.sum())
         )
-    except ValueError:  # denser than theory goes
+    except ValueError:  # above the density range of the theory
         return None
     unit = run.temperature / gas.diameter**gas.dimension
     return value * unit, error * unit, "fluid between hard walls"
@@ -250,9 +253,10 @@ def pressure_tensor(run: Run, temperature: float) -> Expected | None:
 
 
 def speeds(run: Run, edges: np.ndarray, mass: float | None, fixed: bool) -> Expected | None:
-    """Compute Maxwell's density (bins,) between edges, for particles of one mass; None for others.
+    """Compute Maxwell's density (bins,) of speeds between edges; None unless all particles have one mass.
 
-    If `fixed`, the kinetic energy does not change, and the law of this number of particles is exact.
+    If `fixed`, the kinetic energy is constant, and the exact distribution for this number of particles is
+    used.
     """
     if mass is None:
         return None
@@ -261,18 +265,18 @@ def speeds(run: Run, edges: np.ndarray, mass: float | None, fixed: bool) -> Expe
     return np.diff(law) / np.diff(edges), 0.0, source
 
 
-# An observable of a run as its result states it: units, label, and what theory expects.
+# Description of an observable of a run: units, label, and expected value.
 
 
 def describe(name: str, run: Run, *arguments: Any, **keywords: Any) -> dict[str, Any]:
     """Return units and label of an observable, and its theory for a run.
 
-    The theory, if there is one, has values, their uncertainties, and a source. `arguments` and `keywords` are
-    the arguments of its function of theory in addition to the run.
+    The theory consists of values, their uncertainties, and a source; it may be absent. `arguments` and
+    `keywords` are passed to the theory's function after the run.
     """
     about: dict[str, Any] = dict(observables.about(name, run.dimension))
     stated = observables.OBSERVABLES[name].theory
-    if not stated or run.about != FLOW:  # theory is about the flow
+    if not stated or run.about != FLOW:  # the theory describes motion relative to the flow
         return about
     module, function = stated.split(".")
     expect = getattr(import_module(f"gaspart.analysis.expected.{module}"), function)

@@ -1,6 +1,6 @@
-"""Mean velocity of a gas along an axis, and fluxes to its walls, in steady states.
+"""Theory of steady states: mean velocity along an axis, and fluxes to walls.
 
-The gas is at rest, sheared, between plates that slide, or driven along plates by a force.
+The gas is at rest, sheared, between sliding plates, or driven along plates by a force.
 """
 
 from __future__ import annotations
@@ -12,47 +12,51 @@ from functools import reduce
 import numpy as np
 
 from gaspart import theory
-from gaspart.analysis.bulk import BOLTZMANN
 from gaspart.analysis.expected.equilibrium import Expected, equation_of
 from gaspart.analysis.run import Run
 from gaspart.scene.faces import Thermal
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import flow
 from gaspart.scene.walls import Plate
+from gaspart.theory.bulk import BOLTZMANN
 from gaspart.theory.heat import INTERPOLATED, TEMPERATURE_JUMP
 
-# What a gas between two thermal plates gives to them: heat and shear stress, from free flight to a fluid.
+# Heat flux and shear stress of a gas between two thermal plates, from free molecular flow to the continuum.
 
 
 FREE, FLUID = 100.0, 0.1
-"""The Knudsen number from which on particles fly freely, and up to which the gas is a fluid."""
+"""Knudsen number above which the gas is free-molecular, and Knudsen number below which it is a continuum."""
 _FIRST = 0.3
-"""Relative change of a flux of free flight by collisions, times the Knudsen number.
+"""Relative change of a free-molecular flux due to collisions, multiplied by the Knudsen number.
 
-It is 0.27 for the heat flux of spheres, 0.18 for the heat flux of discs, 0.50 for a stress, by addition of
-the resistances of both limits.
+Adding the resistances of both limits gives 0.27 for the heat flux of spheres, 0.18 for the heat flux of
+discs, and 0.50 for a stress.
 """
 _DILUTE = 0.02
-"""Packing fraction up to which Enskog's coefficients and the equation of state apply to the gas."""
+"""Maximum packing fraction at which Enskog's coefficients and the equation of state apply to the gas."""
 _POINTS = 1e-4
-"""Scale of the diameter at which the free path stays and the packing fraction vanishes."""
+"""Factor by which diameters are scaled to model point particles: the mean free path is kept and the packing
+fraction becomes negligible.
+"""
 _EQUAL = 1e-12
 _PLAIN = {"thermal", "sliding", "accommodation", "centres_to_walls"}
-"""Features of a scene of equal smooth and elastic particles between plates."""
+"""Features that a scene of equal smooth and elastic particles between plates may have."""
 
 
 @dataclass(frozen=True)
 class Plates:
-    """Equal smooth and elastic particles between two thermal plates, with a force along these at most.
+    """Equal smooth and elastic particles between two thermal plates.
 
-    axis : axis across the plates.
-    length : length of the gap in which centres can be.
-    density : mean number density there.
+    A force may act along the plates.
+
+    axis : axis normal to the plates.
+    length : width of the gap that is accessible to particle centres.
+    density : mean number density in this gap.
     temperatures : temperatures of the low and the high plate.
     slide : (d,), velocity of the high plate relative to the low one.
-    components : components of velocities that the plates draw.
-    accommodation : accommodation of the low and the high plate.
-    knudsen : mean free path divided by the gap.
+    components : velocity components that the plates draw at random.
+    accommodation : accommodation coefficients of the low and the high plate.
+    knudsen : Knudsen number: mean free path divided by the gap width.
     """
 
     axis: int
@@ -69,33 +73,34 @@ class Plates:
 
     @property
     def accommodating(self) -> bool:
-        """True if both plates draw velocities after every hit, as theory of a fluid assumes."""
+        """True if both plates draw a new velocity at every hit, as the continuum theory assumes."""
         return min(self.accommodation) == 1.0
 
     @property
     def freedom(self) -> float:
-        """Mean free path divided by the length of flight between two hits that draw the velocity.
+        """Mean free path divided by the flight length between two hits that draw a new velocity.
 
-        The plate that draws velocities more rarely counts: it is the Knudsen number if both always do.
+        It is determined by the plate with the smaller accommodation. It equals the Knudsen number if both
+        plates always draw velocities.
         """
         return self.knudsen * min(self.accommodation)
 
     @property
     def equal(self) -> bool:
-        """True if both plates have one temperature."""
+        """True if both plates have the same temperature."""
         low, high = self.temperatures
         return abs(low - high) <= _EQUAL * high
 
     @property
     def filled(self) -> float:
-        """The packing fraction of the gap."""
+        """Packing fraction in the gap."""
         return float(theory.packing_fraction(self.density, self.dimension, self.diameter))
 
 
 def heat_flux(run: Run, faces: np.ndarray) -> Expected | None:
-    """Compute the heat (face,) that these faces take per area and time in a steady state.
+    """Compute the steady heat flux (face,) into the faces, per area and time.
 
-    Faces are given by their numbers.
+    `faces` are the numbers of the faces.
     """
     if _in_equilibrium(run):
         return np.zeros(len(faces)), 0.0, "equilibrium"
@@ -113,9 +118,9 @@ def heat_flux(run: Run, faces: np.ndarray) -> Expected | None:
 
 
 def wall_shear(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None:
-    """Compute the momentum (face, component) that faces take per area and time.
+    """Compute the steady flux of momentum (face, component) into the faces, per area and time.
 
-    The components are along these axes; the state is steady.
+    The components are along `axes`.
     """
     if driven := _weight_on_faces(run, faces, axes):
         return driven
@@ -132,9 +137,9 @@ def wall_shear(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None
 
 
 def plates_of(run: Run, driven: bool = False) -> Plates | None:
-    """Return the plates of a run, None for any other scene.
+    """Return the plates of a run; None for any other scene.
 
-    If `driven`, the plates of a gas that a force drives along them.
+    If `driven`, return the plates of a gas that a force drives along them.
     """
     scene, thermal = run.scene, run.scene.faces_of(Thermal)
     numbers = [number for number, _ in thermal]
@@ -170,7 +175,7 @@ def plates_of(run: Run, driven: bool = False) -> Plates | None:
 def _free_path(density: float, diameter: float, run: Run) -> float:
     """Return the mean free path of spheres by the equation of the run.
 
-    It is 0 above the range of the theory.
+    It is 0 above the density range of the theory.
     """
     if equation_of(run) == BOLTZMANN:
         scaled = density / _POINTS ** (run.dimension - 1)
@@ -183,7 +188,7 @@ def _free_path(density: float, diameter: float, run: Run) -> float:
 
 
 def _in_equilibrium(run: Run) -> bool:
-    """Return True if everything that exchanges energy has one temperature and is at rest."""
+    """Return True if all sources of energy have one temperature and are at rest."""
     scene = run.scene
     faces = [face for _, face in scene.faces_of(Thermal)]
     still = len(faces) == len(scene.faces) and not any(face.slides for face in faces)
@@ -214,7 +219,7 @@ def _heat_between_plates(plates: Plates, points: bool) -> tuple[float, float, st
         return flux, flux * INTERPOLATED, f"{_describe_interpolation('heat')}, {at}"
     try:
         flux = unit * scale**2 * theory.conducting_slab(*gap).flux
-    except ValueError:  # its own estimate of the Knudsen number is a little larger
+    except ValueError:  # the theory's own estimate of the Knudsen number is slightly larger
         return None
     is_known = points or plates.filled < _DILUTE
     error = flux * plates.knudsen**2 if is_known else math.nan
@@ -222,7 +227,7 @@ def _heat_between_plates(plates: Plates, points: bool) -> tuple[float, float, st
 
 
 def _stress_between_plates(plates: Plates, run: Run) -> tuple[float, float, str] | None:
-    """Compute the shear stress on plates of one temperature that slide."""
+    """Compute the shear stress on sliding plates of one temperature."""
     speed, temperature = float(np.hypot.reduce(plates.slide)), plates.temperatures[0]
     gas = plates.density, speed, temperature, plates.mass, plates.accommodation
     free = float(theory.free_molecular_stress(*gas))
@@ -247,9 +252,9 @@ def dilute(plates: Plates, run: Run) -> bool:
 
 
 def heating_of(plates: Plates) -> float:
-    """Compute the rise of temperature by friction in the middle between sliding plates, divided by T.
+    """Compute the frictional rise of the temperature midway between sliding plates, divided by T.
 
-    For spheres it is 2/15 m u^2 in units of k_B T, with u half the speed.
+    For spheres it is 2/15 m u^2 in units of k_B T; u is half of the relative speed of the plates.
     """
     square = float((plates.slide**2).sum())
     return plates.mass * square / (30.0 * max(plates.temperatures))
@@ -261,7 +266,7 @@ def _describe_interpolation(quantity: str) -> str:
 
 
 def _friction(plates: Plates, run: Run) -> Expected | None:
-    """Compute the heat of friction, half the work of the stress for each plate."""
+    """Compute the frictional heat flux into each plate, half of the work of the stress."""
     if not plates.equal or (stress := _stress_between_plates(plates, run)) is None:
         return None
     value, error, source = stress
@@ -270,7 +275,10 @@ def _friction(plates: Plates, run: Run) -> Expected | None:
 
 
 def _weight_on_faces(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None:
-    """Compute the exact weight of the gas along the faces, half on each of two."""
+    """Compute the component of the gas' weight along each of two faces, half of the total.
+
+    The value is exact.
+    """
     scene, driven = run.scene, run.scene.driven_axes
     equal = len(faces) == 2 and faces[0] // 2 == faces[1] // 2 and len(scene.faces) == 2
     if not driven or not equal or scene.walls or not run.moving.all():
@@ -286,11 +294,11 @@ def _weight_on_faces(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected 
 
 
 _ROUNDING = 1e-6
-"""Relative drift that rounding of the frames can cause: a fraction of the largest velocity."""
+"""Relative drift that rounding of the frames can cause, as a fraction of the largest velocity."""
 
 
 def velocity(run: Run, axis: int, positions: np.ndarray) -> Expected | None:
-    """Compute the velocity (component, position) at positions (P,) along an axis, in a steady state."""
+    """Compute the steady velocity (component, position) at positions (P,) along an axis."""
     scene = run.scene
     if scene.shear_rate is not None:
         middle = np.tile(0.5 * np.array(scene.container.lengths), (len(positions), 1))
@@ -308,9 +316,9 @@ def velocity(run: Run, axis: int, positions: np.ndarray) -> Expected | None:
 
 
 def _drift(run: Run) -> np.ndarray:
-    """Compute the velocity (d, 1) of the centre of mass, about the flow of sheared images.
+    """Compute the velocity (d, 1) of the centre of mass, relative to a sheared flow.
 
-    It is 0 along axes on which it is not conserved.
+    It is 0 along axes on which the momentum is not conserved.
     """
     velocities = run.velocities
     if run.scene.shear_rate is not None:
@@ -322,7 +330,7 @@ def _drift(run: Run) -> np.ndarray:
 
 
 def _between_plates(plates: Plates, run: Run, axis: int, positions: np.ndarray) -> Expected | None:
-    """Compute the velocity between plates of one temperature, or that do not slide."""
+    """Compute the velocity between plates that have one temperature or do not slide."""
     velocities = dict(run.scene.sliding_faces)
     ends = [velocities.get(2 * plates.axis + side) for side in (0, 1)]
     rest = (0.0,) * run.dimension
@@ -345,16 +353,16 @@ def _between_plates(plates: Plates, run: Run, axis: int, positions: np.ndarray) 
     middle = 0.5 * run.scene.container.lengths[axis]
     values = mean + np.multiply.outer(plates.slide, (positions - middle) / gap)
     wrong = np.abs(plates.slide)[:, None] * (plates.knudsen**2 + heating_of(plates))
-    near = np.abs(positions - middle) > 0.5 * plates.length - 2.0 * path  # the layer that no fluid describes
+    near = np.abs(positions - middle) > 0.5 * plates.length - 2.0 * path  # beyond is the Knudsen layer
     return np.where(near, np.nan, values), wrong, "linear flow with slip"
 
 
 def _channel_velocity(plates: Plates, run: Run, axis: int, positions: np.ndarray) -> Expected | None:
-    """Compute the velocity that a force drives along plates of one temperature at rest.
+    """Compute the velocity of a gas that a force drives along resting plates of one temperature.
 
-    The uncertainty is the next order of the slip, the packing fraction, and half of the heating of the gas by
-    friction. In units of k_B T it is, with the greatest velocity u, 4/45 m u^2 in the middle, and at the
-    plates 32/45 m u^2 times the coefficient of the temperature jump times the Knudsen number.
+    The uncertainty includes the next order of the slip, the packing fraction, and half of the frictional
+    heating of the gas. With the maximum velocity u, the heating in units of k_B T is 4/45 m u^2 in the
+    middle. At the plates it is 32/45 m u^2 times the temperature jump coefficient times the Knudsen number.
     """
     slow = not plates.slide.any() and plates.equal and axis == plates.axis
     if not slow or plates.dimension == 2 or not 0.0 < plates.knudsen <= FLUID or not dilute(plates, run):
@@ -362,7 +370,7 @@ def _channel_velocity(plates: Plates, run: Run, axis: int, positions: np.ndarray
     length, temperature = plates.length, plates.temperatures[0]
     from_middle = positions - 0.5 * run.scene.container.lengths[axis]
     near = np.abs(from_middle) > 0.5 * length - 2.0 * plates.knudsen * length
-    heights = np.append(np.where(near, 0.0, from_middle), 0.0) + 0.5 * length  # and in the middle
+    heights = np.append(np.where(near, 0.0, from_middle), 0.0) + 0.5 * length  # heating in the middle
     speeds = theory.channel_velocity(heights, length, plates.density, 1.0, plates.diameter)
     force = plates.mass * np.array(run.scene.gravity) / math.sqrt(plates.mass * temperature)
     values = np.multiply.outer(force, speeds)
@@ -375,10 +383,10 @@ def _channel_velocity(plates: Plates, run: Run, axis: int, positions: np.ndarray
 
 
 def flux(run: Run, axis: int, position: float, members: np.ndarray, beyond: np.ndarray) -> Expected | None:
-    """Compute the number of particles (component,) that pass the plane across an axis per time.
+    """Compute the number of particles (component,) that cross a plane across an axis per time.
 
-    members : (n,), the particles that count.
-    beyond : (T,), number of these beyond the plane.
+    members : (n,), the particles that are counted.
+    beyond : (T,), number of these particles beyond the plane.
     """
     scene = run.scene
     if not scene.walls:
@@ -402,9 +410,9 @@ def flux(run: Run, axis: int, position: float, members: np.ndarray, beyond: np.n
 
 
 def _zero_flux(run: Run) -> Expected | None:
-    """Return the flux 0 of a steady state.
+    """Return the zero flux of a steady state.
 
-    None for a start in a region, and in a container with a piston, which moves what it compresses.
+    Return None if particles start in a region, or if the container has a piston, because gas then flows.
     """
     scene = run.scene
     if scene.is_open or scene.has_piston or any(kind.region is not None for kind in scene.species):
@@ -413,19 +421,17 @@ def _zero_flux(run: Run) -> Expected | None:
 
 
 def _path(run: Run) -> float:
-    """Compute the mean free path of the largest particles in the whole container."""
+    """Compute the mean free path of the largest particles, averaged over the container."""
     lower, upper = run.scene.reach(run.scene.largest_radius)
     density = run.count / float(np.subtract(upper, lower).prod())
-    filled = theory.packing_fraction(density, run.dimension, 2.0 * run.scene.largest_radius)
-    if filled > theory.HIGHEST_PACKING_FRACTION[run.dimension]:
-        return 0.0
-    return float(theory.mean_free_path(filled, run.dimension, 2.0 * run.scene.largest_radius))
+    return _free_path(density, 2.0 * run.scene.largest_radius, run)
 
 
 def opening(scene: Scene, axis: int, position: float, radius: float) -> float | None:
-    """Compute the area of a plane that interior walls in it leave to particle centres.
+    """Compute the area between interior walls in a plane that particle centres can cross.
 
-    In two dimensions it is a length. None if no wall lies in the plane, or if a plate is not along the axes.
+    In two dimensions it is a length. Return None if no wall lies in the plane, or if a plate is not parallel
+    to the axes.
     """
     across = [k for k in range(scene.dimension) if k != axis]
     near, length = 1e-9 * scene.container.lengths[axis], scene.container.lengths[axis]
@@ -444,7 +450,7 @@ def opening(scene: Scene, axis: int, position: float, radius: float) -> float | 
 
 
 def _open_area(shadows: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> float:
-    """Compute the measure of a box, from lower to upper, that boxes (W, 2, k) leave."""
+    """Compute the measure of a box outside of the boxes `shadows` (W, 2, k)."""
     edges = [
         np.unique(np.clip(np.append(shadows[:, :, k], [lower[k], upper[k]]), lower[k], upper[k]))
         for k in range(len(lower))

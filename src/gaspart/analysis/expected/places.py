@@ -1,4 +1,4 @@
-"""Places of particles: pair distributions, structure factor, insertion, and profiles along an axis."""
+"""Theory of positions: pair distributions, structure factor, insertion, and profiles along an axis."""
 
 from __future__ import annotations
 
@@ -7,21 +7,23 @@ from typing import Any
 import numpy as np
 
 from gaspart import theory
-from gaspart.analysis.bulk import BOLTZMANN, ENSKOG, EXACT
 from gaspart.analysis.expected.equilibrium import Expected, contact_of_number, equation_of, scale_of_number
 from gaspart.analysis.run import Run
+from gaspart.theory.bulk import BOLTZMANN, ENSKOG, EXACT
 from gaspart.trajectory.pairs import pairs_of
 
 _LEAST_UNIFORM = 16
-"""Number of hard particles from which their density is uniform in a run that conserves momentum. About the
-fixed centre of mass it has waves of N periods in the container: of amplitude 95 % for two discs at a packing
-fraction of 0.3, 16 % for three and 3 % for four, and below 1 % for 16 at 0.65, and 16 spheres at 0.48."""
+"""Minimum number of hard particles with a uniform density in a run that conserves momentum. Relative to the
+fixed centre of mass, the density has waves with N periods in the container. Their amplitude is 95 % for two
+discs at a packing fraction of 0.3, 16 % for three discs and 3 % for four discs. It is below 1 % for 16 discs
+at 0.65 and for 16 spheres at 0.48.
+"""
 
 
 def radial_distribution(run: Run, distance: np.ndarray, width: float) -> Expected | None:
-    """Compute the expected g(r) (distance,): for spheres that touch the contact value, for points 1.
+    """Compute the expected g(r) (distance,): the contact value for hard particles, 1 for points.
 
-    The contact value is given at the first distances beyond the diameter, in bins of a width.
+    The contact value is returned only for the first bins beyond the diameter; `width` is the bin width.
     """
     equation, gas = equation_of(run), run.fluid
     if equation == BOLTZMANN:
@@ -36,7 +38,7 @@ def radial_distribution(run: Run, distance: np.ndarray, width: float) -> Expecte
 
 
 def _of_points(run: Run, values: Any) -> Expected | None:
-    """Return values for independent positions of smooth and elastic particles without a field."""
+    """Return values for a gas of independent positions: smooth, elastic point particles without a field."""
     if run.mixture is None and run.scene.gas is None:
         return None
     return values, 0.0, "Boltzmann equation: independent places"
@@ -45,7 +47,7 @@ def _of_points(run: Run, values: Any) -> Expected | None:
 def structure_factor(run: Run, wave_number: np.ndarray) -> Expected | None:
     """Compute the expected S(k) (wave_number,).
 
-    For equal spheres it is Verlet and Weis's, an approximation; for points 1.
+    For equal spheres it is the approximation of Verlet and Weis; for point particles it is 1.
     """
     equation, gas = equation_of(run), run.fluid
     if equation == BOLTZMANN:
@@ -59,7 +61,8 @@ def structure_factor(run: Run, wave_number: np.ndarray) -> Expected | None:
 def partial_structure_factors(run: Run, wave_number: np.ndarray) -> Expected | None:
     """Compute the expected partial structure factors (pair, wave_number).
 
-    They hold for spheres of one size in each species; for points they are 1 of equal species, otherwise 0.
+    They exist for spheres if each species has a single size. For point particles they are 1 for equal species
+    and 0 otherwise.
     """
     equation, mixture, species = equation_of(run), run.mixture, run.scene.species
     pairs = pairs_of(run.scene)
@@ -82,11 +85,11 @@ def partial_structure_factors(run: Run, wave_number: np.ndarray) -> Expected | N
 
 
 def chemical_potential(run: Run) -> Expected | None:
-    """Compute the expected chemical potential by insertion into a finite number of particles.
+    """Compute the expected chemical potential of insertion into a finite number of particles.
 
-    It follows from the equation of state, or, exactly, from insertion into points, none of which may be
-    nearer to the position than the sum of the radii. It is a scalar for equal particles, otherwise
-    (species,).
+    For hard particles it follows from the equation of state. For point particles it is exact: no point may be
+    nearer to the inserted position than the sum of the radii. It is a scalar for equal particles, otherwise
+    it has shape (species,).
     """
     equation, mixture = equation_of(run), run.mixture
     if equation == ENSKOG or mixture is None:
@@ -111,7 +114,7 @@ def chemical_potential(run: Run) -> Expected | None:
 
 
 def _into_points(run: Run, diameters: np.ndarray, counts: np.ndarray) -> Any | None:
-    """Compute the chemical potential of independent positions, if no image counts twice."""
+    """Compute the chemical potential for independent positions, if no particle overlaps with two images."""
     between = 0.5 * np.add.outer(diameters, diameters)
     covered = np.array(
         [theory.particle_volume(run.dimension, 2.0 * diameter) for diameter in between.ravel()]
@@ -124,7 +127,7 @@ def _into_points(run: Run, diameters: np.ndarray, counts: np.ndarray) -> Any | N
 
 
 def temperature(run: Run) -> Expected | None:
-    """Return the temperature of equilibrium, the same everywhere."""
+    """Return the equilibrium temperature, which is uniform."""
     scene = run.scene
     if scene.faces or scene.face_temperatures or run.dissipates or scene.thermostat or scene.moving_wall:
         return None
@@ -132,9 +135,9 @@ def temperature(run: Run) -> Expected | None:
 
 
 def density(run: Run, axis: int, edges: np.ndarray, species: int | None) -> Expected | None:
-    """Compute the expected density (bins,) of all equal particles.
+    """Compute the expected density (bins,) of all particles, if they are equal.
 
-    It is uniform, or under gravity along the axis hydrostatic, for points by the barometric law.
+    It is uniform, or hydrostatic along the axis of gravity; for point particles the barometric law holds.
     """
     scene, kinds = run.scene, run.scene.kinds
     field = 0.0 if scene.gravity is None else scene.gravity[axis]
@@ -144,7 +147,7 @@ def density(run: Run, axis: int, edges: np.ndarray, species: int | None) -> Expe
     if not equal or scene.walls or scene.faces or across or not (field or run.periodic[axis]):
         return None
     if field and (run.dissipates or run.is_subset or not run.temperature > 0.0):
-        return None  # in no equilibrium, or of unknown temperature
+        return None  # not in equilibrium, or of unknown temperature
     if not field:
         bound = equation_of(run) == EXACT and scene.conserved_axes[axis] and run.count < _LEAST_UNIFORM
         return None if bound else (scene.number_density, 0.0, "uniform")
@@ -166,7 +169,7 @@ def _barometric_density(run: Run, axis: int, edges: np.ndarray, field: float) ->
             profile = theory.hydrostatic_profiles(
                 z, [run.count / area], [weight], run.dimension, 2.0 * kind.radius
             )[0]
-        except ValueError:  # denser than theory goes
+        except ValueError:  # above the density range of the theory
             return None
         source = "hydrostatics, local equation of state"
     total = np.concatenate([[0.0], np.cumsum(0.5 * (profile[1:] + profile[:-1]) * np.diff(z))])

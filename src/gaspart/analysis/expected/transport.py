@@ -1,4 +1,4 @@
-"""Motion and transport: displacements, diffusion, viscosities and conductivity."""
+"""Theory of motion and transport: displacements, diffusion, viscosities and conductivity."""
 
 from __future__ import annotations
 
@@ -9,8 +9,6 @@ from dataclasses import replace
 import numpy as np
 
 from gaspart import theory
-from gaspart.analysis import bulk
-from gaspart.analysis.bulk import BOLTZMANN, ENSKOG, EXACT
 from gaspart.analysis.expected.equilibrium import (
     OF_NUMBER,
     SOURCES,
@@ -21,19 +19,21 @@ from gaspart.analysis.expected.equilibrium import (
 )
 from gaspart.analysis.run import Run
 from gaspart.engines import Engine
-from gaspart.engines.dsmc import defaults as rates
 from gaspart.scene.gas import Gas
 from gaspart.scene.scene import Scene
-from gaspart.theory.dsmc import diffusion_by_modes
+from gaspart.theory import bulk
+from gaspart.theory.bulk import BOLTZMANN, ENSKOG, EXACT
+from gaspart.theory.discretisation import contact_values
+from gaspart.theory.modes import diffusion_by_modes
 
 _WINDOW = 12.0, 24.0
-"""Collisions of a particle between which the slope of D is taken, by default; see `analysis.diffusion`."""
+"""Default window for the slope that gives D, in collisions of a particle; see `analysis.diffusion`."""
 
 
 def mean_squared_displacement(run: Run, time: np.ndarray, axes: bool = False) -> Expected | None:
-    """Compute the expected displacement (lag,) by the linear Boltzmann equation.
+    """Compute the expected displacement (lag,) from the linear Boltzmann equation.
 
-    If `axes`, it is along each axis.
+    If `axes`, it is the displacement along each axis.
     """
     gas = None if run.is_subset else run.moving_fluid
     if gas is None:
@@ -46,7 +46,7 @@ def mean_squared_displacement(run: Run, time: np.ndarray, axes: bool = False) ->
 
 
 def velocity_autocorrelation(run: Run, time: np.ndarray) -> Expected | None:
-    """Compute the expected autocorrelation (lag,) with the exact decay at the start."""
+    """Compute the expected autocorrelation (lag,), with the exact initial decay."""
     gas = None if run.is_subset else run.moving_fluid
     if gas is None:
         return None
@@ -62,7 +62,7 @@ def diffusion(
     """Compute D of spheres in a periodic cube; see `diffusion_in_cube`.
 
     ends : (2,), lags between which D is half of the slope of the mean-squared displacement along an axis.
-    window : (2,), collisions of a particle between which the slope is taken as D.
+    window : (2,), first and last lag of the slope, in collisions of a particle.
     """
     if ends is not None:
         displacement = mean_squared_displacement(run, ends, axes=True)
@@ -83,21 +83,22 @@ def diffusion_in_cube(
     scene: Scene | None,
     window: np.ndarray | tuple[float, float] = _WINDOW,
 ) -> Expected | None:
-    """Compute D of spheres in a periodic cube for the engine of a scene.
+    """Compute D of spheres in a periodic cube, for the engine of a scene.
 
-    The default engine is an exact one. For spheres that touch, D is Erpenbeck and Wood's, less the shift of
-    Yeh and Hummer, and less what modes of the container add after the slope was taken, half of which is
-    uncertain. By a kinetic equation it is D of this equation, and the contribution of the flow in the
-    container, which its cells resolve. Half of shift and addition, and the bias of the engine, are its
-    uncertainty. None for discs, for spheres denser than the fluid, and in a cube so short that its images
-    order the fluid.
+    The default engine solves the exact dynamics. For hard spheres, D is the value of Erpenbeck and Wood minus
+    two corrections: the finite-size correction of Yeh and Hummer, and the contribution of the modes of the
+    container after the window of the slope. Half of the latter is uncertain. For a kinetic equation, D is the
+    value of this equation plus the contribution of the flow in the container, which the cells of the engine
+    resolve. The uncertainty consists of half of both corrections and the bias of the engine. Return None for
+    discs, for spheres denser than the fluid, and for a cube so small that the periodic images order the
+    fluid.
     """
     if gas.dimension == 2 or gas.packing_fraction > theory.ERPENBECK_WOOD_HIGHEST:
         return None
     if engine is None or scene is None or engine.equation == EXACT:
         try:
             value, error = theory.diffusion_in_cube(gas.packing_fraction, side, **gas.particle)
-        except ValueError:  # the images of a particle order the fluid
+        except ValueError:  # the periodic images of a particle order the fluid
             return None
         late = _after_window(gas, window)
         return value + late, math.hypot(error, 0.5 * late), "Erpenbeck and Wood, Yeh and Hummer"
@@ -115,10 +116,10 @@ def diffusion_in_cube(
 
 
 def _after_window(gas: Gas, window: np.ndarray | tuple[float, float]) -> float:
-    """Compute the difference between the limit of D(t) and its value in a window.
+    """Compute the difference between the long-time limit of D(t) and its value in a window.
 
-    The slope is taken in the window, in collisions of a particle; the difference is due to the hydrodynamic
-    modes of the container (`theory.diffusion_modes`).
+    The window of the slope is in collisions of a particle. The difference is due to the hydrodynamic modes of
+    the container (`theory.diffusion_modes`).
     """
     unit = gas.diameter / gas.thermal_speed
     times = np.linspace(float(window[0]), float(window[1]), 9) / bulk.collision_rate(gas, EXACT) / unit
@@ -127,9 +128,9 @@ def _after_window(gas: Gas, window: np.ndarray | tuple[float, float]) -> float:
 
 
 def mutual_diffusion(run: Run) -> Expected | None:
-    """Compute Enskog's mutual diffusion in the first approximation.
+    """Compute Enskog's mutual diffusion coefficient in the first approximation.
 
-    The contact values follow from the equation.
+    The contact values depend on the equation of the engine.
     """
     kinds, eta, d = run.scene.species, run.scene.packing_fraction, run.dimension
     if not all(kind.alike for kind in kinds) or eta > theory.HIGHEST_PACKING_FRACTION[d]:
@@ -140,7 +141,7 @@ def mutual_diffusion(run: Run) -> Expected | None:
         contact = np.ones((2, 2))
     elif equation == ENSKOG:
         densities = np.array(counts) / run.scene.container.volume
-        contact = rates.contact_values(densities, 0.5 * np.array(diameters), d)
+        contact = contact_values(densities, 0.5 * np.array(diameters), d)
     masses = [kind.mass for kind in kinds]
     value = theory.enskog_mutual_diffusion(
         eta, d, diameters, counts, temperature=run.temperature, masses=masses, contact=contact
@@ -152,10 +153,10 @@ def mutual_diffusion(run: Run) -> Expected | None:
 def _transport(
     run: Run, temperature: float, coefficient: Callable[[Gas, str], float], kind: str = ""
 ) -> Expected | None:
-    """Compute a transport coefficient by fluctuations of N particles at fixed energy.
+    """Compute a transport coefficient from fluctuations of N particles at fixed energy.
 
-    The coefficients of a dilute gas, of a kind that `theory.transport_finite_size_factor` knows, are lower
-    than in an infinite gas by this factor.
+    In a dilute gas the coefficients are lower than in an infinite gas, by a factor that
+    `theory.transport_finite_size_factor` knows for some kinds.
     """
     gas, equation = run.fluid, equation_of(run)
     if gas is None or not temperature > 0.0:
@@ -173,14 +174,14 @@ def _transport(
 
 
 def bulk_viscosity(run: Run, temperature: float) -> Expected | None:
-    """Compute the expected bulk viscosity by fluctuations."""
+    """Compute the expected bulk viscosity from fluctuations."""
     return _transport(run, temperature, bulk.bulk_viscosity)
 
 
 def thermal_conductivity(run: Run, temperature: float) -> Expected | None:
-    """Compute the expected thermal conductivity by fluctuations.
+    """Compute the expected thermal conductivity from fluctuations.
 
-    For points of several masses or sizes it is Chapman and Enskog's.
+    For point particles of several masses or sizes it is the value of Chapman and Enskog.
     """
     mixture = run.mixture
     if run.scene.alike or mixture is None or not temperature > 0.0:
@@ -194,9 +195,9 @@ def thermal_conductivity(run: Run, temperature: float) -> Expected | None:
 
 
 def shear_viscosity(run: Run, temperature: float) -> Expected | None:
-    """Compute the expected shear viscosity by fluctuations.
+    """Compute the expected shear viscosity from fluctuations.
 
-    For a sheared gas it is the response to a small rate.
+    For a sheared gas it is the response to a small shear rate.
     """
     if run.scene.shear_rate is None:
         return _transport(run, temperature, bulk.shear_viscosity, "viscosity")

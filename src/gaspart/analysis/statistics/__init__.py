@@ -1,9 +1,9 @@
-"""Statistics of simulations: errors of correlated series, fits with covariance, tests of distributions.
+"""Statistics of simulations: errors of correlated series, fits with covariance, and tests of distributions.
 
-Everywhere: `error` is one standard deviation of the estimate. Errors passed to a fit are standard deviations
-of independent Gaussian scatter, and exact unless their degrees of freedom are given. Arrays are
-one-dimensional and of equal length unless noted. A `p_value` is the probability of a chi-square at least as
-large if the model holds. Inputs that are too short, of unequal length or not finite raise ValueError.
+Conventions: `error` is one standard deviation of the estimate. Errors passed to a fit are standard deviations
+of independent Gaussian scatter. They are treated as exact unless their degrees of freedom are passed. Arrays
+are one-dimensional and of equal length unless noted. A `p_value` is the probability of a chi-square at least
+as large if the model holds. Inputs that are too short, of unequal length or not finite raise ValueError.
 """
 
 from gaspart.analysis.statistics.blocks import (

@@ -1,4 +1,4 @@
-"""Correlated series: the error of their mean, whether blocks confirm it, and their autocorrelation time."""
+"""Correlated series: error of the mean, its test with blocks, and autocorrelation time."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from gaspart.analysis.estimate import Estimate
 
-# Checks of the arrays that statistics are made of.
+# Validation of arguments.
 
 
 def series_of(name: str, values: ArrayLike, shortest: int) -> np.ndarray:
@@ -45,9 +45,9 @@ def positive_freedoms(freedoms: ArrayLike, size: int) -> np.ndarray:
 
 
 ORDER = 1.25
-"""Order of the autoregressive process fitted to n samples, over the cube root of n."""
+"""Order of the autoregressive process fitted to n samples, divided by the cube root of n."""
 _ROUNDING = 1e-12
-"""Relative difference of samples that are the same: of differences of sums."""
+"""Relative difference below which samples count as equal; it is the rounding error of differences of sums."""
 
 
 @dataclass(frozen=True)
@@ -55,8 +55,8 @@ class CorrelatedMean:
     """Mean of a correlated series, with errors from blocks.
 
     `errors[k]` is the standard error from blocks of `lengths[k]` samples. `flat` is True if the error from
-    blocks no longer grows with the length of blocks beyond its own uncertainty, so that the series is long
-    enough. This is so from blocks of `block_length` on; their number is `blocks`.
+    blocks no longer grows with the block length by more than its own uncertainty. The series is then long
+    enough. `block_length` is the shortest such length, and `blocks` the number of these blocks.
     """
 
     estimate: Estimate
@@ -74,16 +74,16 @@ def correlated_mean(series: ArrayLike, minimum_blocks: int = 16) -> CorrelatedMe
     autoregressive process that is fitted to the series, and whose order grows as the cube root of the length
     (Berk, Ann. Stat. 2, 489 (1974)). The error is correct for independent, correlated and anticorrelated
     series. Its own uncertainty, from the fitted coefficients, is expressed as degrees of freedom: 13 for 200
-    independent samples. The degrees of freedom are at most the number of changes from one sample to the next.
-    A constant series gives no information on its error: the error is 0 with a single degree of freedom.
+    independent samples. The degrees of freedom are at most the number of changes between consecutive samples.
+    A constant series gives no information on its error: the error is 0 with one degree of freedom.
 
     Blocks show whether the series is long enough (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461 (1989)). The
     error from blocks of 1, 2, 4 ... samples grows until the blocks are independent. The error from n blocks
-    has the relative uncertainty 1 / sqrt(2 (n-1)). The error is flat from the shortest length that no longer
-    length exceeds by more than the uncertainty of the longer one. The error at that length is not used as the
-    result. The first error that is not clearly too small is too small on average, by 5 to 40 % with 16 to 300
-    autocorrelation times. At least minimum_blocks (>= 4) samples are needed. A remainder at the start that
-    does not fill a block is excluded from the blocks.
+    has the relative uncertainty 1 / sqrt(2 (n-1)). The error is flat from the shortest block length that is
+    not exceeded by any longer one by more than the uncertainty of the longer one. The error from these blocks
+    is not used as the result. It would be too small on average, by 5 to 40 % for 16 to 300 autocorrelation
+    times, because it is the first error that is not clearly too small. At least `minimum_blocks` (>= 4)
+    samples are needed. Samples at the start that do not fill a block are excluded from the blocks.
     """
     if minimum_blocks < 4:
         raise ValueError(f"minimum_blocks: {minimum_blocks} (must be at least 4)")
@@ -117,29 +117,30 @@ def correlated_mean(series: ArrayLike, minimum_blocks: int = 16) -> CorrelatedMe
 
 
 def slow_mean(series: ArrayLike, minimum_blocks: int = 16) -> Estimate:
-    """Return the mean and its error of a series whose correlations may fall as 1/t.
+    """Return the mean and its error of a series whose correlations may decay as 1/t.
 
-    Particles of all speeds cross a container, and slow particles remain for long. So without collisions the
-    number of particles inside has correlations L / t over a time t, whose sum grows as the logarithm of the
-    length of the run. No fit of a finite order sees that. Therefore the squared error of the mean of blocks,
-    times the length of blocks, is fitted as linear in the logarithm of this length, for blocks between a
+    Particles of all speeds cross a container, and slow particles stay in it for a long time. So without
+    collisions the number of particles inside has correlations L / t over a time t. The sum of these
+    correlations grows as the logarithm of the length of the run. An autoregressive fit of finite order does
+    not include this growth. Therefore the squared error of the mean of blocks, multiplied by the block
+    length, is fitted by a linear function of the logarithm of this length. The fit uses blocks between a
     quarter of the longest length and the longest length. The fit is extrapolated to the length of the series.
-    The larger error counts, that one or `correlated_mean`'s.
+    The result is the larger of this error and the error of `correlated_mean`.
 
     Parameters
     ----------
     series : array_like, shape (n,)
         Samples, at least 4 times `minimum_blocks`. For fewer samples the function returns `correlated_mean`.
     minimum_blocks : int
-        Number of the longest blocks, at least.
+        Minimum number of the longest blocks.
 
     Returns
     -------
     Estimate
-        The degrees of freedom are at most this number of blocks. For free particles, deviations divided by
-        errors are then 1.01 to 1.13 times as wide as Student's distribution in runs of at least 100 crossing
-        times, and 1.2 times in runs of 8 crossing times (`tests/analysis/test_statistics.py`). With
-        `correlated_mean` the factors are 1.2 to 1.65.
+        The degrees of freedom are at most this number of blocks. For free particles, the distribution of
+        deviations divided by errors is 1.01 to 1.13 times as wide as Student's distribution in runs of at
+        least 100 crossing times, and 1.2 times as wide in runs of 8 crossing times
+        (`tests/analysis/test_statistics.py`). With `correlated_mean` the factors are 1.2 to 1.65.
     """
     plain = correlated_mean(series, minimum_blocks)
     squares, own = plain.errors**2, plain.estimate
@@ -167,20 +168,21 @@ def autocorrelation_time(series: ArrayLike) -> float:
 
 
 def count_changes(series: np.ndarray) -> int:
-    """Count the changes from one sample to the next that are larger than rounding."""
+    """Count the changes between consecutive samples that exceed rounding."""
     return int(np.count_nonzero(np.abs(np.diff(series)) > _ROUNDING * np.abs(series).max()))
 
 
 def common_freedom(series: np.ndarray) -> float:
-    """Compute the degrees of freedom of the errors of several series with similar correlations.
+    """Compute common degrees of freedom for the errors of several similarly correlated series.
 
     If the correlation time of a series is too small by chance, its error is too small and its degrees of
     freedom are too many. The mean autocorrelation of all series gives a common number of degrees of freedom.
-    For 40 cells of a dense fluid over 13 correlation times, 1.8 % deviate by more than three standard
-    deviations with the degrees of freedom of their own fits, and .7 % with at most the common number
-    (`tests/analysis/test_small_numbers.py`).
+    For 40 cells of a dense fluid over 13 correlation times, 1.8 % of the values deviate by more than three
+    standard deviations if each fit has its own degrees of freedom, and 0.7 % if these are at most the common
+    number (`tests/analysis/test_small_numbers.py`).
 
-    series : (n, m); series that do not change are ignored. Infinite if none changes.
+    series : (n, m), m series of n samples; constant series are ignored. The result is infinite if all series
+        are constant.
     """
     number = len(series)
     centred = series - series.mean(axis=0)
@@ -196,17 +198,17 @@ def common_freedom(series: np.ndarray) -> float:
 
 
 def _order(number: int) -> int:
-    """Return the order of the autoregressive process that is fitted to a number of samples."""
+    """Return the order of the autoregressive process for a number of samples."""
     return round(ORDER * number ** (1.0 / 3.0))
 
 
 def _spectrum(series: np.ndarray) -> tuple[float, float]:
-    """Compute the sum of a series' autocovariances over all lags.
+    """Compute the sum of the autocovariances of a series over all lags.
 
-    The degrees of freedom of this estimate are returned too.
+    The degrees of freedom of this estimate are also returned.
 
-    Autocovariances about a measured mean are too small by their sum divided by n. So they are shifted by a
-    first estimate of the sum, and the fit is repeated.
+    Autocovariances relative to a measured mean are too small by their sum divided by n. So they are shifted
+    by a first estimate of the sum, and the fit is repeated.
     """
     number = series.size
     order = _order(number)
@@ -223,10 +225,11 @@ def _spectrum(series: np.ndarray) -> tuple[float, float]:
 def _autoregression(covariances: np.ndarray) -> tuple[float, float]:
     """Compute the spectrum at frequency 0 of an autoregressive process, S = E / A^2.
 
-    The process has these autocovariances. The uncertainty of A is returned too, n times its variance over
-    A^2. By the recursion of Levinson and Durbin, E is the variance of what the earlier values do not predict,
-    A is 1 less the sum of the coefficients; their covariance matrix is E / n times the inverse of the
-    covariance matrix of the values, whose elements' sum is the sum of A^2 / E over the lower orders.
+    The arguments are the autocovariances of the process. The relative uncertainty of A is also returned: n
+    times its variance divided by A^2. In the recursion of Levinson and Durbin, E is the variance of the
+    prediction error, and A is 1 minus the sum of the coefficients. The covariance matrix of the coefficients
+    is E / n times the inverse covariance matrix of the values. The sum of the elements of this inverse is the
+    sum of A^2 / E over the lower orders.
     """
     coefficients = np.zeros(0)
     unpredicted, rest, inverse = float(covariances[0]), 1.0, 0.0
@@ -235,7 +238,7 @@ def _autoregression(covariances: np.ndarray) -> tuple[float, float]:
         predicted = coefficients @ covariances[order - 1 : 0 : -1]
         partial = (covariances[order] - predicted) / unpredicted
         remaining = unpredicted * (1.0 - partial**2)
-        if remaining <= 1e-12 * covariances[0]:  # to rounding, the earlier values predict all
+        if remaining <= 1e-12 * covariances[0]:  # the earlier values predict the series up to rounding
             break
         coefficients = np.append(coefficients - partial * coefficients[::-1], partial)
         unpredicted, rest = remaining, rest * (1.0 - partial)
@@ -257,11 +260,12 @@ class Histogram:
 
 
 def histogram_chi_square(samples: ArrayLike, cdf: Callable[[np.ndarray], Any], bins: int) -> Histogram:
-    """Compute chi-square of independent samples against a distribution with the function `cdf`.
+    """Compute chi-square of independent samples against a distribution with cumulative function `cdf`.
 
     No parameter is fitted.
 
-    The bins have equal probability: cdf(samples) is uniform on [0, 1]. At least 5 samples a bin.
+    The bins have equal probability, because cdf(samples) is uniform on [0, 1]. At least 5 samples per bin are
+    required.
     """
     from scipy.special import chdtrc
 

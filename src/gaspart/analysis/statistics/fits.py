@@ -18,9 +18,9 @@ from gaspart.analysis.statistics.blocks import positive_errors, positive_freedom
 class Fit:
     """Parameters of a linear least-squares fit.
 
-    `freedoms` are the degrees of freedom of the parameters' errors. `chi_square` divided by
+    `freedoms` are the degrees of freedom of the errors of the parameters. `chi_square` divided by
     `degrees_of_freedom` follows Fisher's distribution with `degrees_of_freedom` and `error_freedom`. If the
-    caller gives no errors, there is no test: `p_value` is NaN.
+    caller passes no errors, there is no test, and `p_value` is NaN.
     """
 
     values: np.ndarray
@@ -39,11 +39,11 @@ class Fit:
 
     @property
     def estimates(self) -> Estimate:
-        """The parameters (parameters,), with their uncertainties."""
+        """Parameters (parameters,) with their uncertainties."""
         return Estimate(self.values, self.errors, self.freedoms)
 
     def estimate(self, number: int) -> Estimate:
-        """Return a parameter with its uncertainty."""
+        """Return a parameter with its uncertainty, by its index."""
         return self.estimates[number]
 
 
@@ -65,27 +65,27 @@ class PowerLaw:
 
     @property
     def estimate(self) -> Estimate:
-        """The exponent, with its uncertainty."""
+        """Exponent with its uncertainty."""
         return Estimate(self.exponent, self.exponent_error, self.exponent_freedom)
 
 
 Values = ArrayLike | Estimate
-"""Values, or an Estimate of an array, which brings their errors and degrees of freedom."""
+"""Values, or an Estimate of an array, which includes errors and degrees of freedom."""
 
 
 def fit_linear(
     design: ArrayLike, y: Values, errors: ArrayLike | None = None, freedoms: ArrayLike = math.inf
 ) -> Fit:
-    """Fit y = design @ values by least squares, weighted by 1 / errors^2.
+    """Fit y = design @ values by least squares with weights 1 / errors^2.
 
     The design has the shape (points, parameters).
 
-    With errors: covariance from them, and a chi-square test of the model. Without errors, all points have
-    equal weight, and the covariance is scaled by the scatter of the residuals (so there is no test).
-    `freedoms` are the degrees of freedom of the errors, one number for all points or one per point, if the
-    errors are computed from the scatter of a few samples; see `_of_estimated_errors`. An Estimate as y brings
-    both. Raises ValueError if there are fewer points than parameters (or equally many, without errors), or if
-    the columns are dependent.
+    With errors, the covariance follows from them, and chi-square tests the model. Without errors, all points
+    have equal weight. The covariance is scaled by the scatter of the residuals, so there is no test.
+    `freedoms` are the degrees of freedom of the errors, one number for all points or one per point. They are
+    needed if the errors come from the scatter of a few samples; see `_of_estimated_errors`. If y is an
+    Estimate, it provides both. Raises ValueError if there are fewer points than parameters (or equally many,
+    without errors), or if the columns are dependent.
     """
     y, errors, freedoms = _with_errors(y, errors, freedoms)
     y = series_of("y", y, 1)
@@ -97,7 +97,7 @@ def fit_linear(
         raise ValueError(f"y: {y.size} points are too few for {design.shape[1]} parameters")
     scale = np.ones(y.size) if errors is None else positive_errors(errors, y.size)
     weighted = design / scale[:, None]
-    # Columns are brought to one length: powers of a small x differ by many decades.
+    # Columns are scaled to equal length, because powers of a small x differ by many decades.
     lengths = np.linalg.norm(weighted, axis=0)
     if np.any(lengths == 0.0) or np.linalg.matrix_rank(weighted / lengths) < design.shape[1]:
         raise ValueError("design: its columns are not independent")
@@ -130,20 +130,21 @@ def _with_errors(y: Values, errors: ArrayLike | None, freedoms: ArrayLike) -> tu
 def _of_estimated_errors(
     shares: np.ndarray, basis: np.ndarray, covariance: np.ndarray, few: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, float, float]:
-    """Return the covariance of a fit whose errors are estimates, and what its test needs.
+    """Return the covariance of a fit whose errors are estimates, and the parameters of its test.
 
     The results are the covariance, the degrees of freedom of the parameters, the factor by which chi-square
     is too large, and the second degrees of freedom of the test.
 
-    - shares : (parameters, points), the contribution of the error of each point to each parameter.
+    - shares : (parameters, points), contribution of the error of each point to each parameter.
     - basis : (points, parameters), orthonormal columns that span the columns of the weighted design.
     - few : (points,), reciprocal degrees of freedom of the errors.
 
-    To first order in `few`, a point whose error is underestimated counts too much and makes the covariance
-    too small, each by the part 2 few (1 - leverage) of its share (for the weighted mean: Meier, Biometrics 9,
-    59 (1953)). With f - 2 for f, as in the mean of 1 / chi-square, this is good to some per cent of the
-    errors from f = 3 on, and f / 3 below. The degrees of freedom follow Welch and Satterthwaite; the
-    test follows Welch, Biometrika 38, 330 (1951), for linear models Johansen, Biometrika 67, 85 (1980).
+    A point with an underestimated error has too much weight and also makes the covariance too small. To first
+    order in `few`, each effect changes its contribution by the fraction 2 few (1 - leverage) (for the
+    weighted mean: Meier, Biometrics 9, 59 (1953)). With f - 2 instead of f degrees of freedom, as in the mean
+    of 1 / chi-square, the errors are accurate to a few per cent for f >= 3; for smaller f, f / 3 is used. The
+    degrees of freedom follow Welch and Satterthwaite. The test follows Welch, Biometrika 38, 330 (1951); for
+    linear models Johansen, Biometrika 67, 85 (1980).
     """
     free = 1.0 - np.clip((basis**2).sum(axis=1), 0.0, 1.0)
     with np.errstate(divide="ignore"):
@@ -165,10 +166,10 @@ def fit_polynomial(
     fixed: Mapping[int, float] | None = None,
     freedoms: ArrayLike = math.inf,
 ) -> Fit:
-    """Fit y = sum of values[i] x^powers[i] plus the terms held fixed, {power: coefficient}; see `fit_linear`.
+    """Fit y = sum of values[i] x^powers[i] plus the fixed terms {power: coefficient}; see `fit_linear`.
 
-    The result does not include the uncertainty of the fixed coefficients: repeat the fit with them shifted to
-    see it.
+    The result does not include the uncertainty of the fixed coefficients. To estimate it, repeat the fit with
+    shifted coefficients.
     """
     x = series_of("x", x, 1)
     y, errors, freedoms = _with_errors(y, errors, freedoms)
@@ -184,8 +185,8 @@ def fit_power_law(
 ) -> PowerLaw:
     """Fit y = amplitude x^exponent as a line of ln y against ln x; see `fit_linear`.
 
-    x and y are positive, `errors` are errors of y. The errors become errors / y of the logarithm, which is
-    accurate if they are below some 20 %.
+    x and y must be positive; `errors` are errors of y. The logarithm has the errors errors / y, which is
+    accurate if they are below about 20 %.
     """
     x = series_of("x", x, 2)
     y, errors, freedoms = _with_errors(y, errors, freedoms)
@@ -193,8 +194,8 @@ def fit_power_law(
     if x.size != y.size or np.any(x <= 0.0) or np.any(y <= 0.0):
         raise ValueError("x, y: must be as many, and positive")
     relative = None if errors is None else positive_errors(errors, y.size) / y
-    # About the middle of ln x the two parameters are nearly independent; the amplitude is carried back to x =
-    # 1.
+    # Relative to the mean of ln x the two parameters are nearly independent; the amplitude is then
+    # extrapolated to x = 1.
     middle = np.log(x).mean()
     fit = fit_polynomial(np.log(x) - middle, np.log(y), relative, freedoms=freedoms)
     exponent = float(fit.values[1])
@@ -221,7 +222,7 @@ def fit_curve(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Fit the parameters of function(x, *parameters) to values with known errors.
 
-    Returns the parameters and their covariance. Raises ValueError for errors that are not positive and finite
+    Returns the parameters and their covariance. Raises ValueError if an error is not positive and finite
     (scipy then returns the starting values), and RuntimeError if the fit does not converge.
     """
     from scipy.optimize import curve_fit
@@ -238,7 +239,7 @@ def fit_curve(
 
 @dataclass(frozen=True)
 class Combination:
-    """Weighted mean of independent values, and whether their own errors explain their scatter; see `Fit`."""
+    """Weighted mean of independent values, with a test of their scatter against their errors; see `Fit`."""
 
     value: float
     error: float
@@ -250,14 +251,14 @@ class Combination:
 
     @property
     def estimate(self) -> Estimate:
-        """The mean, with its uncertainty."""
+        """Mean with its uncertainty."""
         return Estimate(self.value, self.error, self.freedom)
 
 
 def mean_of(values: ArrayLike) -> Estimate:
     """Compute the mean of N independent numbers, at least two, and its standard error.
 
-    The error follows from their scatter, which has N - 1 degrees of freedom.
+    The error follows from their scatter, with N - 1 degrees of freedom.
     """
     values = series_of("values", values, 2)
     error = float(values.std(ddof=1) / math.sqrt(values.size))
@@ -275,9 +276,9 @@ def average(estimates: Estimate | Sequence[Estimate]) -> Estimate:
 def means_of(samples: ArrayLike, sizes: ArrayLike | None = None) -> tuple[np.ndarray, np.ndarray]:
     """Compute means over axis 0 of N independent samples (N, ...), and standard errors.
 
-    The errors follow from the scatter. `sizes` (N,) are the numbers of equal items in each sample's mean. The
-    means are then taken over all items, however they are divided, and the variance of a sample is in inverse
-    proportion to its size.
+    The errors follow from the scatter. `sizes` (N,) are the numbers of equally weighted items in each sample.
+    The means are then over all items, independent of their grouping, and the variance of a sample is
+    inversely proportional to its size.
     """
     values = np.asarray(samples)
     if sizes is None or np.ptp(sizes) == 0.0:
@@ -289,10 +290,10 @@ def means_of(samples: ArrayLike, sizes: ArrayLike | None = None) -> tuple[np.nda
 
 
 def histogram_means(samples: ArrayLike, sizes: ArrayLike | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """Compute means of N histograms (N, bins), with NaN for errors that are not known.
+    """Compute means of N histograms (N, bins), with NaN for unknown errors.
 
-    A bin with the same value in all samples, such as an empty bin, has no scatter. A bin without scatter
-    gives no information on its error. If no bin has any scatter, nothing changes, and all errors are 0.
+    A bin has no scatter if it has the same value in all samples, for example an empty bin. A bin without
+    scatter gives no information on its error. If no bin has any scatter, all errors are 0.
     """
     means, errors = means_of(samples, sizes)
     if errors.any():
@@ -301,19 +302,20 @@ def histogram_means(samples: ArrayLike, sizes: ArrayLike | None = None) -> tuple
 
 
 def steady_mean(series: ArrayLike, *changes: ArrayLike) -> Estimate:
-    """Compute the mean current into and out of a store from averages in K blocks.
+    """Compute the steady current through a system that stores energy, from means in K blocks.
 
-    Each of `changes` (K,) is the change of a bounded quantity, such as the energy stored, during each block.
-    Energy that a block stores, another one gives back: blocks anticorrelate, and their scatter exceeds the
-    scatter of the long-time mean. So the blocks are regressed on the changes (least squares), and the result
-    is the current of blocks without a change. It differs from the plain mean by a bounded amount divided by
-    the length of the run. The degrees of freedom are K - 1 - len(changes). Raises ValueError as `fit_linear`.
+    Each of `changes` (K,) is the change of a bounded quantity, such as the stored energy, during each block.
+    Energy stored in one block is returned in another. So blocks are anticorrelated, and their scatter exceeds
+    the scatter of the long-time mean. Therefore the currents are regressed on the changes by least squares.
+    The result is the current in a block without a change. It differs from the plain mean by a bounded amount
+    divided by the length of the run. The degrees of freedom are K - 1 - len(changes). Raises ValueError for
+    the reasons of `fit_linear`.
     """
     series = series_of("series", series, 2)
     design = [np.ones(series.size)]
     for change in changes:
         change = series_of("change", change, 2)
-        if np.ptp(change) > 0.0:  # nothing is stored
+        if np.ptp(change) > 0.0:  # a constant quantity stores nothing
             design.append(change / np.abs(change).max())
     fit = fit_linear(np.stack(design, axis=1), series)
     return Estimate(fit.values[0], fit.errors[0], fit.degrees_of_freedom)
@@ -336,22 +338,23 @@ def combine(values: Values, errors: ArrayLike | None = None, freedoms: ArrayLike
 
 
 def combine_estimates(estimates: Estimate | Sequence[Estimate]) -> Estimate:
-    """Average independent estimates, weighted by 1 / error^2; NaN without any.
+    """Average independent estimates with weights 1 / error^2; NaN for an empty list.
 
-    The estimates may be the elements of one.
+    The estimates may be the elements of a single array estimate.
     """
     stacked = estimates if isinstance(estimates, Estimate) else Estimate.stack(estimates)
     return combine(stacked).estimate if stacked else Estimate(math.nan, math.nan)
 
 
 def bootstrap(function: Callable[..., float], samples: ArrayLike, repeats: int = 1000) -> Estimate:
-    """Compute function(samples) with its standard error from resampled data.
+    """Compute function(samples) and its standard error from resampled data.
 
-    Data are resampled with replacement, along axis 0.
+    Data are resampled with replacement along axis 0.
 
-    The same samples give the same error. `function` returns one number. Resampled means of n samples scatter
-    by the fraction sqrt(1 - 1/n) of the standard error, so the scatter is divided by this fraction. The error
-    has n - 1 degrees of freedom (Efron and Tibshirani, An introduction to the bootstrap (1993), section 5.3).
+    Equal samples give equal errors. `function` returns one number. The scatter of resampled means of n
+    samples is smaller than the standard error by the factor sqrt(1 - 1/n), so it is divided by this factor.
+    The error has n - 1 degrees of freedom (Efron and Tibshirani, An introduction to the bootstrap (1993),
+    section 5.3).
     """
     samples = np.asarray(samples)
     if samples.shape[0] < 2:
@@ -368,8 +371,8 @@ def jackknife(function: Callable[..., Any], *samples: ArrayLike) -> tuple[Any, A
 
     Each block is left out once. The samples are arrays whose axis 0 runs over the same n independent blocks
     (at least two); `function` takes their means over blocks and returns a number or an array. For smooth
-    functions the error is right to first order, correlations between the samples included (Tukey 1958).
-    Returns (value, error), arrays.
+    functions the error is correct to first order and includes correlations between the samples (Tukey 1958).
+    Returns (value, error) as arrays.
     """
     series = [np.asarray(sample, dtype=float) for sample in samples]
     blocks = series[0].shape[0]
@@ -388,19 +391,19 @@ def jackknife(function: Callable[..., Any], *samples: ArrayLike) -> tuple[Any, A
     return np.asarray(function(*(total / blocks for total in sums)), dtype=float), error
 
 
-# The minimum of a measured cost, with its interval.
+# Minimum of a measured cost, with its interval.
 
 
 FLAT = 0.05
-"""Relative excess of a cost over the least one within a flat minimum."""
+"""Maximum relative excess of a cost over the minimum within a flat minimum."""
 
 
 @dataclass(frozen=True)
 class Optimum:
-    """Minimum of a cost: its position with its 95 % interval, and the cost there.
+    """Minimum of a cost: its position, the 95 % interval of the position, and its cost.
 
-    It states if it lies between the points, and the interval in which the cost exceeds the least by less than
-    FLAT.
+    It also states if the minimum lies between the points, and the interval in which the cost exceeds the
+    minimum by less than FLAT.
     """
 
     location: float
@@ -415,11 +418,12 @@ class Optimum:
 def optimum(x: ArrayLike, cost: ArrayLike, within: float = 3.0) -> Optimum:
     """Find the minimum sqrt(b / c) of a cost a + b/x + c x.
 
-    The cost falls steeply and rises slowly. The three parts are fitted to the points near the minimum, whose
-    cost is below `within` times the least one (at least four, the cheapest first). The interval follows from
-    the interval of the logarithm, by propagation, from the relative scatter about the curve. `interior` is
-    True if b and c are positive and the minimum lies between the points. If it does not, the location is the
-    cheapest point's, the intervals are from 0 to inf: no minimum was measured.
+    Such a cost falls steeply and rises slowly. The three terms are fitted to the points near the minimum:
+    those with a cost below `within` times the smallest cost, at least the four cheapest points. The interval
+    is computed for the logarithm of the position, by error propagation from the relative scatter about the
+    curve. `interior` is True if b and c are positive and the minimum lies between the points. Otherwise the
+    position is the cheapest point and the intervals are from 0 to inf, because no minimum was
+    measured.
     """
     x = series_of("x", x, 4)
     cost = series_of("cost", cost, 4)
@@ -437,7 +441,7 @@ def optimum(x: ArrayLike, cost: ArrayLike, within: float = 3.0) -> Optimum:
     if not at.min() < best < at.max():
         least = cheapest[0]
         return Optimum(float(x[least]), 0.0, math.inf, float(cost[least]), False, 0.0, math.inf)
-    gradient = np.array([0.0, 0.5 / falling, -0.5 / rising])  # of ln location
+    gradient = np.array([0.0, 0.5 / falling, -0.5 / rising])  # of ln position
     from scipy.special import stdtrit
 
     quantile = stdtrit(fit.degrees_of_freedom, 0.975)

@@ -1,1 +1,1 @@
-"""DSMC engine: collision partners are sampled among the particles of a cell (Bird 1994)."""
+"""DSMC engine: collision partners are drawn at random among the particles of a cell (Bird 1994)."""

@@ -1,9 +1,9 @@
-"""Bounds on the errors of the DSMC engine in a steady scene, from its local conditions.
+"""Bounds on the errors of the DSMC engine in a steady scene, from local conditions.
 
-The Boltzmann model lacks the excluded volume: in the contact value, in the virial, and in collisions, which
-have no extent. The Enskog model uses the contact value of the local density. It neglects the memory of
-collisions, the effect of a finite number of particles on the contact value, and the layers of particles at a
-wall. Cells average over variations within them.
+The Boltzmann model neglects the excluded volume: in the contact value, in the virial, and in the distance
+between collision partners. The Enskog model uses the contact value of the local density. It neglects
+correlated collisions, the effect of a finite number of particles on the contact value, and the layers of
+particles at walls. In both models, cells average over variations within them.
 """
 
 from __future__ import annotations
@@ -17,32 +17,34 @@ from gaspart.engines.engine import AccuracyRequest, Candidate
 from gaspart.errors import SceneError
 
 if TYPE_CHECKING:
-    from gaspart.engines.conditions import Layers
     from gaspart.engines.dsmc.settings import DSMC
+    from gaspart.theory.conditions import Conditions
 
 DENSEST = 0.4
-"""Packing fraction up to which the errors of the Enskog model are known."""
+"""Maximum packing fraction at which the errors of the Enskog model are known."""
 _STATIC = 3e-3
-"""Bound on its error in Z, collision rate and pressures of a homogeneous gas (`dsmc_convergence`)."""
+"""Bound on the error of the Enskog model in Z, the collision rate and the pressures of a homogeneous gas
+(`dsmc_convergence`).
+"""
 _NORMAL = {2: 2.0 / math.pi, 3: 0.5}
-"""Mean of |e_z| of a contact, by dimension."""
+"""Mean of |e_z| for the unit vector e of a contact, by dimension."""
 _AT_WALLS = 2.5
-"""Error of the Enskog model's collision rate between two walls, in units of the product below.
+"""Error of the collision rate of the Enskog model between two walls, in units of a product.
 
-The product is the packing fraction times the diameter divided by the distance of the walls. The measured
-value is 2.1 at most in slits of 4, 8 and 16 diameters, at packing fractions of 0.05 to 0.3.
+The product is the packing fraction times the diameter divided by the distance between the walls. The largest
+measured value is 2.1, in slits of 4, 8 and 16 diameters at packing fractions of 0.05 to 0.3.
 """
 _ON_PROFILES = 2.0
-"""Maximum ratio of the effects of cells on the collision rates of the Enskog and the Boltzmann model.
+"""Maximum ratio of the effects of cells on the collision rates of the Enskog model and the Boltzmann model.
 
-In the Enskog model the contact value too is taken at the mean density of a cell.
+In the Enskog model the contact value is also evaluated at the mean density of a cell.
 """
 
 
 def candidate(engine: DSMC, request: AccuracyRequest) -> Candidate:
     """Choose cells and step of the engine, and bound its errors.
 
-    Raises SceneError if the cells or the step are too coarse for the local conditions, and if the gas is too
+    Raises SceneError if the cells or the step are too coarse for the local conditions, or if the gas is too
     dense for the Enskog model.
     """
     conditions, dense = request.conditions, engine.model == "enskog"
@@ -59,13 +61,14 @@ def candidate(engine: DSMC, request: AccuracyRequest) -> Candidate:
 def boltzmann_error(request: AccuracyRequest) -> float:
     """Bound the relative error of the Boltzmann equation, in which particles are points."""
     conditions, scene = request.conditions, request.scene
-    error = (request.memory if request.transported else 0.0) + _layers(request)
+    error = (conditions.memory if request.transported else 0.0) + _layers(request)
     if request.observable != "pressure":
         lost = _NORMAL[scene.dimension] * conditions.surfaces
         error += lost / (1.0 - lost) if lost < 1.0 else math.inf
     few = float((conditions.contact_of_few / conditions.contact).max()) - 1.0
-    if request.points is not None:
-        return float(error + few + request.points)
+    points = conditions.of_points(request.observable, request.face)
+    if points is not None:
+        return float(error + few + points)
     virial = float(conditions.virial.max())
     if math.isinf(virial):
         return math.inf
@@ -76,14 +79,15 @@ def boltzmann_error(request: AccuracyRequest) -> float:
 def enskog_error(request: AccuracyRequest, cells: tuple[int, ...] | None = None) -> float:
     """Bound the relative error of the Enskog equation.
 
-    Pairs collide a diameter apart, with the contact value of their density.
+    In this equation, pairs collide at a distance of one diameter, with the contact value of the local
+    density.
 
-    cells : number of cells along each axis; by default narrow cells
+    cells : number of cells along each axis; by default cells are narrow
     """
     conditions = request.conditions
     error = _STATIC + _layers(request)
     if request.transported:
-        error += request.memory
+        error += conditions.memory
     error += float((conditions.contact_of_few / conditions.contact).max()) - 1.0
     error += _AT_WALLS * float(conditions.filled.max()) * conditions.surfaces
     if request.observable == "pressure" and cells is not None:
@@ -97,9 +101,10 @@ def enskog_error(request: AccuracyRequest, cells: tuple[int, ...] | None = None)
 def cell_error(engine: DSMC, request: AccuracyRequest) -> float:
     """Bound the relative error due to cells and steps.
 
-    The error of the viscosity, and of observables that depend on it, is computed with the shortest free path.
-    The error of a rate is the mean over a cell of a density that changes by a factor e over the scale. In the
-    Enskog model the collisions that are lost among few particles in a cell are added.
+    The error of the viscosity, and of observables that depend on it, is computed for the shortest mean free
+    path. The error of a rate follows from a density that changes by a factor e over the shortest length scale
+    and is averaged over a cell. In the Enskog model, the loss of collisions in cells with few particles is
+    added.
     """
     conditions, error = request.conditions, 0.0
     if request.transported:
@@ -112,11 +117,11 @@ def cell_error(engine: DSMC, request: AccuracyRequest) -> float:
     return float(error + (_lost(engine, conditions) if dense else 0.0))
 
 
-def require_resolved(engine: DSMC, conditions: Layers) -> None:
+def require_resolved(engine: DSMC, conditions: Conditions) -> None:
     """Raise SceneError for cells or steps that do not resolve an inhomogeneous gas.
 
-    Cells and steps must not exceed the length or time over which the gas changes, nor its shortest free path
-    or time. In a homogeneous gas the state does not depend on cells and steps.
+    Cells and steps must not exceed the length or time over which the gas changes, the shortest mean free
+    path, or the shortest mean free time. In a homogeneous gas the state does not depend on cells and steps.
     """
     if conditions.axis is None:
         return
@@ -137,10 +142,10 @@ def require_resolved(engine: DSMC, conditions: Layers) -> None:
             raise SceneError(key, value, f"{text} {size:.2g}, more than {limit:.2g}, {name}")
 
 
-def cell_widths(engine: DSMC, conditions: Layers) -> np.ndarray:
-    """Return the sides (d,) of a cell, 0 along an axis without profile and cells.
+def cell_widths(engine: DSMC, conditions: Conditions) -> np.ndarray:
+    """Return the side lengths (d,) of a cell, with 0 for an axis without a profile.
 
-    Such an axis has one cell between periodic faces and no profile.
+    Such an axis has periodic faces and a single cell.
     """
     cells = np.array(cells_of(engine, conditions))
     around = np.array(conditions.scene.container.periodic)
@@ -150,15 +155,15 @@ def cell_widths(engine: DSMC, conditions: Layers) -> np.ndarray:
     return np.where(flat, 0.0, conditions.free / cells)
 
 
-def cells_of(engine: DSMC, conditions: Layers) -> tuple[int, ...]:
-    """Return the number of cells along each axis (d,), by default 1."""
+def cells_of(engine: DSMC, conditions: Conditions) -> tuple[int, ...]:
+    """Return the number of cells along each axis (d,); 1 by default."""
     return tuple(np.broadcast_to(np.array(engine.cells_per_side or 1), conditions.free.shape).tolist())
 
 
 def _layers(request: AccuracyRequest) -> float:
-    """Return the relative error of a density due to the layers of particles at walls.
+    """Return the relative error of a density due to layers of particles at walls.
 
-    In these layers the density is Z times the density of the middle, over about a diameter.
+    In these layers, about a diameter thick, the density is Z times the density in the middle.
     """
     conditions, scene = request.conditions, request.scene
     if request.observable != "density" or scene.container.periodic[-1]:
@@ -168,10 +173,10 @@ def _layers(request: AccuracyRequest) -> float:
     return float(conditions.virial.max()) * math.sqrt(sigma / max(length, sigma))
 
 
-def _lost(engine: DSMC, conditions: Layers) -> float:
-    """Return the fraction of collisions that the engine loses, weighted by collisions.
+def _lost(engine: DSMC, conditions: Conditions) -> float:
+    """Return the fraction of collisions that the engine misses, weighted by collisions.
 
-    Collisions are lost in cells with fewer particles than the mean.
+    Collisions are missed in cells with fewer particles than the mean.
     """
     weights = conditions.share * conditions.contact
     fewer = float(weights.sum() / (weights * conditions.crowding).sum())

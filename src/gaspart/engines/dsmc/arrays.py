@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.engines.dsmc.defaults import BEND, SLOPE, accessible
+from gaspart.engines.dsmc.defaults import accessible
 from gaspart.engines.features.faces import (
     WALL_DRAWS,
     accommodations,
@@ -18,19 +18,20 @@ from gaspart.engines.features.faces import (
 from gaspart.errors import SceneError
 from gaspart.kernels.dsmc.enskog import Dense
 from gaspart.kernels.dsmc.model import PADDED, Faces, Grid, Law, Particles, Workspace
-from gaspart.kernels.model import ContactLaw, flight_dtype
+from gaspart.kernels.model import ContactLaw, Open, flight_dtype
 from gaspart.kernels.physics.exact_sum import WIDTH
 from gaspart.scene.accessible import Accessible
 from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
 from gaspart.state.random import key_of
 from gaspart.state.state import State
+from gaspart.theory.discretisation import BEND, SLOPE
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.settings import DSMC
 
 
-_COLLISION_DRAWS = 5  # the purpose of their random numbers, after those of thermal walls and kicks
+_COLLISION_DRAWS = 5  # stream number of these random numbers, after those of thermal walls and kicks
 _MOST_KINDS = 2**16
 
 
@@ -42,7 +43,10 @@ def empty_particles(state: State) -> Particles:
 
 
 def grid_for(scene: Scene, state: State, cells: tuple[int, ...], threads: int) -> Grid:
-    """Return the grid with a number of cells along each axis, where centres may be."""
+    """Return a grid with a number of cells along each axis, over the accessible volume.
+
+    Between open faces, one more count is for the slots without a particle.
+    """
     lower, upper = accessible(scene)
     per_side = np.array(cells, dtype=np.int64)
     strides = np.append(np.cumprod(per_side[:0:-1])[::-1], 1)
@@ -55,16 +59,16 @@ def grid_for(scene: Scene, state: State, cells: tuple[int, ...], threads: int) -
         volume=float(((upper - lower) / per_side).prod()),
         cell=np.zeros(state.count, np.uint32),
         order=np.zeros(state.count, np.uint32),
-        counts=np.zeros((threads, number), np.uint32),
+        counts=np.zeros((threads, number + scene.is_open), np.uint32),
         starts=np.zeros(number + 1, np.uint32),
     )
 
 
 def kinds_of(state: State) -> tuple[np.ndarray, np.ndarray]:
-    """Return the kinds of particles, and the kind (N,) of each particle.
+    """Return the kinds of particles, and the kind number (N,) of each particle.
 
-    A kind has radius, mass and moment of inertia (K, 3). If all particles are alike, the array of kinds has
-    the shape (0,).
+    A kind is a row of radius, mass and moment of inertia in an array (K, 3). If all particles are equal, the
+    array of kinds has the shape (0,).
     """
     properties = np.stack([state.radii, state.masses, state.moments_of_inertia], axis=1)
     if not len(properties) or (properties == properties[0]).all():
@@ -78,7 +82,7 @@ def kinds_of(state: State) -> tuple[np.ndarray, np.ndarray]:
 def workspace_for(
     engine: DSMC, scene: Scene, state: State, step: float, seed: int | tuple[int, ...]
 ) -> Workspace:
-    """Return the workspace of a step, with the tally at zero."""
+    """Return the workspace of a step, with all counters at zero."""
     kinds, which = kinds_of(state)
     threads, faces, d = engine.threads, 2 * scene.dimension, scene.dimension
     radius, mass, inertia = (np.ascontiguousarray(column) for column in kinds.T)
@@ -113,16 +117,17 @@ def workspace_for(
 
 
 TALLY = ("counts", "virial", "loss", "wall_hits", "wall_impulse", "wall_heat")
-"""Arrays of `Workspace` with counts, by thread."""
+"""Arrays of `Workspace` with counters, by thread."""
 
 
-def faces_for(scene: Scene, threads: int) -> Faces | None:
-    """Return the kinds of the container's faces, or None if no face is thermal."""
+def faces_for(scene: Scene, threads: int, opened: Open | None) -> Faces | None:
+    """Return the kinds of the container's faces, or None if all are hard or periodic."""
     if not scene.faces:
         return None
     velocities = sliding_velocities(scene)
     shear = None if velocities is None else np.zeros((threads, *velocities.shape, WIDTH), np.int64)
-    return Faces(*kinds_and_levels(scene), velocities, shear, accommodations(scene), ramp_of(scene))
+    present = opened.present if opened else None
+    return Faces(*kinds_and_levels(scene), velocities, shear, accommodations(scene), ramp_of(scene), present)
 
 
 def law_for(law: ContactLaw | None) -> Law | None:
@@ -134,28 +139,34 @@ def law_for(law: ContactLaw | None) -> Law | None:
 
 
 _SAMPLES = 4000.0
-"""Number of particles for the average of the density of a cell; fewer in a cell need more steps."""
+"""Number of particles that are averaged for the density of a cell; with fewer particles per cell, more steps
+are averaged.
+"""
 _MOST_DENSE_KINDS = 16
-"""Maximum number of kinds of particles in a dense gas: a trial draws the partner's kind, mostly in vain."""
+"""Maximum number of kinds of particles in a dense gas. A trial draws the kind of the partner at random, and
+most trials fail if there are many kinds.
+"""
 
 _FEWEST_CELLS = 64
-"""Minimum number of cells that threads share: fewer cells are in a single slab, one after another."""
+"""Minimum number of cells for several threads. Fewer cells form a single slab and are processed one after
+another.
+"""
 
 
 def is_uniform(scene: Scene) -> bool:
-    """Return True if the density is the same everywhere and stays so, and hence is known."""
+    """Return True if the density is uniform at all times, and hence known."""
     return scene.is_periodic and spreads(scene)
 
 
 def spreads(scene: Scene) -> bool:
-    """Return True if nothing in a scene brings particles together."""
+    """Return True if nothing in a scene concentrates particles."""
     spread = all(kind.arrangement != "slab" and kind.region is None for kind in scene.species)
     elastic = scene.restitution is None or not scene.restitution.dissipative
     return spread and elastic
 
 
 def moved_fields(fields: np.ndarray, before: Grid, after: Grid) -> np.ndarray:
-    """Return the fields (2, cells) of one grid on another, by the cells at its centres."""
+    """Return the fields (2, cells) of one grid on another grid, evaluated at its cell centres."""
     per_side = tuple(after.per_side)
     centres = np.stack(np.unravel_index(np.arange(len(after.starts) - 1), per_side)) + 0.5
     ratio = (before.per_side / after.per_side)[:, None]
@@ -164,10 +175,10 @@ def moved_fields(fields: np.ndarray, before: Grid, after: Grid) -> np.ndarray:
 
 
 def slabs_of(per_side: np.ndarray, reach: np.ndarray) -> tuple[int, np.ndarray]:
-    """Return the axis along which cells are in slabs, and the first cell of each slab.
+    """Return the axis along which slabs divide the cells, and the first cell of each slab.
 
-    The end of the last slab is included. There is an even number of slabs, each at least two reaches wide, or
-    one slab.
+    The list also contains the end of the last slab. There is one slab, or an even number of slabs that are
+    each at least two reaches wide.
     """
     numbers = 2 * (per_side // (4 * reach))
     axis = int(numbers.argmax())
@@ -178,7 +189,7 @@ def slabs_of(per_side: np.ndarray, reach: np.ndarray) -> tuple[int, np.ndarray]:
 def dense_for(scene: Scene, state: State, grid: Grid, kinds: int) -> Dense:
     """Return the arrays of the Enskog model for a state with several kinds of particles.
 
-    Raises SceneError for a scene for which the model is not made.
+    Raises SceneError for a scene that the model does not support.
     """
     d, cells, sigma = scene.dimension, len(grid.starts) - 1, 2.0 * scene.largest_radius
     if kinds > _MOST_DENSE_KINDS:

@@ -1,7 +1,7 @@
-"""Collision rates of a gas, the default settings of the engine, and their errors.
+"""Collision rates of a gas, the default settings of the engine, and the errors of settings.
 
-The rates are mean values of a gas that fills its container homogeneously, with Maxwellian velocities of each
-kind's mean square.
+The rates are for a gas that fills its container homogeneously. The velocities of each kind are Maxwellian,
+with the mean square of the kind.
 """
 
 from __future__ import annotations
@@ -15,20 +15,16 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from gaspart.errors import SceneError, SimulationError
-from gaspart.scene.limits import ball_volume
+from gaspart.scene.face_checks import mean_count
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Particle, Species
 from gaspart.state.boxes import cube_side
 from gaspart.state.state import State
+from gaspart.theory.discretisation import CELL_VISCOSITY, STEP_COEFFICIENTS, contact_values
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.settings import DSMC
     from gaspart.kernels.dsmc.model import Pace
-
-
-SLOPE, BEND = {2: 0.5625, 3: 1.5}, {2: 0.0, 3: 0.5}
-"""Coefficients of the contact value, see `contact_values`, by dimension."""
-_HIGHEST = 0.7  # packing fraction up to which contact values are evaluated
 
 
 @dataclass(frozen=True)
@@ -39,7 +35,7 @@ class Rates:
     ----------
     frequency : number of collisions of a particle per time
     speed : mean speed
-    path : mean free path with all kinds of particles at one temperature, infinite if nothing collides
+    path : mean free path with all kinds of particles at one temperature; infinite without collisions
     """
 
     frequency: float
@@ -51,37 +47,31 @@ class Rates:
         return Rates(times * self.frequency, self.speed, self.path / times)
 
 
+def usual_count(scene: Scene) -> float:
+    """Return the number of particles to which cells and steps fit.
+
+    Between open faces this is the number at the start or with the strongest reservoir, if that is more.
+    """
+    return max(scene.count, mean_count(scene)) if scene.is_open else scene.count
+
+
 def accessible(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lowest and highest coordinates (d,) of centres of the smallest particles."""
+    """Return the lowest and highest coordinates (d,) of the centres of the smallest particles."""
     lower, upper = scene.reach(scene.smallest_radius)
     return np.array(lower), np.array(upper)
-
-
-def contact_values(number_densities: np.ndarray, radii: np.ndarray, dimension: int) -> np.ndarray:
-    """Compute the contact values (K, K) of the pair distributions of a mixture.
-
-    Spheres: Boublik, J. Chem. Phys. 53, 471 (1970), and Mansoori et al., J. Chem. Phys. 54, 1523 (1971); for
-    one species this is Carnahan & Starling's value. Discs: Jenkins & Mancini, J. Appl. Mech. 54, 27 (1987);
-    for one species this is Henderson's value.
-    """
-    filled = ball_volume(dimension) * float((number_densities * radii**dimension).sum())
-    free = 1.0 - min(filled, _HIGHEST)
-    surface = ball_volume(dimension) * float((number_densities * radii ** (dimension - 1)).sum())
-    ratio = surface * 2.0 * radii[:, None] * radii / (radii[:, None] + radii)
-    return 1.0 / free + SLOPE[dimension] * ratio / free**2 + BEND[dimension] * ratio**2 / free**3
 
 
 Kinds: TypeAlias = Sequence[Species | Particle]
 
 
 def rates(scene: Scene, dense: bool, instead: Kinds | None = None) -> Rates:
-    """Compute the rates of a scene at its start.
+    """Compute the collision rates of a scene in its initial state.
 
-    The temperature of the faces is used instead of the particles' if it is higher.
+    If the faces are hotter than the particles, the temperature of the faces is used.
 
-    dense : True for the contact values of a dense gas
-    instead : fewer kinds of particles that represent the kinds of the scene; each pair of these kinds is
-        evaluated
+    dense : True to use the contact values of a dense gas
+    instead : representative kinds of particles that replace the kinds of the scene, because each pair of
+        kinds is evaluated
     """
     d, kinds = scene.dimension, scene.moving_kinds if instead is None else instead
     heat = max(scene.face_temperatures, default=0.0)
@@ -93,10 +83,9 @@ def rates(scene: Scene, dense: bool, instead: Kinds | None = None) -> Rates:
 
 
 def highest_speed(scene: Scene) -> float:
-    """Return the highest mean speed that particles can reach with the energy of the start.
+    """Return the highest mean speed that particles can reach with the initial energy.
 
-    A particle reaches this speed if the energy is divided so that all particles have momenta of equal
-    magnitude.
+    It is reached if the energy is distributed such that all particles have momenta of equal magnitude.
     """
     kinds = scene.moving_kinds
     energy = sum(
@@ -107,10 +96,10 @@ def highest_speed(scene: Scene) -> float:
 
 
 def _rates(scene: Scene, kinds: Kinds, dense: bool, squares: list[float]) -> tuple[float, float]:
-    """Return frequency and speed of kinds with these mean squares of a velocity component."""
+    """Return collision frequency and speed of kinds with given mean squares of a velocity component."""
     d, square = scene.dimension, np.array(squares)
     radius = np.array([kind.radius for kind in kinds])
-    number = np.array([float(kind.count) for kind in kinds])
+    number = np.array([usual_count(scene) if scene.is_open else float(kind.count) for kind in kinds])
     lower, upper = accessible(scene)
     density = number / float((upper - lower).prod())
     sigma = radius[:, None] + radius
@@ -124,7 +113,7 @@ def _rates(scene: Scene, kinds: Kinds, dense: bool, squares: list[float]) -> tup
 
 
 def square_of(kind: Species | Particle, dimension: int) -> float:
-    """Return the mean square of a velocity component at the start."""
+    """Return the initial mean square of a velocity component."""
     if isinstance(kind, Particle):
         return sum(v * v for v in kind.velocity) / dimension
     return (
@@ -132,18 +121,18 @@ def square_of(kind: Species | Particle, dimension: int) -> float:
     )
 
 
-# Lengths of a step that fit a scene, for any speeds that its particles reach.
+# Length of a step for a scene, for any speeds that its particles reach.
 #
-# A step is short enough if a particle of the mean speed flies at most 0.2 mean free paths and half of the
-# container in it, and if gravity and kicks do not make it faster than that in the step. Where speeds can
-# rise, a default step is divided into 2^level parts, as many as the present speeds require to within a factor
-# sqrt 2. The level is found again before each part; it follows from the state, and so do all bits. A
-# prescribed step is never divided: the run stops before a step in which particles would collide with more
-# than `MOST` others.
+# A step is short enough under two conditions. A particle of the mean speed flies at most 0.2 mean free paths
+# and at most half of the container. Gravity and kicks do not accelerate it beyond these distances during the
+# step. If speeds can rise, a default step is divided into 2^level parts. The level is the smallest at which
+# the present speeds satisfy these conditions within a factor sqrt 2. The level is determined again before
+# each part. It depends only on the state, so results do not depend on where a run is split. A prescribed step
+# is never divided. The run stops before a step in which particles would collide with more than `MOST` others.
 
 
 LONGEST = 0.2
-"""Longest recommended step, in mean free times."""
+"""Longest recommended step in mean free times."""
 CROSSED = 0.5
 """Longest step in a gas without collisions, as a fraction of the time in which a particle crosses the
 container.
@@ -151,38 +140,41 @@ container.
 FALLEN = 0.125
 """Maximum fall per step, as a fraction of the container's length along gravity."""
 MOST = 1024.0
-"""Mean free paths, or crossings between walls, that a particle of the mean speed may fly in a step."""
+"""Maximum distance that a particle of the mean speed may fly in a step, in mean free paths or in distances
+between walls.
+"""
 FINEST = 40
-"""Highest level."""
+"""Largest level of the division of a step."""
 ROOM = math.sqrt(2.0)
-"""Ratio of step to recommended step above which the step is divided."""
+"""Ratio of a step to the recommended step above which the step is divided."""
 _HOTTER = 2.0
-"""Ratio of the speeds of a given state to the scene's own speeds up to which steps do not follow the speeds.
+"""Ratio of initial speeds passed by the caller to the scene's own initial speeds, up to which steps are not
+adapted.
 
-Steps are then too long by this factor, which changes coefficients by 1 %.
+Steps are then too long by at most this factor, which changes transport coefficients by 1 %.
 """
 _KICKED = 0.09
-"""Width of the kicks of a step divided by the mean speed, unless a step has one kick at most.
+"""Width of the kicks in a step divided by the mean speed, unless a step has at most one kick.
 
-Kicks come at the end of a step, and the energy there exceeds its mean over time by half of the energy that
-they give, 0.35 % at most.
+Kicks are applied at the end of a step. The energy there exceeds its time average by half of the energy of the
+kicks, at most 0.35 %.
 """
 _FIRST = 20
-"""Level of the parts that a start from rest needs, for any number of kicks due in a part."""
+"""Level of the parts for a start from rest, for any number of kicks in a part."""
 
 
 @dataclass(frozen=True)
 class Reach:
-    """Bounds of the path of a particle in a step.
+    """Bounds on the distance that a particle flies in a step.
 
     Attributes
     ----------
     path : mean free path
     across : shortest side
-    fall : side between walls along which particles fall
-    walled : shortest side between walls
+    fall : side length between walls along the direction of fall
+    walled : shortest side length between walls
     pull : acceleration towards walls
-    push : mean width of kicks divided by the square root of time
+    push : mean width of kicks, divided by the square root of time
     interval : time between kicks
     """
 
@@ -196,12 +188,12 @@ class Reach:
 
     @property
     def recommended(self) -> float:
-        """Longest recommended path in a step."""
+        """Longest recommended flight distance in a step."""
         return min(LONGEST * self.path, CROSSED * self.across, FALLEN * self.fall)
 
     @property
     def most(self) -> float:
-        """Longest possible path in a step."""
+        """Longest allowed flight distance in a step."""
         return MOST * min(self.path, self.walled)
 
     def steady(self) -> bool:
@@ -213,12 +205,12 @@ class Reach:
         return (speed + self.pull * step + self.push * math.sqrt(step)) * step
 
     def speed(self, way: float, step: float) -> float:
-        """Return the speed at which a particle flies a distance in a step."""
+        """Return the initial speed with which a particle flies a given distance in a step."""
         return way / step - self.pull * step - self.push * math.sqrt(step)
 
     def longest(self, speed: float, way: float) -> float:
-        """Return the longest step in which a particle flies at most a distance."""
-        low, high = -300.0, 300.0  # logarithm to base 2 of the step; the path grows with the step
+        """Return the longest step in which a particle flies at most a given distance."""
+        low, high = -300.0, 300.0  # bisection in log2 of the step
         for _ in range(60):
             middle = 0.5 * (low + high)
             low, high = (middle, high) if self.way(speed, 2.0**middle) <= way else (low, middle)
@@ -247,17 +239,17 @@ def falling_axis(scene: Scene) -> int | None:
 
 
 def may_speed_up(scene: Scene) -> bool:
-    """Return True if the mean speed can rise so much that steps must follow it."""
+    """Return True if the mean speed can rise so much that steps must be adapted."""
     if scene.gravity is not None or scene.thermostat is not None or scene.faces or scene.rough:
         return True
     return highest_speed(scene) > ROOM * rates(scene, False).speed
 
 
 def is_hotter(state: State, gas_rates: Rates) -> bool:
-    """Return True if the initial state is so fast that steps must adapt.
+    """Return True if the initial state is so fast that steps must be adapted.
 
-    The speeds of the state relative to its mean velocity are compared with the speeds of the initial state of
-    the scene.
+    Speeds relative to the mean velocity of the state are compared with the speeds in the scene's own initial
+    state.
     """
     velocities = state.velocities[np.isfinite(state.masses)]
     if not len(velocities):
@@ -267,9 +259,9 @@ def is_hotter(state: State, gas_rates: Rates) -> bool:
 
 
 def levels(reach: Reach, step: float, divided: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lowest and the highest mean speed (levels,) for each level of a step.
+    """Return the lowest and the highest mean speed for each level of a step, shape (levels,).
 
-    There is only one level if the step is not divided.
+    If the step is not divided, there is only one level.
     """
     if not divided:
         return np.zeros(1), np.array([reach.speed(reach.most, step)])
@@ -281,13 +273,18 @@ def levels(reach: Reach, step: float, divided: bool) -> tuple[np.ndarray, np.nda
     return np.array(kicked), np.array([reach.speed(ROOM * reach.recommended, part) for part in steps])
 
 
-def pace_for(scene: Scene, reach: Reach, step: float, divided: bool) -> Pace:
-    """Return the levels of a step in the form for the kernels."""
+def pace_for(
+    scene: Scene, reach: Reach, step: float, divided: bool, present: np.ndarray | None = None
+) -> Pace:
+    """Return the levels of a step in the form of the kernels.
+
+    present : see `kernels.dsmc.model.Faces`
+    """
     from gaspart.kernels.dsmc import model as pace
 
     pulls = scene.gravity or (0.0,) * scene.dimension
     drifts = tuple(around and g != 0.0 for around, g in zip(scene.container.periodic, pulls, strict=True))
-    return pace.Pace(*levels(reach, step, divided), 0, drifts, np.zeros(1))
+    return pace.Pace(*levels(reach, step, divided), 0, drifts, np.zeros(1), present)
 
 
 _TOO_LONG = f"lets particles fly more than {MOST:g} mean free paths, or {MOST:g} times from wall to wall"
@@ -296,8 +293,8 @@ _TOO_LONG = f"lets particles fly more than {MOST:g} mean free paths, or {MOST:g}
 def check_step(reach: Reach, step: float, gas_rates: Rates) -> None:
     """Raise SceneError for a step in which particles fly too far.
 
-    A step is rejected if particles would collide with more than `MOST` others in it, or cross the container
-    between walls more often.
+    A step is rejected if a particle would collide with more than `MOST` others, or cross the container
+    between walls more often than that.
     """
     if reach.way(gas_rates.speed, step) > reach.most:
         fit = reach.longest(gas_rates.speed, reach.most)
@@ -305,7 +302,7 @@ def check_step(reach: Reach, step: float, gas_rates: Rates) -> None:
 
 
 def too_fast(time: float, step: float, reach: Reach, pace: Pace) -> SimulationError:
-    """Return the error for particles that have become so fast that no level fits."""
+    """Return the error for particles that have become too fast for all levels."""
     if len(pace.low) > 1:
         rule = f"at time {time:g} the speeds have risen so much that a step needs more than 2^{FINEST} parts"
         return SimulationError(f"{rule}: give a shorter time_step")
@@ -317,30 +314,30 @@ def too_fast(time: float, step: float, reach: Reach, pace: Pace) -> SimulationEr
 
 
 WIDEST = 1.0 / 3.0
-"""Widest recommended cell, in mean free paths."""
+"""Largest recommended cell width in mean free paths."""
 FEWEST = {"boltzmann": 8.0, "enskog": 64.0}
-"""Minimum number of particles in a cell, even if the cell is wider then.
+"""Minimum number of particles per cell, even if the cell then becomes wider.
 
-Pairs that have collided in a dense gas separate, and among few others in a cell approaching pairs become
-rare: with 8 in each cell a gas at a packing fraction of 0.4 has 6 % too few collisions.
+After a collision in a dense gas the pair separates. In a cell with few other particles, approaching pairs
+then become rare. With 8 particles per cell a gas at a packing fraction of 0.4 has 6 % too few collisions.
 """
 USUAL = 16.0
-"""Sufficient number of particles in a cell: a cell is narrower than recommended rather than fuller."""
+"""Sufficient number of particles per cell. Above it, cells become narrower than recommended."""
 LAYERS = 8
 """Minimum number of cells along the fall of particles between walls: their speeds depend on the height."""
 _DIGITS = 2.0**10  # parts to which a step is rounded, so that it does not depend on the rounding of sums
-_VISCOSITY = {2: math.pi / 24.0, 3: 16.0 / (45.0 * math.pi)}
-_VISCOSITY_IN_TIME, _DIFFUSION_IN_TIME = 16.0 / (75.0 * math.pi), 4.0 / (27.0 * math.pi)
 CELL_LOSS = 0.5
-"""Maximum fraction of its collisions that the Enskog model loses, multiplied by the particles in a cell.
+"""Maximum fraction of collisions that the Enskog model misses, multiplied by the number of particles per
+cell.
 
-Particles that have collided separate, and among few others approaching pairs become rare (docs/dsmc.md: 8 in
-a cell lose 3 % at a packing fraction of 0.1, 6 % at 0.4).
+Particles separate after a collision. In a cell with few other particles, approaching pairs then become rare
+(docs/dsmc.md: with 8 particles per cell 3 % of the collisions are missing at a packing fraction of 0.1, 6 %
+at 0.4).
 """
 
 
 def cells_for(engine: DSMC, scene: Scene, gas_rates: Rates, crowding: float = 1.0) -> tuple[int, ...]:
-    """Return the number of cells along each axis (d,): the prescribed or the recommended number.
+    """Return the prescribed or recommended number of cells along each axis (d,).
 
     crowding : ratio of the density around the particles to the mean density
     """
@@ -350,7 +347,9 @@ def cells_for(engine: DSMC, scene: Scene, gas_rates: Rates, crowding: float = 1.
         if len(sides) != d:
             raise SceneError("cells_per_side", prescribed, f"must be one number, or one for each of {d} axes")
         return sides
-    return recommended_cells(engine.model, scene, gas_rates.at_density(crowding), crowding * scene.count)
+    return recommended_cells(
+        engine.model, scene, gas_rates.at_density(crowding), crowding * usual_count(scene)
+    )
 
 
 def recommended_cells(model: str, scene: Scene, gas_rates: Rates, number: float) -> tuple[int, ...]:
@@ -377,7 +376,7 @@ def _fitting(lengths: tuple[float, ...], gas_rates: Rates, number: float, model:
 
 
 def step_for(engine: DSMC, scene: Scene, gas_rates: Rates) -> float:
-    """Return the length of a step: the engine's, or the recommended one.
+    """Return the length of a step: the engine's setting or the recommended length.
 
     Raises SceneError if nothing moves.
     """
@@ -405,11 +404,10 @@ def widths_of(cells: tuple[int, ...], scene: Scene) -> np.ndarray:
 def predicted_error(cells: tuple[int, ...], step: float, scene: Scene, gas_rates: Rates) -> float:
     """Return the relative error of the shear viscosity due to cells and step.
 
-    The viscosity is too high. For spheres the error is 16/(45 pi) (w/l)^2 + 16/(75 pi) (c dt/l)^2, where w is
-    the side of a cell, l the mean free path and c = sqrt(2 kT/m): Alexander, Garcia & Alder, Phys. Fluids 10,
-    1540 (1998); Hadjiconstantinou, Phys. Fluids 12, 2634 (2000); Garcia & Wagner, Phys. Fluids 12, 2621
-    (2000). For discs the first term is pi/24 (w/l)^2, by the same argument, and the second equals the term
-    for spheres, an estimate. An axis with one cell between periodic faces has no profile to distort.
+    The viscosity is too high. The error is a (w/l)^2 + b (c dt/l)^2, with a of `CELL_VISCOSITY` and b of
+    `STEP_COEFFICIENTS`, where w is the side of a cell, l the mean free path and c = sqrt(2 kT/m). For discs b
+    is the value for spheres, an estimate. An axis with one cell between periodic faces has no profile to
+    distort.
     """
     if not gas_rates.path < math.inf:
         return 0.0
@@ -417,26 +415,26 @@ def predicted_error(cells: tuple[int, ...], step: float, scene: Scene, gas_rates
     flat = [n == 1 and around for n, around in zip(cells, scene.container.periodic, strict=True)]
     width = max((float(w) for w, is_flat in zip(widths, flat, strict=True) if not is_flat), default=0.0)
     return (
-        _VISCOSITY[d] * (width / gas_rates.path) ** 2
-        + _VISCOSITY_IN_TIME * _thermal_step(step, d, gas_rates) ** 2
+        CELL_VISCOSITY[d] * (width / gas_rates.path) ** 2
+        + STEP_COEFFICIENTS["viscosity"] * _thermal_step(step, d, gas_rates) ** 2
     )
 
 
 def diffusion_error(step: float, scene: Scene, gas_rates: Rates) -> float:
-    """Return the relative error of the diffusion coefficient due to a step, which is positive.
+    """Return the relative error of the diffusion coefficient due to a step; it is positive.
 
-    For spheres the error is 4/(27 pi) (c dt/l)^2, see `predicted_error`. The same value is an estimate for
-    discs. Cells have no effect.
+    For spheres the error is b (c dt/l)^2, see `predicted_error`. The same value is an estimate for discs.
+    Cells have no effect.
     """
     return (
-        _DIFFUSION_IN_TIME * _thermal_step(step, scene.dimension, gas_rates) ** 2
+        STEP_COEFFICIENTS["diffusion"] * _thermal_step(step, scene.dimension, gas_rates) ** 2
         if gas_rates.path < math.inf
         else 0.0
     )
 
 
 def lost_collisions(engine: DSMC, cells: tuple[int, ...], scene: Scene) -> float:
-    """Bound the fraction of collisions that the Enskog model loses; 0 in a single cell."""
+    """Bound the fraction of collisions that the Enskog model misses; 0 for a single cell."""
     number = math.prod(cells)
     return CELL_LOSS * number / scene.count if engine.model == "enskog" and number > 1 else 0.0
 
@@ -450,15 +448,15 @@ def _thermal_step(step: float, dimension: int, gas_rates: Rates) -> float:
 def coarse(
     engine: DSMC, cells: tuple[int, ...], step: float, scene: Scene, gas_rates: Rates, crowding: float = 1.0
 ) -> dict[str, str]:
-    """Return warnings, by setting, about prescribed cells and steps coarser than recommended.
+    """Return warnings, by setting, about prescribed cells and steps that are too coarse.
 
-    Each warning names a value that is not too coarse.
+    Each warning recommends a value.
 
-    gas_rates : present rates
+    gas_rates : present collision rates
     crowding : see `cells_for`
     """
     texts = {}
-    fit = recommended_cells(engine.model, scene, gas_rates, crowding * scene.count)
+    fit = recommended_cells(engine.model, scene, gas_rates, crowding * usual_count(scene))
     effect = f"makes the viscosity {100.0 * predicted_error(cells, step, scene, gas_rates):.2g} % too high"
     wide, met = float(widths_of(cells, scene).max()) / gas_rates.path, step * gas_rates.frequency
     if not engine.adapts_cells and wide > WIDEST * (1.0 + 1e-9) and any(map(operator.lt, cells, fit)):

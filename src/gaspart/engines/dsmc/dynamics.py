@@ -12,6 +12,7 @@ from gaspart.engines.dsmc.arrays import TALLY, empty_particles, faces_for, kinds
 from gaspart.engines.dsmc.defaults import FINEST
 from gaspart.engines.dsmc.resolution import EPOCH, HIGHEST, Resolution
 from gaspart.engines.dynamics import check_parts
+from gaspart.engines.features.faces import OpenPart, crowded_error, open_of, reservoirs_of, with_room
 from gaspart.engines.features.law import LawPart, contact_law
 from gaspart.engines.features.part import Part, TallyPart, step_kicks
 from gaspart.engines.features.tallies import ThreadedPerAreaPart, tallied_fluxes
@@ -24,6 +25,7 @@ from gaspart.kernels.dsmc.boltzmann import Stress
 from gaspart.kernels.dsmc.model import kick_all
 from gaspart.kernels.model import Space
 from gaspart.kernels.physics.exact_sum import WIDTH, exact_parts, sum_over_threads
+from gaspart.scene.face_checks import mean_count, refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State, drift_of
@@ -32,7 +34,7 @@ if TYPE_CHECKING:
     from gaspart.engines.dsmc.settings import DSMC
 
 
-# Limits of the scenes that the DSMC engine can model.
+# Scenes that the DSMC engine supports.
 
 
 MOST_PARTICLES = 2**32 - 1
@@ -43,25 +45,31 @@ _OVERSIZED = (
 
 
 def check_scene(scene: Scene, state: State) -> None:
-    """Raise SceneError for features that this engine does not model, or for too many particles."""
+    """Raise SceneError for particles that this engine does not model, or for too many of them."""
     if oversized_particles(state).any():
         raise SceneError("radius", scene.largest_radius, _OVERSIZED)
     if state.count > MOST_PARTICLES:
         raise SceneError("count", state.count, f"the DSMC engine takes {MOST_PARTICLES} particles at most")
+    if (mean := mean_count(scene)) > scene.capacity:
+        rule = f"lets in {mean:.3g} particles of an ideal gas, of which {scene.capacity} fit"
+        refuse_open(scene, f'{rule}: a reservoir of this density needs the "event" engine')
 
 
-def check_made(counts: np.ndarray, time: float) -> None:
-    """Raise SimulationError for steps that could not be finished.
+def check_made(counts: np.ndarray, time: float, most: int) -> None:
+    """Raise SimulationError if steps could not be completed.
 
     counts : see `kernels.dsmc.model`
+    most : greatest number of particles
     """
-    from gaspart.kernels.dsmc.model import FAR, UNFINISHED
+    from gaspart.kernels.dsmc.model import CROWDED, FAR, UNFINISHED
 
     if counts[:, UNFINISHED].any():
         raise SimulationError(
             f"at time {time:g} a particle has met faces of the container more than 2^24 times in a step,"
             " which is not finished: give a shorter time_step"
         )
+    if counts[:, CROWDED].any():
+        raise crowded_error(time, most)
     if counts[:, FAR].any():
         raise SimulationError(
             f"at time {time:g} a particle has crossed the container 2^31 times along a periodic axis,"
@@ -69,11 +77,11 @@ def check_made(counts: np.ndarray, time: float) -> None:
         )
 
 
-# Optional tallies of the DSMC engine. Threads add to them, exactly.
+# Optional tallies of the DSMC engine. Threads add to them without rounding errors.
 
 
 class StressPart(TallyPart):
-    """Stress tensor and heat flux, relative to the centre of mass at time 0."""
+    """Stress tensor and heat flux relative to the initial velocity of the centre of mass."""
 
     kernel: Stress
 
@@ -85,11 +93,11 @@ class StressPart(TallyPart):
         super().__init__("stress", kernel, {}, {"stress": sums})
 
     def read(self, clock: float) -> np.ndarray:
-        """Return the sums (2 d^2 + d,) of stress tensor, its collisional part and heat flux."""
+        """Return the sums (2 d^2 + d,) of stress tensor, collisional part and heat flux."""
         return exact_parts(self.kernel.sums)[:, 0]
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the sums by the fields of `Tally`."""
+        """Return the sums under the names of fields of `Tally`."""
         return tallied_fluxes(self.read(clock), self.kernel.drift)
 
 
@@ -103,18 +111,18 @@ class WallShearPart(Part):
         super().__init__({}, sums={"shear": shear})
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the momentum by the field of `Tally`."""
+        """Return the momentum under the name of its field of `Tally`."""
         return {"wall_shear": exact_parts(self.sums["shear"])[..., 0]}
 
 
 PARTS = {"stress": StressPart}
-"""Classes of the parts of optional tallies, by name."""
+"""Classes of the parts for optional tallies, by name."""
 
 
 def tally_parts(
     tallies: Iterable[OptionalTally], scene: Scene, state: State, threads: int
 ) -> list[TallyPart]:
-    """Return the parts of optional tallies.
+    """Return the parts for optional tallies.
 
     state : state at time 0
     """
@@ -122,15 +130,15 @@ def tally_parts(
 
 
 _WHOLE = 2**FINEST
-"""Number of parts of a step in which the position within it is counted."""
+"""Number of subdivisions of a step that count the position within the step."""
 
 
 class DsmcDynamics(SteppedDynamics):
-    """Dynamics of a scene. Its time is a whole number of steps.
+    """Dynamics of a scene under the DSMC engine. Its time is an integer number of steps.
 
-    A step may be made in parts, and cells may become narrower: see `defaults` and `resolution`.
+    A step may be divided into parts, and cells may become narrower: see `defaults` and `resolution`.
 
-    time_step : length of a step, prescribed or chosen
+    time_step : length of a step, prescribed or chosen by the engine
     """
 
     numbers = ("steps", "since", "place_in_step", "clock_since")
@@ -145,24 +153,32 @@ class DsmcDynamics(SteppedDynamics):
     ) -> None:
         engine.check_features(scene)
         check_scene(scene, state)
-        self._resolution = Resolution(engine, scene, state, len(kinds_of(state)[0]))
+        state = with_room(scene, state)
+        self._open = open_of(scene, state)
+        self._reservoirs = reservoirs_of(scene, seed, self._open) if self._open else None
+        self._resolution = Resolution(engine, scene, state, len(kinds_of(state)[0]), self._open)
         super().__init__(scene, state, self._resolution.step, engine.threads)
         self._particles = empty_particles(state)
         self._workspace = workspace_for(engine, scene, state, self.time_step, seed)
         self._space = Space(scene.container.lengths, scene.container.periodic, self._workspace.margin)
         law = contact_law(scene, state)
-        self._faces, self._law = faces_for(scene, engine.threads), law_for(law)
+        self._faces, self._law = faces_for(scene, engine.threads, self._open), law_for(law)
         self._kicks = step_kicks(scene, self.time_step, seed)
         parts = (
             LawPart(law) if law else None,
             self._kicks,
             WallShearPart(self._faces.shear) if self._faces and self._faces.shear is not None else None,
             ThreadedPerAreaPart(self._workspace.per_area, _per_area) if scene.has_unequal_areas else None,
+            OpenPart(scene, self._open, self._reservoirs) if self._open else None,
         )
         optional = tally_parts(tallies, scene, state, engine.threads)
         self._parts = [*(part for part in parts if part), *optional]
         self._optional = {part.name: part.kernel for part in optional}
-        self._place(np.arange(state.count), state.positions, state.velocities, state.images)
+        for part in self._parts:
+            part.set_clock(0.0)
+        middle = 0.5 * np.array(scene.container.lengths)  # where slots without a particle are at rest
+        positions = np.where(np.isnan(state.positions), middle, state.positions)
+        self._place(np.arange(state.count), positions, state.velocities, state.images)
         self._place_in_step = self._clock_since = 0
         self._look()
 
@@ -174,7 +190,10 @@ class DsmcDynamics(SteppedDynamics):
     def _look(self) -> None:
         """Adapt the cells to the present density of the gas."""
         if self._resolution.crowds:
-            self._resolution.look(self._positions.T, self.time)
+            positions = self._positions.T
+            if self._open:
+                positions = positions[self._open.present[self._slots] > 0]
+            self._resolution.look(positions, self.time)
 
     def _place(
         self, slots: np.ndarray, positions: np.ndarray, velocities: np.ndarray, images: np.ndarray
@@ -209,7 +228,7 @@ class DsmcDynamics(SteppedDynamics):
         return self._steps + self._place_in_step / _WHOLE
 
     def _advance_to(self, step: int) -> None:
-        """Advance to a step. Raises SimulationError if the particles become too fast for a step."""
+        """Advance to a step. Raises SimulationError if the particles become too fast for any step."""
         while self._steps < step:
             epoch = self._steps - self._steps % EPOCH + EPOCH
             self._make(min(step, epoch) if self._resolution.crowds else step)
@@ -218,7 +237,7 @@ class DsmcDynamics(SteppedDynamics):
         self._resolution.warn_of_speed(self.time)
 
     def _make(self, stop: int) -> None:
-        """Perform all steps up to one."""
+        """Perform all steps up to a given one."""
         while self._steps < stop:
             level = self._resolution.level(self._particles, self._place_in_step, self.time)
             part, at = _WHOLE >> level, self._steps * _WHOLE + self._place_in_step
@@ -229,19 +248,19 @@ class DsmcDynamics(SteppedDynamics):
             self._steps, self._place_in_step = divmod(at, _WHOLE)
             if self._kicks is not None and (kick := self._kicks.due(at / _WHOLE, 0.5**level)):
                 kick_all(self._particles, self._workspace, *kick, self._kicks.given_terms)
-            check_made(self._workspace.counts, self.time)
+            check_made(self._workspace.counts, self.time, self._scene.capacity)
 
     def _run(self, level: int, number: int) -> int:
-        """Run the kernel for some parts of a step; return the number of completed parts.
+        """Run the kernel for some parts of a step, and return the number of completed parts.
 
-        level : level of the parts
+        level : level of the division of the step
         """
         now = self._resolution
         pace = now.pace and now.pace._replace(level=level)
         workspace = self._workspace._replace(dt=math.ldexp(self.time_step, -level))
         context = layout.ThreadContext(self._space, workspace, 0)
         stress = self._optional.get("stress")
-        options = self._scene.gravity, self._faces, self._law, now.dense, stress, pace
+        options = (self._scene.gravity, self._faces, self._law, now.dense, stress, pace, self._reservoirs)
         return loop.run_steps(self._particles, now.grid, context, number, self._threads, options)
 
     def reset_tally(self) -> None:
@@ -268,7 +287,7 @@ class DsmcDynamics(SteppedDynamics):
         return sum_over_threads(sums) if sums.shape[-1] == WIDTH else super()._sum_threads(sums)
 
     def _counts(self) -> dict[str, Any]:
-        """Return the counts, with the number of steps that were made in parts."""
+        """Return the counts, including the number of divided steps."""
         workspace, counts = self._workspace, self._workspace.counts.sum(axis=0)
         return {
             "collisions": int(counts[layout.COLLISIONS]),
@@ -284,13 +303,13 @@ class DsmcDynamics(SteppedDynamics):
         return {**super()._arrays(), "clock": self._workspace.clock}
 
     def _checkpoint_data(self) -> dict[str, Any]:
-        """Return the data of a checkpoint, with the level of density and a dense gas's fields."""
+        """Return the data of a checkpoint, with the density level and a dense gas's fields."""
         dense = self._resolution.dense
         fields = {"fields": dense.fields} if dense else {}
         return {**super()._checkpoint_data(), "crowded": self._resolution.crowded, **fields}
 
     def _required_arrays(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """Return the data needed from a checkpoint, with fields for its level of density."""
+        """Return the data required from a checkpoint, with fields for its density level."""
         check_parts(checkpoint, {"crowded": np.array(0)})
         crowded = int(checkpoint["crowded"])
         if not 0 <= crowded <= HIGHEST:
@@ -303,7 +322,7 @@ class DsmcDynamics(SteppedDynamics):
         return required
 
     def _place_again(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Place the particles in cells for the density of the checkpoint."""
+        """Put the particles into cells for the density level of the checkpoint."""
         resolution, crowded = self._resolution, int(checkpoint["crowded"])
         if crowded != resolution.crowded:
             resolution.set(crowded)
@@ -313,5 +332,5 @@ class DsmcDynamics(SteppedDynamics):
 
 
 def _per_area(sums: np.ndarray) -> np.ndarray:
-    """Return the values of the sums per accessible area."""
+    """Return the sums divided by the accessible area."""
     return exact_parts(sums)[..., 0]

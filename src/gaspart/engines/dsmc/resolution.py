@@ -1,4 +1,4 @@
-"""Cells and lengths of steps of a run, which adapt to the gas."""
+"""Cells and steps of a run, which are adapted to the gas."""
 
 from __future__ import annotations
 
@@ -24,9 +24,11 @@ from gaspart.engines.dsmc.defaults import (
     recommended_cells,
     step_for,
     too_fast,
+    usual_count,
 )
 from gaspart.kernels.dsmc.enskog import Dense
 from gaspart.kernels.dsmc.model import Grid, Pace, Particles, fitting_level
+from gaspart.kernels.model import Open
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 
@@ -34,43 +36,51 @@ if TYPE_CHECKING:
     from gaspart.engines.dsmc.settings import DSMC
 
 
-# Density of a gas around its particles, relative to the mean density, which its cells must fit.
+# Density around the particles of a gas, relative to the mean density; the cells must resolve it.
 #
-# It is the mean over particles of the density around them, divided by the density of the container: the
-# number of pairs in cells divided by the number in a uniform gas. It is found at the start and after every
-# `EPOCH` steps, counted from time 0, so that it does not depend on where a run is split or sampled.
+# It is the density around a particle, averaged over particles and divided by the mean density of the
+# container. It is computed as the number of pairs in cells divided by the number in a uniform gas. It is
+# determined at the start and after every `EPOCH` steps, counted from time 0. So it does not depend on where a
+# run is split or sampled.
 
 
 EPOCH = 64
 """Number of steps between two measurements of the density."""
 HIGHEST = 6
-"""Highest level of the density, 2^level times the mean: more cells would be too many for the particles."""
+"""Largest density level. The density is 2^level times the mean; a larger level would need too many cells for
+the particles.
+"""
 _CHANGED = 0.75
-"""Deviation of the density, in levels, from which the level changes."""
+"""Difference between the density and the present level, in levels, at which the level changes."""
 
 
 def may_crowd(scene: Scene) -> bool:
-    """Return True if the density can become other than uniform."""
-    return scene.count > 1 and (
-        bool(scene.gravity and any(scene.gravity)) or bool(scene.faces) or not spreads(scene)
+    """Return True if the density can become nonuniform."""
+    return scene.is_open or (
+        scene.count > 1
+        and (bool(scene.gravity and any(scene.gravity)) or bool(scene.faces) or not spreads(scene))
     )
 
 
 def crowding(positions: np.ndarray, cells: tuple[int, ...], scene: Scene) -> float:
-    """Return the relative density around particles at these positions (N, d).
+    """Return the relative density around particles at positions (N, d).
 
-    The value is computed from the pairs in each of some cells, and is 1 in a uniform gas.
+    It is computed from the numbers of pairs in some cells, and is 1 in a uniform gas of the usual number of
+    particles.
     """
     lower, upper = accessible(scene)
     coordinates = (positions - lower) / (upper - lower) * cells
     at = np.clip(coordinates.astype(np.int64), 0, np.array(cells) - 1)
     counts = np.bincount(np.ravel_multi_index(tuple(at.T), cells)).astype(float)
     number = len(positions)
-    return float((counts * (counts - 1.0)).sum()) * math.prod(cells) / (number * (number - 1.0))
+    if number < 2:
+        return 0.0
+    usual = usual_count(scene) if scene.is_open else number
+    return float((counts * (counts - 1.0)).sum()) * math.prod(cells) / (usual * (number - 1.0))
 
 
 def next_level(level: int, times: float) -> int:
-    """Return the new level of a gas with a relative density of `times`.
+    """Return the new level for a gas with the relative density `times`.
 
     level : present level
     """
@@ -79,21 +89,24 @@ def next_level(level: int, times: float) -> int:
 
 
 class Resolution:
-    """Present cells and lengths of steps of a run.
+    """Present cells and step lengths of a run.
 
-    Making it raises SceneError for settings that do not fit the scene.
+    The constructor raises SceneError for settings that do not fit the scene.
 
     Attributes
     ----------
     step : length of a step
-    cells : (d,), number of cells along each axis
-    crowded : level; the relative density around the particles is 2^crowded
-    crowds : whether that can change
-    grid, dense, pace : forms for the kernels; `dense` for a dense gas, `pace` where steps follow the speeds
+    cells : number of cells along each axis, shape (d,)
+    crowded : density level; the relative density around the particles is 2^crowded
+    crowds : True if the density level can change
+    grid, dense, pace : arrays for the kernels; `dense` for a dense gas, `pace` if steps follow the speeds
     """
 
-    def __init__(self, engine: DSMC, scene: Scene, state: State, kinds: int) -> None:
+    def __init__(
+        self, engine: DSMC, scene: Scene, state: State, kinds: int, opened: Open | None = None
+    ) -> None:
         self._engine, self._scene, self._state, self._kinds = engine, scene, state, kinds
+        self._present = opened.present if opened else None
         self._found = rates(scene, engine.model == "enskog")
         self.step = step_for(engine, scene, self._found)
         check_step(reach_of(scene, self._found.path), self.step, self._found)
@@ -104,11 +117,11 @@ class Resolution:
         self._warn(self._found, "")
 
     def cells_of(self, crowded: int) -> tuple[int, ...]:
-        """Return the number of cells along each axis (d,) for a level of density."""
+        """Return the number of cells along each axis (d,) for a density level."""
         return cells_for(self._engine, self._scene, self._found, 2.0**crowded)
 
     def set(self, crowded: int) -> None:
-        """Make the cells, and find the lengths of steps, for a level of density."""
+        """Set the cells and the step lengths for a density level."""
         engine, scene, state = self._engine, self._scene, self._state
         self.crowded, self.cells = crowded, self.cells_of(crowded)
         grid = grid_for(scene, state, self.cells, engine.threads)
@@ -121,13 +134,13 @@ class Resolution:
         self._reach = reach_of(scene, self._found.at_density(2.0**crowded).path)
         self.pace: Pace | None = None
         if may_speed_up(scene) or is_hotter(state, self._found):
-            self.pace = pace_for(scene, self._reach, self.step, engine.adapts_steps)
+            self.pace = pace_for(scene, self._reach, self.step, engine.adapts_steps, self._present)
 
     def look(self, positions: np.ndarray, time: float) -> None:
-        """Adapt the cells to the density of particles at these positions (N, d)."""
+        """Adapt the cells to the density around particles at positions (N, d)."""
         scene, times = self._scene, 2.0**self.crowded
         cells = recommended_cells(
-            self._engine.model, scene, self._found.at_density(times), times * scene.count
+            self._engine.model, scene, self._found.at_density(times), times * usual_count(scene)
         )
         crowded = next_level(self.crowded, crowding(positions, cells, scene))
         if crowded != self.crowded:
@@ -136,12 +149,12 @@ class Resolution:
             self._warn(gas_rates, f" where most particles are at time {time:g}")
 
     def level(self, particles: Particles, position: int, time: float) -> int:
-        """Return the level of the next part of a step.
+        """Return the level for the next part of a step.
 
-        The result is the level for the particles, or a higher level if the completed parts are not a whole
-        number of its parts. Raises SimulationError if no level fits.
+        It is the level for the speeds of the particles. It is higher if the completed fraction of the step is
+        not a multiple of the part. Raises SimulationError if the particles are too fast for every level.
 
-        position : position in the step, in parts of the finest level
+        position : position within the step, in parts of the largest level
         """
         if self.pace is None:
             return 0
@@ -151,16 +164,16 @@ class Resolution:
         return max(level, 0 if position == 0 else FINEST + 1 - (position & -position).bit_length())
 
     def warn_of_speed(self, time: float) -> None:
-        """Warn of a step that is too long for the highest mean speed so far."""
+        """Warn if a step is too long for the highest mean speed so far."""
         if self.pace is not None:
             speed = float(self.pace.fastest[0])
             gas_rates = Rates(speed / self._reach.path, speed, self._reach.path)
             self._warn(gas_rates, f" by time {time:g}")
 
     def _warn(self, gas_rates: Rates, when: str) -> None:
-        """Warn once of each prescribed setting that is coarser than recommended.
+        """Warn once about each prescribed setting that is coarser than recommended.
 
-        when : words for the time
+        when : description of the time in the warning
         """
         texts = coarse(self._engine, self.cells, self.step, self._scene, gas_rates, 2.0**self.crowded)
         for key, text in texts.items():

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from gaspart.engines.engine import Engine, register
 from gaspart.errors.guidance import with_guidance
 from gaspart.keys import choice, count, declare, per_side, positive
+from gaspart.scene.face_checks import refuse_open
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.dynamics import DsmcDynamics
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from gaspart.state.state import State
 
 MODELS = ("boltzmann", "enskog")
+_DILUTE = 'needs the "event" engine, or the "boltzmann" model of this one'
 ADAPTED = ("nothing", "steps", "cells", "both")
 
 
@@ -28,8 +30,8 @@ ADAPTED = ("nothing", "steps", "cells", "both")
 class DSMC(Engine):
     """Direct simulation Monte Carlo engine: collision partners are drawn at random within a cell.
 
-    Each step moves all particles freely and then collides pairs of a cell. The result has the same bits for
-    any number of threads.
+    In each step all particles move freely, and then pairs in the same cell collide. The result is bitwise
+    identical for any number of threads.
 
     Parameters
     ----------
@@ -38,11 +40,11 @@ class DSMC(Engine):
     cells_per_side : int or (d,) sequence of int, optional
         Number of cells along each axis. Default: cells a third of a mean free path wide.
     model : {"boltzmann", "enskog"}, default "boltzmann"
-        Collision model: a dilute gas [1]_ [2]_, or a dense gas [3]_, in which partners are a diameter apart
-        and collide more often the denser the gas.
+        Collision model: a dilute gas [1]_ [2]_, or a dense gas [3]_. In the dense gas, collision partners are
+        at a distance of one diameter, and the collision rate is enhanced by the contact value.
     adapt : {"nothing", "steps", "cells", "both"}, optional
-        Settings that adapt to the gas where speeds or densities change: steps, which are divided, or cells.
-        Default: all settings that are not prescribed.
+        Settings that the engine adapts during a run: steps are divided if speeds rise, and cells become
+        narrower if particles concentrate. Default: all settings that are not prescribed.
     threads : int, default 1
         Number of threads that share the work.
 
@@ -103,10 +105,10 @@ class DSMC(Engine):
     title: ClassVar[str] = "DSMC"
     neutral_settings: ClassVar[tuple[str, ...]] = ("threads",)
     forbids_overlap: ClassVar[bool] = False
-    tallies: ClassVar[frozenset[str]] = frozenset(("stress", "wall_shear", "per_area"))
+    tallies: ClassVar[frozenset[str]] = frozenset(("stress", "wall_shear", "per_area", "entries"))
     models: ClassVar[frozenset[str]] = frozenset(
         ("gravity", "restitution", "roughness", "viscoelasticity", "thermostat")
-    ) | {"centres_to_walls", "thermal", "sliding", "accommodation", "ramp"}
+    ) | {"centres_to_walls", "thermal", "sliding", "accommodation", "ramp", "open"}
     counters: ClassVar[tuple[str, ...]] = ("steps",)
     timed_at: ClassVar[tuple[float, float]] = (0.01, 1.0)
     advised: ClassVar[tuple[str, ...]] = ("model",)
@@ -125,7 +127,7 @@ class DSMC(Engine):
 
     @property
     def adapts_steps(self) -> bool:
-        """True if steps are divided where speeds rise.
+        """True if steps are divided when speeds rise.
 
         Examples
         --------
@@ -137,7 +139,7 @@ class DSMC(Engine):
 
     @property
     def adapts_cells(self) -> bool:
-        """True if cells become narrower where particles gather.
+        """True if cells become narrower when particles concentrate.
 
         Examples
         --------
@@ -149,7 +151,7 @@ class DSMC(Engine):
 
     @property
     def quantum(self) -> float | None:
-        """Length of a step, once it is known.
+        """Length of a step, if it is known.
 
         Examples
         --------
@@ -159,6 +161,12 @@ class DSMC(Engine):
         """
         return self.time_step
 
+    def check_features(self, scene: Scene) -> None:
+        """Raise SceneError for features of a scene that the engine with this model does not model."""
+        super().check_features(scene)
+        if self.model == "enskog":
+            refuse_open(scene, f"{_DILUTE}: the particles of its reservoirs have no excluded volume")
+
     def for_scene(self, scene: Scene, interval: float | None = None) -> DSMC:
         """Return a copy with cells and time step chosen for a scene.
 
@@ -167,7 +175,7 @@ class DSMC(Engine):
         scene : Scene
             The scene.
         interval : float, [time], optional
-            Time that becomes a whole number of steps.
+            Time interval that must be an integer number of steps.
 
         Returns
         -------
@@ -197,7 +205,7 @@ class DSMC(Engine):
         return self._with(time_step=step, cells_per_side=cells, adapts=(self.adapts_steps, self.adapts_cells))
 
     def with_step(self, step: float) -> DSMC:
-        """Return a copy with this fixed time step, which is not divided.
+        """Return a copy with this fixed time step.
 
         Parameters
         ----------
@@ -220,7 +228,7 @@ class DSMC(Engine):
     def _with(self, adapts: tuple[bool, bool], **settings: Any) -> DSMC:
         """Return a copy with these settings.
 
-        adapts : True if steps and cells adapt; `adapt` is set only if this does not follow from the settings
+        adapts : True if steps and cells adapt; set `adapt` only if this does not follow from the settings
         """
         plain = replace(self, **settings, adapt=None)
         if adapts == (plain.adapts_steps, plain.adapts_cells):
@@ -238,7 +246,7 @@ class DSMC(Engine):
         Returns
         -------
         dict of str to float
-            ``viscosity_error``: the viscosity is too high by this fraction.
+            ``viscosity_error``: relative excess of the viscosity.
 
         Raises
         ------
@@ -297,8 +305,8 @@ class DSMC(Engine):
         Returns
         -------
         float, [1]
-            The bias of cells and steps, by the literature, plus the fraction of collisions that the Enskog
-            model loses.
+            The bias of cells and steps, from the literature, plus the fraction of collisions that the Enskog
+            model misses.
 
         Examples
         --------
@@ -320,7 +328,7 @@ class DSMC(Engine):
 
     @classmethod
     def variants(cls) -> tuple[DSMC, ...]:
-        """Return the engines among which advice chooses: one for each model.
+        """Return one engine for each model, as candidates of a plan.
 
         Returns
         -------
@@ -351,13 +359,13 @@ class DSMC(Engine):
         Raises
         ------
         SceneError
-            If cells or steps are too coarse for the local conditions, or the gas is too dense for the Enskog
-            model.
+            If cells or steps are too coarse for the local conditions, or if the gas is too dense for the
+            Enskog model.
 
         Examples
         --------
         >>> import gaspart as gp
-        >>> from gaspart.accuracy.conditions import even_conditions
+        >>> from gaspart.theory.conditions import even_conditions
         >>> from gaspart.engines.engine import AccuracyRequest
         >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
         >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
@@ -371,7 +379,7 @@ class DSMC(Engine):
 
     @property
     def timed_as(self) -> str:
-        """Name in the table of costs, with the model of a dense gas.
+        """Name in the table of costs; the Enskog model has its own name.
 
         Examples
         --------
@@ -435,7 +443,7 @@ class DSMC(Engine):
 
     @property
     def limitations(self) -> str:
-        """Features that the model lacks, and that every model lacks that draws partners.
+        """Limitations of the model, and of all models that draw collision partners at random.
 
         Examples
         --------
@@ -447,7 +455,7 @@ class DSMC(Engine):
         return f"{lacks[self.model]}, positions of pairs"
 
     def describe(self) -> str:
-        """Return its name with its model, and its step once it is known.
+        """Return the name with the model, and the step if it is known.
 
         Returns
         -------
@@ -464,7 +472,7 @@ class DSMC(Engine):
         return f"{self.name}, model {self.model}{step}"
 
     def notes(self, scene: Scene, observable: str, paths: bool) -> dict[str, str]:
-        """Return further remarks of advice on the engine.
+        """Return remarks about the engine for a plan.
 
         Parameters
         ----------
@@ -478,8 +486,8 @@ class DSMC(Engine):
         Returns
         -------
         dict of str to str
-            Remarks by title: the search for pairs, and the effect of steps longer than the default, for which
-            the run prints a warning.
+            Remarks by title: the method of finding pairs, and the effect of steps longer than the default
+            (the run prints a warning).
 
         Examples
         --------
@@ -497,7 +505,7 @@ class DSMC(Engine):
         return remarks
 
     def variant(self, scene: Scene) -> str:
-        """Return the name of its compiled kernels for a scene.
+        """Return the name of the compiled kernel variant for a scene.
 
         Parameters
         ----------
@@ -507,7 +515,8 @@ class DSMC(Engine):
         Returns
         -------
         str
-            The model, whether steps follow the speeds, and whether threads share the work.
+            The name depends on the model, on whether steps follow the speeds, and on whether there are
+            several threads.
 
         Examples
         --------
@@ -522,7 +531,7 @@ class DSMC(Engine):
         return self.model + paced + ("-threads" if self.threads > 1 else "")
 
     def for_small_scene(self, scene: Scene) -> DSMC:
-        """Return settings with which a scene of few particles needs the same kernels.
+        """Return settings with which a scene of few particles uses the same kernels.
 
         Parameters
         ----------
@@ -562,12 +571,12 @@ class DSMC(Engine):
         seed : int or tuple of int, default 0
             Seed of collisions and thermal walls.
         tallies : sequence of OptionalTally, optional
-            Optional tallies.
+            Optional tallies to accumulate.
 
         Returns
         -------
         DsmcDynamics
-            The scene in progress.
+            The dynamics of the scene.
 
         Raises
         ------

@@ -1,1 +1,1 @@
-"""Event-driven engine: from one event to the next (Spencer 2021 and 2022)."""
+"""Event-driven engine, which advances from event to event (Spencer 2021 and 2022)."""

@@ -95,9 +95,9 @@ def particles_of(state: State, boxes: Boxes) -> Particles:
 def event_model(
     scene: Scene, state: State, seed: int | tuple[int, ...], boxes: Boxes, largest: float
 ) -> tuple[Model, float]:
-    """Return the model of a scene, and its unit of mass.
+    """Return the kernel model of a scene, and its unit of mass.
 
-    largest : largest radius of the particles in boxes
+    largest : largest radius of the particles that are sorted into boxes
     """
     law = contact_law(scene, state)
     law = law._replace(duration=contact_duration(scene, law)) if law else None
@@ -122,7 +122,7 @@ def event_model(
 def event_parts(
     scene: Scene, state: State, seed: int | tuple[int, ...], model: Model, unit_mass: float
 ) -> list[Part]:
-    """Return the parts of a run, one for each feature of the scene."""
+    """Return the parts of a run, one per feature of the scene."""
     gravity, law, faces, walls = model.gravity, model.law, model.faces, model.walls
     lightest = float(state.masses.min(initial=np.inf))
     parts = (
@@ -144,9 +144,9 @@ def event_parts(
 
 
 def wrap(positions: np.ndarray, images: np.ndarray, space: Space) -> None:
-    """Move particles back that rounding shows beyond a periodic face.
+    """Move particles back that are beyond a periodic face because of rounding.
 
-    They reach this face at the present time.
+    They reach this face exactly at the present time.
     """
     lengths = np.array(space.lengths)
     outside = ((positions < 0.0) | (positions >= lengths)) & space.periodic
@@ -161,9 +161,9 @@ def wrap(positions: np.ndarray, images: np.ndarray, space: Space) -> None:
 
 
 class EventDynamics(Dynamics):
-    """Scene in progress under the event-driven engine.
+    """Running scene under the event-driven engine.
 
-    Clocks count from the start of the current epoch, so that they lose no precision.
+    Times on the clocks are relative to the start of the current epoch, so that they keep their precision.
     """
 
     numbers = ("start", "epoch", "base", "quiet", "clock", "since")
@@ -211,7 +211,7 @@ class EventDynamics(Dynamics):
         self._tally.reset(self.time, self._clock)
 
     def _make_lists(self) -> None:
-        """Make the neighbour lists from their centres."""
+        """Make the neighbour lists from the stored centres."""
         self._boxes = self._boxes._replace(lists=make_lists(self._boxes.lists, self._scene))
 
     def _predict(self) -> None:
@@ -221,15 +221,15 @@ class EventDynamics(Dynamics):
         self._begin(anew=True)
 
     def _begin(self, anew: bool) -> None:
-        """Make the queue; predict all events if `anew` is True, otherwise keep the predictions."""
+        """Make the queue. Predict all events if `anew` is True, otherwise keep the predictions."""
         if self._queue:
-            free = self._model._replace(masses=None, law=None)  # contacts do not matter here
+            free = self._model._replace(masses=None, law=None)  # contacts are not needed here
             scene = self._particles, self._queue, self._boxes, free, self._tally.arrays
             prediction.begin(*scene, self._clock, anew)
 
     @property
     def time(self) -> float:
-        """Time reached."""
+        """Present simulation time."""
         return self._start + self._clock
 
     def advance(
@@ -241,13 +241,13 @@ class EventDynamics(Dynamics):
     ) -> None:
         """Process events up to time `until`, at most `max_events` of them.
 
-        Events are collisions, wall hits, and attempts to enter through open faces. Raises SimulationError,
-        with the state saved, in two cases: if particles collapse, that is, would collide infinitely often in
-        no time; and, in a run that only events end, if nothing happens in a thousand flights through the
-        container.
+        Events are collisions, wall hits, and attempted entries through open faces. Raises SimulationError,
+        with the state saved, in two cases: if particles collapse, which means infinitely many collisions in a
+        finite time; or if a run that only a number of events ends has no event during a thousand flights
+        through the container.
 
-        max_work : number of events, crossings and predictions of a new epoch after which the call returns,
-            too, at the time reached then; exact within a factor of 2
+        max_work : maximum number of events, box crossings and predictions at the start of an epoch. At this
+            limit, the call returns at the time reached. The limit is exact within a factor of 2.
         """
         remaining, work = (
             np.iinfo(np.int64).max if number is None else number for number in (max_events, max_work)
@@ -284,7 +284,7 @@ class EventDynamics(Dynamics):
                 if not ends_epoch:
                     self._clock = stop
                     return
-                work -= len(self._flights)  # all events are predicted anew
+                work -= len(self._flights)  # all events are predicted again
                 begun -= self._next_epoch(endless=until == np.inf)
             else:
                 self._clock = max(self._clock, last)
@@ -297,7 +297,7 @@ class EventDynamics(Dynamics):
 
     @property
     def _at_rest(self) -> bool:
-        """True if all particles are at rest, for good."""
+        """True if all particles are permanently at rest."""
         return any(part.at_rest for part in self._parts)
 
     def _stay(self, until: float) -> None:
@@ -309,9 +309,9 @@ class EventDynamics(Dynamics):
         self._clock = until - self._start
 
     def _run(self, record: Record | None, limits: tuple[float, int, int]) -> tuple[int, int, int, float]:
-        """Run the kernel; return its reason to stop, its numbers and the last time.
+        """Run the kernel, and return the reason why it stopped, its counts, and the last time.
 
-        The numbers are the counts of processed events and crossings. The time is the time of the last event.
+        The counts are the numbers of processed events and crossings. The time is the time of the last event.
         """
         monitors = Monitors(record, self._collapse.watch)
         scene = self._particles, self._queue, self._boxes, self._model, self._tally.arrays
@@ -320,9 +320,9 @@ class EventDynamics(Dynamics):
     def _next_epoch(self, endless: bool) -> float:
         """Restart the clocks from zero and predict all events again.
 
-        Returns the length of the epoch that has ended.
+        Returns the length of the previous epoch.
 
-        endless : True if only events end the run
+        endless : True if only a number of events ends the run
         """
         length = self._epoch
         check_clocks(self._start, self._epoch)
@@ -344,17 +344,17 @@ class EventDynamics(Dynamics):
         return length
 
     def _base_from(self, present: float) -> float:
-        """Return the length of an epoch without the factor of `Epochs.quiet`.
+        """Return the length of an epoch, without the extension by `Epochs.quiet`.
 
-        present : this length for the last epoch
+        present : the same length for the previous epoch
         """
         stored = sum(part.stored for part in self._parts)
         return self._epochs.base(self._flights["velocity"], stored, present)
 
     def _renew_epoch(self) -> float:
-        """Begin shorter epochs if particles, all at the present time, have become fast enough.
+        """Start shorter epochs if the particles, all at the present time, have become fast enough.
 
-        The epoch of a gas at rest has no end. Returns by how much later the clocks have been started.
+        In a gas at rest an epoch has no end. Returns the amount by which the start of the clocks has moved.
         """
         base, time = self._base_from(self._base), self.time
         if base >= self._base:
@@ -372,7 +372,7 @@ class EventDynamics(Dynamics):
         return later
 
     def _begin_epoch(self, length: float) -> None:
-        """Set the length of the present epoch, and all times too short for the clocks."""
+        """Set the length of the present epoch, and all times that the clocks cannot resolve."""
         self._epoch = length
         for part in self._parts:
             self._model = part.begin_epoch(length, self._start, self._model)
@@ -384,7 +384,7 @@ class EventDynamics(Dynamics):
 
     @property
     def dissipated(self) -> float:
-        """Energy taken by contacts and thermal walls since time 0, minus the energy of kicks."""
+        """Energy removed by contacts and thermal walls since time 0, minus the energy added by kicks."""
         return self._tally.dissipated
 
     @property
@@ -416,7 +416,7 @@ class EventDynamics(Dynamics):
 
     @property
     def _since(self) -> float:
-        """Time of the last reset of the tally."""
+        """Time of the last reset of the counters."""
         return self._tally.since
 
     @_since.setter
@@ -424,7 +424,7 @@ class EventDynamics(Dynamics):
         self._tally.since = time
 
     def _arrays(self) -> dict[str, np.ndarray]:
-        """Return the arrays, by name, that the kernels change and that cannot be made again."""
+        """Return the arrays, by name, that the kernels change and that cannot be recomputed."""
         arrays = {**self._particles._asdict(), **self._tally.changing, **super()._arrays()}
         arrays |= {"event_count": self._event_count, "lost": self._tally.lost}
         if self._boxes.lists:
@@ -432,17 +432,17 @@ class EventDynamics(Dynamics):
         return arrays
 
     def _checkpoint_data(self) -> dict[str, Any]:
-        """Return particles at their own clocks, predictions, counts, and their search.
+        """Return particles at their own times, predictions, counters, and the search.
 
-        Of neighbour lists only their size, `room`, is stored. If it does not suffice, all lists are made
-        again, which counters of work show.
+        For neighbour lists, only their capacity `room` is stored. If it does not suffice, all lists are made
+        again; counters of work then differ.
         """
         lists = self._boxes.lists
         room = {"room": (lists.room, lists.per_cell)} if lists else {}
         return {**super()._checkpoint_data(), **self._search_settings(), **room}
 
     def _search_settings(self) -> dict[str, Any]:
-        """Return the search to which predictions and centres of lists belong."""
+        """Return the search settings to which predictions and list centres belong."""
         return {"search": self._search, "boxes_per_side": self._grid.per_side}
 
     def _is_of_this_search(self, checkpoint: dict[str, np.ndarray]) -> bool:
@@ -451,9 +451,9 @@ class EventDynamics(Dynamics):
         )
 
     def _required_arrays(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """Return the arrays needed from a checkpoint: all except the search.
+        """Return the arrays required from a checkpoint, except the arrays of the search.
 
-        The centres of neighbour lists are not needed from a checkpoint of another search.
+        If the checkpoint has another search, the centres of neighbour lists are not required.
         """
         spared = {
             *self._search_settings(),
@@ -462,7 +462,7 @@ class EventDynamics(Dynamics):
         return {key: array for key, array in self.checkpoint().items() if key not in spared}
 
     def _go_on(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Begin the epoch again. If the search has changed, predict all events again."""
+        """Start the epoch again. If the search has changed, all events are predicted again."""
         self._begin_epoch(self._epoch)
         if not self._is_of_this_search(checkpoint):
             self._particles.predictions["box"] = self._grid.coordinates(self._present()["position"])

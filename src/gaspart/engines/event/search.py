@@ -1,4 +1,4 @@
-"""Search of the event-driven engine: the choice by density; neighbour lists for a scene."""
+"""Search of the event-driven engine: choice by density, and neighbour lists for a scene."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ if TYPE_CHECKING:
     from gaspart.kernels.event.neighbour_lists import NeighbourLists
     from gaspart.scene.scene import Scene
 
-_LISTED = {2: 8.0, 3: 15.0}  # particles that a list holds on average: they fill one or two vectors of eight
-_MARGINS = 0.1, 0.65  # limits of a list's margin, in largest diameters
-_MANY = 1 << 15  # particles whose neighbour lists no longer fit into the processor's own cache
-_DENSE = {2: (0.45, 0.55), 3: (0.28, 0.4)}  # packing fractions from which lists are faster: few, many
-_ALIKE = 1.5  # largest ratio of radii: a list of small particles reaches as far as a list of large ones
-_ROOM = {2: 16, 3: 32}  # entries of a list at first
-_SMALLEST, _LARGEST = 1e-12, 1e12  # radii whose squares are numbers in single precision
+_LISTED = {2: 8.0, 3: 15.0}  # mean number of particles in a list: they fill one or two vectors of eight
+_MARGINS = 0.1, 0.65  # limits of the margin of a list, in largest diameters
+_MANY = 1 << 15  # number of particles above which neighbour lists exceed the processor's private cache
+_DENSE = {2: (0.45, 0.55), 3: (0.28, 0.4)}  # lists are faster above: few and many particles
+_ALIKE = 1.5  # maximum ratio of radii, because lists of small particles reach as far as lists of large ones
+_ROOM = {2: 16, 3: 32}  # initial capacity of a list
+_SMALLEST, _LARGEST = 1e-12, 1e12  # radii whose squares are float32 numbers
 
 
 def distances(scene: Scene) -> tuple[float, float]:
-    """Return the distance at which a particle's list is renewed, and the reach of the list.
+    """Return the displacement at which a list is renewed, and the reach of the list.
 
-    The reach is so large that the rounding of centres to single precision hides no contact.
+    The reach includes a margin for the rounding of centres to single precision, so no contact is missed.
     """
     d, diameter, lengths = scene.dimension, 2.0 * scene.largest_radius, scene.container.lengths
     rounding = 16.0 * float(np.finfo(np.float32).eps) * max(lengths)
     holding = (_LISTED[d] + 1.0) * scene.container.volume / (scene.count * ball_volume(d))
     least, most = (share * diameter for share in _MARGINS)
-    # each image of a particle is distinguished from the others, also once both have moved
+    # the images of a particle must remain distinguishable after both particles have moved
     axes = [length for length, periodic in zip(lengths, scene.container.periodic, strict=True) if periodic]
     for length in axes:
         most = min(
@@ -44,7 +44,7 @@ def distances(scene: Scene) -> tuple[float, float]:
 
 
 def obstacle_to_lists(scene: Scene) -> str | None:
-    """Return the reason why a scene cannot be run with neighbour lists, or None."""
+    """Return the reason why a scene does not support neighbour lists, or None."""
     if scene.gravity is not None:
         return "gravity"
     if scene.walls:
@@ -63,10 +63,10 @@ def obstacle_to_lists(scene: Scene) -> str | None:
 
 
 def chosen_search(scene: Scene, search: str, boxes_given: bool) -> str:
-    """Return the search for a scene: "boxes" or "lists" if the engine chooses.
+    """Return the search for a scene; if the engine chooses, "boxes" or "lists".
 
-    Raises SceneError if lists are requested but the scene has a feature that they do not support, and if
-    there are more particles than a search can number.
+    Raises SceneError if lists are requested but a feature of the scene does not support them, and if there
+    are more particles than a search can number.
     """
     if scene.capacity > 1 << NUMBER_BITS:
         raise SceneError(
@@ -87,8 +87,8 @@ def chosen_search(scene: Scene, search: str, boxes_given: bool) -> str:
 def neighbour_lists(scene: Scene, room: int = 0, per_cell: int = 1) -> NeighbourLists:
     """Return empty neighbour lists for a scene.
 
-    room : number of words of each list
-    per_cell : number of pages of a cell, of 8 particles each
+    room : number of words per list
+    per_cell : number of pages per cell, with 8 particles each
     """
     from gaspart.kernels.event.neighbour_lists import empty_neighbour_lists
 

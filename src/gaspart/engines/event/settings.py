@@ -28,22 +28,22 @@ SEARCHES = ("automatic", "boxes", "lists", "direct", "pairs")
 class EventDriven(Engine):
     """Event-driven engine: exact collisions of hard particles, from one event to the next.
 
-    All searches give the same bits. The method is described in [1]_ and [2]_.
+    All searches give bitwise identical results. The method is described in [1]_ and [2]_.
 
     Parameters
     ----------
     search : {"automatic", "boxes", "lists", "direct", "pairs"}, default "automatic"
-        Search for the next event. "boxes": one next event per particle in a queue. "lists": the same with
-        neighbour lists. "automatic": the faster of these two at the density of the scene. "direct": a single
-        box, so that each search tests all particles. "pairs": all pairs before every event ([1]_, section
-        3.1), as a reference.
+        Method of finding the next event. "boxes": a queue with one next event per particle. "lists": the
+        same, with neighbour lists. "automatic": the faster of these two at the density of the scene.
+        "direct": a single box, so that each search tests all particles. "pairs": all pairs before every event
+        ([1]_, section 3.1), as a reference.
     boxes_per_side : int or (d,) sequence of int, optional
         Number of boxes along each axis. Default: 0.5 to 1.5 boxes per particle.
 
     Raises
     ------
     SceneError
-        If a setting is invalid, or if boxes are given for a search without boxes.
+        If a setting is invalid, or if boxes are passed for a search without boxes.
 
     See Also
     --------
@@ -52,10 +52,11 @@ class EventDriven(Engine):
 
     Notes
     -----
-    No box is narrower than the diameter of the largest particle in the boxes. A few oversized particles can
-    be excluded from the boxes. Then every small particle near them tests each of them. By default the largest
-    particles are excluded if this saves a quarter of the particles that a search examines (`state.boxes`).
-    With `boxes_per_side`, the particles wider than a box are excluded; they must be fewer than the others.
+    A box is at least as wide as the diameter of the largest particle in the boxes. A few oversized particles
+    can be excluded from the boxes. Then every small particle near an oversized particle tests it. By default
+    the largest particles are excluded if this reduces the number of particles examined in a search by a
+    quarter (`state.boxes`). With `boxes_per_side`, particles wider than a box are excluded; they must be
+    fewer than the other particles.
 
     References
     ----------
@@ -83,7 +84,7 @@ class EventDriven(Engine):
     tallies: ClassVar[frozenset[str]] = frozenset(TALLIES)
     models: ClassVar[frozenset[str]] = frozenset(FEATURES)
     neutral_settings: ClassVar[tuple[str, ...]] = ("search", "boxes_per_side")
-    first_segment: ClassVar[int] = 256  # events with crossings and predictions
+    first_segment: ClassVar[int] = 256  # events including crossings and predictions
     reference: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
@@ -97,7 +98,7 @@ class EventDriven(Engine):
         return chosen_search(scene, self.search, self.boxes_per_side is not None)
 
     def describe(self) -> str:
-        """Return its name with its precision.
+        """Return the name with the floating-point precision.
 
         Returns
         -------
@@ -113,7 +114,7 @@ class EventDriven(Engine):
         return f"{self.name}, {self.precision}"
 
     def notes(self, scene: Scene, observable: str, paths: bool) -> dict[str, str]:
-        """Return further remarks of advice on the engine.
+        """Return remarks about the engine for a plan.
 
         Parameters
         ----------
@@ -127,7 +128,7 @@ class EventDriven(Engine):
         Returns
         -------
         dict of str to str
-            Remarks by title: the search for pairs.
+            Remarks by title: the method of finding pairs.
 
         Examples
         --------
@@ -139,7 +140,7 @@ class EventDriven(Engine):
         return {"boxes": "automatic, about one per particle"}
 
     def variant(self, scene: Scene) -> str:
-        """Return the name of its compiled kernels for a scene.
+        """Return the name of the compiled kernel variant for a scene.
 
         Parameters
         ----------
@@ -149,7 +150,7 @@ class EventDriven(Engine):
         Returns
         -------
         str
-            Name of the search. It is "boxes" for "direct", too, which has one box.
+            Name of the search. For "direct", which has a single box, it is also "boxes".
 
         Examples
         --------
@@ -162,7 +163,7 @@ class EventDriven(Engine):
         return "boxes" if search == "direct" else search
 
     def for_small_scene(self, scene: Scene) -> EventDriven:
-        """Return settings with which a scene of few particles needs the same kernels.
+        """Return settings with which a scene of few particles uses the same kernels.
 
         Parameters
         ----------
@@ -172,7 +173,7 @@ class EventDriven(Engine):
         Returns
         -------
         EventDriven
-            The engine, with the search for the full scene, and one box if it has boxes.
+            The engine, with the search chosen for the full scene, and with a single box if it uses boxes.
 
         Examples
         --------
@@ -202,17 +203,17 @@ class EventDriven(Engine):
         seed : int or tuple of int, default 0
             Seed of thermal walls and kicks.
         tallies : sequence of OptionalTally, optional
-            Optional tallies.
+            Optional tallies to accumulate.
 
         Returns
         -------
         EventDynamics
-            The scene in progress.
+            The dynamics of the scene.
 
         Raises
         ------
         SceneError
-            If the scene excludes the search.
+            If the scene does not support the search.
 
         Examples
         --------

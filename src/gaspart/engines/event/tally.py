@@ -20,7 +20,7 @@ from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
 from gaspart.state.tally import Tally
 
-_OPTIONAL = kernels.Tally._field_defaults  # entries that a part has
+_OPTIONAL = kernels.Tally._field_defaults  # fields of a part
 
 
 def tally_parts(
@@ -31,22 +31,22 @@ def tally_parts(
     scene: Scene,
     state: State,
 ) -> list[TallyPart]:
-    """Return the parts of optional tallies.
+    """Return the parts for optional tallies.
 
     flights : (N,), particles
-    state : state at time 0
+    state : initial state
     """
     return [PARTS[tally.name](tally, flights, model, unit_mass, scene, state) for tally in tallies]
 
 
 class EventTally:
-    """Counts of a scene in progress, since the last `reset`.
+    """Counters of a running scene since the last `reset`.
 
     Attributes
     ----------
     arrays : arrays to which the kernels add
-    since : time of the reset
-    lost : (2,), net and gross energy taken before the reset, see `dissipated` and `exchanged`
+    since : time of the last reset
+    lost : (2,), net and absolute energy removed before the reset, see `dissipated` and `exchanged`
     """
 
     def __init__(self, scene: Scene, unit_mass: float, parts: Sequence[Part]) -> None:
@@ -56,15 +56,15 @@ class EventTally:
         self.lost = np.zeros(2)
 
     def reset(self, time: float, clock: float) -> None:
-        """Begin to count from zero at a time, and remember the energies taken before.
+        """Reset the counters at a time, and store the energies removed before.
 
-        clock : this time on the clocks of the epoch
+        clock : the same time on the clocks of the epoch
         """
         self.lost = np.array([self.dissipated, self.exchanged])
         self.begin(time, clock)
 
     def begin(self, time: float, clock: float) -> None:
-        """Begin to count from zero, and forget the counts before."""
+        """Reset the counters, and discard all earlier counts."""
         self.arrays = kernels.empty_tally(self._surfaces)._replace(**self._optional)
         for part in self._parts:
             part.reset(clock)
@@ -72,7 +72,7 @@ class EventTally:
 
     @property
     def changing(self) -> dict[str, np.ndarray]:
-        """Arrays by name, without the arrays of parts."""
+        """Changing arrays by name, without the arrays of parts."""
         return {key: array for key, array in self.arrays._asdict().items() if key not in _OPTIONAL}
 
     def read(self, time: float, clock: float) -> Tally:
@@ -96,7 +96,7 @@ class EventTally:
 
     @property
     def dissipated(self) -> float:
-        """Energy taken by contacts and thermal walls since time 0, minus the energy of kicks."""
+        """Energy removed by contacts and thermal walls since time 0, minus the energy added by kicks."""
         losses = self.arrays.sums[kernels.LOSS], self.arrays.wall_energy
         return float(self.lost[0]) + net(*losses) * self._unit_mass - self._given
 
@@ -112,24 +112,24 @@ class EventTally:
         return sum(part.given for part in self._parts)
 
 
-# Epochs of the event-driven engine's clocks, which restart from zero so that they lose no precision.
+# Epochs: the clocks of the event-driven engine restart from zero in each epoch, to keep their precision.
 
 
-_LENGTH = 10  # an epoch of the clocks is some 2^10 times of flight over a diameter
-_AT_REST = 2.0**960  # the epoch of a scene in which nothing moves
+_LENGTH = 10  # an epoch is about 2^10 times the time of flight over a diameter
+_AT_REST = 2.0**960  # epoch length of a scene in which nothing moves
 _RESOLVED = 2.0**-52  # relative resolution of speeds
-_OTHER = 2.0**10  # factor of speeds from which the length of epochs changes
+_OTHER = 2.0**10  # factor by which speeds must change before the epoch length changes
 QUIET = 64
-"""Number of epochs without an event after which epochs are doubled."""
+"""Number of epochs without an event after which the epoch length is doubled."""
 
 
 class Epochs:
-    """Lengths of the epochs of a scene.
+    """Epoch lengths of a scene.
 
-    The speed for times of flight is the rms speed, with the largest gain due to gravity and faces.
+    The speed for times of flight is the rms speed plus the largest gain due to gravity and faces.
 
-    masses : (N,), infinite for fixed particles
-    gained : square of the largest speed that the scene itself gives a particle
+    masses : (N,), masses, infinite for fixed particles
+    gained : square of the largest speed that the scene can give a particle
     """
 
     def __init__(self, scene: Scene, masses: np.ndarray, gained: float) -> None:
@@ -145,31 +145,33 @@ class Epochs:
         return math.sqrt(square + self._gained)
 
     def _equipartition_speed(self, velocities: np.ndarray, stored: float) -> float:
-        """Return the rms speed of particles that share their energy equally.
+        """Return the rms speed after equipartition of the energy.
 
-        The few heavy or spinning particles of a gas at rest give their energy to the others within an epoch.
+        In a gas at rest, a few heavy or spinning particles transfer their energy to the others within an
+        epoch.
 
-        stored : energy of the particles except the energy of flight
+        stored : energy of the particles without translational energy
         """
         if not len(self._masses):
             return 0.0
         squares = (velocities[self._moving] ** 2).sum(axis=1)
-        energy = 0.5 * float((self._masses * squares).sum()) + stored  # not @: BLAS differs by machine
+        energy = 0.5 * float((self._masses * squares).sum()) + stored  # not @: BLAS differs
         return math.sqrt(2.0 * energy / len(self._masses) * float((1.0 / self._masses).mean()))
 
     def base(self, velocities: np.ndarray, stored: float, present: float = 0.0) -> float:
-        """Return the length of an epoch for velocities (N, d) and a `stored` energy.
+        """Return the epoch length for velocities (N, d) and a `stored` energy.
 
-        The stored energy is added to the energy of flight. A length `present` is retained as in `length`.
+        The stored energy is added to the translational energy. The length `present` is kept under the
+        condition of `length`.
         """
         length = self.length(self.speed(velocities), present)
         return min(length, self.length(self._equipartition_speed(velocities, stored), length))
 
     def flights(self, velocities: np.ndarray, length: float) -> float:
-        """Return the number of flights through the container relative to one another in an epoch.
+        """Return the number of relative flights through the container in an epoch.
 
-        The particles have velocities (N, d). The result is 0 if rounding hides their relative motion.
-        Particles that move together do not collide, but do not miss one another either.
+        The particles have velocities (N, d). The result is 0 if the relative motion is below rounding.
+        Particles that move together do not collide, although no collision is missed.
         """
         relative = self.speed(velocities - velocities.mean(axis=0))
         return relative * length / self._across if relative > _RESOLVED * self.speed(velocities) else 0.0
@@ -177,18 +179,18 @@ class Epochs:
     def length(self, speed: float, present: float = 0.0) -> float:
         """Return the time after which clocks restart from zero.
 
-        The length is a power of two, so that it scales with the units. A length `present` is retained until
-        speeds have changed by a factor of 2^10. A cooling gas needs longer epochs, since the work of an epoch
-        does not depend on its length.
+        The length is a power of two, so that results scale exactly with the units. The length `present` is
+        kept until speeds have changed by a factor of 2^10. A cooling gas needs longer epochs, because the
+        cost of an epoch does not depend on its length.
         """
         length = _power_of_two(self._diameter / speed, _LENGTH) if speed > 0.0 else _AT_REST
         return present if present / _OTHER < length < present * _OTHER else length
 
     def quiet(self, speed: float, length: float, number: int) -> float:
-        """Return the length of an epoch after a `number` of epochs without an event.
+        """Return the epoch length after a `number` of epochs without an event.
 
-        The time is twice the last one, up to a time of flight through the container. The clocks are then as
-        precise as the positions.
+        The length is twice the previous one, up to a time of flight through the container. The clocks are
+        then as precise as the positions.
         """
         most = _power_of_two(self._across / speed, 0) if speed > 0.0 else length
         doublings = min(max(number - QUIET, 0), max(0, math.frexp(most)[1] - math.frexp(length)[1]))
@@ -196,27 +198,28 @@ class Epochs:
 
 
 def _power_of_two(time: float, more: int) -> float:
-    """Return the next power of two above a time, times 2^more, but at most `_AT_REST`."""
+    """Return the next power of two above a time, multiplied by 2^more, at most `_AT_REST`."""
     _, exponent = math.frexp(time)
     return min(math.ldexp(1.0, exponent + more), _AT_REST) if time < _AT_REST else _AT_REST
 
 
-# Detection of runs that stall: particles that collide without end at one time, or never.
+# Detection of stalled runs: endless collisions at one time, or no collision at all.
 
 
 MANY = 1 << 18
-"""Number of events in which time must advance, by more than a clock resolves for each."""
-# A run without an end is given up after so many epochs without an event, and as many flights through the
-# container; or, where particles move so evenly together that these take longer, after more epochs.
+"""Number of events during which time must advance by more than the clock resolution of each event."""
+# A run without an end time is stopped after this number of epochs without an event, and as many flights
+# through the container. If particles move almost uniformly, so that flights take longer, it is stopped after
+# more epochs.
 _QUIET, _FLIGHTS, _QUIET_TOGETHER = QUIET + 2000, 1000, 1 << 17
-# More contacts of one particle than these, within so much of an epoch, are taken for a collapse. Where the
-# restitution is constant, intervals between contacts shrink geometrically until rounding lets the particles
-# part, so few of them can be seen. Slow contacts of viscoelastic particles are nearly elastic.
+# More contacts of one particle than this number, within this fraction of an epoch, count as a collapse. For a
+# constant restitution, intervals between contacts shrink geometrically until rounding separates the
+# particles, so only few contacts occur. Slow contacts of viscoelastic particles are nearly elastic.
 _MOST, _INTERVAL = 1000, 2.0**-44
 _INELASTIC_MOST, _INELASTIC_INTERVAL = 12, 2.0**-34
-_MOST_OF_STACK = MANY >> 3  # contacts of an elastic particle at one time that are taken for a stack at rest
-# Elastic particles do not collapse: between two surfaces that meet at an angle a, one of them has pi/a
-# contacts at one time. Gravity lets them touch for ever in a stack.
+_MOST_OF_STACK = MANY >> 3  # contacts at one time that count as a stack at rest
+# Elastic particles do not collapse: between two surfaces at an angle a, a particle has pi/a contacts at one
+# time. In a stack under gravity they touch forever.
 _UNLIMITED = np.iinfo(np.int64).max
 _REST = "a stack at rest"
 _COLLAPSE = "an inelastic collapse, or a stack at rest, which a contact_duration allows"
@@ -225,10 +228,10 @@ _COLLAPSE = "an inelastic collapse, or a stack at rest, which a contact_duration
 def check_progress(time: float, spent: float, epoch: float) -> None:
     """Raise SimulationError if `MANY` events took less time than the clocks can resolve.
 
-    The order of such events would depend on rounding only.
+    The order of such events would depend only on rounding.
 
     time : present time
-    spent : time of these events
+    spent : duration of these events
     epoch : length of the epoch
     """
     if spent < MANY * _RESOLVED * epoch:
@@ -248,9 +251,9 @@ def check_clocks(start: float, epoch: float) -> None:
 
 
 def check_events(time: float, quiet: int, flights: float) -> None:
-    """Raise SimulationError after too many `quiet` epochs in a row without an event.
+    """Raise SimulationError after too many consecutive `quiet` epochs without an event.
 
-    flights : number of flights through the container in each epoch, see `Epochs.flights`
+    flights : number of flights through the container per epoch, see `Epochs.flights`
     """
     if quiet <= _QUIET or (0.0 < quiet * flights < _FLIGHTS and quiet <= _QUIET_TOGETHER):
         return
@@ -261,7 +264,7 @@ def check_events(time: float, quiet: int, flights: float) -> None:
 class CollapsePart(Part):
     """Detection of a collapse of `count` particles.
 
-    watch : counts of the kernels; None if no collapse is possible
+    watch : counters of the kernels; None if no collapse is possible
     """
 
     def __init__(self, model: Model, count: int) -> None:
@@ -280,17 +283,17 @@ class CollapsePart(Part):
         self.watch = CollapseWatch(since, contacts, 0.0, most)
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
-        """Set the time in which too many contacts are a collapse."""
+        """Set the time in which too many contacts count as a collapse."""
         self.watch = self.watch and self.watch._replace(interval=self._interval * length)
         return model
 
     def error(self, time: float) -> SimulationError:
-        """Return the error of a scene in which a particle has had too many contacts.
+        """Return the error for a scene in which a particle has had too many contacts.
 
         time : present time
         """
         watch = self.watch
-        assert watch is not None  # or the kernels would have seen none
+        assert watch is not None  # otherwise the kernels would have counted none
         return SimulationError(
             f"at time {time:g} particle {watch.contacts.argmax()} has had "
             f"{watch.most} contacts within a time of {watch.interval:g}: "

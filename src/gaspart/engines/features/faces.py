@@ -1,4 +1,4 @@
-"""Faces of the container with a kind, for all engines, and their effects on particles."""
+"""Special faces of the container, for all engines, and their effects on particles."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ import numpy as np
 from gaspart.engines.features.part import Part
 from gaspart.errors import SimulationError
 from gaspart.kernels import model as kernels
-from gaspart.kernels.event.entry import schedule_first
 from gaspart.kernels.model import NONE, STICKY, Faces, Model, Motion, Ramp, Sliding
-from gaspart.kernels.obstacles.face import NUMBERS, RULES
+from gaspart.kernels.obstacles.face import RULES
 from gaspart.kernels.obstacles.moving import advance_piston
+from gaspart.kernels.obstacles.opening import NUMBERS, schedule_first
 from gaspart.kernels.physics.running_sum import values
 from gaspart.scene.face_checks import attempt_rate
 from gaspart.scene.faces import FACES, Open, Vibrating
@@ -23,19 +23,19 @@ from gaspart.state.initial import places_in_wells, well_energies, wells_of
 from gaspart.state.random import key_of
 from gaspart.state.state import State
 
-# Open faces: the particles inside, and the reservoirs from which they come.
+# Open faces: the particles in the container, and the reservoirs from which particles enter.
 
 
-_ENTRY_DRAWS = 7  # the purpose of their random numbers, after those of interior walls
+_ENTRY_DRAWS = 7  # stream number of these random numbers, after those of interior walls
 _ARRAYS = "positions", "velocities", "images", "radii", "masses", "species", "spins", "moments_of_inertia"
-"""Arrays of a `State` that have a row for each particle."""
+"""Arrays of a `State` with one row per particle."""
 
 
 def with_room(scene: Scene, state: State) -> State:
-    """Return a state with entries for all numbers that particles may have.
+    """Return a state with entries for all possible particle numbers.
 
-    Numbers without a particle have no position (NaN) and are at rest. Without open faces the state is
-    returned unchanged.
+    Unused numbers have no position (NaN) and zero velocity. Without open faces the state is returned
+    unchanged.
     """
     free = scene.capacity - state.count
     if free == 0:
@@ -49,7 +49,7 @@ def with_room(scene: Scene, state: State) -> State:
 
 
 def open_of(scene: Scene, state: State) -> kernels.Open | None:
-    """Return the `Open` of the kernels for a state with all numbers; None without open faces."""
+    """Return the kernels' `Open` for a state with all numbers; None without open faces."""
     if not scene.is_open:
         return None
     present = np.isfinite(state.positions[:, 0]).astype(np.uint8)
@@ -60,7 +60,7 @@ def open_of(scene: Scene, state: State) -> kernels.Open | None:
 def reservoirs_of(
     scene: Scene, seed: int | tuple[int, ...], inside: kernels.Open
 ) -> kernels.Reservoirs | None:
-    """Return the gases behind open faces; None for a vacuum behind all of them."""
+    """Return the gases behind open faces; None if all of them open to a vacuum."""
     rates, widths = np.zeros((2, 2 * scene.dimension))
     for number, face in scene.faces_of(Open):
         if face.temperature is not None:
@@ -69,7 +69,7 @@ def reservoirs_of(
     if not rates.any():
         return None
     up_to = np.cumsum(rates) / rates.sum()
-    up_to[np.flatnonzero(rates)[-1] :] = 1.0  # for any rounding
+    up_to[np.flatnonzero(rates)[-1] :] = 1.0  # safe for any rounding
     next_one = np.zeros(1, dtype=np.int64), np.full(1, np.inf), np.zeros(3)
     return kernels.Reservoirs(
         key_of(seed, _ENTRY_DRAWS), float(rates.sum()), up_to, widths, *next_one, inside
@@ -77,15 +77,15 @@ def reservoirs_of(
 
 
 def crowded_error(time: float, most: int) -> SimulationError:
-    """Return the error of a run in which more than `most` particles would be inside."""
+    """Return the error for a run with more than `most` particles in the container."""
     return SimulationError(f"at time {time:g} there is no room for more than {most} particles")
 
 
 class OpenPart(Part):
     """Open faces of a scene.
 
-    The arrays are: the particles inside, the number of entries since the tally began, and the number and the
-    time of the next attempt to enter. The time is on the clocks of the epoch.
+    The arrays are the particles in the container, the number of entries since the counters were reset, and
+    the number and the time of the next attempted entry. The time is on the clocks of the epoch.
     """
 
     def __init__(self, scene: Scene, inside: kernels.Open, reservoirs: kernels.Reservoirs | None) -> None:
@@ -97,36 +97,36 @@ class OpenPart(Part):
         super().__init__(arrays, times=times)
 
     def set_clock(self, clock: float) -> None:
-        """Schedule the first attempt to enter."""
+        """Schedule the first attempted entry."""
         if self._reservoirs:
             schedule_first(self._reservoirs, clock)
 
     def begin_epoch(self, length: float, start: float, model: kernels.Model) -> kernels.Model:
-        """Count the vacant numbers, which a checkpoint does not have."""
+        """Count the unused numbers, which a checkpoint does not contain."""
         absent = np.flatnonzero(self._inside.present == 0)
         self._inside.vacant[:] = np.bincount(absent // NUMBERS, minlength=len(self._inside.vacant))
         return model
 
     def write(self, state: State, clock: float) -> None:
-        """Keep only the particles that are inside, with their numbers."""
+        """Keep only the particles in the container, with their numbers."""
         state.numbers = np.flatnonzero(self._inside.present)
         for key in _ARRAYS:
             setattr(state, key, getattr(state, key)[state.numbers])
 
     def reset(self, clock: float) -> None:
-        """Begin to count from zero."""
+        """Reset the counters."""
         self._inside.entries[:] = 0
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the number of particles that have entered through each face, by the field of `Tally`."""
+        """Return the number of particles that entered through each face, under its field of `Tally`."""
         return {"entries": np.pad(self._inside.entries, (0, len(self._scene.walls)))}
 
 
 # A face that is a piston.
 
 
-_UNMOVED = 2.0**1000  # the mass of one at a stated speed: contacts change no bit of its velocity
-_OF_EPOCH = 2.0**-24  # a particle at rest on which the piston lies meets it again after this part of an epoch
+_UNMOVED = 2.0**1000  # mass of a piston of prescribed speed: its velocity never changes
+_OF_EPOCH = 2.0**-24  # time to the next collision with a resting particle, in epochs
 
 
 def piston_of(scene: Scene, state: State, unit_mass: float) -> kernels.Piston | None:
@@ -144,8 +144,7 @@ def piston_of(scene: Scene, state: State, unit_mass: float) -> kernels.Piston | 
 class PistonPart(Part):
     """Piston of a scene.
 
-    The piston can accelerate a particle to twice the speed of the piston, which is prescribed or due to its
-    load.
+    A piston can accelerate a particle to twice its own speed, which is prescribed or due to its load.
     """
 
     def __init__(self, piston: kernels.Piston, scene: Scene) -> None:
@@ -160,7 +159,7 @@ class PistonPart(Part):
         self._piston.motion[kernels.PISTON_CLOCK] = clock
 
     def begin_epoch(self, length: float, start: float, model: kernels.Model) -> kernels.Model:
-        """Set the minimum speed of separation of particles from the piston."""
+        """Set the minimum speed at which particles separate from the piston."""
         self._piston.slowest[0] = 0.5 * self._piston.push * _OF_EPOCH * length
         return model
 
@@ -170,7 +169,7 @@ class PistonPart(Part):
         self.set_clock(0.0)
 
     def write(self, state: State, clock: float) -> None:
-        """Write position along its axis and velocity of the piston."""
+        """Write the position along its axis and the velocity of the piston."""
         piston, motion = self._piston, self._piston.motion.copy()
         advance_piston(motion, piston.push, clock)
         position, velocity = motion[kernels.PISTON_PLACE], motion[kernels.PISTON_VELOCITY]
@@ -183,10 +182,11 @@ class PistonPart(Part):
 # Faces that vibrate.
 
 
-# A particle that is pressed to the face meets it again after a part of an epoch, or of the duration of a
-# contact, if that is longer; of the period, if the face's acceleration presses it, and that is shorter.
+# A particle that is pressed against the face collides with it again after a fraction of an epoch, or of the
+# contact duration if this is longer. If the acceleration of the face presses the particle, a fraction of the
+# period is used if it is shorter.
 _HOP_OF_EPOCH, _OF_DURATION, _OF_PERIOD = 2.0**-24, 2.0**-3, 2.0**-15
-_OF_SPEED = 2.0**-48  # minimum speed of separation divided by the face's speed
+_OF_SPEED = 2.0**-48  # minimum separation speed divided by the speed of the face
 
 
 def motion_of(scene: Scene) -> Motion | None:
@@ -212,7 +212,7 @@ def motion_of(scene: Scene) -> Motion | None:
 class VibratingPart(Part):
     """Faces with a prescribed vibration.
 
-    Particles leave such a face with at most twice its speed.
+    Particles leave such a face with at most twice the speed of the face.
     """
 
     def __init__(self, scene: Scene, motion: Motion) -> None:
@@ -221,9 +221,9 @@ class VibratingPart(Part):
         self.gained = (2.0 * max(face.greatest_speed for _, face in self._faces)) ** 2
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
-        """Continue the periods at the time where the clocks are at zero.
+        """Continue the oscillation at time 0 of the clocks.
 
-        The remainder of a division is exact, so that phases do not drift.
+        The remainder of a division is exact, so phases do not drift.
         """
         scene, motion = self._scene, self._motion
         motion.epoch[0] = length
@@ -240,11 +240,11 @@ class VibratingPart(Part):
 
 
 WALL_DRAWS = 2
-"""Number that identifies the random numbers of thermal walls, after the initial state's."""
+"""Stream number of the random numbers of thermal walls, after those of the initial state."""
 
 
 def kinds_and_levels(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Return kind (2d,) and level (2d,) of the container's faces for the kernels.
+    """Return kind (2d,) and level (2d,) of the faces in the form of the kernels.
 
     A level is a temperature or a momentum.
     """
@@ -254,10 +254,7 @@ def kinds_and_levels(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 
 
 def sliding_velocities(scene: Scene) -> np.ndarray | None:
-    """Return the velocities (2d, d) of the container's faces, or None.
-
-    Scenes that drag no faces give None.
-    """
+    """Return the velocities (2d, d) of the faces, or None without tangential forces."""
     if not scene.drags_faces:
         return None
     velocities = np.zeros((2 * scene.dimension, scene.dimension))
@@ -267,7 +264,7 @@ def sliding_velocities(scene: Scene) -> np.ndarray | None:
 
 
 def accommodations(scene: Scene) -> np.ndarray | None:
-    """Return the fractions (2d,) of hits after which velocities are drawn, or None if all are."""
+    """Return the fractions (2d,) of hits that draw new velocities, or None if all hits do."""
     if not scene.partial_faces:
         return None
     fractions = np.ones(2 * scene.dimension)
@@ -287,14 +284,14 @@ def ramp_of(scene: Scene) -> Ramp | None:
 
 
 def has_special_faces(scene: Scene) -> bool:
-    """Return True if particles hit faces with a kind, other than periodic faces."""
+    """Return True if particles hit a special face; periodic faces do not count."""
     return bool(scene.faces) and scene.shear_rate is None
 
 
 def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float) -> Faces:
-    """Return the kinds of the container's faces as the kernels' `Faces`.
+    """Return the special faces as the kernels' `Faces`.
 
-    The unit of mass is `unit_mass`.
+    `unit_mass` is the unit of mass.
     """
     kind, level = kinds_and_levels(scene)
     depths, widths = wells_of(scene)
@@ -321,7 +318,7 @@ def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_
 def face_energy(scene: Scene) -> float:
     """Return an upper estimate of the energy that a face or wall gives a particle.
 
-    This is the largest energy that a thermal face or wall or a well can give to a particle.
+    This is the largest energy from a thermal face, a thermal wall or a well.
     """
     hottest = max(scene.face_temperatures, default=0.0)
     deepest = max((getattr(face, "depth", 0.0) for face in scene.faces.values()), default=0.0)
@@ -331,12 +328,12 @@ def face_energy(scene: Scene) -> float:
 
 
 class FacesPart(Part):
-    """Faces with a kind, in units of `unit_mass`.
+    """Special faces, in units of `unit_mass`.
 
-    The arrays are: the particles in a well or stuck at a face, their energies, the numbers of random draws,
+    The arrays are the particles in a well or stuck to a face, their energies, the numbers of random draws,
     and the tangential momentum given to faces.
 
-    lightest : least mass of a particle
+    lightest : smallest mass of a particle
     """
 
     def __init__(self, scene: Scene, faces: Faces, unit_mass: float, lightest: float = np.inf) -> None:
@@ -348,22 +345,22 @@ class FacesPart(Part):
 
     @property
     def stored(self) -> float:
-        """Energy of particles that stick to a face."""
+        """Energy of particles that are stuck to a face."""
         return float(self.arrays["held"].sum()) * self._unit_mass
 
     def write(self, state: State, clock: float) -> None:
-        """Write the energies in wells, and add the energies of particles that stick to a face."""
+        """Write the energies in wells, and add the energies of particles stuck to a face."""
         state.well_energies = well_energies(self._scene, self.arrays["place"])
         if state.vibrations is not None:
             state.vibrations += self.arrays["held"].sum(axis=1) * self._unit_mass
 
     def reset(self, clock: float) -> None:
-        """Begin to count from zero."""
+        """Reset the counters."""
         if self._shear is not None:
             self._shear[...] = 0.0
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the tangential momentum given to faces, by the field of `Tally`."""
+        """Return the tangential momentum given to faces, under its field of `Tally`."""
         if self._shear is None:
             return {}
         shear = values(self._shear).reshape(-1, self._scene.dimension) * self._unit_mass

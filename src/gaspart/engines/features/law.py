@@ -1,4 +1,4 @@
-"""Collision law for all engines, and internal properties of particles: spins and vibrations."""
+"""Collision law for all engines, and internal degrees of freedom of particles: spins and vibrations."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
     from gaspart.kernels.model import Model, Particles, Tally
 
 
-_BISECTIONS = 100  # until neighbouring numbers enclose the damping of viscoelastic particles
+_BISECTIONS = 100  # until adjacent floating-point numbers enclose the damping of viscoelastic particles
 
 
 def contact_law(scene: Scene, state: State) -> ContactLaw | None:
     """Return the collision law, or None for elastic, smooth collisions.
 
-    The result is a law too if particles are fixed.
+    If particles are fixed, a law is always returned.
     """
     rule = scene.restitution or Restitution()
     if rule.smooth_and_elastic and not np.isinf(state.masses).any():
@@ -45,10 +45,10 @@ def contact_law(scene: Scene, state: State) -> ContactLaw | None:
 
 
 def _viscous(scene: Scene) -> float | None:
-    """Return the constant of viscoelastic particles, or None for a constant restitution.
+    """Return the damping constant of viscoelastic particles, or None for a constant restitution.
 
-    The coefficient is computed from the restitution of two particles of the first species (without species,
-    like the first particle).
+    The constant is computed from the restitution of two particles of the first species, or two copies of the
+    first particle if there are no species.
     """
     rule = scene.restitution
     if rule is None or rule.reference_speed is None:
@@ -66,7 +66,7 @@ def _viscous(scene: Scene) -> float | None:
 
 
 class LawPart(Part):
-    """Particles under a collision law: spins (N, 3), and energies (N,) of vibrating particles."""
+    """Particles with a collision law: spins (N, 3), and energies (N,) of vibrating particles."""
 
     def __init__(self, law: ContactLaw) -> None:
         super().__init__({"spins": law.spins})
@@ -91,14 +91,14 @@ class LawPart(Part):
             state.vibrations += np.maximum(self.arrays["vibrations"], 0.0)
 
 
-# Masses of the particles in the kernels' unit; power-of-two bounds of momenta and energies, for fixed-point
-# sums.
+# Masses of the particles in the unit of the kernels; power-of-two bounds of momenta and energies, for
+# fixed-point sums.
 
 
 def scaled_masses(masses: np.ndarray) -> tuple[float, np.ndarray | None]:
     """Return the unit of mass, and the masses in this unit (None if all are equal).
 
-    Equal masses are not part of the kernel's model, and their sums are multiplied by the unit.
+    If all masses are equal, the kernel model contains none, and its sums are multiplied by the unit.
     """
     if len(masses) == 0:
         return 1.0, None
@@ -106,9 +106,10 @@ def scaled_masses(masses: np.ndarray) -> tuple[float, np.ndarray | None]:
 
 
 def largest_terms(scene: Scene, state: State, unit_mass: float) -> tuple[float, float]:
-    """Return the momentum and the energy that few particles will exceed.
+    """Return a momentum and an energy that only few particles exceed.
 
-    Each is a power of two in units of `unit_mass`: sums of several threads are in fractions of these.
+    Each is a power of two in units of `unit_mass`. Sums over threads are multiples of fractions of these
+    values.
     """
     moving = np.isfinite(state.masses)
     if not moving.any():
@@ -125,22 +126,24 @@ def largest_terms(scene: Scene, state: State, unit_mass: float) -> tuple[float, 
     return 2.0 ** math.frexp(momentum or 1.0)[1], 2.0 ** math.frexp(energy or 1.0)[1]
 
 
-# Jams of a scene under gravity: particles that are held until a contact moves them (`kernels.event.jams`).
+# Jams in a scene under gravity: particles that are held fixed until a contact moves them
+# (`kernels.event.jams`).
 #
-# All follows from the definition of rest: a movement of less than 2^-8 of the smallest diameter d. Gravity g,
-# tilted by an angle a of tangent 2^-2, moves no particle of a jam as far in the time sqrt(d/g) of a fall, nor
-# does a contact that gives it less than a speed v: up a slope of this angle it comes v^2/(2 g sin a) far. A
-# jam has at least one particle that is pressed: its contacts follow one another faster, in the mean of a
-# fall, than the contacts of two particles that gravity alone presses together.
+# All criteria follow from the definition of rest, a displacement of less than 2^-8 of the smallest diameter
+# d. Two disturbances must not move a particle of a jam by this displacement within the time sqrt(d/g) of a
+# fall. One is gravity g tilted by an angle a with tangent 2^-2. The other is a contact that gives the
+# particle a speed below v; up a slope of this angle it would come v^2/(2 g sin a) far. At least one particle
+# of a jam is pressed: averaged over the time of a fall, its contacts are more frequent than those of two
+# particles that only gravity presses together.
 
 
-FURTHEST = 2.0**-8  # smallest displacement of a particle that does not rest, in smallest diameters
+FURTHEST = 2.0**-8  # smallest displacement of a particle that is not at rest, in smallest diameters
 _TILT = 2.0**-2
-_PLANES = 24  # maximum number of planes of a particle; further planes are ignored
+_PLANES = 24  # maximum number of planes per particle; further planes are ignored
 
 
 def slowest_that_moves(scene: Scene) -> float:
-    """Return the speed that frees a particle from a jam; it is infinite without gravity."""
+    """Return the minimum speed that frees a particle from a jam; infinite without gravity."""
     gravity = math.hypot(*(scene.gravity or ()))
     if gravity == 0.0:
         return math.inf
@@ -148,9 +151,9 @@ def slowest_that_moves(scene: Scene) -> float:
 
 
 def _tilt(gravity: tuple[float, ...]) -> np.ndarray:
-    """Return the accelerations (2, 3) or (4, 3) of gravity tilted to all sides.
+    """Return the accelerations (2, 3) or (4, 3) of gravity, tilted in all directions.
 
-    A particle that is supported against all these directions is supported against gravity.
+    A particle is supported against gravity if it is supported against all of them.
     """
     acceleration = np.zeros(3)
     acceleration[: len(gravity)] = gravity
@@ -163,10 +166,10 @@ def _tilt(gravity: tuple[float, ...]) -> np.ndarray:
 
 
 class Jams:
-    """Search for jams in a scene after every `window` of time.
+    """Search for jams in a scene, repeated after each time interval `window`.
 
-    axis : axis of gravity that is not periodic
-    reach : largest gap of particles that touch
+    axis : nonperiodic axis of gravity
+    reach : largest gap between particles that count as touching
     """
 
     def __init__(self, scene: Scene, axis: int, reach: float, window: float) -> None:
@@ -189,11 +192,11 @@ class Jams:
         tally: Tally,
         time: float,
     ) -> bool:
-        """Hold the particles at positions (N, d) that belong to a jam at this time.
+        """Fix the particles at positions (N, d) that belong to a jam at this time.
 
         Returns True if events must be predicted again.
 
-        stays : (N,), whether a particle has not left its position
+        stays : (N,), True if a particle has not moved away from its position
         """
         from gaspart.kernels.event.jams import (
             HELD,
@@ -207,7 +210,7 @@ class Jams:
         )
 
         law, flights = model.law, particles.flights
-        assert law is not None and law.duration is not None  # as `rest_watch` requires
+        assert law is not None and law.duration is not None  # as required by `rest_watch`
         duration, moves = law.duration, law.duration.inverse_mass > 0.0
         marks = np.empty((3, len(flights)), dtype=bool)
         marks[HELD], marks[STAYS] = stays & moves, stays | ~moves
@@ -220,7 +223,7 @@ class Jams:
         line = Line(order, positions, self._axis)
         keep_stable(flights, line, self._limits, model, marks)
         kept = marks[:2] | (stays & (duration.island >= len(flights)))
-        if (kept != marks[:2]).any():  # particles held by a jam before remain unless gravity moves them
+        if (kept != marks[:2]).any():  # particles in the jam before remain unless gravity moves them
             marks[:2] = kept
             keep_stable(flights, line, self._plain, model, marks)
         freed = free_unstable(flights, time, marks, model)
@@ -230,16 +233,16 @@ class Jams:
         return jam(flights, order, time, marks, parent, model, tally) or freed
 
 
-# Contacts that last: a contact less than a time after an earlier one of the same particle is elastic.
+# Lasting contacts: a contact shortly after an earlier contact of the same particle is elastic.
 
 
 _ARRAYS = ("latest", "met", "island", "contacts", "elastic", "kept")
 
 
 def contact_duration(scene: Scene, law: ContactLaw) -> ContactDuration | None:
-    """Return the kernels' rule under a law before the first contact, or None.
+    """Return the kernels' initial contact-duration rule for a collision law, or None.
 
-    Without a rule every contact dissipates.
+    Without this rule every contact dissipates.
     """
     if not scene.contact_duration > 0.0:
         return None
@@ -258,9 +261,9 @@ def contact_duration(scene: Scene, law: ContactLaw) -> ContactDuration | None:
 
 
 class DurationPart(Part):
-    """Contacts that last, and islands and jams under gravity.
+    """Lasting contacts, and islands and jams under gravity.
 
-    Groups of particles at rest (islands) are not moved by gravity, and jams are not moved by contacts either.
+    Islands are groups of particles at rest that gravity does not move. Jams are not moved by contacts either.
     """
 
     def __init__(self, law: ContactLaw, duration: ContactDuration, gravity: Gravity | None) -> None:
@@ -272,23 +275,23 @@ class DurationPart(Part):
             self.arrays["inverse_mass"] = law.inverse_mass
 
     def reset(self, clock: float) -> None:
-        """Begin to count from zero."""
+        """Reset the counters."""
         self._duration.elastic[:], self._duration.kept[:] = 0, 0.0
 
     def counts(self, clock: float) -> dict[str, float]:
-        """Return the number of elastic contacts, and the energy that they have not dissipated."""
+        """Return the number of elastic contacts, and the energy that they did not dissipate."""
         kept = running_sum.net(self._duration.kept)
         return {"elastic_contacts": int(self._duration.elastic[0]), "retained_energy": kept}
 
 
 # Scenes under gravity that come to rest.
 #
-# With a contact duration, a settled pile has tiny elastic contacts for ever. A scene is taken for being at
-# rest, and has no events any more, if for the time sqrt(d/g) of a fall each particle has stayed within 2^-8
-# of the smallest diameter d, and then lies on a wall or has contacts that last. The same holds for a part of
-# it, particles with such contacts and particles that lie or move within 2^-8 d of them, until another
-# particle collides with one of them. The kinetic energy of flight is then counted as dissipated; spins, on
-# which elastic contacts do not act, are kept.
+# With a contact duration, a settled pile has tiny elastic contacts forever. A scene counts as at rest, and
+# has no more events, under two conditions. For the time sqrt(d/g) of a fall, each particle has stayed within
+# 2^-8 of the smallest diameter d. Each particle also lies on a wall or has lasting contacts. The same applies
+# to a part of a scene: particles with lasting contacts, and particles that lie or move within 2^-8 d of them.
+# It ends when another particle collides with one of them. The translational kinetic energy then counts as
+# dissipated. Spins, on which elastic contacts do not act, are kept.
 
 
 class RestWatch(Part):
@@ -317,11 +320,11 @@ class RestWatch(Part):
         return bool(self._rests[0])
 
     def set_clock(self, clock: float) -> None:
-        """Schedule the first test after the time of a fall from now on."""
+        """Schedule the first test after the time of a fall."""
         self._next[0] = clock + self._window
 
     def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
-        """Find the particles that rest, and stop them.
+        """Find the particles that are at rest, and stop them.
 
         Returns True if events must be predicted again, and False if all particles rest.
         """
@@ -339,16 +342,16 @@ class RestWatch(Part):
         return self._jams.hold(particles, positions, ~marks[MOVES], model, tally, time) or any_new
 
     def _hold(self, particles: Particles, marks: np.ndarray, model: Model, tally: Tally, time: float) -> bool:
-        """Fix islands; return True if there are new islands."""
+        """Fix the particles of islands, and return True if there are new islands."""
         from gaspart.kernels.event.jams import RESTS, TOUCHES, hold, join
         from gaspart.kernels.model import NONE
 
         flights, positions, law = particles.flights, self._before, model.law
-        assert law is not None and law.duration is not None  # as `rest_watch` requires
+        assert law is not None and law.duration is not None  # as required by `rest_watch`
         awake = (law.duration.island == NONE) & (law.inverse_mass > 0.0)
         if not (marks[RESTS] & marks[TOUCHES] & awake).any():
             return False
-        near = np.flatnonzero(marks.any(axis=0) & awake)  # without sliding particles that touch nothing
+        near = np.flatnonzero(marks.any(axis=0) & awake)  # excludes sliding particles without a contact
         order = near[np.argsort(positions[near, self._axis], kind="stable")]
         parent = np.empty(len(flights), dtype=np.int64)
         join(flights, order, positions, self._axis, self._most, model.space, parent)
@@ -356,9 +359,9 @@ class RestWatch(Part):
 
 
 def rest_watch(scene: Scene, state: State) -> RestWatch | None:
-    """Return the watch of a scene in which all particles may come to rest, or None.
+    """Return the test for a scene in which all particles may come to rest, or None.
 
-    Such a scene has contacts that last, gravity that drives no flow, and no face or wall that gives energy.
+    Such a scene has lasting contacts, gravity that drives no flow, and no face or wall that adds energy.
     """
     falls = scene.gravity is not None and not scene.driven_axes
     still = not (scene.faces or scene.face_temperatures)

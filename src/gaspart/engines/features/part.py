@@ -1,8 +1,8 @@
-"""Part of a run that belongs to one feature of its scene.
+"""Part of a run that implements one feature of a scene.
 
-A module of this package contains all that the engines need for a feature: the form of the feature in the
-kernels' model, None without the feature, and a `Part`. An engine iterates over the parts of a scene
-and does not name them.
+A module of this package contains all that engines need for a feature: the form of the feature in the kernel
+model (None if the scene lacks the feature), and a `Part`. An engine iterates over the parts of a scene and
+does not name them.
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ if TYPE_CHECKING:
 
 
 class Part:
-    """Feature in a run. By default its methods do nothing.
+    """State of a feature during a run. Its methods do nothing by default.
 
     Attributes
     ----------
-    arrays : arrays that a run changes, by their names in a checkpoint
-    sums : arrays (threads, ...) to which several threads add, by name; a checkpoint contains their sum over
+    arrays : arrays that change during a run, by their names in a checkpoint
+    sums : arrays (threads, ...) to which several threads add, by name; a checkpoint contains the sum over
         threads
-    times : the `arrays` that are times on the clocks of the epoch
-    scheduled : (1,), time of the next event that the part has scheduled
+    times : the names in `arrays` that are times on the clocks of the epoch
+    scheduled : (1,), time of the next event scheduled by the part
     gained : square of the largest speed that the part can give a particle
     """
 
@@ -56,7 +56,7 @@ class Part:
 
     @property
     def at_rest(self) -> bool:
-        """True if the part has stopped all particles, for good."""
+        """True if the part has permanently stopped all particles."""
         return False
 
     @property
@@ -66,14 +66,14 @@ class Part:
 
     @property
     def given(self) -> float:
-        """Energy that scheduled events of the part have added since the last `reset`."""
+        """Energy added by scheduled events of the part since the last `reset`."""
         return 0.0
 
     def set_clock(self, clock: float) -> None:
         """Begin at this time on the clocks of the epoch."""
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
-        """Set all data that depend on an epoch of the clocks; return its model.
+        """Set all data that depend on the epoch, and return the kernel model of the part.
 
         length : length of the epoch
         start : time at which it starts
@@ -81,22 +81,22 @@ class Part:
         return model
 
     def close_epoch(self, length: float) -> None:
-        """Count the effects of flights of an epoch before the particles move to its end.
+        """Add the contribution of flights in an epoch before the particles move to its end.
 
         length : length of the epoch
         """
 
     def end_epoch(self, length: float, start: float) -> None:
-        """Shift the times of the part to a new start of the clocks.
+        """Shift the times of the part to a new origin of the clocks.
 
-        The clocks restart from zero at the time `start`, after an epoch of this `length`. Within an epoch,
+        The clocks restart from zero at the time `start`, after an epoch with this `length`. Within an epoch,
         the origin of the clocks moves to `start`.
         """
         for times in self._times:
             times -= length
 
     def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
-        """Perform the event that is scheduled for the time `next`.
+        """Perform the event scheduled for the time `next`.
 
         Returns True if all events must be predicted again.
 
@@ -105,29 +105,29 @@ class Part:
         raise NotImplementedError
 
     def reset(self, clock: float) -> None:
-        """Begin to count from zero at this time on the clocks of the epoch."""
+        """Reset the counters at this time on the clocks of the epoch."""
         for sums in self.sums.values():
             sums[...] = 0
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the counters since the last `reset` by the fields of `state.tally.Tally`.
+        """Return the counters since the last `reset`, under the names of fields of `state.tally.Tally`.
 
         clock : present time on the clocks of the epoch
         """
         return {}
 
     def write(self, state: State, clock: float) -> None:
-        """Write the properties of particles and scene that are due to this feature into a state.
+        """Write the properties of particles and scene that belong to this feature into a state.
 
         clock : present time on the clocks of the epoch
         """
 
 
 class TallyPart(Part):
-    """Optional tally in a run (`state.tally`).
+    """Optional tally during a run (`state.tally`).
 
     name : name of the tally
-    kernel : data for the kernels, which add to the entry of this name in their own tally
+    kernel : data for the kernels, which add to the field of this name in their own tally
     """
 
     def __init__(
@@ -154,27 +154,27 @@ def arrays_of(parts: Iterable[Part]) -> dict[str, np.ndarray]:
 
 
 def sums_of(parts: Iterable[Part]) -> dict[str, np.ndarray]:
-    """Return the arrays of several parts to which threads add, by name."""
+    """Return the arrays to which threads add, for several parts, by name."""
     return {key: array for part in parts for key, array in part.sums.items()}
 
 
 def write_parts(parts: Iterable[Part], state: State, clock: float = 0.0) -> None:
-    """Write the properties of several parts into a state. Energies of vibrations are added."""
+    """Write the properties of several parts into a state. Vibrational energies are added."""
     if state.vibrations is not None:
         state.vibrations = np.zeros(state.count)
     for part in parts:
         part.write(state, clock)
 
 
-# Gravity, and the particles that it holds on interior walls.
+# Gravity, and particles that it holds on interior walls.
 
 
-_SHORTEST_BOUNCE = 2.0**-44  # longest bounce on a floor that is taken for rest, in epochs
-_LOWEST = 2.0**-44  # highest bounce on an interior wall that is taken for rest, in container lengths
+_SHORTEST_BOUNCE = 2.0**-44  # longest bounce on a floor that counts as rest, in epochs
+_LOWEST = 2.0**-44  # highest bounce on an interior wall that counts as rest, in container lengths
 
 
 def gravity_of(scene: Scene, state: State) -> Gravity | None:
-    """Return the kernels' gravity before the first epoch of the clocks, or None."""
+    """Return the kernels' initial gravity, or None."""
     if scene.gravity is None:
         return None
     height = _LOWEST * max(scene.container.lengths)
@@ -183,7 +183,7 @@ def gravity_of(scene: Scene, state: State) -> Gravity | None:
 
 
 class GravityPart(Part):
-    """Falling particles in a container with `lengths`, and their support at interior walls."""
+    """Falling particles in a container with side lengths `lengths`, and their support at interior walls."""
 
     def __init__(self, gravity: Gravity, lengths: tuple[float, ...]) -> None:
         support = gravity.support._asdict() if gravity.support else {}
@@ -192,8 +192,8 @@ class GravityPart(Part):
         self.gained = 2.0 * sum(falls)
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
-        """Set the longest bounce that the epoch's clocks do not resolve, which is rest."""
-        assert model.gravity is not None  # or there were no such part
+        """Set the longest bounce that the epoch's clocks do not resolve; it is rest."""
+        assert model.gravity is not None  # otherwise this part would not exist
         return model._replace(gravity=model.gravity._replace(shortest_bounce=_SHORTEST_BOUNCE * length))
 
 
@@ -201,7 +201,7 @@ class GravityPart(Part):
 
 
 def shear_of(scene: Scene) -> Shear | None:
-    """Return the shear of a scene before the first epoch, or None."""
+    """Return the initial shear of a scene, or None."""
     rate = scene.shear_rate
     if rate is None:
         return None
@@ -210,10 +210,10 @@ def shear_of(scene: Scene) -> Shear | None:
 
 
 class ShearPart(Part):
-    """Displacement of the periodic images of a sheared scene.
+    """Displacement of the periodic images in a sheared scene.
 
-    The displacement is computed from the time and the state at time 0, so no checkpoint contains it. At each
-    crossing a particle may gain the velocity of the images.
+    It is computed from the time and the initial state, so checkpoints do not contain it. At each crossing a
+    particle may gain the velocity of the images.
     """
 
     def __init__(self, scene: Scene, state: State, shear: Shear) -> None:
@@ -223,9 +223,9 @@ class ShearPart(Part):
         self.gained = shear.velocity**2
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
-        """Continue the displacement at the time where the clocks are at zero.
+        """Continue the displacement at time 0 of the clocks.
 
-        The remainder of a division is exact, so that it does not drift.
+        The remainder of a division is exact, so the displacement does not drift.
         """
         shear = self._shear
         period = self._length / abs(shear.velocity) if shear.velocity else math.inf
@@ -235,10 +235,10 @@ class ShearPart(Part):
         return model
 
     def write(self, state: State, clock: float) -> None:
-        """Write the displacement of the images above.
+        """Write the displacement of the images beyond the upper face.
 
-        Particles that rounding shows beyond a sheared face, which they reach just now, are moved to the face:
-        they have not crossed it yet.
+        Rounding may place particles beyond a sheared face that they have just reached. They are moved to the
+        face, because they have not crossed it yet.
         """
         shear = self._shear
         here = shear.origin[0] + shear.velocity * clock
@@ -247,23 +247,23 @@ class ShearPart(Part):
         state.positions[:, GRADIENT] = np.clip(state.positions[:, GRADIENT], 0.0, inside)
 
 
-# Kicks of a thermostat, at regular times that do not depend on where a run is split.
+# Kicks of a thermostat at regular times, which do not depend on where a run is split.
 
 
-_MOST_NUMBERS = 2**63 - 1  # largest number of a kick, after which numbers restart
-_KICK_DRAWS = 3  # the purpose of their random numbers, after those of thermal walls
+_MOST_NUMBERS = 2**63 - 1  # largest kick number, after which numbers restart
+_KICK_DRAWS = 3  # stream number of these random numbers, after those of thermal walls
 
 
 def _width(thermostat: Thermostat, dimension: int, unit_mass: float) -> float:
-    """Return the standard deviation of a kick's velocity components, for the unit of mass."""
+    """Return the standard deviation of the velocity components of a kick, for the unit of mass."""
     return math.sqrt(2.0 * thermostat.power * thermostat.interval / (dimension * unit_mass))
 
 
 class Kicks(Part):
     """Thermostat of a scene under the event-driven engine.
 
-    The arrays are: the time of the next kick on the clocks of the epoch, the number of kicks, and the energy
-    added since the tally began.
+    The arrays are the time of the next kick on the clocks of the epoch, the number of kicks, and the energy
+    added since the last reset.
     """
 
     def __init__(
@@ -280,24 +280,25 @@ class Kicks(Part):
 
     @property
     def given(self) -> float:
-        """Energy added by kicks since the tally began."""
-        from gaspart.kernels.physics import running_sum  # numba takes 0.4 s
+        """Energy added by kicks since the last reset."""
+        from gaspart.kernels.physics import running_sum  # importing numba takes 0.4 s
 
         return running_sum.net(self._given) * self._unit_mass
 
     def end_epoch(self, length: float, start: float) -> None:
-        """Set the time of the next kick to a multiple of the interval, rounded once.
+        """Set the time of the next kick to a multiple of the interval.
 
-        A sum of intervals would deviate from this time by rounding. The subtraction is exact.
+        It is rounded once; a sum of intervals would deviate from it by accumulated rounding. The subtraction
+        is exact.
         """
         self._next[0] = (int(self._number[0]) + 1) * self._interval - start
 
     def reset(self, clock: float) -> None:
-        """Begin to sum energies up from zero."""
+        """Reset the sum of energies."""
         self._given[:] = 0.0
 
     def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
-        """Kick all particles; return True, since their velocities have changed."""
+        """Kick all particles; return True, because their velocities have changed."""
         from gaspart.kernels.event.pair_contact import kick_all
 
         counter = self._key, int(self._number[0])
@@ -308,18 +309,18 @@ class Kicks(Part):
 
 
 def kicks(scene: Scene, seed: int | tuple[int, ...], unit_mass: float) -> Kicks | None:
-    """Return the kicks of a scene's thermostat, if it has one and particles that can move."""
+    """Return the kicks of a thermostat, or None without a thermostat or moving particles."""
     if scene.thermostat is None or not any(not kind.fixed for kind in scene.kinds):
         return None
     return Kicks(scene.thermostat, scene.dimension, seed, unit_mass)
 
 
 class StepKicks(Part):
-    """Thermostat of a scene in steps.
+    """Thermostat of a scene for engines with time steps.
 
-    If several kicks are due in a step, one kick with the same total strength is applied at its end.
+    If several kicks are due in a step, a single kick of the same total strength is applied at its end.
 
-    given_terms : (1, 2), energy added since the tally began, see `physics.running_sum.add`
+    given_terms : (1, 2), energy added since the last reset, see `physics.running_sum.add`
     """
 
     def __init__(
@@ -332,7 +333,7 @@ class StepKicks(Part):
         super().__init__({"given": self.given_terms})
 
     def reset(self, clock: float) -> None:
-        """Begin to sum energies up from zero."""
+        """Reset the sum of energies."""
         self.given_terms[:] = 0.0
 
     def _kicks_by(self, steps: float) -> int:
@@ -340,11 +341,11 @@ class StepKicks(Part):
         return math.floor(steps * self._per_step * (1.0 + 4e-16) + 1e-9)
 
     def until(self, steps: float, part: float) -> int:
-        """Return the number of parts of a step up to the next kick.
+        """Return the number of parts of a step until the next kick.
 
-        The kick is at the end of the last of these steps.
+        The kick is at the end of the last of these parts.
 
-        part : length of a part
+        part : length of a part, in steps
         """
         due = self._kicks_by(steps)
         number = max(1, math.floor(((due + 1) / self._per_step - steps) / part) - 1)
@@ -353,9 +354,9 @@ class StepKicks(Part):
         return number
 
     def due(self, steps: float, part: float) -> tuple[float, tuple[np.ndarray, int]] | None:
-        """Return the width and counter of the kick due after a number of steps, or None.
+        """Return the width and number of the kick due after a number of steps, or None.
 
-        part : length of the part that has just been made, the last of these steps
+        part : length of the part that has just been completed
         """
         due = self._kicks_by(steps)
         number = due - self._kicks_by(steps - part)
@@ -365,7 +366,7 @@ class StepKicks(Part):
 
 
 def step_kicks(scene: Scene, time_step: float, seed: int | tuple[int, ...]) -> StepKicks | None:
-    """Return the kicks of a scene's thermostat in steps, if it has one."""
+    """Return the kicks of a thermostat for time steps, or None without a thermostat."""
     if scene.thermostat is None or not scene.count:
         return None
     return StepKicks(scene.thermostat, scene.dimension, time_step, seed)

@@ -1,4 +1,4 @@
-"""Sums of stress, heat flux and impulses, and sums for each area of a face."""
+"""Sums of stress, heat flux and impulses, and sums per area of a face."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def tallied_fluxes(sums: np.ndarray, drift: np.ndarray) -> dict[str, np.ndarray]
     sums : ndarray, shape (2 d^2 + d,)
         Sums of the stress tensor and of its collisional part, each by rows, and of the heat flux.
     drift : ndarray, shape (d,), [length/time]
-        Velocity about which the sums are.
+        Velocity to which the sums are relative.
 
     Returns
     -------
@@ -53,8 +53,8 @@ def tallied_fluxes(sums: np.ndarray, drift: np.ndarray) -> dict[str, np.ndarray]
 class StressPart(TallyPart):
     """Stress tensor and heat flux of a gas without walls.
 
-    flights : (N,), particles, each with a velocity that is constant until its next contact
-    drift : (d,), velocity of their centre of mass
+    flights : (N,), particles, whose velocities are constant until the next contact
+    drift : (d,), velocity of the centre of mass
     """
 
     kernel: Stress
@@ -67,7 +67,7 @@ class StressPart(TallyPart):
         super().__init__("stress", Stress(sums, np.zeros((2, d + 1)), drift.copy()), {"stress": sums})
 
     def end_epoch(self, length: float, start: float) -> None:
-        """Add the transport by the flights of the epoch."""
+        """Add the transport by flights during the epoch."""
         add_flights(self._flights, length, *self._masses, self.kernel)
 
     def reset(self, clock: float) -> None:
@@ -76,20 +76,20 @@ class StressPart(TallyPart):
         add_flights(self._flights, -clock, *self._masses, self.kernel)
 
     def read(self, clock: float) -> np.ndarray:
-        """Return the sums (2 d^2 + d,) until this time on the clocks of the epoch."""
+        """Return the sums (2 d^2 + d,) up to this time on the epoch's clocks."""
         total = self.kernel._replace(sums=self.kernel.sums.copy())
         add_flights(self._flights, clock, *self._masses, total)
         return values(total.sums) * self._unit_mass
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the sums by the fields of `Tally`."""
+        """Return the sums under the names of fields of `Tally`."""
         return tallied_fluxes(self.read(clock), self._drift)
 
 
 class ShearedStressPart(StressPart):
     """Stress tensor and heat flux of a sheared gas.
 
-    Velocities relative to the flow change in flight, so that each flight counts from its clock on.
+    Velocities relative to the flow change in flight, so each flight counts from the time of its last event.
     """
 
     def __init__(self, flights: np.ndarray, model: Model, unit_mass: float, drift: np.ndarray) -> None:
@@ -99,20 +99,19 @@ class ShearedStressPart(StressPart):
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
         """Set the velocity of the centre of mass relative to the flow.
 
-        The velocity component across the flow is constant, so the component along the flow decreases
-        steadily.
+        The component across the flow is constant, so the component along the flow decreases linearly in time.
         """
-        assert model.shear is not None  # or there were no such part
+        assert model.shear is not None  # otherwise this part would not exist
         across = self._drift[GRADIENT]
         self.kernel.drift[FLOW] = self._drift[FLOW] - model.shear.rate * across * start
         return model
 
     def close_epoch(self, length: float) -> None:
-        """Add the transport by the flights until the end of the epoch."""
+        """Add the transport by flights up to the end of the epoch."""
         add_sheared_flights(self._flights, length, 1.0, self._model, self.kernel)
 
     def end_epoch(self, length: float, start: float) -> None:
-        """Do nothing: the motion of the epoch begins again."""
+        """Do nothing, because the motion starts again in the next epoch."""
 
     def reset(self, clock: float) -> None:
         """Begin to count from zero."""
@@ -120,7 +119,7 @@ class ShearedStressPart(StressPart):
         add_sheared_flights(self._flights, clock, -1.0, self._model, self.kernel)
 
     def read(self, clock: float) -> np.ndarray:
-        """Return the sums (2 d^2 + d,) until this time on the clocks of the epoch."""
+        """Return the sums (2 d^2 + d,) up to this time on the epoch's clocks."""
         total = self.kernel._replace(sums=self.kernel.sums.copy())
         add_sheared_flights(self._flights, clock, 1.0, self._model, total)
         return values(total.sums) * self._unit_mass
@@ -129,32 +128,32 @@ class ShearedStressPart(StressPart):
 def stress_part(
     tally: OptionalTally, flights: np.ndarray, model: Model, unit_mass: float, scene: Scene, state: State
 ) -> StressPart:
-    """Return the part for a gas that is sheared or not.
+    """Return the stress part for a gas, sheared or not.
 
-    state : state at time 0
+    state : initial state
     """
     kind = StressPart if model.shear is None else ShearedStressPart
     return kind(flights, model, unit_mass, drift_of(scene, state))
 
 
-# Momentum that particles carry through planes across an axis, from the impulses that they receive.
+# Momentum that particles carry through planes across an axis, computed from their impulses.
 
 
 def rows_of(scene: Scene) -> np.ndarray:
-    """Return the row (N,) of each particle: the number of its species.
+    """Return the row (N,) of each particle, its species number.
 
-    Single particles have the number after the last, and are the first particles.
+    Single particles are the first particles, but have the last row.
     """
     counts = [len(scene.particles), *(kind.count for kind in scene.species)]
     return np.repeat([len(scene.species), *range(len(scene.species))], counts)
 
 
 class ImpulsesPart(TallyPart):
-    """Momentum below each plane at the last reset, and all impulses since then.
+    """Momentum below each plane at the last reset, plus all impulses since then.
 
-    The present momentum below each plane is subtracted at reading.
+    When the tally is read, the present momentum below each plane is subtracted.
 
-    flights : (N,), particles, each at its own clock
+    flights : (N,), particles, each at the time of its last event
     """
 
     kernel: kernels.Impulses
@@ -170,9 +169,9 @@ class ImpulsesPart(TallyPart):
         super().__init__("impulses", kernels.Impulses(sums, axis, per_length, row), {"impulses": sums})
 
     def _add_momenta(self, clock: float, sign: float, sums: np.ndarray) -> None:
-        """Add `sign` times the momenta of all particles at a time.
+        """Add `sign` times the momenta of all particles at a time to the sums.
 
-        clock : this time on the clocks of the epoch
+        clock : time on the clocks of the epoch
         """
         flights, model = self._flights.copy(), self._model
         advance_all(flights, clock, model.space, model.gravity)
@@ -184,38 +183,38 @@ class ImpulsesPart(TallyPart):
         self._add_momenta(clock, 1.0, self.kernel.sums)
 
     def read(self, clock: float) -> np.ndarray:
-        """Return the momentum (species, bins) transported until this time on the clocks of the epoch."""
+        """Return the transported momentum (species, bins) up to this time on the clocks of the epoch."""
         sums = self.kernel.sums.copy()
         self._add_momenta(clock, -1.0, sums)
         return np.asarray(self._unit_mass * np.cumsum(sums, axis=1)[:, :-1])
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the momentum by the field of `Tally`."""
+        """Return the momentum under its field of `Tally`."""
         return {"momentum_flux_sum": self.read(clock)}
 
 
 def impulses_part(
     tally: OptionalTally, flights: np.ndarray, model: Model, unit_mass: float, scene: Scene, state: State
 ) -> ImpulsesPart:
-    """Return the part of an `ImpulseTally`."""
+    """Return the part for an `ImpulseTally`."""
     assert isinstance(tally, ImpulseTally)
     return ImpulsesPart(flights, model, unit_mass, scene, "xyz".index(tally.axis), tally.bins)
 
 
-# Momentum that pairs gain along their separation, from the impulses of contacts.
+# Momentum that pairs gain along their separation, computed from the impulses of contacts.
 
 
 _FINEST = 2.0**-27
-"""Unit of whole numbers, as a fraction of a thermal momentum's contribution to a pair at contact.
+"""Unit of the integer sums, as a fraction of the contribution of a pair at contact with a thermal momentum.
 
-The distance is the smallest diameter; a sum holds 2^36 of these contributions.
+The contact distance is the smallest diameter. A sum can hold 2^36 of these contributions.
 """
 
 
 class PairImpulsesPart(TallyPart):
-    """Impulses of pairs, in whole numbers.
+    """Impulses of pairs as integers.
 
-    unit : unit of these numbers in units of `Tally`
+    unit : unit of these integers in the units of `Tally`
     """
 
     kernel: PairImpulses
@@ -229,11 +228,11 @@ class PairImpulsesPart(TallyPart):
         self.kernel.sums[...] = 0
 
     def read(self, clock: float) -> np.ndarray:
-        """Return k_B T g(r) times the time, (2, shells), of colliding pairs and of others."""
+        """Return k_B T g(r) times the time (2, shells), for colliding and for other pairs."""
         return np.asarray(self._units * np.cumsum(self.kernel.sums, axis=1)[:, :-1])
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the sums by the fields of `Tally`."""
+        """Return the sums under the names of fields of `Tally`."""
         sums = self.read(clock)
         return {"contact_impulse_sum": sums[MEETING], "other_impulse_sum": sums[OTHERS]}
 
@@ -241,7 +240,7 @@ class PairImpulsesPart(TallyPart):
 def pair_impulses_part(
     tally: OptionalTally, flights: np.ndarray, model: Model, unit_mass: float, scene: Scene, state: State
 ) -> PairImpulsesPart:
-    """Return the part of a `PairImpulseTally`."""
+    """Return the part for a `PairImpulseTally`."""
     assert isinstance(tally, PairImpulseTally)
     d, n = scene.dimension, scene.count
     momentum = math.sqrt(2.0 * state.kinetic_energy / n * float(state.masses.max())) / unit_mass
@@ -264,18 +263,18 @@ def pair_impulses_part(
 
 
 PARTS = {"stress": stress_part, "impulses": impulses_part, "pair_impulses": pair_impulses_part}
-"""Functions that make the part of an optional tally of the event-driven engine, by its name."""
+"""Functions that make the parts for optional tallies of the event-driven engine, by name."""
 
 
-# Momentum and heat given to faces by particles of several sizes, divided by accessible areas.
+# Momentum and heat given to faces by particles of each size, divided by the accessible areas.
 #
-# Areas are the areas of the container at the start; faces and walls that move are at their positions then.
+# The areas are those of the initial container, with moving faces and walls at their initial positions.
 
 
 def inverse_areas(scene: Scene, state: State) -> tuple[np.ndarray, np.ndarray]:
-    """Return the inverse accessible area (sizes, 2d) of each face, and the particles' sizes (N,).
+    """Return the inverse accessible areas (sizes, 2d) of faces, and the particles' size numbers (N,).
 
-    The inverse is 0 for faces that no centre reaches. Fixed particles have the first size.
+    The inverse is 0 for faces that no centre reaches. Fixed particles have the first size number.
     """
     fixed = ~np.isfinite(state.masses)
     sizes, size = np.unique(state.radii[~fixed], return_inverse=True)
@@ -286,9 +285,9 @@ def inverse_areas(scene: Scene, state: State) -> tuple[np.ndarray, np.ndarray]:
 
 
 def per_area_fields(momentum: np.ndarray, heat: np.ndarray, walls: int) -> dict[str, np.ndarray]:
-    """Return the fields of `Tally` from the sums of faces, (2d, d) and (2d,).
+    """Return the fields of `Tally` from sums over faces, shapes (2d, d) and (2d,).
 
-    Interior walls have 0.
+    Interior walls have the value 0.
     """
     return {
         "momentum_per_area": np.pad(momentum, ((0, walls), (0, 0))),
@@ -297,7 +296,7 @@ def per_area_fields(momentum: np.ndarray, heat: np.ndarray, walls: int) -> dict[
 
 
 class EventPerAreaPart(TallyPart):
-    """Sums of the event-driven engine, with masses in units of `unit_mass`."""
+    """Sums in the event-driven engine, with masses in units of `unit_mass`."""
 
     kernel: PerArea
 
@@ -312,16 +311,16 @@ class EventPerAreaPart(TallyPart):
         self.kernel.sums[...] = 0.0
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the sums by the fields of `Tally`."""
+        """Return the sums under the names of fields of `Tally`."""
         d = self._scene.dimension
         sums = values(self.kernel.sums).reshape(2 * d, d + 1) * self._unit_mass
         return per_area_fields(sums[:, :d], sums[:, d], len(self._scene.walls))
 
 
 class ThreadedPerAreaPart(Part):
-    """Sums of an engine whose threads add to them.
+    """Sums in an engine with several threads.
 
-    read : function that returns the value of the sums, (2d, d + 1)
+    read : function that returns the sums, shape (2d, d + 1)
     """
 
     def __init__(self, sums: np.ndarray, read: Callable[[np.ndarray], np.ndarray]) -> None:
@@ -329,6 +328,6 @@ class ThreadedPerAreaPart(Part):
         self._read = read
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the sums by the fields of `Tally`."""
+        """Return the sums under the names of fields of `Tally`."""
         sums = self._read(self.sums["per_area"])
         return per_area_fields(sums[:, :-1], sums[:, -1], 0)

@@ -1,4 +1,4 @@
-"""Interior walls of a scene for the kernels, and the state of warm or moving walls."""
+"""Interior walls in the form of the kernels, and the state of thermal or moving walls."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from gaspart.state.interior_walls import wall_rows, walls_near
 from gaspart.state.random import key_of
 from gaspart.state.state import State
 
-_INTERIOR_DRAWS = 6  # the purpose of their random numbers, after those of the engines
+_INTERIOR_DRAWS = 6  # stream number of these random numbers, after those of the engines
 
 
 def interior_walls(
     scene: Scene, boxes: Boxes, largest_radius: float, warm: WarmWalls | None, moving: MovingWall | None
 ) -> InteriorWalls:
-    """Return the interior walls, with the walls near each box.
+    """Return the interior walls, with a list of the walls near each box.
 
-    The list is for radii up to `largest_radius`. A moving wall is near no box.
+    The list is valid for radii up to `largest_radius`. A moving wall is not in the list of any box.
     """
     rows, wall = wall_rows(scene)
     if moving:
@@ -34,7 +34,7 @@ def interior_walls(
 
 
 def warm_walls(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float) -> WarmWalls | None:
-    """Return the walls at a temperature, in units of `unit_mass`, or None if all are hard."""
+    """Return the thermal walls, in units of `unit_mass`, or None if all walls are hard."""
     level = np.array([wall.temperature or 0.0 for wall in scene.walls])
     if not level.any():
         return None
@@ -43,9 +43,9 @@ def warm_walls(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mas
 
 
 class WarmWallsPart(Part):
-    """Numbers of draws of random numbers for each particle at interior walls.
+    """Number of random draws of each particle at interior walls.
 
-    lightest : least mass of a particle
+    lightest : smallest mass of a particle
     """
 
     def __init__(self, scene: Scene, warm: WarmWalls, lightest: float) -> None:
@@ -57,9 +57,10 @@ class WarmWallsPart(Part):
 
 
 def moving_wall_of(scene: Scene, state: State, unit_mass: float) -> kernels.MovingWall | None:
-    """Return the moving wall in its state, in units of `unit_mass`, or None.
+    """Return the moving wall with its state, in units of `unit_mass`, or None.
 
-    Raises SceneError unless there are particles on both sides, which keep the wall inside the container.
+    Raises SceneError unless there are particles on both sides, because they keep the wall inside the
+    container.
     """
     wall = scene.moving_wall
     if wall is None or state.piston is None:
@@ -72,7 +73,7 @@ def moving_wall_of(scene: Scene, state: State, unit_mass: float) -> kernels.Movi
 
 
 class MovingWallPart(Part):
-    """Motion of the wall, with its energy, in units of `unit_mass`."""
+    """Motion and energy of the wall, in units of `unit_mass`."""
 
     def __init__(self, wall: kernels.MovingWall, unit_mass: float) -> None:
         super().__init__({"piston": wall.motion})
@@ -93,7 +94,7 @@ class MovingWallPart(Part):
         self.set_clock(0.0)
 
     def write(self, state: State, clock: float) -> None:
-        """Write position along its axis and velocity of the wall."""
+        """Write the position along its axis and the velocity of the wall."""
         motion = self._motion.copy()
         advance_wall(motion, clock)
         state.piston = motion[[kernels.PISTON_PLACE, kernels.PISTON_VELOCITY]]

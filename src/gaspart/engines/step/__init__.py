@@ -1,1 +1,1 @@
-"""Time-stepped engine: overlaps found after each step (Frederickx & Meerts 2010)."""
+"""Time-stepped engine, which searches for overlaps after each step (Frederickx & Meerts 2010)."""

@@ -1,4 +1,4 @@
-"""Arrays of the time-stepped engine's kernels: particles, model and tally."""
+"""Arrays of the kernels of the time-stepped engine: particles, model and counters."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ if TYPE_CHECKING:
 
 
 def empty_particles(engine: TimeStepped, scene: Scene, state: State, ordinary: int) -> StepParticles:
-    """Return empty arrays for the particles, with their masses and without a list.
+    """Return empty arrays for the particles, with masses but without a neighbour list.
 
-    ordinary : number of ordinary particles
+    ordinary : number of particles that are not oversized
     """
     real = np.dtype(engine.precision).type
     _, masses = masses_of(scene, state)
@@ -62,10 +62,10 @@ def masses_of(scene: Scene, state: State) -> tuple[float, np.ndarray]:
 def model_for(
     engine: TimeStepped, scene: Scene, state: State, seed: int | tuple[int, ...], radii: np.ndarray
 ) -> StepModel:
-    """Return the model of a scene.
+    """Return the kernel model of a scene.
 
-    radii : radii of the ordinary particles
-    seed : seed of thermal walls
+    radii : radii of the particles that are not oversized
+    seed : seed of the random numbers of thermal walls
     """
     real = np.dtype(engine.precision).type
     lengths, margin = scene.container.lengths, real(not scene.centres_to_walls)
@@ -91,11 +91,11 @@ def step_tally(
     areas: tuple[np.ndarray, np.ndarray] | None,
     fixed: bool,
 ) -> StepTally:
-    """Return a tally at zero, for a number of faces.
+    """Return counters at zero, for a number of faces.
 
     largest : see `largest_terms`
-    parts : parts of optional tallies
-    areas : `inverse_areas` if they differ
+    parts : parts for optional tallies
+    areas : `inverse_areas` if they differ between sizes
     fixed : True if there are fixed particles
     """
     tally = StepTally(
@@ -122,11 +122,11 @@ def step_tally(
 def rules_for(
     engine: TimeStepped, scene: Scene, state: State, seed: int | tuple[int, ...], space: Space
 ) -> Rules | None:
-    """Return the kernels' `Rules` of a scene with special faces or contacts, or None.
+    """Return the kernels' `Rules` for special faces or collision laws, or None.
 
-    These faces and contacts change more than momenta.
+    Such faces and laws change more than momenta.
 
-    space : space of the step engine's kernels
+    space : space in the form of the kernels of this engine
     """
     if not needs_rules(scene):
         return None
@@ -157,32 +157,32 @@ def rules_for(
 
 
 def parts_for(scene: Scene, rules: Rules | None) -> list[Part]:
-    """Return the parts of a run for such rules; no parts without rules."""
+    """Return the parts of a run for these rules; () without rules."""
     if rules is None:
         return []
     law, faces = rules.model.law, rules.model.faces
-    heat = Part({}, sums={"heat": rules.heat[np.newaxis]})  # common to all threads
+    heat = Part({}, sums={"heat": rules.heat[np.newaxis]})  # shared by all threads
     parts = LawPart(law) if law else None, FacesPart(scene, faces, 1.0) if faces else None, heat
     return [part for part in parts if part]
 
 
 def needs_rules(scene: Scene) -> bool:
-    """Return True if faces or contacts of a scene change more than momenta."""
+    """Return True if faces or collisions of a scene change more than momenta."""
     return bool(scene.faces) or scene.rough or scene.vibrates
 
 
-# Optional tallies of the time-stepped engine. Threads add to them, exactly.
+# Optional tallies of the time-stepped engine. Threads add to them without rounding errors.
 
 
 class ImpulsesPart(TallyPart):
     """Momentum that particles transport through planes across an axis.
 
-    The transported momentum is the momentum below each plane at the last reset, `momenta`, plus all impulses
-    since then, minus the present momentum below the plane. The kernel is the entries of a `StepTally`, by
+    The transported momentum is the momentum below each plane at the last reset (`momenta`), plus all impulses
+    since then, minus the present momentum below the plane. `kernel` contains the fields of a `StepTally`, by
     name.
 
     particles : particles of the kernels
-    units : unit of their masses, and the bound of a momentum in this unit
+    units : unit of mass of the particles, and the bound of a momentum in this unit
     """
 
     kernel: dict[str, Any]
@@ -215,10 +215,10 @@ class ImpulsesPart(TallyPart):
         self.reset(0.0)
 
     def _momenta(self) -> np.ndarray:
-        """Return the present momenta (rows, bins + 1) of all particles, binned like impulses.
+        """Return the present momenta (rows, bins + 1) of all particles in the impulses' bins.
 
-        They are added in the order of the particles' numbers, so that rounding does not depend on the order
-        in memory.
+        They are summed in the order of particle numbers, so that rounding does not depend on the order in
+        memory.
         """
         particles = self._particles
         order = np.argsort(particles.index)
@@ -237,18 +237,18 @@ class ImpulsesPart(TallyPart):
         self.arrays["momenta"][...] = self._momenta()
 
     def read(self, clock: float) -> np.ndarray:
-        """Return the momentum (species, bins) transported until now."""
+        """Return the transported momentum (species, bins) up to the present time."""
         impulses = whole_parts(self.sums["impulses"].sum(axis=0), self._largest).sum(axis=-1)
         below = np.cumsum(impulses + (self.arrays["momenta"] - self._momenta()), axis=1)
         return np.asarray(self._unit_mass * below[:, :-1])
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the momentum by the field of `Tally`."""
+        """Return the momentum under its field of `Tally`."""
         return {"momentum_flux_sum": self.read(clock)}
 
 
 PARTS = {"impulses": ImpulsesPart}
-"""Classes of the parts of optional tallies, by name."""
+"""Classes of the parts for optional tallies, by name."""
 
 
 def tally_parts(
@@ -259,7 +259,7 @@ def tally_parts(
     threads: int,
     units: tuple[float, float],
 ) -> list[TallyPart]:
-    """Return the parts of optional tallies.
+    """Return the parts for optional tallies.
 
     particles : particles in their slots at time 0
     units : see `ImpulsesPart`
@@ -271,12 +271,12 @@ def tally_parts(
 
 
 _CELLS_PER_PARTICLE = 6.0
-_REBUILD, _TEST, _PAIR = 25.0, 2.0, 6.0  # ns per particle, candidate and pair listed: their ratios matter
-_LEAST = 1.6  # times the distance by which the fastest two approach in a step, at least
+_REBUILD, _TEST, _PAIR = 25.0, 2.0, 6.0  # ns per particle, candidate and listed pair; only ratios matter
+_LEAST = 1.6  # minimum skin, in distances by which the fastest two particles approach in a step
 
 
 def search_for(engine: TimeStepped, scene: Scene, state: State, radii: np.ndarray) -> Search:
-    """Return boxes, or cells and empty pairs of a neighbour list, for particles of these radii."""
+    """Return boxes, or cells and an empty neighbour list, for particles with these radii."""
     pairs = np.empty((engine.threads, state.count // engine.threads + 16), np.uint64)
     if engine.boxes_per_side is None:
         return Search(None, cells_for(engine, scene, state, radii), pairs)
@@ -302,7 +302,7 @@ def cells_for(engine: TimeStepped, scene: Scene, state: State, radii: np.ndarray
     skin = engine.skin or _skin(engine, scene, state, contact)
     width = max((contact + skin) * (1.0 + 1e-4), _width(scene, state.count))
     sides = [max(1, int(length / width)) for length in lengths]
-    # of two cells each would be the other's neighbour twice; one cell does too, by nearest images
+    # two cells would be neighbours twice; one cell suffices because the nearest images are used
     sides = [1 if p and side < 3 else side for side, p in zip(sides, periodic, strict=True)]
     rest = [1] * (3 - scene.dimension)
     per_side = np.array(sides + rest, dtype=np.int64)
@@ -332,14 +332,14 @@ def _width(scene: Scene, count: int) -> float:
 
 
 def _skin(engine: TimeStepped, scene: Scene, state: State, contact: float) -> float:
-    """Return the skin that costs least.
+    """Return the skin thickness with the lowest cost.
 
-    A thin skin is used up soon, a thick one lists many pairs.
+    A thin skin is used up quickly; a thick skin lists many pairs.
     """
     dimension, density = scene.dimension, state.count / scene.container.volume
     squares = (state.velocities**2).sum(axis=1)
     fastest = np.sqrt(squares.max(initial=0.0))
-    if state.count > 1:  # speeds in the end, for any present speeds
+    if state.count > 1:  # final speeds, for any present speeds
         square = max(squares.mean(), face_energy(scene) / float(state.masses.min())) / dimension
         fastest = max(fastest, np.sqrt(square * (2.0 * np.log(state.count) + 2.0)))
     gravity = 0.0 if scene.gravity is None else float(np.abs(scene.gravity).max())
@@ -347,8 +347,8 @@ def _skin(engine: TimeStepped, scene: Scene, state: State, contact: float) -> fl
     skins = contact * np.geomspace(0.02, 30.0, 60)
     steps = np.maximum(skins / way, 1.0) if way > 0.0 else np.full(60, np.inf)
     pairs = 0.5 * ball_volume(dimension) * density * (contact + skins) ** dimension
-    stretches = 4.5 if dimension == 2 else 13.5  # cells in which partners are looked for
+    stretches = 4.5 if dimension == 2 else 13.5  # cells in which neighbours are searched
     tests = stretches * density * np.maximum(contact + skins, _width(scene, state.count)) ** dimension
     cost = (_REBUILD + _TEST * tests) / steps + _PAIR * pairs
-    cost[skins < _LEAST * way] = np.inf  # contacts would use it up in one step
+    cost[skins < _LEAST * way] = np.inf  # particles would use up the skin in one step
     return float(skins[np.argmin(cost)]) if np.isfinite(cost).any() else _LEAST * way

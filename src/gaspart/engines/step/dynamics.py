@@ -39,11 +39,11 @@ if TYPE_CHECKING:
 
 _BY_THREAD = ("wall_hits", "wall_impulse", "wall_loss")
 _OF_ALL = ("counts", "sums", "extremes")
-"""Arrays of `StepTally`."""
+"""Arrays of `StepTally` that are summed over all threads."""
 
 
 class StepDynamics(SteppedDynamics):
-    """Dynamics of a scene. Its time is a whole number of steps."""
+    """Dynamics of a scene under the time-stepped engine. Its time is an integer number of steps."""
 
     def __init__(
         self,
@@ -64,7 +64,7 @@ class StepDynamics(SteppedDynamics):
         self._real = np.dtype(engine.precision).type
         ordinary = state.radii[~oversized]
         self._particles = empty_particles(engine, scene, state, len(ordinary))
-        slots = np.argsort(oversized, kind="stable")  # oversized particles last
+        slots = np.argsort(oversized, kind="stable")  # oversized particles come last
         self._place(slots, state.positions, state.velocities, state.images)
         self._search = search_for(engine, scene, state, ordinary)
         self._model = model_for(engine, scene, state, seed, ordinary)
@@ -115,7 +115,7 @@ class StepDynamics(SteppedDynamics):
 
     @property
     def _loss(self) -> np.ndarray:
-        """Energy taken by contacts between particles, and by walls in each thread."""
+        """Energy removed by contacts between particles, and by walls, in each thread."""
         tally = self._tally
         at_walls = running_sum.whole_parts(tally.wall_loss, self._largest[1])
         return np.vstack([tally.sums[layout.LOSS], at_walls])
@@ -129,7 +129,7 @@ class StepDynamics(SteppedDynamics):
         check_late(self._engine, self.time, *numbers)
 
     def _run(self, steps: int) -> None:
-        """Run the kernel for a number of steps; with 0 steps, only make a list."""
+        """Run the kernel for a number of steps; with 0 steps, only make a neighbour list."""
         settings = self._real(self.time_step), self._engine.rewind, self._engine.passes
         pairs = loop.run_steps(
             self._particles, self._search, self._model, settings, steps, self._tally, self._threads
@@ -137,16 +137,16 @@ class StepDynamics(SteppedDynamics):
         self._search = self._search._replace(pairs=pairs)
 
     def _sums(self) -> dict[str, np.ndarray]:
-        """Return the arrays with counts. Arrays that all threads share get one row."""
+        """Return the arrays of counters. Arrays that all threads share have a single row."""
         common = {key: getattr(self._tally, key)[np.newaxis] for key in _OF_ALL}
         return common | {key: getattr(self._tally, key) for key in _BY_THREAD}
 
     def _per_area(self, most: float, sums: np.ndarray) -> np.ndarray:
-        """Return momentum along each axis and heat given to each face per accessible area.
+        """Return the momentum along each axis and the heat given to each face, per accessible area.
 
         The shape is (2d, d + 1).
 
-        most : inverse of the least area
+        most : inverse of the smallest area
         """
         d = self._scene.dimension
         units = np.array(self._largest) * (self._unit_mass * most)
@@ -167,11 +167,11 @@ class StepDynamics(SteppedDynamics):
         }
 
     def _checkpoint_data(self) -> dict[str, Any]:
-        """Return the data of a checkpoint, with bounds and origin of the neighbour list."""
+        """Return the data of a checkpoint, including bounds and origin of the neighbour list."""
         return {**super()._checkpoint_data(), "reach": self._particles.bounds, **self._list_parts()}
 
     def _required_arrays(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """Return the arrays needed from a checkpoint, except the origin of the list.
+        """Return the arrays required from a checkpoint, except the origin of the neighbour list.
 
         The list may belong to another search.
         """
@@ -179,7 +179,7 @@ class StepDynamics(SteppedDynamics):
         return {key: array for key, array in self.checkpoint().items() if key not in spared}
 
     def _place_again(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Place the particles, with the list of the checkpoint if its settings are the same."""
+        """Place the particles, with the neighbour list of the checkpoint if its settings are the same."""
         super()._place_again(checkpoint)
         self._particles.bounds[...] = 0.0, np.inf  # as at the start: the next step makes a list
         if self._has_list_of(checkpoint):
@@ -189,7 +189,7 @@ class StepDynamics(SteppedDynamics):
     def _list_parts(self) -> dict[str, np.ndarray]:
         """Return the origin (d, N) of the neighbour list by slot, and its settings.
 
-        The origin is the positions of the particles when the list was made.
+        The origin consists of the positions of the particles when the list was made.
         """
         if self._search.cells is None:
             return {}
@@ -197,7 +197,7 @@ class StepDynamics(SteppedDynamics):
         return {"origin": self._search.cells.origin, "threads": np.array(self._engine.threads), **settings}
 
     def _has_list_of(self, checkpoint: dict[str, np.ndarray]) -> bool:
-        """Return True if a checkpoint has a list that was made with this engine's settings."""
+        """Return True if a checkpoint has a neighbour list with this engine's settings."""
         own = self._list_parts()
         if not own or not checkpoint["reach"][layout.DISPLACEMENT] < np.inf:
             return False
@@ -205,10 +205,10 @@ class StepDynamics(SteppedDynamics):
         return origin and all(np.array_equal(checkpoint.get(key, ()), value) for key, value in own.items())
 
     def _list_from(self, origin: np.ndarray) -> None:
-        """Make the list again that was made when particles were at `origin` (d, N), by slot."""
+        """Remake the neighbour list that was made with particles at `origin` (d, N), by slot."""
         particles = self._particles
         now = particles.positions.copy()
         particles.positions[...] = origin
-        particles.bounds[layout.DISPLACEMENT] = np.inf  # no list is as old as that
+        particles.bounds[layout.DISPLACEMENT] = np.inf  # no list can be that old
         self._run(0)
         particles.positions[...] = now

@@ -1,4 +1,4 @@
-"""Limits of the scenes and settings that the time-stepped engine can model."""
+"""Limits of the scenes and settings that the time-stepped engine supports."""
 
 from __future__ import annotations
 
@@ -14,41 +14,44 @@ from gaspart.errors import SceneError, SimulationError
 from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
+from gaspart.theory.discretisation import MISSED_CONTACTS, ONE_PASS, contact_values
 
 if TYPE_CHECKING:
     from gaspart.engines.step.settings import TimeStepped
 
 
-_OVERSIZED = 16  # maximum number of particles that are tested against all others
-_LARGER = 2.0  # radii of the next smaller particle: larger ones are among them
-_SINGLE = 1e9  # the largest length or speed in float32, whose squares are multiplied with each other
-_RESOLVED = 1e5  # diameters in the longest side, at most: float32 then resolves contacts to a hundredth
+_OVERSIZED = 16  # maximum number of oversized particles, which are tested against all others
+_LARGER = 2.0  # minimum radius of an oversized particle, in radii of the next smaller particle
+_SINGLE = 1e9  # largest length or speed in float32, because squares are multiplied with each other
+_RESOLVED = 1e5  # diameters in the longest side, at most: float32 then resolves contacts to 1 %
 MOST_PARTICLES = 2**28
-"""Bound on the number of particles: an entry of the neighbour list has two slots and eight marks in 64 bits.
+"""Maximum number of particles. An entry of the neighbour list has two slots and eight marks in 64 bits.
 
 See `kernels.step.neighbour_list`.
 """
 
 MISSED, MISSED_MOST = 0.01, 0.1
-"""Fraction of contacts that a step may miss before the engine warns, and rejects the step."""
+"""Fraction of missed contacts above which the engine warns, and above which it rejects the step."""
 CONTACTS, CONTACTS_MOST = {True: 2.5, False: 0.5}, {True: 5.0, False: 1.0}
-"""Contacts of a particle in a step, with several passes or with one, before the engine warns, and rejects.
+"""Contacts of a particle per step, with several passes or with one, above which the engine warns, and above
+which it rejects the step.
 
-Up to the first limit the pressure is correct to about 1 % (measured: docs/time-stepped.md).
+Below the first limit the pressure is correct to about 1 % (measured: docs/time-stepped.md).
 """
 
 LATE_MOST, PASSED_MOST, FEW = 0.25, 0.01, 2
-"""Fraction of contacts that may be found a step too late, and with particles half-way through each other.
+"""Largest allowed fractions of contacts that are found a step too late, and of contacts in which particles
+are half-way through each other.
 
-FEW are allowed in any case. In gases, up to a step of which the engine warns, the fractions are 0.05 and
-0.004.
+A number of FEW such contacts is always allowed. In gases, the fractions are 0.05 and 0.004 at the step above
+which the engine warns.
 """
 
 
 def oversized_particles(state: State) -> np.ndarray:
-    """Mark the particles (N,) that are too large for boxes and cells.
+    """Return a mask (N,) of the particles that are too large for boxes and cells.
 
-    Such particles are few and much larger than all others.
+    Such particles are few and much larger than all other particles.
     """
     order = np.argsort(state.radii, kind="stable")
     sizes = state.radii[order]
@@ -60,7 +63,7 @@ def oversized_particles(state: State) -> np.ndarray:
 
 
 def check_scene(scene: Scene, state: State, oversized: np.ndarray) -> None:
-    """Raise SceneError for too many particles, or a container that is too short."""
+    """Raise SceneError for too many particles, or for a container that is too short."""
     if state.count >= MOST_PARTICLES:
         raise SceneError(
             "count", state.count, f"the time-stepped engine takes {MOST_PARTICLES - 1} particles at most"
@@ -75,11 +78,12 @@ def check_scene(scene: Scene, state: State, oversized: np.ndarray) -> None:
 
 
 def check_precision(engine: TimeStepped, scene: Scene, state: State) -> None:
-    """Raise SceneError for steps or sizes that the precision does not resolve.
+    """Raise SceneError for steps or sizes that the floating-point precision does not resolve.
 
-    A step is rejected if particles move by less than the rounding of their positions, or so far that the
-    rounding is as large as the container. In float32, lengths and speeds are rejected if their squares are
-    out of range, and particles if their contacts cannot be resolved in the container.
+    A step is rejected if particles move by less than the rounding error of their positions, or so far that
+    the rounding error is as large as the container. In float32, lengths and speeds are rejected if their
+    squares are out of range. Particles are rejected if the precision cannot resolve their contacts in the
+    container.
     """
     longest, speeds = max(scene.container.lengths), np.sqrt((state.velocities**2).sum(axis=1))
     typical, fastest = math.sqrt(float((speeds**2).mean())) if state.count else 0.0, speeds.max(initial=0.0)
@@ -103,13 +107,10 @@ def check_precision(engine: TimeStepped, scene: Scene, state: State) -> None:
 
 
 def missed_contacts(time_step: float, several: bool, state: State) -> float:
-    """Return the fraction of contacts that a step misses: pairs that touch and separate within it.
+    """Return the fraction of missed contacts, in which pairs touch and separate within a step.
 
-    For a dilute gas of spheres the fraction is (2/3) (v_th dt / sigma)^2, for discs (1/4) (v_th dt /
-    sigma)^2, with v_th = sqrt(kT/m). It is four times as large with one pass (not `several`), which resolves
-    only overlaps that grow. The fraction is computed from the flux of pairs through chords that they cross
-    within a step. v_th is the present value of each species; the result is the mean over the pairs that
-    collide.
+    The fraction is that for a dilute gas (`MISSED_CONTACTS`), with several passes or one, at the present
+    thermal speed of each species. The result is the mean over the pairs that collide.
     """
     square, radius, number = [], [], []
     for kind in np.unique(state.species):
@@ -117,22 +118,46 @@ def missed_contacts(time_step: float, several: bool, state: State) -> float:
         square.append((state.velocities[of] ** 2).mean())
         radius.append(state.radii[of].mean())
         number.append(of.sum())
-    square, radius, number = (np.array(values, dtype=float) for values in (square, radius, number))
+    kinds = np.array([square, radius, number], dtype=float)
+    return _missed_fraction(time_step, several, state.dimension, *kinds)
+
+
+def bias(engine: TimeStepped, scene: Scene) -> float:
+    """Bound the relative error of an observable due to missed contacts.
+
+    The temperature is the initial temperature, or the temperature of the hottest face if it is higher.
+    """
+    kinds, heat = scene.moving_kinds, max(scene.face_temperatures, default=0.0)
+    squares = [max(kind.initial_temperature(scene.dimension), heat) / kind.mass for kind in kinds]
+    sizes = [kind.radius for kind in kinds], [kind.count for kind in kinds]
+    columns = np.array([squares, *sizes], dtype=float)
+    return _SAFE * _missed_fraction(engine.time_step, engine.passes > 1, scene.dimension, *columns)
+
+
+def _missed_fraction(
+    time_step: float,
+    several: bool,
+    dimension: int,
+    square: np.ndarray,
+    radius: np.ndarray,
+    number: np.ndarray,
+) -> float:
+    """Return the fraction of missed contacts from the properties (S,) of the species."""
     sigma = radius[:, None] + radius
     relative = 0.5 * (square[:, None] + square)
     pairs = number[:, None] * (number - np.eye(len(number)))
-    rate = np.maximum(0.0, pairs) * sigma ** (state.dimension - 1) * np.sqrt(relative)
+    rate = np.maximum(0.0, pairs) * sigma ** (dimension - 1) * np.sqrt(relative)
     if not rate.sum() > 0.0:
         return 0.0
     missed = relative * (time_step / sigma) ** 2
-    factor = {2: 1.0 / 4.0, 3: 2.0 / 3.0}[state.dimension] * (1.0 if several else 4.0)
+    factor = MISSED_CONTACTS[dimension] * (1.0 if several else ONE_PASS)
     return float(factor * (rate * missed).sum() / rate.sum())
 
 
 def check_step(engine: TimeStepped, state: State) -> None:
-    """Raise SceneError for a step with large errors, and warn of errors of some percent.
+    """Raise SceneError for a step with large errors, and warn of errors of a few percent.
 
-    The message names a sufficient step.
+    The message recommends a sufficiently short step.
     """
     if state.count < 2:
         return
@@ -155,7 +180,7 @@ def check_step(engine: TimeStepped, state: State) -> None:
 def check_late(engine: TimeStepped, time: float, met: int, late: int, passed: int) -> None:
     """Raise SimulationError if too many contacts are found a step too late.
 
-    Raise it also for particles that pass through each other. Speeds have become so high, or gaps are so
+    It is also raised if particles pass through each other. In these cases speeds are so high, or gaps so
     narrow, that the step is too long.
     """
     most = [max(FEW, part * met) for part in (LATE_MOST, PASSED_MOST)]
@@ -169,33 +194,33 @@ def check_late(engine: TimeStepped, time: float, met: int, late: int, passed: in
 def contacts_per_step(time_step: float, state: State) -> float:
     """Return the number of collisions of a particle in a step.
 
-    The number is Enskog's rate for equal particles of the same packing fraction. The contact value is by
-    Carnahan & Starling (1969), for discs by Henderson (1975).
+    The number is Enskog's collision rate for equal particles with the same packing fraction, times the step.
+    The contact value is from Carnahan & Starling (1969), for discs from Henderson (1975).
     """
     spheres = state.dimension == 3
     ball = ball_volume(state.dimension) * float((state.radii**state.dimension).mean())
     density = state.count / float(state.lengths.prod())
     eta = min(density * ball, 0.7)  # higher only where a face stops centres
-    contact = (1.0 - 0.5 * eta) / (1.0 - eta) ** 3 if spheres else (1.0 - 0.4375 * eta) / (1.0 - eta) ** 2
     diameter = 2.0 * (ball / ball_volume(state.dimension)) ** (1.0 / state.dimension)
+    contact = float(contact_values(np.array([eta / ball]), np.array([0.5 * diameter]), state.dimension)[0, 0])
     thermal = math.sqrt(math.pi * float((state.velocities**2).mean()))
     around = 4.0 * diameter**2 if spheres else 2.0 * diameter
     return density * around * contact * thermal * time_step
 
 
-# Time step for an accuracy, and the bound on its error: the contacts that a step misses.
+# Time step for an accuracy, and a bound on its error due to missed contacts.
 
 
 _SHARE = 0.125
-"""Fraction of an accuracy that the contacts missed by time steps may take."""
+"""Maximum fraction of the requested accuracy that missed contacts may use."""
 _SAFE = 2.0
-"""Maximum error of a pressure or a rate, divided by the fraction of contacts that are missed."""
+"""Maximum error of a pressure or a rate, divided by the fraction of missed contacts."""
 _LONGEST = 0.2
-"""Longest step, as a fraction of the mean time between a particle's collisions."""
+"""Longest step, as a fraction of the mean time between collisions of a particle."""
 
 
 def candidate(engine: TimeStepped, request: AccuracyRequest) -> Candidate:
-    """Return the engine with the longest step that is accurate enough.
+    """Return the engine with the longest step that is sufficiently accurate.
 
     Raises SceneError for a gas without collisions.
     """
@@ -206,12 +231,12 @@ def candidate(engine: TimeStepped, request: AccuracyRequest) -> Candidate:
     if not missed > 0.0 or not math.isfinite(free):
         raise SceneError("time_step", None, "follows from contacts, which particles at rest do not have")
     longest = min(math.sqrt(_SHARE * request.accuracy / (_SAFE * missed)), _LONGEST * free)
-    step = float(f"{0.95 * longest:.2g}")  # not above the longest, for any rounding
+    step = float(f"{0.95 * longest:.2g}")  # never above the longest step, for any rounding
     return Candidate(engine.with_step(step), discretisation=_SAFE * missed * step**2)
 
 
 def _as_hot(state: State, temperature: float) -> State:
-    """Return a state whose particles have the mean squared velocities of a temperature."""
+    """Return a state whose mean squared velocities correspond to a temperature."""
     moving = np.isfinite(state.masses)
     mean = np.where(moving, np.sqrt(temperature / np.where(moving, state.masses, 1.0)), 0.0)
     return replace(state, velocities=np.repeat(mean[:, None], state.dimension, axis=1))

@@ -1,4 +1,4 @@
-"""Time-stepped engine (Frederickx & Meerts 2010), with the contact corrected."""
+"""Time-stepped engine (Frederickx & Meerts 2010), with corrected contacts."""
 
 from __future__ import annotations
 
@@ -27,34 +27,34 @@ PRECISIONS = ("float64", "float32")
 @register
 @dataclass(frozen=True)
 class TimeStepped(Engine):
-    """Time-stepped engine. Overlapping pairs are moved back to their contact and collide there.
+    """Time-stepped engine. Overlapping pairs are moved back to the time of their contact, and collide there.
 
-    After the collision the pair moves for the rest of the step. The result has the same bits for any
-    `boxes_per_side`, `near_boxes`, `skin` and `threads`.
+    Then the pair moves for the rest of the step. The result is bitwise identical for any `boxes_per_side`,
+    `near_boxes`, `skin` and `threads`.
 
     Parameters
     ----------
     time_step : float, [time]
         Length of a step.
     boxes_per_side : int or (d,) sequence of int, optional
-        Search the boxes of a grid with this number of boxes along each axis, down to 1 (all pairs). Default:
-        a neighbour list.
+        Number of boxes along each axis for a search with a grid, down to 1 (all pairs). Default: a neighbour
+        list instead of boxes.
     precision : {"float64", "float32"}, default "float64"
         Floating-point type of the state.
     rewind : bool, default True
-        Move pairs back to their contact before they collide; False: they collide where they overlap. If
-        False, they collide where they lie after the step, which measures the effect of rewinding.
+        Move pairs back to their contact before they collide. If False, pairs collide at their positions after
+        the step, which shows the effect of rewinding.
     passes : int, default 4
-        Maximum number of searches for overlaps in a step. The step ends after the first search without
-        overlaps. With more than one search, overlaps that grew and shrank within the step are also resolved.
-        One search is the rule of [1]_.
+        Maximum number of searches for overlaps per step. The step ends after the first search without
+        overlaps. With more than one search, overlaps that grow and shrink within the step are also resolved.
+        A single search is the original method [1]_.
     skin : float, [length], optional
-        Distance beyond a contact up to which the neighbour list reaches. Default: chosen by the engine.
+        Reach of the neighbour list beyond the contact distance. Default: chosen by the engine.
     near_boxes : bool, default False
-        Search only boxes within reach of a contact.
+        Search only boxes within the contact distance.
     threads : int, default 1
-        Number of threads that share the work of a list. More than one thread is faster only above some 5e4
-        particles (docs/performance.md).
+        Number of threads that share the work with a neighbour list. Several threads are faster only above
+        about 5e4 particles (docs/performance.md).
 
     Raises
     ------
@@ -68,7 +68,7 @@ class TimeStepped(Engine):
 
     Notes
     -----
-    docs/time-stepped.md has the measured effect of each of these settings.
+    docs/time-stepped.md describes the measured effect of each setting.
 
     References
     ----------
@@ -166,12 +166,12 @@ class TimeStepped(Engine):
 
     @classmethod
     def variants(cls) -> tuple[TimeStepped, ...]:
-        """Return the engines among which advice chooses.
+        """Return the candidates of a plan for this engine.
 
         Returns
         -------
         tuple of TimeStepped
-            The engine itself, with a step that is still to be chosen.
+            The engine itself; its step is chosen later.
 
         Examples
         --------
@@ -182,7 +182,7 @@ class TimeStepped(Engine):
         return (cls(1.0),)
 
     def candidate(self, request: AccuracyRequest) -> Candidate:
-        """Return the engine with the longest step that is accurate enough.
+        """Return the engine with the longest step that is sufficiently accurate.
 
         Parameters
         ----------
@@ -202,7 +202,7 @@ class TimeStepped(Engine):
         Examples
         --------
         >>> import gaspart as gp
-        >>> from gaspart.accuracy.conditions import even_conditions
+        >>> from gaspart.theory.conditions import even_conditions
         >>> from gaspart.engines.engine import AccuracyRequest
         >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
         >>> state = gp.Simulation(scene, "dsmc", seed=1).state
@@ -214,6 +214,33 @@ class TimeStepped(Engine):
         from gaspart.engines.step.limits import candidate
 
         return candidate(self, request)
+
+    def bias(self, scene: Scene, kind: str) -> float:
+        """Bound the relative error of a quantity due to missed contacts.
+
+        Parameters
+        ----------
+        scene : Scene
+            The scene.
+        kind : {"rates", "paths", "fluxes"}
+            Not used, because no quantity loses more than the fraction of contacts.
+
+        Returns
+        -------
+        float, [1]
+            Twice the fraction of missed contacts in a dilute gas.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
+        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
+        >>> round(gp.TimeStepped(time_step=0.1).bias(scene, "rates"), 4)
+        0.0133
+        """
+        from gaspart.engines.step.limits import bias
+
+        return bias(self, scene)
 
     def timed_step(self, scene: Scene) -> float:
         """Return the time step in diameters divided by the thermal speed of a plain gas.
@@ -275,9 +302,9 @@ class TimeStepped(Engine):
 
     @property
     def limitations(self) -> str:
-        """Features that the engine lacks, in words.
+        """Limitations of the engine in words.
 
-        Pairs that touch and separate within a step are missed.
+        Contacts in which a pair touches and separates within a step are missed.
 
         Examples
         --------
@@ -288,7 +315,7 @@ class TimeStepped(Engine):
         return "exact contacts"
 
     def describe(self) -> str:
-        """Return its name with its step, precision and passes.
+        """Return the name with step, precision and passes.
 
         Returns
         -------
@@ -304,7 +331,7 @@ class TimeStepped(Engine):
         return f"{self.name}, time_step {self.time_step:.4g}, {self.precision}, {self.passes} passes"
 
     def notes(self, scene: Scene, observable: str, paths: bool) -> dict[str, str]:
-        """Return further remarks of advice on the engine.
+        """Return remarks about the engine for a plan.
 
         Parameters
         ----------
@@ -318,7 +345,7 @@ class TimeStepped(Engine):
         Returns
         -------
         dict of str to str
-            Remarks by title: the search for pairs.
+            Remarks by title: the method of finding pairs.
 
         Examples
         --------
@@ -330,7 +357,7 @@ class TimeStepped(Engine):
         return {"boxes": "none: a neighbour list"}
 
     def variant(self, scene: Scene) -> str:
-        """Return the name of its compiled kernels for a scene.
+        """Return the name of the compiled kernel variant for a scene.
 
         Parameters
         ----------
@@ -340,7 +367,7 @@ class TimeStepped(Engine):
         Returns
         -------
         str
-            Search and precision, and whether threads share the work.
+            The name depends on the search, the precision, and whether there are several threads.
 
         Examples
         --------
@@ -353,7 +380,7 @@ class TimeStepped(Engine):
         return f"{search}-{self.precision}" + ("-threads" if self.threads > 1 else "")
 
     def for_small_scene(self, scene: Scene) -> TimeStepped:
-        """Return settings with which a scene of few particles needs the same kernels.
+        """Return settings with which a scene of few particles uses the same kernels.
 
         Parameters
         ----------
@@ -363,7 +390,7 @@ class TimeStepped(Engine):
         Returns
         -------
         TimeStepped
-            The engine, with one box if it has boxes.
+            The engine, with a single box if it uses boxes.
 
         Examples
         --------
@@ -392,17 +419,17 @@ class TimeStepped(Engine):
         seed : int or tuple of int, default 0
             Seed of thermal walls.
         tallies : sequence of OptionalTally, optional
-            Optional tallies.
+            Optional tallies to accumulate.
 
         Returns
         -------
         StepDynamics
-            The scene in progress.
+            The dynamics of the scene.
 
         Raises
         ------
         SceneError
-            If the engine does not model the scene, or the step is too long.
+            If the engine does not support the scene, or if the step is too long.
 
         Examples
         --------

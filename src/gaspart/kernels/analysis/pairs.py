@@ -1,10 +1,10 @@
-"""Distances of pairs of particles in a periodic container, counted in bins.
+"""Distances between pairs of particles in a periodic container, counted in bins.
 
-The container is divided into columns along its last axis, and these into boxes. Particles are sorted by box,
-so that all particles of a column between two heights are adjacent. Each particle is compared with such a
-range in half of the columns around it: each pair is found once, with every image that can be near. Distances
-are computed in vectors of `WIDTH` particles; distances beyond a range are computed too and overwritten.
-Counts are whole numbers, which do not depend on the order of the pairs.
+The container is divided into columns along its last axis, and columns are divided into boxes. Particles are
+sorted by box, so all particles of a column between two heights are adjacent in memory. Each particle is
+compared with such a range in half of the neighbouring columns. So each pair is found once, with every image
+that can be near. Distances are computed for vectors of `WIDTH` particles. Distances beyond the end of a range
+are also computed, and overwritten later. Counts are integers, which do not depend on the order of the pairs.
 """
 
 from math import floor, sqrt
@@ -14,21 +14,23 @@ import numpy as np
 from gaspart.kernels.compile.policy import allocating_kernel, inner_allocating_kernel, inner_helper
 
 WIDTH = 16
-"""Number of particles whose distances are computed at once: a fixed number, for vector instructions."""
+"""Number of particles whose distances are computed at once; it is fixed, so that the compiler uses vector
+instructions.
+"""
 MARGIN = 1.0 + 1e-9
-"""Factor of the largest distance, so that no pair is missed by the rounding of a box's edge."""
-_ROOM = 4096  # bins of pairs that wait to be counted
-_TABLES = 4  # of counts, so that one addition does not wait for another to the same bin
+"""Factor of the largest distance, so that rounding at the edge of a box does not hide a pair."""
+_ROOM = 4096  # number of bins of pairs that are buffered before counting
+_TABLES = 4  # number of tables of counts, so that consecutive additions to one bin do not wait for each other
 
 
 @inner_allocating_kernel
 def sort_by_box(coordinates, lengths, numbers, start, boxes):
-    """Sort particles by box, and fill the first particle of each box.
+    """Sort particles by box, and store the first particle of each box.
 
     Parameters
     ----------
     coordinates : (3, N), positions
-    lengths : (3,), sides of the container
+    lengths : (3,), side lengths of the container
     numbers : (3,), number of boxes along each axis
     start : (boxes + 1,), filled with the first particle of each box, and the end
     boxes : (N,), workspace for the box of each particle
@@ -44,7 +46,7 @@ def sort_by_box(coordinates, lengths, numbers, start, boxes):
         box = 0
         for k in range(3):
             x = coordinates[k, n] - lengths[k] * floor(coordinates[k, n] / lengths[k])
-            if not 0.0 <= x < lengths[k]:  # by rounding; or no number
+            if not 0.0 <= x < lengths[k]:  # because of rounding or NaN
                 x = 0.0
             wrapped[k, n] = x
             box = box * numbers[k] + min(int(x * (numbers[k] / lengths[k])), numbers[k] - 1)
@@ -77,14 +79,14 @@ def add_to_tables(indices, number, tables):
 
 @inner_helper
 def find_bins(ordered, first, stop, origin, scale, indices):
-    """Write the bins of the distances between a position and a range of particles.
+    """Store the bins of the distances between a position and a range of particles.
 
     Parameters
     ----------
     ordered : (3, N + WIDTH), positions of the particles
-    first, stop : range of particles, which is rounded up to vectors
+    first, stop : range of particles; its end is rounded up to a multiple of `WIDTH`
     origin : (3,), position
-    scale : bins per distance, and the number of bins, which is the bin of all larger distances
+    scale : bins per unit of distance, and the number of bins, which is also the bin of all larger distances
     indices : bins of the distances
     """
     per_length, most = scale
@@ -98,13 +100,13 @@ def find_bins(ordered, first, stop, origin, scale, indices):
 
 @inner_helper
 def wrap_column(column, number, length):
-    """Return a column within the container, and the displacement of its image.
+    """Return a column number wrapped into the container, and the displacement of its image.
 
     Parameters
     ----------
-    column : number of the column, which may be outside
+    column : number of the column, which may be outside of the container
     number : number of columns
-    length : side of the container
+    length : side length of the container
     """
     if column < 0:
         return column + number, -length
@@ -115,7 +117,7 @@ def wrap_column(column, number, length):
 
 @inner_helper
 def gap_to_column(x, column, width):
-    """Return the distance of a column from a coordinate; 0 within it.
+    """Return the distance between a column and a coordinate; 0 inside the column.
 
     Parameters
     ----------
@@ -128,23 +130,23 @@ def gap_to_column(x, column, width):
 
 @inner_helper
 def count_of_particle(n, ordered, reach, image, boxes, tables, indices, filled):
-    """Find the bins of a particle's pairs within a column.
+    """Find the bins of the pairs of a particle with the particles of a column.
 
     Parameters
     ----------
     n : particle
     ordered : (3, N + WIDTH), positions of the particles
     reach : largest distance along the column
-    image : first box of the column, displacement of its image along two axes, and whether it is the
+    image : first box of the column, displacement of its image along two axes, and True if it is the
         particle's own column
-    boxes : length of all columns, their number of boxes, first particles of the boxes, and the scale
+    boxes : length of the columns, number of boxes, first particle of each box, and the scale
     tables : (tables, bins + 1), counts
-    indices : bins that are not yet counted
+    indices : bins that have not been counted yet
     filled : number of these bins
 
     Returns
     -------
-    number of bins that are not yet counted
+    number of bins that have not been counted yet
     """
     first_box, shift_x, shift_y, is_own = image
     length, number, start, scale = boxes
@@ -169,14 +171,14 @@ def count_of_particle(n, ordered, reach, image, boxes, tables, indices, filled):
 
 @allocating_kernel
 def count_pairs(coordinates, lengths, numbers, spans, furthest, counts):
-    """Add the pairs nearer than `furthest` to counts of equal intervals of the distance.
+    """Add the pairs closer than `furthest` to counts in equal intervals of the distance.
 
     Parameters
     ----------
     coordinates : (3, N), positions, for discs with 0 along the first axis
-    lengths : (3,), sides of the container
+    lengths : (3,), side lengths of the container
     numbers : (3,), number of boxes along each axis
-    spans : (2,), number of columns on each side, along the first two axes, that are near enough
+    spans : (2,), number of columns on each side, along the first two axes, that are close enough
     furthest : largest distance, at most half of the shortest side
     counts : (bins,), counts
     """

@@ -1,10 +1,10 @@
-"""Sums of exp(i k.r) over particles, at wave vectors of a periodic container.
+"""Sums of exp(i k.r) over particles, for wave vectors of a periodic container.
 
-The exponential is a product of one factor per axis. Factors are powers of exp(2 pi i x / L), each made from
-two factors of half its exponent, so that rounding grows as the logarithm of the exponent. Particles are
-processed in blocks, whose factors stay in the processor's cache. Each of `LANES` sums has every 16th
-particle, and they are added in one order: the compiler makes vectors, and the bits do not depend on their
-width.
+The exponential is a product of factors, one per axis. The factors are powers of exp(2 pi i x / L). Each power
+is a product of two factors with half its exponent, so rounding errors grow only as the logarithm of the
+exponent. Particles are processed in blocks, whose factors fit into the processor cache. There are `LANES`
+partial sums, each over every 16th particle, which are added in a fixed order. So the compiler can use
+vectors, and the bits do not depend on the width of the vectors.
 """
 
 import numpy as np
@@ -13,20 +13,20 @@ from gaspart.kernels.compile.policy import allocating_kernel, inner_helper
 
 BLOCK, LANES = 64, 16
 CONJUGATE = -1
-"""Second factor of a row that is the complex conjugate of its first one."""
+"""Second index of a row that is the complex conjugate of the row with its first index."""
 
 
 @inner_helper
 def tabulate_factors(cosines, sines, first, products, real, imaginary):
-    """Fill the rows of a block's factors; all are 0 beyond the last particle.
+    """Compute the rows of factors of a block; beyond the last particle they are 0.
 
-    Row 0 is 1, the next rows are the factors of the axes, and the others are `products`.
+    Row 0 is 1, the next rows are the factors of the axes, and the other rows are `products`.
 
     Parameters
     ----------
-    cosines, sines : (d, N), of 2 pi x / L along each axis
+    cosines, sines : (d, N), cosines and sines of 2 pi x / L along each axis
     first : first particle of the block
-    products : (R, 2), rows whose product is each further row, or a row and `CONJUGATE`
+    products : (R, 2), for each further row the two rows whose product it is, or a row and `CONJUGATE`
     real, imaginary : (rows, BLOCK), filled with the factors
     """
     here = min(BLOCK, cosines.shape[1] - first)
@@ -55,7 +55,7 @@ def sum_lanes(lanes):
 
     Parameters
     ----------
-    lanes : (LANES,), which are overwritten
+    lanes : (LANES,), overwritten
     """
     for n in range(8):
         lanes[n] += lanes[n + 8]
@@ -64,7 +64,7 @@ def sum_lanes(lanes):
 
 @inner_helper
 def sum_products_of_two(real, imaginary, rows, lanes):
-    """Fill two rows of lanes with the sums of the products of two factors.
+    """Store the sums of products of two factors in two rows of lanes.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def sum_products_of_two(real, imaginary, rows, lanes):
 
 @inner_helper
 def sum_products_of_three(real, imaginary, rows, lanes):
-    """Fill two rows of lanes with the sums of the products of three factors.
+    """Store the sums of products of three factors in two rows of lanes.
 
     Parameters
     ----------
@@ -106,13 +106,14 @@ def sum_products_of_three(real, imaginary, rows, lanes):
 
 @allocating_kernel
 def sum_waves(cosines, sines, products, waves, sums):
-    """Add sum exp(i k.r) over N particles to sums of real and imaginary parts.
+    """Add sum exp(i k.r) over N particles to the sums of real and imaginary parts.
 
     Parameters
     ----------
-    cosines, sines : (d, N), of 2 pi x / L along each axis
-    products : (R, 2), rows whose product is each further row of factors, or a row and `CONJUGATE`
-    waves : (M, d), row of each axis for each wave vector
+    cosines, sines : (d, N), cosines and sines of 2 pi x / L along each axis
+    products : (R, 2), for each further row of factors the two rows whose product it is, or a row and
+        `CONJUGATE`
+    waves : (M, d), row of the factor along each axis, for each wave vector
     sums : (2, M), real and imaginary parts
     """
     rows = 1 + len(cosines) + len(products)

@@ -1,1 +1,1 @@
-"""Compilation, cache and loading of kernels, and all code that depends on the internals of numba."""
+"""Compilation, cache and loading of kernels; all code that depends on the internals of numba."""

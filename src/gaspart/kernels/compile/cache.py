@@ -1,4 +1,4 @@
-"""Folder of the compiled kernels."""
+"""Cache folder of compiled kernels."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _REMEDY = "set GASPART_CACHE to a writable folder"
 def cache_directory() -> Path:
     """Return $GASPART_CACHE, or the folder gaspart in $XDG_CACHE_HOME or ~/.cache.
 
-    Raises RuntimeError if neither variable is set and the user has no home.
+    Raises RuntimeError if neither variable is set and the user has no home folder.
     """
     chosen = os.environ.get("GASPART_CACHE")
     if chosen:
@@ -33,10 +33,10 @@ def cache_directory() -> Path:
 
 
 def usable_cache(version: str) -> Path | None:
-    """Return the folder `version` of the cache, which is made if it is missing.
+    """Return the folder `version` of the cache, and create it if necessary.
 
-    If no cache folder is writable by this user and by no other user, a temporary folder is used, with a
-    warning. Returns None, also with a warning, if the temporary folder cannot be written either, or if
+    A cache folder must be writable by this user and by no other user. Otherwise a temporary folder is used,
+    with a warning. Returns None, with a warning, if the temporary folder cannot be written either, or if
     $GASPART_CACHE cannot be written.
     """
     try:
@@ -56,7 +56,7 @@ _reported: set[Path] = set()
 
 
 def report_unwritable(directory: Path, error: OSError) -> None:
-    """Warn once in a process that compiled kernels cannot be stored, as on a full disk."""
+    """Warn once per process that compiled kernels cannot be stored, for example on a full disk."""
     if directory not in _reported:
         _reported.add(directory)
         problem = f"cannot write the kernel cache {directory}: {error.strerror}"
@@ -66,7 +66,7 @@ def report_unwritable(directory: Path, error: OSError) -> None:
 def obstacle(directory: Path) -> str:
     """Return the reason why a folder cannot store kernels, or "" if it can.
 
-    The folder is made if it is missing.
+    The folder is created if it is missing.
     """
     try:
         directory.parent.mkdir(parents=True, exist_ok=True)
@@ -80,9 +80,9 @@ def obstacle(directory: Path) -> str:
 
 
 def _is_private(status: os.stat_result) -> bool:
-    """Return True if a path is a folder to which only this user may write.
+    """Return True if a path is a folder that only this user can write to.
 
-    Other users then cannot place machine code in it.
+    Then other users cannot place machine code in it.
     """
     return stat.S_ISDIR(status.st_mode) and is_private(status)
 
@@ -90,7 +90,7 @@ def _is_private(status: os.stat_result) -> bool:
 def _temporary(version: str) -> Path | None:
     """Return a folder of this user in the folder for temporary files, or None.
 
-    Another user may have made a folder of this name before; such a folder is not used.
+    Another user may have created a folder with this name before; such a folder is not used.
     """
     try:
         own = Path(tempfile.gettempdir()) / f"gaspart-{user()}"
@@ -101,18 +101,18 @@ def _temporary(version: str) -> Path | None:
     return own / version if private and not obstacle(own / version) else None
 
 
-# Loading numba without unnecessary work, which would take half of the start-up time of a job.
+# numba is loaded without unnecessary work, which would take half of the start-up time of a job.
 
 
 _LOOKED_FOR = {"coverage", "scipy.linalg.cython_blas"}
-"""Optional imports of numba: to report which lines of kernels run, and for matrix products in kernels."""
+"""Optional imports of numba: for reporting which lines of kernels run, and for matrix products in kernels."""
 
 
 def load_numba(ours: bool = False) -> ModuleType:
-    """Import numba and everything that it would load with a first kernel.
+    """Import numba and all modules that it would load with the first kernel.
 
-    This makes half a million objects, which stay in memory, so the garbage collector is switched off
-    meanwhile.
+    This creates half a million objects that stay in memory, so the garbage collector is switched off during
+    the import.
 
     ours : True if the process belongs to gaspart and to no other program. Then the collector ignores these
         objects also later and at the end of the process, and optional imports of numba that kernels of
@@ -137,13 +137,13 @@ def load_numba(ours: bool = False) -> ModuleType:
     return numba
 
 
-# Kernels that come with the package: machine code that was compiled when the wheel was built.
+# Kernels that are shipped with the package: machine code that was compiled when the wheel was built.
 #
-# The code runs on every processor of the level x86-64-v3. A path contains the digest of the sources, a digest
-# of the release of numba, the function, the types of its arguments, and the version of Python: a file for
-# anything else is not found. The list of the files has their sha256. A file is as trustworthy as the modules
-# of the package, which are installed in the same place; a file that differs from the list is never read as
-# code.
+# The code runs on every processor of the level x86-64-v3. The path of a file contains the hash of the
+# sources, a hash of the numba release, the function, the types of its arguments, and the Python version. So a
+# file for a different combination is never found. The list of the files contains their sha256. A file is as
+# trustworthy as the modules of the package, because both are installed in the same place. A file that differs
+# from the list is not executed.
 
 
 FOLDER = Path(__file__).parents[1] / "shipped"
@@ -152,13 +152,13 @@ PROCESSOR = "x86-64-v3"
 FEATURES = (
     "+avx,+avx2,+bmi,+bmi2,+cx16,+f16c,+fma,+lzcnt,+movbe,+popcnt,+sahf,+sse3,+sse4.1,+sse4.2,+ssse3,+xsave"
 )
-"""Requirements of the level x86-64-v3 to a processor, as LLVM names them."""
+"""Processor features required by the level x86-64-v3, by their LLVM names."""
 
 
 def shipped_key(key: tuple) -> tuple | None:
-    """Convert the key of a kernel for this processor to the key of a shipped kernel.
+    """Convert the key of a kernel on this processor to the key of a shipped kernel.
 
-    A key has the types of the arguments, the processor and the digest of the bytecode. Returns None if the
+    A key contains the types of the arguments, the processor and the hash of the bytecode. Returns None if the
     processor lacks a feature that shipped kernels use.
     """
     types, (system, _, features), bytecode = key
@@ -168,9 +168,9 @@ def shipped_key(key: tuple) -> tuple | None:
 
 
 def shipped_content(path: str) -> bytes | None:
-    """Return the content of a file, given by its path in the folder of shipped kernels.
+    """Return the content of a shipped file, by its path in the folder of shipped kernels.
 
-    Returns None if the file is not listed, is missing, or differs from its listed digest.
+    Returns None if the file is not in the list, is missing, or differs from its hash in the list.
     """
     expected = _digests().get(path)
     if expected is None:
@@ -184,9 +184,9 @@ def shipped_content(path: str) -> bytes | None:
 
 @cache
 def _digests() -> dict[str, str]:
-    """Return the sha256 of each file by its path.
+    """Return the sha256 of each shipped file by its path.
 
-    The result is empty in a copy of the repository, which has no compiled kernels.
+    In a copy of the repository the result is empty, because it contains no compiled kernels.
     """
     try:
         listed = json.loads((FOLDER / LIST).read_bytes())

@@ -1,10 +1,10 @@
-"""Files of compiled kernels: one for each function and types of arguments.
+"""Files of compiled kernels: one file per function and types of arguments.
 
-numba names its files by the folder of the source, so that no two copies of a project share a file, and lists
-them in an index. Processes that compile at the same time overwrite this index for one another: two kernels
-may then be given the same file. Here a file is named only by what was compiled, and begins with a checksum: a
-damaged file is compiled and written again. A file that cannot be written costs only time in other processes.
-A kernel that this user has not compiled may have come with the package (`shipped_content`).
+numba names its files by the folder of the source and lists them in an index. So two copies of a project never
+share a file. Processes that compile at the same time overwrite this index, so two kernels may get the same
+file. Here the name of a file depends only on what was compiled. The file begins with a checksum; a damaged
+file is compiled and written again. If a file cannot be written, other processes only lose time. If this user
+has not compiled a kernel, it may have been shipped with the package (`shipped_content`).
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from gaspart.system import is_own
 caching: Any = load_numba().core.caching
 
 
-_LENGTH = 4  # bytes of a checksum
+_LENGTH = 4  # length of a checksum in bytes
 
 
 def _checksum(content: bytes) -> bytes:
@@ -35,7 +35,7 @@ def _checksum(content: bytes) -> bytes:
 
 
 def _code(content: bytes | None) -> bytes | None:
-    """Return the content after the checksum, or None if the checksum disagrees."""
+    """Return the content after the checksum, or None if the checksum is wrong."""
     if content is None or len(content) <= _LENGTH:
         return None
     kept, code = content[:_LENGTH], content[_LENGTH:]
@@ -43,9 +43,9 @@ def _code(content: bytes | None) -> bytes | None:
 
 
 def _own_content(path: str) -> bytes | None:
-    """Read a file that this user has written; return None if there is no such file.
+    """Read a file that this user has written; return None without one.
 
-    A file written by another user is rejected: its code would run in the name of this user.
+    A file written by another user is rejected, because its code would run with the rights of this user.
     """
     try:
         with open(path, "rb") as file:
@@ -58,10 +58,10 @@ _KERNELS = Path(__file__).parents[1]
 
 
 class KernelLocator(caching.UserProvidedCacheLocator):
-    """Folder of the files of a function: one for each package, wherever the package is installed.
+    """Locator of the folder of a function's files, shared by all copies of the package.
 
-    For functions of `kernels` the digest of the sources, which names the cache, suffices. numba also uses the
-    digest of the file, the number of the line and the bytecode, which comments and docstrings change.
+    For functions of `kernels` the hash of the sources, which names the cache, suffices. numba also uses the
+    hash of the file, the line number and the bytecode, which change with comments and docstrings.
     """
 
     def __init__(self, folder: Path, function: Callable) -> None:
@@ -74,17 +74,17 @@ class KernelLocator(caching.UserProvidedCacheLocator):
         _make_folder(self._cache_path)
 
     def get_source_stamp(self) -> Any:
-        """Return what the file states beyond the digest of the sources."""
+        """Return the part of the stamp that is not in the hash of the sources."""
         return None if self.digested else super().get_source_stamp()
 
     def get_disambiguator(self) -> str:
-        """Return the suffix that separates functions of one name in a file; `kernels` need none."""
+        """Return the suffix that distinguishes functions of one name in a file; "" for `kernels`."""
         return "" if self.digested else super().get_disambiguator()
 
 
 @cache
 def _make_folder(path: str) -> None:
-    """Make a folder if it is missing. May raise OSError."""
+    """Create a folder if it is missing. May raise OSError."""
     os.makedirs(path, exist_ok=True)
 
 
@@ -96,7 +96,7 @@ class KernelFiles(caching.IndexDataCacheFile):
         self._data_name_pattern = f"{name}.{{digest}}.{suffix}"
 
     def save(self, key: tuple, data: Any) -> None:
-        """Write the compiled code for `key`, completely or not at all. May raise OSError."""
+        """Write the compiled code for `key` atomically. May raise OSError."""
         path = Path(self._data_path(self._name(key)))
         content = self._dump(data)
         with scratch_beside(path) as scratch:
@@ -104,9 +104,9 @@ class KernelFiles(caching.IndexDataCacheFile):
             scratch.replace(path)
 
     def load(self, key: tuple) -> Any:
-        """Return the compiled code for `key`, or None if no file of it is complete.
+        """Return the compiled code for `key`, or None if no complete file exists.
 
-        A file of this user comes first, then a file of the package.
+        A file of this user is preferred to a file of the package.
         """
         code = _code(_own_content(self._data_path(self._name(key))))
         if code is None:
@@ -114,7 +114,7 @@ class KernelFiles(caching.IndexDataCacheFile):
         return None if code is None else pickle.loads(code)
 
     def _read_shipped(self, key: tuple) -> bytes | None:
-        """Return the content of the file that came with the package.
+        """Return the content of the file that was shipped with the package.
 
         The folders have the same names as the folders of the cache.
         """
@@ -127,8 +127,8 @@ class KernelFiles(caching.IndexDataCacheFile):
     def _name(self, key: tuple) -> str:
         """Return the name of the file for a key.
 
-        The key has the types of arguments, the processor, and digests of the bytecode. The stamp holds the
-        options.
+        The key contains the types of the arguments, the processor, and hashes of the bytecode. The stamp
+        contains the options.
         """
         compiled = repr((self._version, self._source_stamp, key))
         digest = hashlib.sha256(compiled.encode()).hexdigest()
@@ -136,7 +136,7 @@ class KernelFiles(caching.IndexDataCacheFile):
 
 
 class KernelContents(caching.CompileResultCacheImpl):
-    """Content of the file of a kernel: machine code."""
+    """Content of the file of a kernel: its machine code."""
 
     suffix = "nbc"
 
@@ -148,9 +148,9 @@ class KernelContents(caching.CompileResultCacheImpl):
 
 
 class KernelCache(caching.FunctionCache):
-    """Cache of a function compiled with given options, in place of numba's own cache.
+    """Cache of a function compiled with given options; it replaces numba's own cache.
 
-    Making it may raise OSError.
+    The constructor may raise OSError.
     """
 
     contents: ClassVar = KernelContents
@@ -166,7 +166,7 @@ class KernelCache(caching.FunctionCache):
         return types, system, ("" if self._impl.locator.digested else code, variables)
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Store the compiled code for a signature; if that fails, warn without an error."""
+        """Store the compiled code for a signature; a failure causes only a warning."""
         try:
             super().save_overload(sig, data)
         except OSError as error:

@@ -1,12 +1,13 @@
-"""Entries of named tuples that a function called only by kernels uses.
+"""Entries of named tuples that are used by a function that only kernels call.
 
-numba compiles a function again for each type of its arguments, and the type of a `Model` states all features
-of a scene. Most functions use few entries: they are compiled for a tuple whose other entries have type None.
-Scenes that differ only in these entries share the functions, and calls pass less.
+numba compiles a function again for each combination of argument types, and the type of a `Model` depends on
+all features of a scene. Most functions use only a few entries. They are compiled for a tuple whose other
+entries have the type None. Then scenes that differ only in unused entries share the compiled functions, and
+calls pass less data.
 
-The entries are found in the source, including the entries used by functions to which a tuple is passed. A
-branch on a comparison of an argument with None is omitted where numba omits it: for an argument of type None.
-An argument that is used in any other way than by its entries is passed complete.
+The used entries are found in the source, including entries used by called functions that receive the tuple.
+numba omits a branch that compares an argument of type None with None; such branches are omitted here, too. An
+argument that is used in any other way than through its entries is passed completely.
 """
 
 from __future__ import annotations
@@ -22,20 +23,20 @@ from gaspart.kernels.compile.cache import load_numba
 numba: Any = load_numba()
 types: Any = numba.types
 
-_UNKNOWN = None  # type of an expression that is neither an argument nor an entry of an argument
+_UNKNOWN = None  # type of any expression that is not an argument or an entry of an argument
 _MATTER = types.NamedTuple, types.NoneType
-Use = dict  # uses of an entry by its name; {} if only its comparison with None is used
+Use = dict  # uses of an entry by name; {} if the entry is only compared with None
 WHOLE: Use = {"*": {}}
 
 
 def narrow_types(function: Callable, arguments: tuple) -> tuple:
-    """Return the types of arguments for which a function is compiled instead of the given types."""
+    """Return the types of arguments for which a function is compiled instead of the actual types."""
     uses = zip(arguments, _uses(function, arguments), strict=True)
     return tuple(_narrow(argument, use) for argument, use in uses)
 
 
 class Narrowed(types.NamedTuple):
-    """Type of a named tuple as an argument of a function that only kernels call.
+    """Type of a named tuple that is passed to a function that only kernels call.
 
     Entries that the function does not use have type None. The type is a class of gaspart, so that the type of
     numba does not change.
@@ -43,7 +44,7 @@ class Narrowed(types.NamedTuple):
 
     def __init__(self, kinds: list, instance_class: type) -> None:
         super().__init__(kinds, instance_class)
-        # numba takes the text before the parenthesis for the class name, in loops shared by threads
+        # in loops with threads, numba takes the text before the parenthesis as the class name
         self.name = self.name.replace("(", "(narrowed: ", 1)  # type: ignore[has-type]
 
     def unify(self, context: Any, other: Any) -> Any:
@@ -72,7 +73,7 @@ def _narrow(full_type: Any, use: Use) -> Any:
 @numba.extending.lower_cast(Narrowed, Narrowed)
 @numba.extending.lower_cast(Narrowed, types.NamedTuple)
 def _leave_out(context: Any, builder: Any, full_type: Any, narrow: Any, value: Any) -> Any:
-    """Build the tuple of the entries that a function uses."""
+    """Build a tuple with the entries that a function uses."""
     none = context.get_dummy_value()
     entries = numba.core.cgutils.unpack_tuple(builder, value, len(full_type))
     kept = [
@@ -84,10 +85,10 @@ def _leave_out(context: Any, builder: Any, full_type: Any, narrow: Any, value: A
 
 @numba.extending.register_model(Narrowed)
 class _OneArgument(numba.extending.models.TupleModel):
-    """Data model that passes a narrowed tuple as one argument of a function in machine code.
+    """Data model that passes a narrowed tuple as a single argument in machine code.
 
-    numba passes a named tuple as one argument for each word in its arrays. For a `Model` these are some two
-    hundred words, which each call takes from the tuple and each function puts together again: 40 % of all
+    numba passes a named tuple as one argument per machine word of its arrays. A `Model` has about two hundred
+    words. Each call unpacks them, and each function packs them again, which amounts to 40 % of all
     instructions to be translated.
     """
 
@@ -105,9 +106,9 @@ class _OneArgument(numba.extending.models.TupleModel):
 
 
 def _uses(function: Callable, arguments: tuple) -> tuple[Use, ...]:
-    """Return the entries of each argument that a function uses, given the types of the arguments.
+    """Return the entries of each argument that a function uses, for given argument types.
 
-    The type is `_UNKNOWN` if it is not known.
+    The type is `_UNKNOWN` if it cannot be determined.
     """
     key = _key(function, arguments)
     if key not in _known_uses:
@@ -116,9 +117,9 @@ def _uses(function: Callable, arguments: tuple) -> tuple[Use, ...]:
 
 
 def _key(function: Callable, arguments: tuple) -> tuple:
-    """Return a key of a function and its argument types: code and numbers of relevant types.
+    """Return a key of a function and its argument types: code and numbers of types.
 
-    The hashes of the types themselves are slow.
+    Hashing the types themselves is slow.
     """
     numbers = (kind._code if isinstance(kind, _MATTER) else _UNKNOWN for kind in arguments)
     return function.__code__, tuple(numbers)
@@ -141,9 +142,9 @@ def _read(function: Callable, arguments: tuple) -> tuple[Use, ...]:
 
 @cache
 def _definition(code: Any) -> tuple[ast.FunctionDef | None, set[str]]:
-    """Return the source of a function of a module, and the arguments to which it assigns.
+    """Return the source of a function in a module, and the arguments that it assigns.
 
-    Any other function has no source: None.
+    Return None for any other function, which has no source.
     """
     try:
         definition = _functions(code.co_filename).get(code.co_firstlineno)
@@ -158,7 +159,7 @@ def _definition(code: Any) -> tuple[ast.FunctionDef | None, set[str]]:
 
 @cache
 def _functions(file: str) -> dict[int, ast.FunctionDef]:
-    """Return the functions of a module by the line where the code of each begins."""
+    """Return the functions of a module, by the first line of their code."""
     functions = [
         node for node in ast.parse(Path(file).read_bytes()).body if isinstance(node, ast.FunctionDef)
     ]
@@ -168,7 +169,7 @@ def _functions(file: str) -> dict[int, ast.FunctionDef]:
 
 
 def _is_plain(arguments: ast.arguments) -> bool:
-    """Return True if all arguments are positional and without a default.
+    """Return True if all arguments are positional and have no default.
 
     The arguments that numba passes here have this form.
     """
@@ -182,14 +183,14 @@ def _merge(target: Use, other: Use) -> None:
 
 
 class _Reader(ast.NodeVisitor):
-    """Visitor that reads the body of a function and records how the function uses its arguments."""
+    """Syntax-tree visitor that records how a function uses its arguments."""
 
     def __init__(self, names: dict[str, Any], arguments: dict[str, Any]) -> None:
         self.names, self.arguments = names, arguments
         self.uses: dict[str, Use] = {name: {} for name in arguments}
 
     def block(self, statements: list[ast.stmt]) -> bool:
-        """Read statements; return True if they always end the function."""
+        """Visit statements; return True if they always end the function."""
         for statement in statements:
             if isinstance(statement, ast.If):
                 if self._branch(statement):
@@ -201,7 +202,7 @@ class _Reader(ast.NodeVisitor):
         return False
 
     def _branch(self, branch: ast.If) -> bool:
-        """Read the compiled part of a branch; return True if it always ends the function."""
+        """Visit the compiled part of a branch; return True if it always ends the function."""
         match branch.test:
             case ast.Compare(ast.Name(name), [ast.Is() | ast.IsNot() as sign], [ast.Constant(None)]):
                 if isinstance(self.arguments.get(name), types.NoneType):
@@ -225,24 +226,24 @@ class _Reader(ast.NodeVisitor):
             self._note(path, WHOLE)
 
     def visit_For(self, node: ast.For) -> None:
-        """Read the body as a block."""
+        """Visit the body as a block."""
         self.visit(node.target)
         self.visit(node.iter)
         self.block(node.body)
         self.block(node.orelse)
 
     def visit_While(self, node: ast.While) -> None:
-        """Read the body as a block."""
+        """Visit the body as a block."""
         self.visit(node.test)
         self.block(node.body)
         self.block(node.orelse)
 
     def visit_Call(self, node: ast.Call) -> None:
-        """Record the uses of arguments inside a called function of gaspart."""
+        """Record the uses of arguments in a called function of gaspart."""
         called = self.names.get(node.func.id) if isinstance(node.func, ast.Name) else None
         function = getattr(called, "py_func", None)
         kinds = tuple(map(self._type, node.args))
-        named = any(isinstance(kind, types.NamedTuple) for kind in kinds)  # others are passed complete
+        named = any(isinstance(kind, types.NamedTuple) for kind in kinds)  # others receive all
         starred = any(isinstance(item, ast.Starred) for item in node.args)
         if function is None or not named or node.keywords or starred:
             self.generic_visit(node)
@@ -263,7 +264,7 @@ class _Reader(ast.NodeVisitor):
         _merge(at, use)
 
     def _path(self, node: ast.expr) -> list[str] | None:
-        """Return an argument's name and the entries that an expression selects.
+        """Return the name of an argument and the entries that an expression selects.
 
         Returns None for any other expression.
         """

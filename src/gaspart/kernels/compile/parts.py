@@ -1,10 +1,10 @@
 """Compilation of functions that only kernels call.
 
-numba optimises every function and makes machine code of it, and optimises it again within each function that
-calls it, up to the kernel that Python calls. Functions called only by kernels are translated without that,
-and only the kernel is optimised and run; optimising the others would take most of the time of a first run.
-Their translations are stored in files for other kernels that call them: most do not depend on what a scene
-requires.
+numba optimises every function and generates machine code for it. It optimises the function again inside each
+caller, up to the kernel that Python calls. Here, functions called only by kernels are translated without
+optimisation, and only the kernel is optimised and run. Optimising the other functions would take most of the
+time of a first run. The translations are stored in files for other kernels that call the same functions. Most
+of them do not depend on the features of a scene.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ from gaspart.kernels.compile.narrowing import narrow_types
 numba: Any = load_numba()
 core: Any = numba.core
 
-_FIRST = 2**32  # first number of gaspart; numba counts from 1
+_FIRST = 2**32  # first function number of gaspart; numba counts from 1
 _numbers = itertools.count(_FIRST + int.from_bytes(os.urandom(7), "big"))
 
 
 @contextmanager
 def _own_numbers() -> Iterator[None]:
-    """Give numbers to the functions compiled meanwhile that no other process gives.
+    """Give functions that are compiled in this block numbers that no other process uses.
 
-    Functions of numba are included. numba numbers the functions of a process, so that functions of the same
-    name get different names in machine code. Translations of several processes meet in one kernel, so no two
-    processes may count from the same number.
+    This includes functions of numba. numba numbers the functions of a process, so that functions of the same
+    name get different names in machine code. Translations from several processes are combined in one kernel,
+    so no two processes may count from the same number.
     """
     identity = core.bytecode.FunctionIdentity
     before, identity._unique_ids = identity._unique_ids, _numbers
@@ -44,7 +44,7 @@ def _own_numbers() -> Iterator[None]:
 
 
 def narrow_calls(part: Any) -> None:
-    """Make callers compile a function only for the entries of their arguments that it uses."""
+    """Make callers compile a function only for the entries of its arguments that it uses."""
 
     def get_call_template(arguments: tuple, keywords: dict) -> tuple:
         signature, arguments = part._compiler.fold_argument_types(arguments, keywords)
@@ -56,13 +56,13 @@ def narrow_calls(part: Any) -> None:
 
 
 class _PartLibrary(core.codegen.JITCodeLibrary):
-    """Code linked into the code of its callers, and only there fully optimised and run."""
+    """Code that is linked into its callers, and is fully optimised and run only there."""
 
     def _optimize_functions(self, ll_module: Any) -> None:
-        """Optimise lightly.
+        """Perform light optimisation.
 
-        Full optimisation would take loops around calls for small loops and double them before the called
-        functions are inlined: the kernel would become twice as long, and slower.
+        Full optimisation would treat loops around calls as small loops and duplicate them before the called
+        functions are inlined. The kernel would become twice as long, and slower.
         """
         ll_module.data_layout = self._codegen._data_layout
         for function in ll_module.functions:
@@ -79,7 +79,7 @@ class _PartLibrary(core.codegen.JITCodeLibrary):
 
 
 def _known_as(described: Any, environment: Any, library: _PartLibrary) -> Any:
-    """Return the object by which numba identifies a function, here without callable code."""
+    """Return the object by which numba identifies a function, without callable code."""
     no_code = 0
     return numba._dynfunc.make_function(
         described.lookup_module(), described.qualname, "", no_code, environment, (library,)
@@ -104,7 +104,7 @@ class _BeginPart(_Pass):
 
 @core.compiler_machinery.register_pass(mutates_CFG=False, analysis_only=False)
 class _OfferPart(_Pass):
-    """Compiler pass that makes a function available to other functions."""
+    """Compiler pass that makes a function callable by other functions."""
 
     _name = "offer_part"
 
@@ -130,10 +130,7 @@ class PartCompiler(KernelCompiler):
     """Compiler of functions that only kernels call, with two additional passes."""
 
     def define_pipelines(self) -> list:
-        """Return the passes of numba with one pass added before and one after translation.
-
-        The translation is the one to LLVM.
-        """
+        """Return numba's passes with one pass added before and one after translation to LLVM."""
         passes = core.compiler.DefaultPassBuilder.define_nopython_pipeline(self.state)
         passes.add_pass_after(_BeginPart, core.typed_passes.AnnotateTypes)
         passes.add_pass_after(_OfferPart, core.typed_passes.NativeLowering)
@@ -149,8 +146,8 @@ class _PartContents(KernelContents):
     def check_cachable(self, data: Any) -> bool:
         """Return True if other processes may use a compiler result.
 
-        The result is False if the code calls a function of numba that this process had compiled before for
-        other callers: other processes may have given the same number to another function.
+        The result is False if the code calls a function of numba that this process had already compiled for
+        other callers, because other processes may have given its number to another function.
         """
         functions = data.library._final_module.functions
         names = (function.name for function in functions if not function.is_declaration)
@@ -160,7 +157,7 @@ class _PartContents(KernelContents):
     def reduce(self, result: Any) -> tuple:
         """Return the content of the file for a compiler result."""
         library, described = result.library, result.fndesc
-        described.typemap = described.calltypes = None  # as numba does: these need not be kept
+        described.typemap = described.calltypes = None  # as in numba: these need not be stored
         environments = result.environment, tuple(result._find_referenced_environments())
         code = library._final_module.as_bitcode()
         return library.name, code, described, environments, result.signature, result.reload_init
@@ -194,6 +191,6 @@ class _PartContents(KernelContents):
 
 
 class PartCache(KernelCache):
-    """Cache of a function that only kernels call, in place of numba's own cache."""
+    """Cache of a function that only kernels call; it replaces numba's own cache."""
 
     contents: ClassVar = _PartContents

@@ -1,8 +1,8 @@
 """Compile policy of all kernels.
 
-Kernels use IEEE arithmetic in the order written (no fastmath), so that the same source gives the same bits on
-every x86-64 machine. They are cached on disk under a digest of the sources, because numba does not notice
-when a helper in another file changes.
+Kernels use IEEE arithmetic in the written order (no fastmath). So the same source gives the same bits on
+every x86-64 machine. They are cached on disk under a hash of the sources, because numba does not notice
+changes of a helper in another file.
 """
 
 from __future__ import annotations
@@ -20,9 +20,10 @@ from gaspart.kernels.compile.sources import file_digests
 
 numba = load_numba()
 TESTED = "0.67", "0.68"
-"""Releases of numba whose internals `files`, `parts` and `narrowing` use.
+"""Releases of numba for which `files`, `parts` and `narrowing` were tested.
 
-Another release compiles and stores kernels in its own way, to the same bits, in several times the time.
+Another release compiles and stores kernels in its own way. The bits are the same, but it takes several times
+longer.
 """
 _tested = numba.__version__.startswith(tuple(f"{release}." for release in TESTED))
 if _tested:
@@ -39,9 +40,9 @@ _KERNELS = Path(__file__).parents[1]
 
 @cache
 def source_digest() -> str:
-    """Return a short digest of all modules of `kernels`, which hold all compiled code.
+    """Return a short hash of all modules of `kernels`, which contain all compiled code.
 
-    These modules hold no other code. Docstrings and comments do not change the digest.
+    These modules contain no other code. Docstrings and comments do not change the hash.
     """
     paths = sorted(_KERNELS.rglob("*.py"))
     digest = hashlib.sha256()
@@ -73,7 +74,7 @@ def _compile(function: F, part: bool = False, **options: Any) -> F:
                 compiled._cache = (PartCache if part else KernelCache)(_CACHE, function, options)
             else:
                 _use_own_files(compiled)
-        except (OSError, RuntimeError) as error:  # as on a full disk; or the function is not from a file
+        except (OSError, RuntimeError) as error:  # full disk, or a function without a file
             report_unwritable(_CACHE, OSError(0, str(error)))
     if _tested and part:
         narrow_calls(compiled)
@@ -82,7 +83,7 @@ def _compile(function: F, part: bool = False, **options: Any) -> F:
 
 
 def _use_own_files(compiled: Any) -> None:
-    """Enable numba's own cache of a function. Raises RuntimeError if it finds no folder."""
+    """Enable numba's own cache of a function. Raises RuntimeError if numba finds no folder."""
     before = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = str(_CACHE)
     try:
@@ -92,9 +93,10 @@ def _use_own_files(compiled: Any) -> None:
 
 
 def _without_interruption(compile_: F) -> F:
-    """Wrap a compile function so that signals wait until it has ended.
+    """Wrap a compile function so that signals wait until it has finished.
 
-    An exception that a signal handler raises within a callback of LLVM is lost, and the code with it.
+    If a signal handler raises an exception within a callback of LLVM, the exception is lost, and so is the
+    code.
     """
 
     @wraps(compile_)
@@ -106,10 +108,10 @@ def _without_interruption(compile_: F) -> F:
 
 
 def kernel(function: F) -> F:
-    """Compile a function that Python calls, without support for making arrays.
+    """Compile a function that Python calls and that creates no arrays.
 
-    numba's reference counting is switched off: counting the arrays that pass between helpers takes several
-    times as long as the computation in the helpers. Hence the function must not make arrays.
+    numba's reference counting is switched off. Counting the arrays that are passed between helpers would take
+    several times as long as the computation. Hence the function must not create arrays.
     """
     return _compile(function, _nrt=False)
 
@@ -117,21 +119,21 @@ def kernel(function: F) -> F:
 def helper(function: F) -> F:
     """Compile a small function like `kernel`, and inline it in its callers.
 
-    By default LLVM keeps a call, which passes every array as seven words.
+    Without this option LLVM makes a call, which passes every array as seven words.
     """
     return _compile(function, _nrt=False, forceinline=True)
 
 
 def allocating_kernel(function: F) -> F:
-    """Compile a function that Python calls and that makes arrays."""
+    """Compile a function that Python calls and that creates arrays."""
     return _compile(function)
 
 
 def inner_kernel(function: F) -> F:
-    """Compile a function that only kernels call, without an entry from Python.
+    """Compile a function that only kernels call, without an entry point for Python.
 
-    For a function that takes the arrays of an engine, this entry takes longer to compile than the function
-    itself.
+    For a function that takes the arrays of an engine, this entry point would take longer to compile than the
+    function itself.
     """
     return _compile(function, part=True, _nrt=False)
 
@@ -142,13 +144,13 @@ def inner_helper(function: F) -> F:
 
 
 def inner_allocating_kernel(function: F) -> F:
-    """Compile a function that only kernels call and that makes arrays."""
+    """Compile a function that only kernels call and that creates arrays."""
     return _compile(function, part=True)
 
 
 def inner_parallel_kernel(function: F) -> F:
-    """Compile a function that only kernels call, with `prange` loops divided among threads.
+    """Compile a function that only kernels call, whose `prange` loops are divided among threads.
 
-    The results of its iterations must not depend on one another, so that their order does not matter.
+    The iterations must be independent of each other, so that their order does not matter.
     """
     return _compile(function, parallel=True, **_UNWRAPPED)

@@ -1,8 +1,8 @@
-"""Digests of source files that docstrings and comments do not change.
+"""Hashes of source files that do not change with docstrings and comments.
 
-A Python file is represented by its syntax tree without docstrings. The text of the tree is our own, because
-`ast.dump` differs between versions of Python. To make it takes some 3 ms for a file, so the digests of all
-contents that were seen are stored in the cache folder.
+A Python file is represented by its syntax tree without docstrings. The tree is converted to text here,
+because `ast.dump` differs between versions of Python. The conversion takes about 3 ms per file, so the hashes
+of all known contents are stored in the cache folder.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from gaspart.system import is_own
 
 STORE = "trees.json"
 MOST_STORED = 20_000
-"""Largest number of stored digests, some thirty versions of the package."""
+"""Maximum number of stored hashes, about thirty versions of the package."""
 _DIGEST = re.compile(r"[0-9a-f]{32}")
 
 
 def file_digests(paths: Iterable[Path]) -> list[str]:
-    """Return the digest of each file.
+    """Return the hash of each file.
 
-    The digest of a Python file is computed from its syntax tree, the digest of any other file from its bytes.
+    The hash of a Python file is computed from its syntax tree, the hash of any other file from its bytes.
     """
     stored, added, digests = _read_stored(), {}, []
     for path in paths:
@@ -49,7 +49,7 @@ def file_digests(paths: Iterable[Path]) -> list[str]:
 
 
 def tree_digest(source: bytes) -> str:
-    """Return the digest of the syntax tree of Python source; of its bytes if parsing fails."""
+    """Return the hash of Python source's syntax tree, or of its bytes if parsing fails."""
     try:
         tree = ast.parse(source)
     except (SyntaxError, ValueError):
@@ -58,9 +58,9 @@ def tree_digest(source: bytes) -> str:
 
 
 def _words(node: Any) -> Iterator[str]:
-    """Generate the text of a syntax tree without its empty fields.
+    """Yield the text of a syntax tree without its empty fields.
 
-    Other versions of Python may add empty fields.
+    Other versions of Python may have additional empty fields.
     """
     if isinstance(node, ast.AST):
         yield f"({type(node).__name__}"
@@ -82,7 +82,7 @@ def _words(node: Any) -> Iterator[str]:
 def _is_text(node: Any) -> bool:
     """Return True if a statement is only a string, such as a docstring.
 
-    The docstring of a constant is such a statement too.
+    The docstring of a constant is also such a statement.
     """
     if not isinstance(node, ast.Expr) or not isinstance(node.value, ast.Constant):
         return False
@@ -95,9 +95,9 @@ def _digest(content: bytes) -> str:
 
 @cache
 def _read_stored() -> dict[str, str]:
-    """Return the stored digests of trees by the digests of the file contents.
+    """Return the stored hashes of trees by the hashes of the file contents.
 
-    They come from the cache folder; digests computed by this process are added.
+    They come from the cache folder. Hashes computed by this process are added.
     """
     try:
         with open(_folder() / STORE, "rb") as file:
@@ -111,9 +111,9 @@ def _read_stored() -> dict[str, str]:
 
 
 def _store(added: dict[str, str]) -> None:
-    """Add digests to the stored ones in the cache folder, if it can be written.
+    """Add hashes to the stored hashes in the cache folder, if it can be written.
 
-    If it cannot be written, `usable_cache` warns.
+    Otherwise `usable_cache` issues a warning.
     """
     try:
         folder = _folder()
@@ -127,7 +127,7 @@ def _store(added: dict[str, str]) -> None:
 
 
 def _folder() -> Path:
-    """Return the folder of the stored digests.
+    """Return the folder of the stored hashes.
 
     Raises RuntimeError if other users may write to it, or if it cannot be written.
     """

@@ -1,4 +1,4 @@
-"""Compiled part of the ray tracer (see `rendering.tracer`): rays, shadows and the skylight."""
+"""Compiled part of the ray tracer (see `rendering.tracer`): rays, shadows and skylight."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from gaspart.kernels.compile.policy import (
 
 SUBRAYS = 4
 _ORDER = (0, 3, 12, 15, 1, 2, 4, 5, 6, 7, 8, 9, 10, 11, 13, 14)
-"""Order of the rays through a pixel, by rows: its corners first."""
+"""Order of the rays through a pixel, row by row; the corners are first."""
 NOTHING, FLOOR, EDGE, SPHERE = 0, 2, 4, 6
-"""Codes of the visible object of a pixel; sphere i is SPHERE + 2 i; 1 is added in the shadow."""
+"""Codes of the visible object in a pixel. Sphere i is SPHERE + 2 i; 1 is added for points in shadow."""
 
 _AMBIENT, _LAMP, _GLOSS = 0.55, 0.75, 0.18
 _HAZE = 0.22  # fraction of its colour that the far end of the container loses
 _FLOOR_LIGHT, _EDGE_LIGHT = 0.72, 0.16
-_EDGE_PIXELS = 0.8  # half the width of the container's edges
+_EDGE_PIXELS = 0.8  # half of the width of the container's edges
 
 
 @kernel
 def list_spheres(lowest, highest, numbers, cursors, listed):
     """Count the spheres of each cell in `cursors`, or fill the lists of the cells.
 
-    If `listed` is not empty, the index of each sphere is written to the next position of its cells.
+    If `listed` is not empty, the index of each sphere is written to the next free entry of its cells.
     """
     for i in range(len(lowest)):
         for x in range(lowest[i, 0], highest[i, 0] + 1):
@@ -113,14 +113,14 @@ def _nearest(o, d, spheres, grid, any_will_do):
 
 @kernel
 def sky(p, n, spheres, grid):
-    """Return the fraction of the sky that near spheres leave free above a point.
+    """Return the fraction of the sky above a point that is not hidden by near spheres.
 
-    A sphere of radius r whose centre is at the distance h r, at an angle of cosine c to the normal, takes c /
-    h^2 of the light of a uniform sky if it is wholly above the horizon (exact); as the sphere sets, this
-    fraction goes to 0. Only spheres nearer than the side of a cell count, with an effect that fades with
-    distance. Each sphere counts once, in the first of the 27 cells that contains it.
+    A sphere of radius r hides c / h^2 of the light of a uniform sky if it is completely above the horizon
+    (exact). Its centre is at the distance h r, and c is the cosine of its angle to the normal. As the sphere
+    sets, this fraction goes to 0. Only spheres closer than the side of a cell count, and their effect fades
+    with distance. Each sphere counts once, in the first of the 27 cells that contains it.
 
-    p : point of a surface
+    p : point on a surface
     n : normal of the surface
     """
     low, side, numbers, first, listed, lowest = grid
@@ -154,7 +154,7 @@ def sky(p, n, spheres, grid):
 def _edge(o, d, edges, thickness):
     """Return the distance of the nearest edge of the container that a ray touches.
 
-    A ray touches an edge if it passes at less than `thickness` times that distance.
+    A ray touches an edge if it passes within `thickness` times this distance.
     """
     best = math.inf
     for m in range(len(edges)):
@@ -173,7 +173,7 @@ def _edge(o, d, edges, thickness):
 
 @inner_kernel
 def _visible(o, d, scene, grid, thickness):
-    """Return distance and code, without shadow, of the visible object on a ray."""
+    """Return distance and code (without shadow) of the visible object on a ray."""
     spheres, _, edges, lengths = scene
     t, i = _nearest(o, d, spheres, grid, False)
     code = SPHERE + 2 * i if i >= 0 else NOTHING
@@ -191,11 +191,11 @@ def _visible(o, d, scene, grid, thickness):
 
 @inner_kernel
 def _shade(ray, t, code, view, scales, scene, grid, light_around):
-    """Return an object's colour on a ray, 1 in the shadow, and its free sky.
+    """Return an object's colour on a ray, 1 if in shadow, and its free sky fraction.
 
-    ray : its origin and its direction.
-    light_around : 1 if the lamp reaches the point, 0 if not, -1 to find out; and the fraction of the sky that
-    is free above the point, -1 to find out.
+    ray : origin and direction of the ray.
+    light_around : 1 if the lamp reaches the point, 0 if not, -1 if unknown; and the fraction of the sky that
+    is not hidden above the point, -1 if unknown.
     """
     (o, d), (lit, free) = ray, light_around
     if code == NOTHING:
@@ -252,9 +252,9 @@ def _direction(column, row, image, view, scales):
 
 @kernel
 def render_once(image, codes, skies, view, scales, scene, grid):
-    """Trace one ray through the middle of every pixel.
+    """Trace one ray through the centre of every pixel.
 
-    `skies` (H, W) is set to the free sky of the objects.
+    `skies` (H, W) is filled with the free sky fractions of the objects.
     """
     o, thickness = (view[0, 0], view[0, 1], view[0, 2]), 2.0 * _EDGE_PIXELS * scales[0] / image.shape[1]
     for row in range(codes.shape[0]):
@@ -268,9 +268,10 @@ def render_once(image, codes, skies, view, scales, scene, grid):
 
 @inner_helper
 def _light_around(code, row, column, codes, skies):
-    """Return light and free sky of an object in the pixels around.
+    """Return light and free sky fraction of an object in the neighbouring pixels.
 
-    The light is 1, 0 or -1, if it differs or the object is not there; the sky is -1 then.
+    The light is 1 or 0. Both values are -1 if they differ between pixels, or if no neighbouring pixel shows
+    the object.
     """
     lit, free = -2, -1.0
     for y in range(max(row - 1, 0), min(row + 2, codes.shape[0])):
@@ -285,7 +286,7 @@ def _light_around(code, row, column, codes, skies):
 
 @inner_helper
 def _shows(code, row, column, codes):
-    """Return True if one of the pixels around shows an object."""
+    """Return True if a neighbouring pixel shows an object."""
     for y in range(max(row - 1, 0), min(row + 2, codes.shape[0])):
         for x in range(max(column - 1, 0), min(column + 2, codes.shape[1])):
             if codes[y, x] == code:
@@ -297,8 +298,9 @@ def _shows(code, row, column, codes):
 def refine(image, codes, skies, pixels, view, scales, scene, grid):
     """Trace SUBRAYS x SUBRAYS rays through the `pixels` (M, 2), given by row and column.
 
-    The light and the free sky of an object are taken from the pixels around where these agree. If the first
-    four rays, near the corners, see what the middle of the pixel shows, there are no more.
+    The light and the free sky fraction of an object are taken from the neighbouring pixels if these agree. If
+    the first four rays, near the corners, hit the same object as the ray through the centre, no further rays
+    are traced.
     """
     o, thickness = (view[0, 0], view[0, 1], view[0, 2]), 2.0 * _EDGE_PIXELS * scales[0] / image.shape[1]
     for n in range(len(pixels)):
@@ -325,10 +327,10 @@ def refine(image, codes, skies, pixels, view, scales, scene, grid):
         image[row, column, 2] = blue / traced
 
 
-# Discs and lines drawn into an image by the fraction of each pixel that they cover.
+# Discs and lines are drawn into an image according to the fraction of each pixel that they cover.
 
 
-_LINE = 0.75  # half the width of lines, in pixels
+_LINE = 0.75  # half of the width of lines in pixels
 
 
 @inner_kernel
@@ -340,7 +342,7 @@ def _blend(image, row, column, cover, red, green, blue):
 
 @kernel
 def draw_discs(image, centres, radii, colours):
-    """Draw discs, later ones over earlier ones, into an image (H, W, 3)."""
+    """Draw discs into an image (H, W, 3); later discs cover earlier ones."""
     height, width = image.shape[0], image.shape[1]
     for i in range(len(centres)):
         x, y, r = centres[i, 0], centres[i, 1], radii[i]

@@ -1,1 +1,1 @@
-"""Collisions sampled among the particles of a cell: direct simulation Monte Carlo (DSMC)."""
+"""Collisions between randomly drawn particles of a cell: direct simulation Monte Carlo (DSMC)."""

@@ -1,11 +1,11 @@
-"""Collisions of a dilute gas between pairs of particles anywhere in one cell.
+"""Collisions of a dilute gas, between any two particles of a cell.
 
 The majorant frequency scheme (Ivanov & Rogasinsky, Sov. J. Numer. Anal. Math. Modelling 3, 453 (1988)): the
-collisions in a cell are a Markov process in continuous time, in which a pair collides at the rate S g / V,
-with S the cross-section and g the relative speed. Trials happen at the rate of all pairs with a bound of S g
-and are accepted with the ratio of the two. The time to the next trial has no memory, so that the bound may
-change with each collision, and is exact at any time: the velocities of a cell lie in a box, and no relative
-speed exceeds its diagonal.
+collisions in a cell are a Markov process in continuous time. A pair collides at the rate S g / V, with the
+cross-section S, the relative speed g and the cell volume V. Trial collisions happen at the rate of all pairs
+with an upper bound of S g. They are accepted with the probability S g divided by the bound. The time to the
+next trial has no memory, so the bound may change after each collision. The bound is exact at any time: the
+velocities in a cell lie in a box, and no relative speed exceeds its diagonal.
 """
 
 from __future__ import annotations
@@ -34,12 +34,12 @@ from gaspart.kernels.model import LOSS, ContactLaw
 from gaspart.kernels.physics.collision import collide_by_law
 from gaspart.kernels.physics.exact_sum import add_exact
 
-# Sampling of one collision: the direction of contact, and the transferred momentum.
+# Sampling of a collision: the direction of contact, and the transferred momentum.
 #
-# For two particles that collide somewhere in a cell, the unit vector n from the first to the second at
-# contact has a density proportional to -g.n where that is positive, with g the relative velocity (second
-# minus first). In three dimensions this makes the relative velocity after an elastic collision isotropic; in
-# two dimensions the impact parameter is uniform.
+# Let n be the unit vector at contact from the first to the second of two particles that collide somewhere in
+# a cell, and g their relative velocity (second minus first). The probability density of n is proportional to
+# -g.n if this is positive. In three dimensions, the relative velocity after an elastic collision is then
+# isotropic. In two dimensions, the impact parameter is uniform.
 
 
 class Sums(NamedTuple):
@@ -89,10 +89,10 @@ def impact_parameter(key, step, cell, trial):
 
 @inner_helper
 def contact_vector(g, speed, dimension, counter):
-    """Draw the unit vector (3,) from the first particle to the second at a collision.
+    """Draw the unit vector (3,) from the first to the second particle of a collision.
 
     g : (3,), relative velocity, second minus first
-    speed : size of g
+    speed : magnitude of g
     counter : key, step, cell and trial
     """
     key, step, cell, trial = counter
@@ -155,7 +155,7 @@ def load_spin(i, row, which, context, law):
 
 @inner_helper
 def store_spin(i, row, context, law):
-    """Write the spin back from the workspace."""
+    """Write the spin from the workspace back to the particle."""
     for k in range(3):
         law.spins[i, k] = context.workspace.pair_spins[context.part, row, k]
 
@@ -177,7 +177,7 @@ def load_particle(particles, slot, row, which, context, law):
 
 @inner_helper
 def store_particle(particles, slot, row, context, law):
-    """Write velocity and spin back from the workspace."""
+    """Write velocity and spin from the workspace back to the particle."""
     flights = context.workspace.flights[context.part]
     for k in range(len(particles.images)):
         particles.data[velocity_row(particles, k), slot] = flights[row].velocity[k]
@@ -214,15 +214,15 @@ def collide_loaded_pair(normal, context, law):
 
 # Time integrals of the stress tensor and of the heat flux (Helfand, Phys. Rev. 119, 1 (1960)).
 #
-# The stress sum S (d, d) grows by m v v dt during flight, and by r dp at a collision, with r the vector from
-# the second particle to the first and dp the momentum gained by the first. The heat sum Q (d,) grows by E v
-# dt, and at a collision by r times half of the difference of the energy gains of the two particles. The
-# energy E includes rotation if there are spins. Velocities v are relative to the velocity of the centre of
-# mass, which is conserved: a gas that moves as a whole has the sums of a gas at rest. A particle's velocity
-# is constant in a step without walls and gravity, so nothing is approximated. The collisional part of S is
-# also summed separately.
+# The stress sum S (d, d) grows by m v v dt in flight, and by r dp at a collision. r is the vector from the
+# second particle to the first, and dp the momentum gained by the first. The heat sum Q (d,) grows by E v dt
+# in flight. At a collision it grows by r times half of the difference between the energy gains of the two
+# particles. The energy E includes rotation if there are spins. Velocities v are relative to the centre of
+# mass, whose velocity is conserved. So a gas that moves as a whole has the same sums as a gas at rest.
+# Without walls and gravity the velocity of a particle is constant during the flight of a step, so the sums
+# are exact. The collisional part of S is also summed separately.
 #
-# The sums of a cell are computed by one thread and added exactly, so that they do not depend on the number of
+# One thread computes the sums of a cell, and adds them exactly, so they do not depend on the number of
 # threads.
 
 
@@ -245,7 +245,7 @@ class Stress(NamedTuple):
 
 @inner_helper
 def velocity_about(particles, slot, axis, stress):
-    """Return a component of a particle's velocity relative to the centre of mass."""
+    """Return a velocity component of a particle relative to the centre of mass."""
     return particles.data[velocity_row(particles, axis), slot] - stress.drift[axis]
 
 
@@ -283,7 +283,7 @@ def add_flight(particles, slot, context, stress, law):
 
 @inner_helper
 def finish_cell(context, stress):
-    """Move the sums of the present cell to the sums of its thread."""
+    """Add the sums of the present cell to the sums of its thread."""
     cell, sums = stress.cell[context.part], stress.sums[context.part]
     for n in range(len(cell)):
         add_exact(sums[n], cell[n])
@@ -292,7 +292,7 @@ def finish_cell(context, stress):
 
 @inner_kernel
 def add_flights(particles, cells, grid, context, stress, law):
-    """Add the transport by the flights of the particles of the cells from cells[0] to cells[1]."""
+    """Add the transport by the flights of the particles in cells[0] to cells[1]."""
     for cell in range(cells[0], cells[1]):
         for slot in range(np.int64(grid.starts[cell]), np.int64(grid.starts[cell + 1])):
             add_flight(particles, slot, context, stress, law)
@@ -333,7 +333,7 @@ _ROUNDED = 1.0 + 1e-12  # probability above 1 by more than rounding
 
 @inner_helper
 def cross_section(sigma, dimension):
-    """Return the cross-section, an area (3D) or width (2D), for a contact distance sigma."""
+    """Return the cross-section for a contact distance sigma: an area (3D) or a width (2D)."""
     return 3.141592653589793 * sigma * sigma if dimension == 3 else 2.0 * sigma
 
 
@@ -345,9 +345,10 @@ def widen_range(x, y, low, high):
 
 @inner_helper
 def bounds_of(u, v, w, first, end):
-    """Return the ranges of three arrays, found in one loop.
+    """Return the ranges of three arrays, computed in one loop.
 
-    Each minimum waits for the one before it, so three arrays in one loop take no longer than one array.
+    Each comparison waits for the previous one, so a loop over three arrays takes no longer than a loop over
+    one array.
     """
     low_u = high_u = u[first]
     low_v = high_v = v[first]
@@ -411,7 +412,7 @@ def collide_pair(particles, pair, g, square, counter, context, law):
 
 @inner_helper
 def separation_vector(particles, pair):
-    """Return the vector (3,) from the second to the first of the particles in two slots."""
+    """Return the vector (3,) from the second to the first particle in two slots."""
     x, y = particles.data[position_row(particles, 0)], particles.data[position_row(particles, 1)]
     z = particles.data[position_row(particles, len(particles.images) - 1)]
     i, j = pair
@@ -422,8 +423,8 @@ def separation_vector(particles, pair):
 def collide_cell(particles, cell, slots, volume, context, law, stress):
     """Perform the collisions of one step in a cell.
 
-    The particles of the cell are in the slots from slots[0] to slots[1]. In the stress of the algorithm,
-    momentum is transferred between two points of the cell.
+    The particles of the cell are in slots[0] to slots[1]. For the stress of the algorithm, momentum is
+    transferred between two points of the cell.
     """
     first, end = slots
     d, number, key, step = (
@@ -477,7 +478,7 @@ def collide_cell(particles, cell, slots, volume, context, law, stress):
 
 @inner_kernel
 def collide_cells(particles, cells, grid, context, law, stress):
-    """Perform the collisions of one step in the cells of one thread, from cells[0] to cells[1]."""
+    """Perform the collisions of one step in the cells of one thread, cells[0] to cells[1]."""
     for cell in range(cells[0], cells[1]):
         slots = np.int64(grid.starts[cell]), np.int64(grid.starts[cell + 1])
         if slots[1] - slots[0] > 1:

@@ -1,19 +1,19 @@
-"""Collisions of a dense gas between pairs a diameter apart.
+"""Collisions of a dense gas, between particles at a distance of one diameter.
 
 The collision rate is multiplied by the contact value at the local density. The scheme is by Montanero &
-Santos, Phys. Rev. E 54, 438 (1996), and Phys. Fluids 9, 2057 (1997), for the Enskog equation: a particle
-draws a unit vector e, and its partner in the cell that holds the point a diameter away along e; they collide
-with the impulse along e at a rate proportional to their approach along it. Momentum and energy are conserved
-in each collision, and both are transferred over a diameter. Trials follow one another as in `boltzmann`, cell
-by cell: the bound of a cell comes from the largest number of particles and the highest speeds in any cell
-within reach, and is raised by a collision that exceeds it.
+Santos, Phys. Rev. E 54, 438 (1996), and Phys. Fluids 9, 2057 (1997), for the Enskog equation. A particle
+draws a unit vector e. Its partner is drawn in the cell that contains the point one diameter away along e.
+They collide with an impulse along e, at a rate proportional to their speed of approach along e. Each
+collision conserves momentum and energy, and transfers both over a diameter. Trial collisions follow one
+another as in `boltzmann`, cell by cell. The bound of a cell is computed from the largest number of particles
+and the highest speeds in any cell within reach. A collision that exceeds a bound raises it.
 
-A trial in a cell changes particles up to a reach away, so that threads cannot work on arbitrary cells. The
-cells are in slabs along one axis, an even number of them, each at least two reaches wide: a trial in one slab
-changes no particle within reach of the next slab but one. All even slabs come first, at the same time, and
-then all odd ones; within a slab cell follows cell. This order is the same for any number of threads. A trial
-updates the bounds of its own slab at once if a speed increases; the bounds of the other slabs are found again
-before their trials begin.
+A trial in a cell changes particles up to a distance `reach` away, so threads cannot work on arbitrary cells.
+Therefore the cells are divided into an even number of slabs along one axis, each at least two reaches wide. A
+trial in one slab changes no particle within reach of the next slab but one. First all even slabs are
+processed at the same time, then all odd ones. Within a slab, cells are processed one after another. This
+order is the same for any number of threads. If a speed increases, a trial updates the bounds of its own slab
+at once. The bounds of the other slabs are computed again before their trials begin.
 """
 
 from math import sqrt
@@ -48,8 +48,8 @@ from gaspart.kernels.dsmc.model import (
 from gaspart.kernels.physics.exact_sum import add_exact
 
 FILLED, SURFACE = range(2)
-KIND_BLOCK = 255  # block of a trial's random words for the partner's kind
-_FULLEST = 0.7  # packing fraction up to which contact values are evaluated
+KIND_BLOCK = 255  # block of random words of a trial for the kind of the partner
+_FULLEST = 0.7  # largest packing fraction at which contact values are evaluated
 _ROUNDED = 1.0 + 1e-12  # probability above 1 by more than rounding
 
 
@@ -60,19 +60,19 @@ class Dense(NamedTuple):
     ----------
     fields : (2, cells), sums of r^d and r^(d-1) of the particles of a cell per volume, times the volume of a
         unit ball, smoothed in time
-    speed : (cells,), highest speed of the particles of a cell, relative to `drift`
+    speed : (cells,), highest speed of the particles in a cell, relative to `drift`
     near_speed : (cells,), highest speed in any cell within reach
     near_count : (cells,), largest number of particles in any cell within reach
     room : (cells,), workspace for the search of these maxima
     reach : (d,), reach in cells along each axis
-    wraps : (d,), whether the first and the last cell along an axis are neighbours
+    wraps : (d,), True if the first and the last cell along an axis are neighbours
     axis : axis along which the cells are divided into slabs
-    slabs : (slabs + 1,), first cell of each slab along `axis`, and the number of cells there
+    slabs : (slabs + 1,), first cell of each slab along `axis`, and the total number of cells
     drift : (d,), velocity of the centre of mass
     ball : volume of a unit ball
-    weight : weight of a step in the smoothed fields, 0 if the fields are known
+    weight : weight of a step in the smoothed fields; 0 if the fields are known
     slope, bend : coefficients of the contact value, see `contact_value`
-    highest : (1,), highest contact value of any two particles
+    highest : (1,), highest contact value of any pair of particles
     """
 
     fields: np.ndarray
@@ -96,8 +96,8 @@ class Dense(NamedTuple):
 def contact_value(filled, surface, radius, dense):
     """Return the contact value of the pair distribution, 1/f + slope X/f^2 + bend X^2/f^3.
 
-    Here f = 1 - filled and X = 2 surface `radius`, with `radius` the product of two radii divided by their
-    sum. See `engines.dsmc.defaults`.
+    Here f = 1 - filled and X = 2 surface `radius`; `radius` is the product of two radii divided by their sum.
+    See `engines.dsmc.defaults`.
     """
     free = 1.0 - min(filled, _FULLEST)
     ratio = 2.0 * surface * radius / free
@@ -106,7 +106,7 @@ def contact_value(filled, surface, radius, dense):
 
 @inner_kernel
 def sliding_maximum(values, room, reach, stride, per_side, wraps):
-    """Replace values by the maximum within reach along one axis, with `room` as workspace."""
+    """Replace values by the maximum within reach along one axis; `room` is workspace."""
     number = len(values)
     for n in range(number):
         room[n] = values[n]
@@ -128,7 +128,7 @@ def sliding_maximum(values, room, reach, stride, per_side, wraps):
 
 @inner_kernel
 def look_at_cells(particles, cells, grid, workspace, dense):
-    """Find highest speed and number of particles of the cells from cells[0] to cells[1].
+    """Find highest speed and number of particles in cells[0] to cells[1].
 
     The fields of these cells are smoothed if the weight is positive.
     """
@@ -150,7 +150,7 @@ def look_at_cells(particles, cells, grid, workspace, dense):
 
 @inner_kernel
 def find_bounds(grid, workspace, dense):
-    """Find the bounds of the trials of each cell, after `look_at_cells`."""
+    """Compute the bounds for trials in each cell, after `look_at_cells`."""
     filled = surface = 0.0
     for cell in range(len(grid.starts) - 1):
         filled = max(filled, dense.fields[FILLED, cell])
@@ -164,7 +164,7 @@ def find_bounds(grid, workspace, dense):
 
 @inner_kernel
 def find_near_speeds(grid, dense):
-    """Find the highest speed in any cell within reach of each cell."""
+    """Compute, for each cell, the highest speed in any cell within reach."""
     for cell in range(len(grid.starts) - 1):
         dense.near_speed[cell] = dense.speed[cell]
     for k in range(len(grid.per_side)):
@@ -174,7 +174,7 @@ def find_near_speeds(grid, dense):
 
 @inner_kernel
 def smooth(particles, cells, grid, workspace, dense):
-    """Update the smoothed fields of some cells by their present particles."""
+    """Update the smoothed fields of some cells with their present particles."""
     d = len(particles.images)
     factor = dense.ball / grid.volume
     for cell in range(cells[0], cells[1]):
@@ -190,7 +190,7 @@ def smooth(particles, cells, grid, workspace, dense):
 
 @inner_helper
 def cell_at(particles, slot, sigma, direction, grid, context, dense):
-    """Return the cell at a distance from the particle in a slot; -1 outside the container."""
+    """Return the cell at a distance from the particle in a slot; -1 outside."""
     cell, lengths = 0, context.space.lengths
     for k in range(len(lengths)):
         x = particles.data[position_row(particles, k), slot] + sigma * direction[k]
@@ -303,7 +303,7 @@ def partner_of(particles, slot, sigma, direction, pick, grid, context, dense):
 
 @inner_helper
 def relative_chance(pair, cells, kinds, largest, dense, workspace, dimension):
-    """Return the probability factor of size and density, divided by its largest possible value.
+    """Return the size and density factor of the collision probability, divided by its maximum.
 
     The particles are in two cells; `kinds` are their kinds.
     """
@@ -355,8 +355,8 @@ def try_once(particles, counter, words, bound, grid, context, dense, options):
 def collide_dense_cell(particles, cell, rate, grid, context, dense, options):
     """Perform the collisions of one step in a cell.
 
-    rate : rate of trials divided by the number of particles in the cell, by the largest number of particles
-        in a cell within reach, and by the bound of the speed
+    rate : rate of trials divided by three factors: the number of particles in the cell, the largest number of
+        particles in a cell within reach, and the bound of the speed
     options : the options of `try_once`
     """
     workspace = context.workspace

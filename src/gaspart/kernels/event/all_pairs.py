@@ -15,7 +15,7 @@ from gaspart.kernels.physics.lees_edwards import FLOW, GRADIENT, time_of_sheared
 
 @inner_helper
 def image_offset(image, space):
-    """Return the displacement (3,) of one of the 3^d images, and whether it exists."""
+    """Return the displacement (3,) of one of the 3^d images, and True if it exists."""
     x, y, z = image % 3 - 1, image // 3 % 3 - 1, image // 9 - 1 if len(space.lengths) == 3 else 0
     last = len(space.lengths) - 1
     absent = (x != 0 and not space.periodic[0]) or (y != 0 and not space.periodic[1])
@@ -25,10 +25,10 @@ def image_offset(image, space):
 
 @inner_helper
 def time_in_image(flights, i, j, offset, space, gravity, shear):
-    """Return the time at which two particles touch, the second displaced by `offset` (3,).
+    """Return the time at which two particles touch if the second is displaced by `offset` (3,).
 
-    Across sheared faces particle j is also displaced by their displacement: there each image stands for all
-    images along the flow.
+    Across sheared faces particle j is also displaced by the shear; then one image represents all images along
+    the flow.
     """
     if shear is not None:
         if offset[GRADIENT] != 0.0:
@@ -43,8 +43,8 @@ def time_in_image(flights, i, j, offset, space, gravity, shear):
 def first_of_all(particles, boxes, model, tally):
     """Return the earliest of all events: (time, particle, partner, face code).
 
-    NONE stands for an absent particle, partner or face. `boxes` is one box, and there are no predictions, so
-    no prediction can be outdated.
+    NONE represents a missing particle, partner or face. `boxes` is a single box. No predictions are stored,
+    so none can be outdated.
     """
     flights, space, gravity = particles.flights, model.space, model.gravity
     soon = inf

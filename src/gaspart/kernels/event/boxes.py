@@ -1,8 +1,8 @@
 """Search of the earliest contact of a particle in the boxes around it.
 
-All particles in these boxes are listed first, then the times of all their contacts are computed, eight at
-once (`simd`). There is hardly a branch, so that the processor has little to predict. Indices are unsigned,
-since for signed ones numba checks at every access whether it counts from the end.
+First all particles in these boxes are listed, then the times of all their contacts are computed, eight at
+once (`simd`). There are hardly any branches for the processor to predict. Indices are unsigned, because for
+signed indices numba checks at every access if they count from the end.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from gaspart.kernels.model import BOX_VISITS, IMAGE_BITS, NUMBER_BITS, PAIR_TEST
 from gaspart.kernels.physics.flight import time_of_contact
 from gaspart.kernels.simd import WIDTH, lowest
 
-# Particles of each box: the first few in positions of the box, the others in a linked list.
+# Particles of each box: the first few are in a fixed array per box, the others in a linked list.
 #
-# Nearly all boxes hold few particles, and a search reads them at once, for any number of particles.
+# Nearly all boxes contain few particles, and the array is read at once for any number of particles.
 
 
-CANDIDATES = 64  # candidates gathered before a test: a bit of a word for each
+CANDIDATES = 64  # maximum number of candidates collected before a test, one bit of a word each
 _EMPTY = np.uint32(0xFFFFFFFF)
 
 
@@ -38,11 +38,11 @@ class BoxLists(NamedTuple):
     neighbour, shift : neighbours of a box along each axis, and their periodic images
     filled : (boxes,), number of particles in each box
     members : (boxes, PLACES), first particles of each box
-    head : (boxes,), first of the other particles of each box, which are a linked list
-    following : (N,), next particle of the linked list after each particle
+    head : (boxes,), start of the linked list with the other particles of each box
+    following : (N,), next particle in the linked list after each particle
     candidates : (M,), workspace for the candidates of a search
-    resting : (N,), particles that gravity may not accelerate, see `flight.mark_resting`
-    lists : `NeighbourLists`, which are searched instead, or None
+    resting : (N,), True for particles that gravity may not accelerate, see `flight.mark_resting`
+    lists : `NeighbourLists` that are searched instead, or None
     """
 
     per_side: np.ndarray
@@ -60,7 +60,7 @@ class BoxLists(NamedTuple):
 
 
 def empty_lists(boxes, count, lists=None):
-    """Return lists without particles for `state.boxes.Boxes` and `count` particles."""
+    """Return empty lists for `state.boxes.Boxes` and `count` particles."""
     return BoxLists(
         boxes.per_side, boxes.widths, boxes.strides, boxes.neighbour, boxes.shift,
         filled=np.zeros(boxes.count, dtype=np.uint32),
@@ -82,9 +82,9 @@ def box_of(predictions, boxes, i):
 
 @inner_helper
 def member(boxes, box, n, other):
-    """Return the n-th particle of a box; `other` is the particle before it.
+    """Return the n-th particle of a box; `other` is the preceding particle.
 
-    The box must have more than n particles.
+    The box must contain more than n particles.
     """
     if n < PLACES:
         return boxes.members[box, n]
@@ -106,7 +106,7 @@ def insert(predictions, boxes, i):
 
 @inner_helper
 def remove(predictions, boxes, i):
-    """Remove a particle from its box; another particle of the box takes its position."""
+    """Remove a particle from its box; another particle of the box moves to its entry."""
     box = np.uint64(box_of(predictions, boxes, i))
     members, head, following = boxes.members, boxes.head, boxes.following
     last = np.uint64(boxes.filled[box]) - np.uint64(1)
@@ -155,12 +155,13 @@ def sort_in(predictions, boxes):
         insert(predictions, boxes, i)
 
 
-# Candidates of a search: the number of a particle and, in the bits above it, its image along each axis.
+# A candidate of a search is a word with the number of the particle and, in higher bits, its image along each
+# axis.
 #
-# Words are unsigned: numba converts signed words that are combined with these to real numbers.
+# Words are unsigned, because numba would convert a mixture of signed and unsigned words to floating point.
 
 
-NUMBER = uint64((1 << NUMBER_BITS) - 1)  # bits of a candidate with the number of the particle
+NUMBER = uint64((1 << NUMBER_BITS) - 1)  # number of bits for the particle number in a candidate
 X, Y, Z = (uint64(NUMBER_BITS + IMAGE_BITS * k) for k in range(3))  # first bit of the image along an axis
 _IMAGE, _ONE = uint64((1 << IMAGE_BITS) - 1), uint64(1)
 _LOW = (_ONE << X) | (_ONE << Y) | (_ONE << Z)
@@ -183,7 +184,7 @@ def image_bits(image, first):
 
 @inner_helper
 def image_of(candidate, first):
-    """Return the image that the bits of a candidate represent, beginning with bit `first`."""
+    """Return the image that the bits of a candidate represent, starting at bit `first`."""
     return (int64((candidate >> first) & _IMAGE) ^ 2) - 2
 
 
@@ -216,7 +217,7 @@ def test_candidates(particles, i, count, boxes, space, tally, gravity):
     flights, predictions, candidates = particles.flights, particles.predictions, boxes.candidates
     tally.counts[PAIR_TESTS] += int64(count)
     for n in range(_WIDTH):
-        candidates[count + n] = i  # no particle meets itself
+        candidates[count + n] = i  # a particle has no contact with itself
     before, partner = predictions[i].contact_time, int64(predictions[i].partner)
     best, best_partner, unknown = earliest(
         flights, i, (uint64(0), count), (before, partner), boxes, space, gravity
@@ -239,10 +240,10 @@ def test_candidates(particles, i, count, boxes, space, tally, gravity):
 def list_others(particles, i, count, row, boxes, space, tally, gravity):
     """List the particles in the linked lists of a row of boxes.
 
-    Returns the new number of candidates. The candidates are tested, and the list emptied, whenever another
-    row might not fit.
+    Returns the new number of candidates. If the particles of another row might not fit, the candidates are
+    tested, and the list is emptied.
 
-    row : first box of the row, its image, first step and end along it
+    row : first box of the row, its image, first step and end along the row
     """
     first, image_yz, low, end = row
     x = uint64(particles.predictions[i].box[0])
@@ -270,8 +271,8 @@ def list_others(particles, i, count, row, boxes, space, tally, gravity):
 def span(boxes, axis, at, crossed, dimension):
     """Return the boxes to be searched along an axis around a box.
 
-    The result has the first step, the end (0..3), the number of these boxes, and how many of them are the box
-    itself. Discs have one box along the third axis.
+    The result consists of the first step, the end (0..3), the number of these boxes, and the number of them
+    that are the box itself. In two dimensions there is one box along the third axis.
     """
     if axis >= dimension:
         return uint64(1), uint64(2), 1, 1
@@ -290,10 +291,10 @@ def span(boxes, axis, at, crossed, dimension):
 
 @inner_helper
 def list_places(boxes, count, box, image, most):
-    """List the particles in the positions of a box; return the new number of candidates.
+    """List the particles in the array of a box; return the new number of candidates.
 
     count : number of candidates before
-    most : largest number of particles of a box so far; it is returned too, updated
+    most : largest number of particles in a box so far; its updated value is also returned
     """
     list_box(boxes.candidates, count, boxes.members, box, image)
     filled = uint64(boxes.filled[box])
@@ -304,8 +305,8 @@ def list_places(boxes, count, box, image, most):
 def find_contact(particles, number, boxes, space, tally, crossed, gravity):
     """Search for an earlier contact of a particle in the boxes around its box.
 
-    If the particle has just crossed into this box, only boxes are searched that were not neighbours before.
-    All positions of a box are listed whether they are filled or not, which costs less than a test.
+    If the particle has just crossed into this box, only boxes that were not neighbours before are searched.
+    All entries of the array of a box are listed, even unused ones, which costs less than a test.
 
     crossed : (3,), direction of the crossing along each axis
     """

@@ -1,8 +1,9 @@
 """Kernels of a compression (`state.compression`): particles that grow while they fly and collide.
 
-The particles are smooth, of mass 1, and grow in proportion, in a container of hard or periodic faces: the
-radius of a flight is the radius at clock time 0; at time t it is multiplied by 1 + rate t. Queue, boxes and
-flights are the structures of `loop`; here every event predicts its particles anew.
+The particles are smooth, have mass 1, and all grow by the same factor, in a container of hard or periodic
+faces. The radius of a flight is the radius at clock time 0; at time t it is multiplied by 1 + rate t. Queue,
+boxes and flights are the structures of `loop`. Here the predictions of the particles are repeated at every
+event.
 """
 
 from math import inf, sqrt
@@ -24,7 +25,7 @@ from gaspart.kernels.physics.contact import time_to_growing_contact, time_to_pla
 from gaspart.kernels.physics.flight import advance, encounter
 from gaspart.kernels.physics.running_sum import add
 
-_PART = 2.0**-30  # minimum speed of separation, as a fraction of the rate of growth
+_PART = 2.0**-30  # minimum separation speed, as a fraction of the growth rate
 
 
 @inner_helper
@@ -42,7 +43,7 @@ def time_of_contact(flights, i, j, offset, space, rate):
 def next_face(particles, i, boxes, space, rate):
     """Return the next face that a particle reaches: (time, 2 axis + side).
 
-    The face belongs to its box or to the container.
+    The face is a face of the particle's box or of the container.
     """
     flight, at = particles.flights[i], particles.predictions[i].box
     growth = space.margin * flight.radius * rate
@@ -60,7 +61,7 @@ def next_face(particles, i, boxes, space, rate):
             elif (v > 0.0) if upper else (v < 0.0):
                 plane = (at[k] + upper) * boxes.widths[k]
                 if at[k] + upper == boxes.per_side[k]:
-                    plane = space.lengths[k]  # exactly, for any rounding of the boxes
+                    plane = space.lengths[k]  # exact for any rounding of the boxes
                 time = max(0.0, time_to_plane(x, v, plane))
             if flight.clock + time < soon:
                 soon = flight.clock + time
@@ -74,7 +75,7 @@ def box_near(boxes, at, n, space):
 
     The box is -1 if it does not exist.
 
-    at : (3,), coordinates of the box in the middle
+    at : (3,), coordinates of the central box
     n : number of the neighbour
     """
     a, b, c = n % 3, n // 3 % 3, n // 9
@@ -89,7 +90,7 @@ def box_near(boxes, at, n, space):
 
 @inner_kernel
 def predict(particles, i, boxes, space, rate, number):
-    """Predict the next events of a particle anew.
+    """Predict the next events of a particle.
 
     number : number of the present event
     """
@@ -141,7 +142,7 @@ def start(particles, queue, boxes, space, rate):
 def meet_face(particles, i, face, time, boxes, space, rate):
     """Move a particle into the next box, or reflect its growing surface at a wall.
 
-    Returns whether its flight has changed.
+    Returns True if its flight has changed.
     """
     flights, predictions = particles.flights, particles.predictions
     axis, upper = face // 2, face % 2
@@ -164,7 +165,7 @@ def meet_face(particles, i, face, time, boxes, space, rate):
 
 @inner_kernel
 def collide(flights, i, j, time, space, rate, tally):
-    """Advance two particles to their contact; their growing surfaces push them apart."""
+    """Advance two particles to their contact, where their growing surfaces push them apart."""
     advance(flights, i, time, space, None)
     advance(flights, j, time, space, None)
     rr = rv = 0.0
@@ -211,9 +212,9 @@ def run(particles, queue, boxes, space, tally, rate, stop, most):
 
 @kernel
 def closest(particles, boxes, space):
-    """Return the minimum of r^2/sigma^2 over all pairs in neighbouring boxes, all at one time.
+    """Return the minimum of r^2/sigma^2 over all pairs in neighbouring boxes, at equal times.
 
-    Without such pairs it is inf.
+    If there are no such pairs, it is inf.
     """
     flights = particles.flights
     least = inf

@@ -1,6 +1,6 @@
-"""Impulses along one axis by the position of the particle that receives them.
+"""Impulses along one axis, tallied by the position of the particle that receives them.
 
-They make densities accurate (`kernels.physics.flight`).
+They make density profiles more accurate (`kernels.physics.flight`).
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ class Impulses(NamedTuple):
 
     Attributes
     ----------
-    sums : (rows, bins + 1), as in `planes`, in the kernels' unit of mass
+    sums : (rows, bins + 1), as explained for planes in `physics.flight`, in the kernels' unit of mass
     axis : axis
     per_length : number of bins in a unit of length
-    row : (N,), row of each particle, or None if there is one row
+    row : (N,), row of each particle, or None if there is a single row
     """
 
     sums: np.ndarray
@@ -44,7 +44,7 @@ class Impulses(NamedTuple):
 
 @inner_helper
 def add_at(sums, row, position, impulse):
-    """Add an impulse at a position, which is given in bins."""
+    """Add an impulse at a position in units of bins."""
     bin_, part = bin_at(position, sums.shape[1] - 1)
     upper = impulse * part
     sums[row, bin_] += impulse - upper
@@ -53,7 +53,7 @@ def add_at(sums, row, position, impulse):
 
 @inner_helper
 def speed_before(flights, i, impulses):
-    """Return a particle's velocity along the axis before an impulse; 0 without a tally."""
+    """Return the velocity of a particle along the axis before an impulse; 0 without a tally."""
     if impulses is not None:
         return flights[i].velocity[impulses.axis]
     return 0.0
@@ -63,7 +63,7 @@ def speed_before(flights, i, impulses):
 def speed_on_arrival(flights, i, time, model, gravity, impulses):
     """Return the velocity along the axis at a later time; 0 without a tally.
 
-    The particle need not be advanced to that time.
+    The particle need not have been advanced to that time.
     """
     if impulses is not None:
         axis = impulses.axis
@@ -76,10 +76,10 @@ def speed_on_arrival(flights, i, time, model, gravity, impulses):
 
 @inner_helper
 def tally_impulse(flights, i, before, model, impulses):
-    """Add the impulse that has changed the velocity of a particle from `before`."""
+    """Add the impulse that changed the velocity of a particle from `before`."""
     if impulses is not None:
         change = flights[i].velocity[impulses.axis] - before
-        if change != 0.0:  # a particle of infinite mass keeps its velocity
+        if change != 0.0:  # the velocity of a particle of infinite mass does not change
             position = flights[i].position[impulses.axis] * impulses.per_length
             impulse = mass_of(i, model.masses, model.law) * change
             add_at(impulses.sums, row_of(i, impulses.row), position, impulse)
@@ -96,7 +96,7 @@ def add_momenta(flights, sign, model, impulses):
             add_at(impulses.sums, row_of(i, impulses.row), position, momentum)
 
 
-# Eight pairs at once: their distances, and the projection of a vector on their separations, in vector
+# Eight pairs at once: their distances, and projections of a vector on their separations, with vector
 # instructions.
 
 
@@ -104,7 +104,7 @@ _DOUBLE, _WORD = ir.DoubleType(), ir.IntType(64)
 
 
 def nearest(gap: Lanes, length: ir.Value) -> Lanes:
-    """Return differences along a periodic axis by the nearest image, as in `physics.periodic`."""
+    """Return coordinate differences for the nearest image along a periodic axis, as in `physics.periodic`."""
     side = gap.all(length)
     lower = (gap + side).where(gap + gap < gap.all(0.0) - side, gap)
     return (gap - side).where(gap + gap > side, lower)
@@ -112,11 +112,12 @@ def nearest(gap: Lanes, length: ir.Value) -> Lanes:
 
 @intrinsic
 def separate(typingctx, flights, i, first, listed, vector, space, separations):
-    """Compute distances and projections of particle i and eight listed particles.
+    """Compute distances and projections for particle i and eight listed particles.
 
-    The eight are listed from number `first` on, and i is at the time of its clock. separations[0] becomes the
-    distance r, by the nearest image in a periodic space, and separations[1] becomes r.v / |r|^d with a vector
-    v (d,) and r from the other particle to i; NaN at a distance of 0.
+    The eight particles are listed from index `first`, and particle i is at the time of its clock.
+    separations[0] becomes the distance r, by the nearest image in a periodic space. separations[1] becomes
+    r.v / |r|^d, with a vector v (d,) and r pointing from the other particle to i; it is NaN at a distance of
+    0.
     """
 
     def generate(context, builder, signature, arguments):
@@ -149,20 +150,21 @@ def separate(typingctx, flights, i, first, listed, vector, space, separations):
     return types.none(flights, index, index, listed, vector, space, separations), generate
 
 
-# Impulses by the distance of a pair of particles, which make the radial distribution function accurate.
+# Impulses, tallied by the distance of a pair of particles; they make the radial distribution function more
+# accurate.
 #
-# An impulse dp on a particle, at r from another particle, changes the relative momentum (p - p') / 2 of the
-# pair, and gives dp.r / (2 r^d) to all distances above r (docs/estimators.md). A collision does so for the
-# colliding pair, and for each of its particles with all others. The value is averaged over each shell. The
-# shell of the pair itself gets the part 1 - f, with f the fraction of its volume below r, and all higher
-# shells get the whole: 1 - f is added to the shell, f to the next one, and the mean over a shell is the sum
-# of all shells up to it.
+# An impulse dp on a particle, at a separation r from another particle, changes the relative momentum (p - p')
+# / 2 of the pair. It contributes dp.r / (2 r^d) to all distances above r (docs/estimators.md). A collision
+# contributes for the colliding pair, and for each of its particles with all other particles. The contribution
+# is averaged over each shell. Let f be the fraction of the volume of the pair's own shell that is below r.
+# This shell gets the fraction 1 - f, and all higher shells get the whole contribution. So 1 - f is added to
+# the shell and f to the next one; the mean over a shell is then the sum of all entries up to the shell.
 #
-# The others of a pair are found in an order that depends on the search, so whole numbers are summed.
+# The order in which the other pairs are found depends on the search, so integers are summed.
 
 
 MEETING, OTHERS = range(2)
-_SLACK = 1.0 + 1e-9  # extension of the search, so that rounding hides no pair
+_SLACK = 1.0 + 1e-9  # extension of the search, so that rounding does not hide a pair
 
 
 class PairImpulses(NamedTuple):
@@ -177,7 +179,7 @@ class PairImpulses(NamedTuple):
     per_length : number of shells in a unit of length
     per_volume : (shells,), volume of the first shell divided by the volume of each shell
     per_unit : see `sums`
-    share : fraction of the collisions at which the other pairs count
+    share : fraction of the collisions for which the other pairs count
     listed : workspace for the numbers of all particles
     separations : (2, 8), workspace for the results of `separate`
     """
@@ -205,7 +207,7 @@ def note_velocity(flights, i, pairs):
 def tally_pairs(particles, i, j, queue, boxes, model, tally, pairs):
     """Add the contribution of a collision of particles i and j to the pairs.
 
-    The velocity of i before the collision is the one stored by `note_velocity`.
+    The velocity of i before the collision was stored by `note_velocity`.
     """
     if pairs is not None:
         mass = mass_of(i, model.masses, model.law)
@@ -218,7 +220,7 @@ def tally_pairs(particles, i, j, queue, boxes, model, tally, pairs):
 
 @inner_helper
 def _add_at(row, distance, product, pairs):
-    """Add dp.r / r^d = `product` of a pair at a distance."""
+    """Add dp.r / r^d = `product` for a pair at a distance."""
     position = distance * pairs.per_length
     shell = uint64(position)
     low = float(shell)
@@ -249,9 +251,9 @@ def _add_contact(flights, i, j, mass, space, pairs):
 
 @inner_helper
 def _add_listed(flights, i, j, count, factor, space, pairs):
-    """Add the contribution of `factor` times the impulse to the pairs of i with listed particles.
+    """Add `factor` times the contribution of the impulse for pairs of i with listed particles.
 
-    Particle i itself is left out, and its collision partner j.
+    Particle i itself and its collision partner j are excluded.
     """
     for n in range(uint64(WIDTH)):
         pairs.listed[count + n] = i
@@ -265,7 +267,7 @@ def _add_listed(flights, i, j, count, factor, space, pairs):
 
 @inner_kernel
 def _add_others(flights, i, j, factor, queue, boxes, space, pairs):
-    """Add the contribution of `factor` times the impulse to the pairs of i with all others."""
+    """Add `factor` times the contribution of the impulse for pairs of i with all other particles."""
     i, j = uint64(i), uint64(j)
     if queue is None:
         count = uint64(len(flights))
@@ -286,7 +288,7 @@ def _grid(boxes, axis, lists):
 
 @inner_helper
 def _list_cell(cell, count, boxes, pairs, lists):
-    """List the particles of a cell after `count` others; return the new number."""
+    """List the particles of a cell after the first `count`; return the new number."""
     other = uint64(0)
     if lists is None:
         filled = uint64(boxes.filled[cell])
@@ -304,9 +306,9 @@ def _list_cell(cell, count, boxes, pairs, lists):
 
 @inner_helper
 def _reach(furthest, lists):
-    """Return the largest distance of the cell of a particle within a distance.
+    """Return the largest distance of the cell of a particle within a given distance.
 
-    A particle in a neighbour list has moved by at most a margin.
+    A particle in a neighbour list has moved by at most a margin from its cell.
     """
     if lists is None:
         return furthest * _SLACK
@@ -327,7 +329,7 @@ def _span(x, reach, count, per_length):
 
 @inner_helper
 def _gap_square(x, cell, span, count, per_length):
-    """Return the squared distance of x from a cell along an axis.
+    """Return the squared distance between x and a cell along an axis.
 
     It is 0 if all cells are within reach.
     """
@@ -339,7 +341,7 @@ def _gap_square(x, cell, span, count, per_length):
 
 @inner_helper
 def _wrap_cell(cell, count):
-    """Map a cell along a periodic axis into the container."""
+    """Wrap a cell number along a periodic axis into the container."""
     if cell < 0:
         return cell + count
     return cell - count if cell >= count else cell

@@ -1,18 +1,19 @@
-"""Jams: particles pressed together between supports.
+"""Jams: particles that are pressed together between supports.
 
-A jam is like a row that exactly fills the space between two walls. The space x that a force F leaves to a row
-with a kinetic energy E along it is 2 E/F. So the less energy it has, the more often its particles collide: at
-a rate that grows as E^(-1/2), or as E^(-3/2) where gravity presses the row straight, so that F grows as
-x^(-1/2). In the TC model these contacts conserve their energy; the rate grows without limit while moving
-particles next to the row keep it from being an island at rest.
+A jam resembles a row of particles that exactly fills the space between two walls. A force F compresses a row
+with the kinetic energy E along the row until the free length x is 2 E/F. So the collision rate grows as the
+energy decreases: as E^(-1/2), or as E^(-3/2) if gravity presses a row that is nearly straight, because F then
+grows as x^(-1/2). In the TC model these contacts conserve energy. The rate grows without limit if moving
+particles next to the row prevent it from becoming an island at rest.
 
-The particles of a jam are fixed. None of them has left its position, nor would it if gravity were tilted: the
-particles that it touches, and that stay, hold it (`keep_stable`). So a slow contact could not move it far
-either. A contact with a moving particle always dissipates, and
+Therefore the particles of a jam are fixed. Two conditions define a jam. No particle has left its position.
+Under a tilted gravity no particle would leave it either, because the touching particles that stay support it
+(`keep_stable`). So a slow contact could not move a particle far. A contact with a moving particle always
+dissipates. In addition, it
 
-- frees the particle of the jam, if it can give it more than a speed `ContactDuration.moving`;
-- frees the whole jam, as an island, if it can give it `_FAR` times as much;
-- adds the other particle to the jam, if the two meet so often that it is squeezed.
+- frees the particle of the jam, if it can give the particle a speed above `ContactDuration.moving`;
+- frees the whole jam, like an island, if it can give the particle `_FAR` times this speed;
+- adds the other particle to the jam, if the two collide so often that the other particle is squeezed.
 """
 
 from __future__ import annotations
@@ -31,16 +32,16 @@ from gaspart.kernels.physics.flight import acceleration_of, advance, advance_coo
 from gaspart.kernels.physics.periodic import nearest
 from gaspart.kernels.physics.running_sum import add
 
-# Search for the particles of a scene under gravity that have come to rest.
+# Search for particles of a scene under gravity that have come to rest.
 
 
-TOUCHES, MOVES, RESTS = range(3)  # rows of marks of `find_resting`
+TOUCHES, MOVES, RESTS = range(3)  # rows of marks in `find_resting`
 _PAUSE = 4.0  # longest time between contacts of a supported particle, in contact durations
 
 
 @inner_helper
 def _lies(flights, i, space, gravity):
-    """Return True if a particle is at rest on faces or interior walls, or fixed."""
+    """Return True if a particle is fixed, or at rest on faces or interior walls."""
     lies = True
     for k in range(len(space.lengths)):
         lies &= flights[i].velocity[k] == 0.0 and acceleration_of(flights, i, k, space, gravity) == 0.0
@@ -49,10 +50,11 @@ def _lies(flights, i, space, gravity):
 
 @kernel
 def find_resting(flights, before, time, most, model, marks):
-    """Mark (3, N) the particles that touch others, that move, and that rest.
+    """Mark (3, N) particles that touch others, particles that move, and particles at rest.
 
-    A particle touches if its contacts last. It moves if it is farther than `most` from its position `before`
-    (N, d), which becomes the present position. It rests if it does not move, and touches or lies on a wall.
+    A particle touches others if it has lasting contacts. A particle moves if it is farther than `most` from
+    its position in `before` (N, d), which is then updated. A particle is at rest if it does not move, and
+    either touches others or lies on a wall.
     """
     space, gravity, duration = model.space, model.gravity, model.law.duration
     for i in range(len(flights)):
@@ -71,7 +73,7 @@ def find_resting(flights, before, time, most, model, marks):
 
 @inner_kernel
 def stop(flights, i, time, model, tally):
-    """Advance a particle to `time` and stop it; its energy is counted as lost."""
+    """Advance a particle to `time` and stop it; its energy counts as dissipated."""
     advance(flights, i, time, model.space, model.gravity)
     square = 0.0
     for k in range(len(model.space.lengths)):
@@ -88,15 +90,15 @@ def stop_all(flights, time, model, tally):
         stop(flights, i, time, model, tally)
 
 
-# Islands: particles that lean on one another and are at rest, while others move elsewhere.
+# Islands: particles that support one another and are at rest, while particles elsewhere move.
 #
-# With a contact duration a settled pile has tiny elastic contacts for ever. An island has no events: gravity
-# does not act on it until another particle collides with one of its particles.
+# With a contact duration, a settled pile has tiny elastic contacts forever. An island has no events, because
+# gravity does not act on it until another particle collides with one of its particles.
 
 
 @inner_helper
 def root_of(parent, i):
-    """Return the root of a particle's tree, with paths shortened for the next search."""
+    """Return the root of the tree of a particle, and shorten paths for the next search."""
     while parent[i] != i:
         parent[i] = parent[parent[i]]
         i = parent[i]
@@ -115,9 +117,9 @@ def gap_between(flights, positions, i, j, space):
 
 @kernel
 def join(flights, order, positions, axis, reach, space, parent):
-    """Join particles with gaps of at most `reach` in trees with the parents (N,).
+    """Join particles with gaps of at most `reach` into trees; `parent` (N,) are the parents.
 
-    order : (M,), these particles, sorted by their coordinate along an axis that is not periodic
+    order : (M,), these particles, sorted by their coordinate along a nonperiodic axis
     """
     largest = 0.0
     for i in order:
@@ -136,12 +138,12 @@ def join(flights, order, positions, axis, reach, space, parent):
 
 @kernel
 def hold(flights, order, time, marks, parent, model, tally):
-    """Hold the particles of each tree whose particles all rest and some touch others.
+    """Fix the particles of each tree in which all particles rest and some touch others.
 
-    Returns whether there are any such trees.
+    Returns True if there are any such trees.
 
     order : particles
-    marks : (3, N), see `find_resting`; they become the marks of the trees
+    marks : (3, N), see `find_resting`; overwritten with marks of the trees
     """
     touches, rests = marks[TOUCHES], marks[RESTS]
     island, any_held = model.law.duration.island, False
@@ -161,7 +163,7 @@ def hold(flights, order, time, marks, parent, model, tally):
 
 @inner_kernel
 def wake_island(flights, number, time, boxes, model, gravity, law):
-    """Free the particles of an island: gravity acts on them again, and contacts move them."""
+    """Free the particles of an island, so that gravity and contacts act on them again."""
     if gravity is not None:
         for i in range(len(flights)):
             if law.duration.island[i] == number:
@@ -171,17 +173,17 @@ def wake_island(flights, number, time, boxes, model, gravity, law):
                 mark_resting(flights, i, model.space, gravity, boxes.resting)
 
 
-STAYS, HELD, PRESSED = range(3)  # marks (3, N): has not moved or is fixed; may be held; has many contacts
-_FAR = 8.0  # speed that frees a jam divided by the speed that frees a particle; heights: 64
+STAYS, HELD, PRESSED = range(3)  # marks (3, N): has not moved or is fixed; may be fixed; has many contacts
+_FAR = 8.0  # speed that frees a jam divided by the speed that frees a particle; in heights the ratio is 64
 _OFTEN = 2.0**-3 * SHORTEST  # longest time between contacts of a squeezed particle, in contact durations
 
 
 class Line(NamedTuple):
-    """Particles in a line along an axis that is not periodic.
+    """Particles sorted along a nonperiodic axis.
 
     Attributes
     ----------
-    order : (M,), their numbers, sorted by the coordinate along the axis
+    order : (M,), their numbers in the order of the coordinate along the axis
     positions : (N, d), positions
     axis : axis
     """
@@ -197,8 +199,8 @@ class Limits(NamedTuple):
     Attributes
     ----------
     pulls : (P, 3), accelerations
-    least : the part of an acceleration that remains must be smaller
-    reach : largest gap of particles that touch
+    least : upper limit of the part of an acceleration that is not supported
+    reach : largest gap between particles that count as touching
     support : workspace for the support of one particle
     """
 
@@ -224,7 +226,7 @@ def free(i, gravity, law):
 
 @inner_helper
 def free_if_moved(i, j, rr, rv, gravity, law):
-    """Free the particles of a jam among two particles, if their contact can move them.
+    """Free particles of a jam among two colliding particles, if their contact can move them.
 
     rr, rv : products of their separation and relative velocity
     """
@@ -272,7 +274,7 @@ def _pressed_particle(flights, i, j, law, duration):
 
 @inner_helper
 def join_jam(flights, i, j, model, tally, gravity, law):
-    """Add particle i to the jam of particle j after their collision; NONE is ignored."""
+    """Add particle i to the jam of particle j after their collision; NONE has no effect."""
     if gravity is not None:
         if law is not None:
             _join_jam(flights, i, j, model, tally, gravity, law, law.duration)
@@ -296,7 +298,7 @@ def _fix(i, number, gravity, law):
 
 @inner_helper
 def _add(support, x, y, z):
-    """Add a plane, given by its unit vector towards the particle; planes in excess are omitted."""
+    """Add a plane, given by its unit vector towards the particle; ignore excess planes."""
     n = support.number[0]
     if n < support.normal.shape[1]:
         support.normal[0, n, 0], support.normal[0, n, 1], support.normal[0, n, 2] = x, y, z
@@ -340,9 +342,9 @@ def _add_walls(flights, positions, i, space, limits, walls):
 
 @inner_kernel
 def _is_stable(flights, n, largest, line, limits, model, stays):
-    """Return True if the supports that stay leave little of every acceleration of a particle.
+    """Return True if the fixed supports leave little of every acceleration of a particle.
 
-    n : number of the particle in its line
+    n : index of the particle in the line
     largest : largest radius
     """
     order, positions, axis = line
@@ -366,9 +368,9 @@ def _is_stable(flights, n, largest, line, limits, model, stays):
 
 @kernel
 def keep_stable(flights, line, limits, model, marks):
-    """Unmark the particles of a line, marks[HELD], that nothing holds in their positions.
+    """Remove the mark HELD of particles in a line that are not supported in their positions.
 
-    Supports are the other held particles, fixed particles and walls. The search repeats until no mark
+    Supports are the other marked particles, fixed particles and walls. The search is repeated until no mark
     changes.
     """
     stays, held, largest, changed = marks[STAYS], marks[HELD], 0.0, True
@@ -385,7 +387,7 @@ def keep_stable(flights, line, limits, model, marks):
 
 @kernel
 def free_unstable(flights, time, marks, model):
-    """Free the particles of jams that are no longer held; return whether there are any."""
+    """Free the particles of jams that are no longer supported; return True if there are any."""
     any_free = False
     for i in range(len(flights)):
         if is_jammed(model.law.duration, i) and not marks[HELD, i]:
@@ -397,9 +399,9 @@ def free_unstable(flights, time, marks, model):
 
 @kernel
 def jam(flights, order, time, marks, parent, model, tally):
-    """Hold the particles (M,) of each tree with a particle that is pressed or already held.
+    """Fix the particles (M,) of each tree that has a pressed or already fixed particle.
 
-    Returns whether there are any new ones.
+    Returns True if there are any new ones.
     """
     pressed, duration, any_new = marks[PRESSED], model.law.duration, False
     for i in order:

@@ -1,14 +1,13 @@
-"""Loop of the event-driven engine: process the next event, then predict anew for its particles.
+"""Loop of the event-driven engine: process the next event, and predict events of its particles.
 
-No bit depends on how events are searched for:
+No bit of the result depends on the search for events:
 
-- the time of a pair's contact is always computed from the later of the two clocks, never from the present
-  time;
-- crossing into another box changes the searched boxes, never the flight;
-- crossing a periodic face is an event: the particle is advanced to the face and moved to the opposite one.
+- The contact time of a pair is always computed from the later of the two clocks, never from the present time.
+- Crossing into another box changes the boxes to be searched, but not the flight.
+- Crossing a periodic face is an event: the particle is advanced to the face and moved to the opposite face.
 
-Events are ordered by time; among simultaneous events faces come first, by particle, then pairs by the lower
-and the higher index.
+Events are ordered by time. Among simultaneous events, faces come first, in the order of particles, then pairs
+in the order of the lower and the higher index.
 """
 
 from math import inf
@@ -39,8 +38,8 @@ from gaspart.kernels.obstacles.face import meet_face
 from gaspart.kernels.obstacles.interior_wall import meet_wall
 from gaspart.kernels.obstacles.thermal import meet_edge, part_if_held
 
-# Why a run ended: the time, the number of events, the record, a collapse, a full neighbour list, the number
-# of crossings, more particles inside than there are numbers.
+# Reasons why a run ended: the time, the number of events, a full record, a collapse, a full neighbour list,
+# the number of crossings, or more particles than numbers.
 STOP, EVENTS, FULL, COLLAPSE, NO_ROOM, CROSSED, CROWDED = range(7)
 
 
@@ -48,7 +47,7 @@ STOP, EVENTS, FULL, COLLAPSE, NO_ROOM, CROSSED, CROWDED = range(7)
 def without_obstacles(model):
     """Return the model without obstacles.
 
-    Contact functions are then compiled once, not once per kind of obstacle.
+    Functions of contacts are then compiled once, not once per kind of obstacle.
     """
     return Model(model.space, model.masses, model.gravity, model.law, None, None, None, model.shear, None)
 
@@ -57,8 +56,8 @@ def without_obstacles(model):
 def meet_obstacle(particles, i, face, time, model, tally):
     """Process the hit of a particle at a face, a well's edge, or an interior wall.
 
-    Returns -1 - the number of the face or wall, and whether this is an event of the model. It is no such
-    event at a periodic face, or where the particle leaves a wall along which it has slid.
+    Returns -1 minus the number of the face or wall, and True if this is an event of the model. It is not an
+    event of the model at a periodic face, or if the particle leaves a wall along which it has slid.
     """
     bare = without_obstacles(model)
     before = speed_on_arrival(particles.flights, i, time, bare, model.gravity, tally.impulses)
@@ -69,7 +68,7 @@ def meet_obstacle(particles, i, face, time, model, tally):
 
 @inner_helper
 def _meet(particles, i, face, time, bare, model, tally):
-    """Process a hit like `meet_obstacle`, without the tally of the impulse."""
+    """Process a hit as in `meet_obstacle`, without the tally of the impulse."""
     if face >= WALLS:
         wall = meet_wall(particles.flights, i, face, time, bare, tally, model.walls)
         return -1 - wall, wall != NONE
@@ -90,9 +89,9 @@ def meet_particle(particles, i, j, time, queue, boxes, model, tally):
 
 @inner_helper
 def wake(particles, pair, queue, boxes, model, tally, event, law):
-    """Free the islands of two particles (2,) that have collided, unless a jam holds them.
+    """Free the islands of two particles (2,) that have collided, unless a jam fixes them.
 
-    event : time and number
+    event : time and number of the event
     """
     if law is not None:
         _wake(particles, pair, queue, boxes, model, tally, event, law.duration)
@@ -113,7 +112,7 @@ def _wake(particles, pair, queue, boxes, model, tally, event, duration):
 def leave_box(particles, i, face, time, boxes, space, tally, lists):
     """Move a particle into the next box, or renew its neighbour list.
 
-    Returns the step (3,) into the box, 0 if there was none.
+    Returns the step (3,) into the next box, 0 without a step.
     """
     if lists is not None:
         renew(particles.flights, i, time, lists, space, tally)
@@ -146,8 +145,9 @@ def empty_place(particles, i, boxes, faces):
 def process(particles, i, time, queue, boxes, model, tally):
     """Process the next event of a particle.
 
-    Returns its two particles, or one particle and -1 - a face, and whether it is an event of the model: not
-    the crossing of a box or a periodic face, nor an outdated contact.
+    Returns two values. The first are its two particles, or a particle and -1 minus the number of a face. The
+    second is True for an event of the model, and False for crossings of boxes or periodic faces and for
+    outdated contacts.
     """
     predictions = particles.predictions
     face = int64(predictions[i].face)
@@ -183,7 +183,7 @@ def process(particles, i, time, queue, boxes, model, tally):
 def process_first(particles, event, boxes, model, tally):
     """Process the earliest of all events, found by the search of all pairs.
 
-    event : time, particle, partner and face; the result is the result of `process`
+    event : time, particle, partner and face. The result has the form of the result of `process`
     """
     time, i, partner, face = event
     if partner < 0:
@@ -197,7 +197,7 @@ def process_first(particles, event, boxes, model, tally):
 
 @inner_helper
 def fetch_ahead(particles, queue, boxes, next_bucket, lists):
-    """Prefetch the data of the next events if the nearer caches do not hold all particles.
+    """Prefetch the next events' data if the inner processor caches do not hold all particles.
 
     Returns the next bucket to prefetch for.
     """
@@ -211,7 +211,7 @@ def fetch_ahead(particles, queue, boxes, next_bucket, lists):
 
 @kernel
 def run(particles, queue, boxes, model, tally, monitors, limits, all_pairs):
-    """Process events up to a time or a number.
+    """Process events up to a time or a number of events.
 
     Returns (reason, number of events, number of crossings and outdated contacts, time of the last event or
     crossing).

@@ -1,12 +1,13 @@
-"""Neighbour lists: the particles that a particle may touch before it has moved a margin.
+"""Neighbour lists: the particles that a particle may touch before it has moved by a margin.
 
-A particle's list holds all particles whose *centre*, the position at which their own list was made, is nearer
-to its own centre than the largest diameter and two margins. Once a particle has moved a margin from its
-centre, its list is renewed: an event of its own, which changes no flight. So in a dense gas a search tests a
-dozen particles, and the cells of the centres are read once in many collisions (Verlet, Phys. Rev. 159, 98
-(1967); for events Donev, Torquato & Stillinger, J. Comput. Phys. 202, 737 (2005)).
+The *centre* of a particle is its position when its list was made. Its list contains all particles whose
+centres are closer to its own centre than the largest diameter plus two margins. Once a particle has moved a
+margin away from its centre, its list is renewed. This is a separate event that changes no flight. So in a
+dense gas a search tests about a dozen particles, and the cells of the centres are read only once in many
+collisions (Verlet, Phys. Rev. 159, 98 (1967); for events Donev, Torquato & Stillinger, J. Comput. Phys. 202,
+737 (2005)).
 
-The lists follow from the centres alone, so a checkpoint need not hold the lists.
+The lists follow from the centres alone, so checkpoints need not contain them.
 """
 
 from math import inf, sqrt
@@ -22,17 +23,17 @@ from gaspart.kernels.memory import aligned_zeros
 from gaspart.kernels.model import BOX_FACES, CROSSINGS, NONE, PAIR_TESTS
 from gaspart.kernels.simd import WIDTH, lowest
 
-_FAR = 1e30  # coordinate of an empty position of a cell
-_STILL = 1e-280  # squared speeds below which a particle does not move
+_FAR = 1e30  # coordinate of an unused entry of a cell
+_STILL = 1e-280  # squared speed below which a particle counts as immobile
 
 LISTED = np.dtype([("centre", "f8", 3), ("cell", "u4"), ("slot", "u4")], align=True)
-"""Centre of a particle, at which its list was made, the cell of that point, and its position in the cell."""
+"""Centre of a particle, the cell of the centre, and the entry of the particle in this cell."""
 
 
 def page_dtype(dimension: int) -> np.dtype:
-    """Return the type of a page: WIDTH positions of a cell, in two cache lines.
+    """Return the data type of a page: WIDTH entries of a cell in two cache lines.
 
-    A page has the centres of the particles and their numbers.
+    A page contains the centres and the numbers of the particles.
     """
     return np.dtype(
         {
@@ -50,20 +51,20 @@ class NeighbourLists(NamedTuple):
     Attributes
     ----------
     listed : (N,), see `LISTED`
-    candidates : (N * room,), the lists; the first word of each row is its length, and the unused rest names
-        the particle itself
-    room : length of a row
+    candidates : (N * room,), the lists. The first word of a row is its length; unused words contain the
+        number of the particle itself
+    room : length of a row in words
     per_side, strides : (3,), number and index strides of the cells along each axis
     per_length : (3,), inverse widths of the cells
     neighbour, shift : neighbours of a cell along each axis, and their periodic images
     filled : (cells,), number of particles in each cell
     pages : (cells * per_cell,), see `page_dtype`
-    per_cell : number of pages of a cell
-    margin : distance that a particle may move
+    per_cell : number of pages per cell
+    margin : margin: distance that a particle may move before its list is renewed
     reach : distance within which centres are listed
-    clearance : (3,), along each axis, the distance of a centre from a face beyond which the particle cannot
-        touch it before its list is renewed
-    full : (2,), whether a list or a cell had no space
+    clearance : (3,), along each axis, distance between a centre and a face beyond which the particle cannot
+        reach the face before its list is renewed
+    full : (2,), True if a list or a cell had no space
     """
 
     listed: np.ndarray
@@ -89,7 +90,7 @@ def empty_neighbour_lists(cells, count, dimension, distances, room, per_cell):
     cells : `state.boxes.Boxes`
     distances : margin, reach, clearance (3,)
     room : length of a row; a list has fewer entries
-    per_cell : number of pages of a cell
+    per_cell : number of pages per cell
     """
     return NeighbourLists(
         listed=aligned_zeros((count,), LISTED),
@@ -109,7 +110,7 @@ def empty_neighbour_lists(cells, count, dimension, distances, room, per_cell):
 
 @inner_helper
 def write_slot(lists, cell, slot, i, centre):
-    """Write a particle and its centre (d,) to a position of a cell."""
+    """Write a particle and its centre (d,) to an entry of a cell."""
     page, lane = cell * uint64(lists.per_cell) + slot // uint64(WIDTH), slot % uint64(WIDTH)
     lists.pages[page].members[lane] = i
     for k in range(lists.pages[page].centres.shape[0]):
@@ -118,7 +119,7 @@ def write_slot(lists, cell, slot, i, centre):
 
 @inner_helper
 def cell_along(lists, axis, x):
-    """Return the coordinate of the cell of a point; outside, of the outermost cell."""
+    """Return the coordinate of the cell that contains a point, or of the outermost cell."""
     return min(max(int64(x * lists.per_length[axis]), int64(0)), lists.per_side[axis] - 1)
 
 
@@ -140,7 +141,7 @@ def enter_cell(lists, i):
 
 @inner_helper
 def leave_cell(lists, i):
-    """Remove a particle from its cell; the last particle there takes its position."""
+    """Remove a particle from its cell; the last particle of the cell moves to its entry."""
     cell, slot = uint64(lists.listed[i].cell), uint64(lists.listed[i].slot)
     last = uint64(lists.filled[cell]) - uint64(1)
     page = cell * uint64(lists.per_cell) + last // uint64(WIDTH)
@@ -165,7 +166,7 @@ def append(lists, i, entry):
 
 @inner_helper
 def clear(lists, i):
-    """Empty a list: all its entries name the particle itself, which no particle meets."""
+    """Empty a list: all its entries become the number of the particle itself, which are ignored."""
     row = i * lists.room
     lists.candidates[row] = 0
     for n in range(row + 1, row + lists.room):
@@ -189,11 +190,11 @@ def strike(lists, i, other):
 
 @inner_helper
 def list_matches(lists, i, page, matches, image, both):
-    """List particles whose centres are near the centre of a particle.
+    """List the particles whose centres are near the centre of a particle.
 
     page : first page
-    matches : a bit for each position of the pages, WIDTH bits per page
-    both : True to list the particle in their lists too
+    matches : one bit for each entry of the pages, WIDTH bits per page
+    both : True to also add the particle to their lists
     """
     while matches:
         slot = lowest(matches)
@@ -222,10 +223,9 @@ def list_cell(lists, i, point, cell, offset, image, both):
 
 @inner_helper
 def list_row(lists, i, point, first, offset, image, both):
-    """List near particles in three consecutive cells, which mostly have a page each.
+    """List near particles in three consecutive cells, which usually have one page each.
 
-    The results of all three cells are listed in one loop, since processors do not predict the ends of many
-    short loops.
+    All three cells are processed in one loop, because processors predict the ends of many short loops badly.
     """
     if lists.per_cell > 1:
         for cell in range(first, first + uint64(3)):
@@ -242,7 +242,7 @@ def list_row(lists, i, point, first, offset, image, both):
 def list_near(lists, i, lengths, both):
     """List the particles whose centres are near the centre of a particle.
 
-    both : True to list the particle in their lists too
+    both : True to also add the particle to their lists
     """
     number, centre, neighbour, shift = uint64(i), lists.listed[i].centre, lists.neighbour, lists.shift
     point = centre[0], centre[1], centre[2]
@@ -297,7 +297,7 @@ def renew(flights, i, time, lists, space, tally):
 
 @kernel
 def make_lists(lists, lengths):
-    """Make all lists from the centres; `full` is set if there was no space."""
+    """Make all lists from the centres; `full` is set if there was not enough space."""
     lists.full[:] = 0
     lists.filled[:] = 0
     for page in range(len(lists.pages)):
@@ -331,7 +331,7 @@ def search_list(particles, i, lists, space, tally):
 
 @inner_helper
 def next_renewal(flights, i, lists):
-    """Return the time at which a particle has moved a margin: (time, face code)."""
+    """Return the time at which a particle has moved by a margin: (time, face code)."""
     if lists is not None:
         flight, centre = flights[i], lists.listed[i].centre
         rr = rv = vv = 0.0
@@ -348,10 +348,10 @@ def next_renewal(flights, i, lists):
 
 @inner_helper
 def is_renewed_first(i, time, lists, space, faces):
-    """Return True if a particle's list is renewed before the particle can reach a face.
+    """Return True if a list is renewed before its particle can reach a face.
 
-    The renewal is at `time`, which must be finite; all faces are at rest and farther from its centre than a
-    margin.
+    The renewal is at `time`, which must be finite. All faces must be at rest and farther from the centre than
+    a margin.
     """
     if lists is None or faces is not None:
         return False

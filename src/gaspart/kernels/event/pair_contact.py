@@ -21,18 +21,19 @@ from gaspart.kernels.physics.flight import acceleration_of, advance
 from gaspart.kernels.physics.rng import normal_pair
 from gaspart.kernels.physics.running_sum import add
 
-# Contacts of two particles that gravity presses together, as in a stack at rest.
+# Contacts of two particles that gravity presses together, for example in a stack at rest.
 #
-# The lower particle rests on a floor, on a wall, or is fixed, so that the upper one falls relative to it and
-# would hit it infinitely often. Or both are in a row that others press: the slower they are, the more often
-# they meet, as their momentum times this rate is the force. With a contact duration their speed of separation
-# has a lower bound, so that gravity brings them together again after a small part of this duration. The added
-# energy, far below the energy of a fall through a diameter, is counted as a negative loss.
+# The lower particle may rest on a floor or a wall, or be fixed. Then the upper particle falls relative to it
+# and would hit it infinitely often. Or both particles are in a row that others press. The slower they are,
+# the more often they collide, because the force equals the collision rate times the momentum. With a contact
+# duration their separation speed has a lower bound, so that the time until gravity brings them together again
+# is at least a small fraction of this duration. The added energy is far below the energy of a fall through
+# one diameter, and counts as negative dissipation.
 
 
 @inner_helper
 def least_parting(flights, i, j, space, gravity, law):
-    """Return the minimum speed of separation of two touching particles; 0 if nothing presses them.
+    """Return the minimum separation speed of two touching particles; 0 if nothing presses them.
 
     Both particles have been advanced to the present time.
     """
@@ -62,7 +63,7 @@ def _pressed_parting(flights, i, j, space, gravity, duration):
 
 @inner_kernel
 def direction(flights, i, j, space):
-    """Return the unit vector (3,) from a particle to another one."""
+    """Return the unit vector (3,) from one particle to another."""
     x, y = gap_along(flights, i, j, 0, space), gap_along(flights, i, j, 1, space)
     z = gap_along(flights, i, j, 2, space)
     distance = sqrt(x * x + y * y + z * z)
@@ -71,7 +72,7 @@ def direction(flights, i, j, space):
 
 @inner_helper
 def part(flights, i, j, least, model, tally, law):
-    """Apply the minimum speed of separation to two particles that have collided."""
+    """Apply the minimum separation speed to two particles that have collided."""
     if law is not None:
         _part_pressed(flights, i, j, least, model.space, tally, law, law.duration)
 
@@ -94,9 +95,9 @@ def _part_pressed(flights, i, j, least, space, tally, law, duration):
 
 @inner_helper
 def release_pair(flights, i, j, model, tally, gravity, law):
-    """Release two particles after their collision, unless one rests below a fixed one.
+    """Release two particles after their collision, unless one rests below a fixed particle.
 
-    Gravity acts in full on released particles.
+    The full gravity acts on released particles.
     """
     if gravity is not None:
         _release_from(flights, i, j, model, tally, gravity, law)
@@ -112,9 +113,9 @@ def _release_from(flights, i, j, model, tally, gravity, law):
 
 @inner_helper
 def _rests_below(flights, i, j, space, tally, gravity, law):
-    """Put the first of two particles to rest in the wedge below a fixed second one.
+    """Put the first of two particles to rest in the wedge below a fixed second particle.
 
-    Returns whether it rests between its support and the second particle.
+    Returns True if it rests between its support and the second particle.
     """
     if law is not None:
         if law.inverse_mass[j] == 0.0:
@@ -190,7 +191,7 @@ def _kick(flights, i, width, key, number, space):
 
 @kernel
 def kick_all(flights, time, width, counter, model, injected_energy):
-    """Advance all particles to `time` and kick them without a change of the total momentum.
+    """Advance all particles to `time`, and kick them without changing the total momentum.
 
     width : width of the distribution of kicks for mass 1
     counter : words (2,) of the key, and number of the kick
@@ -220,7 +221,7 @@ def kick_all(flights, time, width, counter, model, injected_energy):
             add(injected_energy, 0, _energy(flights, i, mass, space))
 
 
-# Observers of events while they happen: the record of events, and the detection of a collapse.
+# Observers of events: the record of events, and the detection of a collapse.
 
 
 class Record(NamedTuple):
@@ -244,14 +245,14 @@ class Record(NamedTuple):
 
 
 class CollapseWatch(NamedTuple):
-    """Counts of contacts of each particle, which reveal a collapse.
+    """Numbers of contacts of each particle, which reveal a collapse.
 
     Attributes
     ----------
     since : (N,), time of the first counted contact
     contacts : (N,), number of contacts within `interval`
-    interval : length of time in which contacts are counted
-    most : maximum number of contacts in it
+    interval : length of the time interval in which contacts are counted
+    most : maximum number of contacts in the interval
     """
 
     since: np.ndarray
@@ -261,7 +262,7 @@ class CollapseWatch(NamedTuple):
 
 
 class Monitors(NamedTuple):
-    """Record of events and watch for a collapse; each may be None."""
+    """Record of events and detection of a collapse; each may be None."""
 
     record: Record | None
     collapse: CollapseWatch | None
@@ -313,9 +314,9 @@ def has_collapsed(collapse, i, time):
 
 @inner_helper
 def collapse_detected(i, j, time, faces, collapse):
-    """Return True if an event is one contact too many of its particles.
+    """Return True if an event exceeds the allowed number of contacts of its particles.
 
-    The event is a contact of i and j, or of i with an interior wall; hits of the container's `faces` do not
+    The event is a contact of i and j, or of i with an interior wall. Hits of the container's `faces` do not
     count.
     """
     if collapse is None:

@@ -1,6 +1,6 @@
-"""Prediction of a particle's next events: contact, face, renewal of its neighbour list.
+"""Prediction of the next events of a particle: contact, face, and renewal of its neighbour list.
 
-Events are predicted anew after each event of the particle, and stored in the queue.
+After each event of a particle its events are predicted again and stored in the queue.
 """
 
 from __future__ import annotations
@@ -21,21 +21,20 @@ from gaspart.kernels.obstacles.moving import next_moving, next_piston
 from gaspart.kernels.physics.flight import mark_resting, time_of_contact
 from gaspart.kernels.prefetch import fetch
 
-# Search for particles that are too large for the boxes.
+# Search for particles that are too large for the boxes (oversized particles).
 #
-# A small particle tests the oversized ones that are near its box; an oversized one tests the particles in all
-# boxes that are near its own, and all other oversized ones. For an oversized particle, the numbers of two
-# boxes alone determine whether they are near, so the result is the same from either box; no contact can occur
-# between particles whose boxes are not near. A particle that passes into another box searches the boxes that
-# have become near.
+# A small particle tests the oversized particles near its box. An oversized particle tests the particles in
+# all boxes near its own box, and all other oversized particles. Two boxes are near if their numbers satisfy a
+# symmetric criterion, so both particles of a pair find the same result. Particles whose boxes are not near
+# cannot touch. A particle that passes into another box searches the boxes that have become near.
 
 
-_SLACK = 1e-9  # relative extension of neighbourhoods, so that rounding hides no contact
+_SLACK = 1e-9  # relative extension of neighbourhoods, so that rounding does not hide a contact
 
 
 @inner_helper
 def reach_square(flights, i, oversized):
-    """Return the squared contact distance of an oversized particle and the largest small one."""
+    """Return the squared contact distance of an oversized particle and the largest small particle."""
     reach = (flights[i].radius + oversized.largest_radius) * (1.0 + _SLACK)
     return reach * reach
 
@@ -49,7 +48,7 @@ def gap_square(steps, width):
 
 @inner_helper
 def near(x, y, z, widths, square):
-    """Return True if boxes these steps apart hold points nearer than the root of `square`."""
+    """Return True if boxes separated by these steps contain points closer than the root of `square`."""
     return gap_square(x, widths[0]) + gap_square(y, widths[1]) + gap_square(z, widths[2]) < square
 
 
@@ -73,7 +72,7 @@ def images_along(axis, space):
 
 @inner_kernel
 def test_pair(particles, i, other, image, space, tally, gravity):
-    """Predict the contact with an image of another particle if it is the earliest so far.
+    """Predict the contact with an image of another particle, if it is the earliest so far.
 
     image : (3,), image of the container
     """
@@ -90,7 +89,7 @@ def test_pair(particles, i, other, image, space, tally, gravity):
 
 @inner_kernel
 def find_oversized(particles, i, boxes, space, tally, crossed, gravity, oversized):
-    """Search for an earlier contact of a small particle with oversized ones near its box.
+    """Search for an earlier contact of a small particle with oversized particles near its box.
 
     crossed : (3,), step into that box, or 0; after a step only particles are searched that were not near
         before
@@ -115,7 +114,7 @@ def find_oversized(particles, i, boxes, space, tally, crossed, gravity, oversize
 def span(here, n, width, square, periodic):
     """Return the first and last coordinate of boxes along an axis that may be near.
 
-    On a periodic axis they continue beyond the container.
+    On a periodic axis the coordinates continue beyond the container.
     """
     steps = int(sqrt(square) / width) + 2
     if periodic:
@@ -125,15 +124,16 @@ def span(here, n, width, square, periodic):
 
 @inner_helper
 def image_of(coordinate, n):
-    """Return the image of the container in which a box coordinate lies."""
+    """Return the image of the container that contains a box coordinate."""
     return 1 if coordinate >= n else (-1 if coordinate < 0 else 0)
 
 
 @inner_kernel
 def find_around(particles, i, boxes, space, tally, crossed, gravity, oversized):
-    """Search for an earlier contact of an oversized particle with particles in boxes near its own.
+    """Search for an earlier contact of an oversized particle with particles in near boxes.
 
-    crossed : (3,), step into that box, or 0; after a step only boxes are searched that were not near before
+    crossed : (3,), step into the present box, or 0; after a step only boxes that were not near before are
+        searched
     """
     here, n, widths = particles.predictions[i].box, boxes.per_side, boxes.widths
     square = reach_square(particles.flights, i, oversized)
@@ -161,7 +161,7 @@ def find_around(particles, i, boxes, space, tally, crossed, gravity, oversized):
 
 @inner_kernel
 def find_other_oversized(particles, i, space, tally, gravity, oversized):
-    """Search for an earlier contact of an oversized particle with the other oversized ones."""
+    """Search for an earlier contact of an oversized particle with other oversized particles."""
     images_x, images_y, images_z = images_along(0, space), images_along(1, space), images_along(2, space)
     for m in range(len(oversized.particles)):
         other = oversized.particles[m]
@@ -175,9 +175,9 @@ def find_other_oversized(particles, i, space, tally, gravity, oversized):
 
 @inner_helper
 def search_oversized(particles, i, boxes, space, tally, crossed, gravity, oversized):
-    """Search the contacts with oversized particles, which `find_contact` does not find.
+    """Search for contacts with oversized particles, which `find_contact` does not find.
 
-    crossed : (3,), step into the box that the particle has just made, or 0
+    crossed : (3,), step into the present box, or 0
     """
     if oversized is not None:
         if particles.flights[i].radius <= oversized.largest_radius:
@@ -187,14 +187,14 @@ def search_oversized(particles, i, boxes, space, tally, crossed, gravity, oversi
             find_other_oversized(particles, i, space, tally, gravity, oversized)
 
 
-# No box was crossed: all is predicted anew. As int64, since numba compiles a function again for each type of
-# integer, and for a constant as well.
+# No box was crossed, so all events are predicted. int64, because numba compiles a function again for each
+# type of integer, and also for a constant.
 NOT_CROSSED = (int64(0), int64(0), int64(0))
 
 
 @inner_helper
 def without_contacts(model):
-    """Return the model without the parts that matter only at contacts.
+    """Return the model without the parts that are used only at contacts.
 
     Predictions do not depend on these parts.
     """
@@ -215,7 +215,7 @@ def predict_contact(particles, i, boxes, model, tally, crossed, lists):
 
 @inner_helper
 def predict_face(particles, i, boxes, model, now):
-    """Predict the next hit of a face or interior wall, or the list's renewal."""
+    """Predict the next hit of a face or interior wall, or the renewal of the list."""
     predictions, space, gravity = particles.predictions, model.space, model.gravity
     time, face = next_renewal(particles.flights, i, boxes.lists)
     if not is_renewed_first(i, time, boxes.lists, space, model.faces):
@@ -229,12 +229,12 @@ def predict_face(particles, i, boxes, model, now):
 
 @inner_helper
 def predict_meeting(particles, i, boxes, model, tally, number, crossed):
-    """Predict the next contact of a particle anew.
+    """Predict the next contact of a particle.
 
-    If the particle has just crossed into the next box, only the new neighbours of this box are searched.
+    If the particle has just crossed into the next box, only new neighbours of this box are searched.
 
     number : number of the present event
-    crossed : (3,), step into the box, or 0
+    crossed : (3,), step into the present box, or 0
     """
     predictions = particles.predictions
     if crossed[0] == 0 and crossed[1] == 0 and crossed[2] == 0:
@@ -265,9 +265,9 @@ def sort_all(predictions, boxes, faces, lists):
 
 @kernel
 def begin(particles, queue, boxes, model, tally, now, anew):
-    """Make the lists of the boxes and the queue of all predictions.
+    """Make the lists of the boxes, and the queue of all predictions.
 
-    Neighbour lists must have been made. The predictions come from a checkpoint or are made `anew`.
+    Neighbour lists must already exist. If `anew` is False, the predictions come from a checkpoint.
     """
     sort_all(particles.predictions, boxes, model.faces, boxes.lists)
     for i in range(len(particles.flights)):
@@ -284,7 +284,7 @@ def predict_after(particles, pair, queue, boxes, model, tally, event, crossed):
     """Predict the next events of the particles of an event.
 
     pair : (2,), the particles; the second may be NONE
-    event : time, number, and whether it changed flights
+    event : time, number, and True if the event changed flights
     """
     predictions = particles.predictions
     time, number, changes = event
@@ -310,7 +310,7 @@ def predict_after(particles, pair, queue, boxes, model, tally, event, crossed):
 
 @inner_kernel
 def predict_faces(particles, time, queue, boxes, model, piston):
-    """Predict face hits anew for particles whose next face was or may be the piston."""
+    """Predict face hits again for particles whose next face was or may be the piston."""
     predictions = particles.predictions
     for i in range(len(predictions)):
         was = predictions[i].face == piston.face
@@ -321,7 +321,7 @@ def predict_faces(particles, time, queue, boxes, model, piston):
 
 @inner_kernel
 def predict_walls(particles, time, queue, boxes, model, moving):
-    """Predict the hits anew for particles whose next wall was or may be the moving one."""
+    """Predict wall hits again for particles whose next wall was or may be the moving wall."""
     predictions = particles.predictions
     for i in range(len(predictions)):
         was = predictions[i].face == WALLS
@@ -332,9 +332,9 @@ def predict_walls(particles, time, queue, boxes, model, moving):
 
 @inner_helper
 def predict_after_piston(particles, partner, time, queue, boxes, model, faces, walls):
-    """Predict other particles' hits anew after a hit that changed a piston or moving wall.
+    """Predict hits of other particles again after a hit that changed a piston or moving wall.
 
-    partner : -1 - number of the face or wall that was hit
+    partner : -1 minus the number of the face or wall that was hit
     """
     if faces is not None:
         _predict_after_piston(particles, partner, time, queue, boxes, model, faces.piston)

@@ -1,10 +1,10 @@
-"""Prefetch of the data that the next events will read, while the present event is processed.
+"""Prefetch of the data of the next events, while the present event is processed.
 
-Colliding particles lie anywhere in memory. If they are too many for the processor's own cache, an event waits
-some ten times for data, longer than it computes. But the queue holds the next events: some buckets ahead, a
-particle's predictions are fetched; fewer buckets ahead, the lists of the boxes around it, then the particles
-in them, and the same for its partner. The prefetch changes no data; data that were fetched for an event that
-does not occur are not used.
+Colliding particles are at arbitrary positions in memory. If all particles together exceed the processor's
+private cache, an event waits for data about ten times. The waiting takes longer than the computation. But the
+queue contains the next events. Some buckets ahead, the predictions of a particle are fetched. Fewer buckets
+ahead, the lists of the boxes around it are fetched, then the particles in these boxes, and the same for its
+partner. The prefetch changes no data. Data fetched for an event that does not occur are not used.
 """
 
 from numpy import int64, uint32, uint64
@@ -16,31 +16,31 @@ from gaspart.kernels.event.queue import BUCKET
 from gaspart.kernels.model import BOX_FACES, WELL_EDGES
 from gaspart.kernels.prefetch import TOGETHER, fetch, fetch_numbered, fetch_two
 
-CACHED = 1 << 15  # particles for which the nearer caches suffice, without neighbour lists
-CACHED_LISTS = 3 << 12  # the same with neighbour lists
-_STRIDE = 3  # buckets from one stage to the next, about one event each
-_MISSED = 15  # buckets that are fetched later if the queue has leapt over them
-_BOTH = (int64(0), int64(0), int64(0))  # side of each axis: both
-_FETCHED = 2  # positions of a box whose particles are fetched: few boxes hold more
+CACHED = 1 << 15  # maximum number of particles for which the private caches suffice, without neighbour lists
+CACHED_LISTS = 3 << 12  # the same number with neighbour lists
+_STRIDE = 3  # number of buckets between stages, about one event each
+_MISSED = 15  # number of buckets that are fetched later if the queue has skipped them
+_BOTH = (int64(0), int64(0), int64(0))  # side value of an axis on which both sides are fetched
+_FETCHED = 2  # number of entries of a box whose particles are fetched; few boxes have more particles
 
 
 @inner_helper
 def steps(side, is_one):
-    """Return first step and end (0..3) of the boxes to search along an axis.
+    """Return the first step and the end (0..3) of the boxes to search along an axis.
 
-    These are all boxes, or the boxes on one side, or the only box that exists.
+    These are all boxes, the boxes on one side, or the only existing box.
     """
     return (uint64(1 + side), uint64(2 + side)) if side or is_one else (uint64(0), uint64(3))
 
 
 @inner_helper
 def fetch_about(flights, boxes, at, side, members):
-    """Fetch the lists of the boxes around a box, or with `members` the particles in them.
+    """Fetch the lists of the boxes around a box, or with `members` their particles.
 
-    The particles are fetched once the lists are near.
+    The particles are fetched after the lists have arrived.
 
     at : (3,), coordinates of the box
-    side : (3,), -1 or 1 for an axis along which only boxes on that side are fetched, otherwise 0
+    side : (3,), -1 or 1 for an axis along which only boxes on this side are fetched, otherwise 0
     """
     neighbour = boxes.neighbour
     last_particle = uint32(len(flights) - 1)
@@ -70,17 +70,17 @@ def fetch_about(flights, boxes, at, side, members):
 
 @inner_helper
 def crossing_of(face):
-    """Return the step (3,) into the next box for the code of a box's face."""
+    """Return the step (3,) into the next box for the face code of a box."""
     axis, step = (face - BOX_FACES) // 2, 1 if face % 2 else -1
     return step if axis == 0 else 0, step if axis == 1 else 0, step if axis == 2 else 0
 
 
 @inner_helper
 def next_search(predictions, i):
-    """Return the box (3,) and the side (3,) of a particle's next search.
+    """Return the box (3,) and the side (3,) of the next search of a particle.
 
-    The search is around this box. The side is not 0 for the axis along which the particle crosses into the
-    next box: only boxes on that side are searched.
+    The search is around this box. The side is nonzero for the axis along which the particle crosses into the
+    next box; only boxes on that side are searched.
     """
     at, face = predictions[i].box, int64(predictions[i].face)
     side = _BOTH
@@ -93,8 +93,8 @@ def next_search(predictions, i):
 def fetch_predictions(predictions, queue, bucket):
     """Fetch the predictions of particles in three buckets.
 
-    They are the third particle in a bucket, the second in a later one, and the first in one later still: each
-    is found by the predictions of the particle before it.
+    They are the third particle of a bucket, the second of a later bucket, and the first of a still later one.
+    Each is found from the predictions of the preceding particle.
     """
     head, mask = queue.head, len(queue.head) - 2
     first = head[(bucket + 2 * _STRIDE) & mask]
@@ -130,10 +130,10 @@ def fetch_list(flights, lists, i):
 
 @inner_helper
 def fetch_renewal(flights, lists, i, time):
-    """Fetch the data of the renewal of a particle's list at a time.
+    """Fetch the data for the renewal of a particle's list at a time.
 
-    These are the lists of the particles in it, and the cells around the position of the particle at that
-    time.
+    These are the lists of the particles in the list, and the cells around the position of the particle at
+    that time.
     """
     row = i * lists.room
     for n in range(row + 1, row + 1 + int64(lists.candidates[row])):
@@ -160,7 +160,7 @@ def prefetch_lists(particles, queue, lists, next_bucket):
     now = queue.cursor[BUCKET]
     for bucket in range(max(next_bucket, now - _MISSED), now + 1):
         fetch_predictions(predictions, queue, bucket + 3 * _STRIDE)
-        for stage in range(2):  # the lists of a particle and its partner, those in them
+        for stage in range(2):  # the lists of a particle and of its partner, and the particles in them
             i = int64(head[(bucket + (2 - stage) * _STRIDE) & mask])
             while i >= 0:
                 partner = int64(predictions[i].partner)
@@ -182,16 +182,16 @@ def prefetch_lists(particles, queue, lists, next_bucket):
 
 @inner_helper
 def prefetch(particles, queue, boxes, next_bucket):
-    """Fetch the data of the events some buckets after the current one; return the next bucket.
+    """Fetch the data of events some buckets ahead; return the next bucket.
 
-    next_bucket : first bucket for which no data were fetched yet
+    next_bucket : first bucket whose data have not been fetched yet
     """
     flights, predictions = particles.flights, particles.predictions
     head, mask = queue.head, len(queue.head) - 2
     now = queue.cursor[BUCKET]
     for bucket in range(max(next_bucket, now - _MISSED), now + 1):
         fetch_predictions(predictions, queue, bucket + 4 * _STRIDE)
-        for stage in range(4):  # the particle's boxes, those in them, and the same for its partner
+        for stage in range(4):  # boxes around it, the particles in them, the same for its partner
             i = int64(head[(bucket + (3 - (stage + 1) // 2) * _STRIDE) & mask])
             while i >= 0:
                 partner = predictions[i].partner

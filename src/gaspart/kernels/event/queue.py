@@ -1,14 +1,13 @@
 """Event queue: one next event per particle, in a calendar of short unsorted buckets.
 
-A bucket spans about the mean time between events, so finding the soonest event means looking at one or two
-particles, whatever their number. Events beyond the calendar's horizon wait in an overflow list. The order is
-strict and does not depend on the buckets: by time, then by the tie key (`tie`).
+A bucket spans about the mean time between events. So finding the earliest event requires a look at one or two
+particles, for any total number. Events beyond the horizon of the calendar wait in an overflow list. The order
+of events is strict and does not depend on the buckets: by time, then by the tie key (`tie`).
 
-Many events may be simultaneous, as on a lattice whose planes are edges of boxes, or close to each other
-compared with the mean time. If the current bucket is long, it is sorted: its list begins with particles in
-any order, at most MOST_UNSORTED of them, and goes on with sorted runs, each more than twice as long as the
-one before it. So k events of one bucket cost of the order of k log(k)^2 comparisons at most, and k log(k) if
-no new ones come.
+Many events may be simultaneous, or very close together, for example for a lattice whose planes are faces of
+boxes. If the current bucket is long, it is sorted. Its list begins with at most MOST_UNSORTED particles in
+any order, followed by sorted runs. Each run is more than twice as long as the preceding one. So k events of a
+bucket need at most of the order of k log(k)^2 comparisons, and k log(k) if no new events are added.
 """
 
 from typing import NamedTuple
@@ -17,9 +16,9 @@ import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 
-BUCKET, FILLED, RUNS, EVENT_COUNT = range(4)  # entries of Queue.cursor
+BUCKET, FILLED, RUNS, EVENT_COUNT = range(4)  # indices of Queue.cursor
 MOST_UNSORTED = 32
-"""Largest number of particles of a bucket that are searched one by one."""
+"""Maximum number of unsorted particles in a bucket."""
 MOST_RUNS = 32
 FIRST, LENGTH = range(2)  # rows of Queue.runs
 
@@ -33,8 +32,8 @@ class Queue(NamedTuple):
     rate : (1,), buckets per unit of time
     cursor : (4,), current bucket, number of particles in buckets other than the overflow, number of sorted
         runs in the current bucket, and number of processed events
-    runs : (2, MOST_RUNS), first particle of each run, and its length when it was made, from the last run in
-        the list to the first
+    runs : (2, MOST_RUNS), first particle of each run, and the length of the run when it was made; the last
+        run of the list comes first
     """
 
     head: np.ndarray
@@ -73,9 +72,10 @@ def is_outdated(predictions, i):
 def tie(predictions, i):
     """Return the key that orders simultaneous events.
 
-    Faces come first, by particle, then pairs by lower and higher index. No two predictions have the same key,
-    though both particles of a pair may predict their contact. If one of these is outdated, their order
-    decides how much is searched, and the order in a bucket must not decide that.
+    Faces come first, in the order of particles, then pairs in the order of the lower and the higher index. No
+    two predictions have the same key, although both particles of a pair may predict their contact. If one of
+    the two is outdated, their order determines how much is searched. It must not depend on the order in a
+    bucket.
     """
     if predictions[i].face_time <= predictions[i].contact_time:
         return i - len(predictions)
@@ -85,9 +85,9 @@ def tie(predictions, i):
 
 @inner_helper
 def bucket_of(queue, predictions, i):
-    """Return the bucket of a particle's time.
+    """Return the bucket for the time of a particle's next event.
 
-    It is the current bucket at the earliest, and the overflow beyond the horizon.
+    It is at least the current bucket, and the overflow bucket beyond the horizon.
     """
     buckets = len(queue.head) - 1
     current = queue.cursor[BUCKET]
@@ -100,7 +100,7 @@ def bucket_of(queue, predictions, i):
 
 @inner_helper
 def _link(queue, predictions, i):
-    """Insert a particle into the bucket of its time."""
+    """Insert a particle into the bucket for its time."""
     bucket = bucket_of(queue, predictions, i)
     queue.cursor[FILLED] += bucket < len(queue.head) - 1
     first = np.int64(queue.head[bucket])
@@ -115,8 +115,8 @@ def _link(queue, predictions, i):
 def _unlink(queue, predictions, i):
     """Remove a particle from its bucket.
 
-    Without a neighbour its own entry is written instead, which is no longer used: the processor then has no
-    branch to predict.
+    If the particle has no neighbour, its own unused entry is written instead, so that there is no branch for
+    the processor to predict.
     """
     bucket = np.int64(predictions[i].bucket)
     after, before = np.int64(predictions[i].after), np.int64(predictions[i].before)
@@ -155,7 +155,7 @@ def reschedule(queue, predictions, i):
 
 @inner_kernel
 def fill(queue, predictions, now):
-    """Sort all particles into buckets of the mean time between their events."""
+    """Sort all particles into buckets that span the mean time between events."""
     queue.head[:] = -1
     total = 0.0
     finite = 0
@@ -164,7 +164,7 @@ def fill(queue, predictions, now):
             total += max(time_of(predictions, i) - now, 0.0)
             finite += 1
     queue.rate[0] = finite * (finite / total) if total > 0.0 else 1.0
-    if not queue.rate[0] * abs(now) < 2.0**52:  # times too short to number: one bucket for all
+    if not queue.rate[0] * abs(now) < 2.0**52:  # times too short to number: a single bucket for all
         queue.rate[0] = 0.0
     queue.cursor[BUCKET] = int(max(now, 0.0) * queue.rate[0])
     queue.cursor[FILLED] = queue.cursor[RUNS] = 0
@@ -204,7 +204,7 @@ def _leap(queue, predictions):
 
 @inner_helper
 def _is_before(predictions, i, j):
-    """Return True if the event of particle i comes before the event of particle j."""
+    """Return True if the event of particle i precedes the event of particle j."""
     time, other = time_of(predictions, i), time_of(predictions, j)
     return time < other or (time == other and tie(predictions, i) < tie(predictions, j))
 
@@ -272,7 +272,7 @@ def _sort(predictions, first, count):
 def _add_run(queue, predictions, count):
     """Sort the first `count` particles of the current bucket into a run.
 
-    The runs after them that are not more than twice as long are merged into it.
+    Following runs that are at most twice as long are merged into it.
     """
     bucket = queue.cursor[BUCKET] & (len(queue.head) - 2)
     runs, run, end = queue.cursor[RUNS], np.int64(-1), np.int64(-1)
@@ -301,7 +301,7 @@ def _add_run(queue, predictions, count):
 
 @inner_kernel
 def _soonest_of_many(queue, predictions):
-    """Return the particle of a long current bucket whose event comes first."""
+    """Return the particle with the earliest event in a long current bucket."""
     runs, count = queue.cursor[RUNS], 0
     i = np.int64(queue.head[queue.cursor[BUCKET] & (len(queue.head) - 2)])
     end = queue.runs[FIRST, runs - 1] if runs > 0 else np.int64(-1)
@@ -324,7 +324,7 @@ def _soonest_of_many(queue, predictions):
 
 @inner_helper
 def soonest(queue, predictions):
-    """Return the particle whose event comes first, or -1 if there are no more events."""
+    """Return the particle with the earliest event, or -1 if there are no more events."""
     buckets = len(queue.head) - 1
     while True:
         if queue.cursor[FILLED] == 0 and not _leap(queue, predictions):

@@ -1,8 +1,8 @@
 """Search across sheared faces, in all boxes of the opposite row.
 
-Boxes have no neighbours across sheared faces: rows slide past one another, so that any box of one comes to
-any of the other. In a container of equal sides a row holds so few of the particles that on average this is a
-few boxes for a search.
+Boxes have no fixed neighbours across sheared faces: rows slide past each other, so any box of one row passes
+any box of the other. In a container with equal sides a row contains so few of the particles that this amounts
+to a few boxes per search on average.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def _search_row(particles, i, row, image, boxes, space, tally, shear):
 @inner_kernel
 def _search_sheared(particles, i, boxes, space, tally, crossed, shear):
     at, last = particles.predictions[i].box[GRADIENT], boxes.per_side[GRADIENT] - 1
-    if crossed[FLOW] != 0:  # the whole row was searched when the particle came into it
+    if crossed[FLOW] != 0:  # the whole row was searched when the particle entered its row
         return
     if at == last:
         _search_row(particles, i, 0, 1, boxes, space, tally, shear)
@@ -70,7 +70,7 @@ def _search_sheared(particles, i, boxes, space, tally, crossed, shear):
 def search_sheared(particles, i, boxes, space, tally, crossed, shear):
     """Predict the contact with a particle across a sheared face, if it is the earliest.
 
-    The arguments are explained in `boxes.find_contact`.
+    `boxes.find_contact` explains the arguments.
     """
     if shear is not None:
         _search_sheared(particles, i, boxes, space, tally, crossed, shear)
@@ -88,15 +88,14 @@ def follow(particles, i, axis, boxes, shear):
             )  # fmt: skip
 
 
-# Contacts across sheared faces: the second particle takes part as its image, and is then moved back.
+# Contacts across sheared faces: the second particle is replaced by its image, and then moved back.
 
 
 @inner_helper
 def unfold(flights, i, j, time, space, shear):
     """Move the second particle of a contact across a sheared face to its image.
 
-    The image is the one next to the first particle. Returns whether it is above (1), below (-1), or neither
-    (0).
+    It is the image next to the first particle. Returns 1 if the image is above, -1 if below, and 0 otherwise.
     """
     if shear is None:
         return 0
@@ -127,9 +126,9 @@ def _unfold(flights, i, j, time, space, shear):
 
 @inner_helper
 def fold(flights, j, image, model, tally, shear):
-    """Move the second particle back, and add the energy that the faces take.
+    """Move the second particle back, and add the energy that the faces receive.
 
-    The change of its velocity is the same as for its image, but the change of its energy is not.
+    The change of its velocity is the same as for its image, but the change of its energy differs.
     """
     if shear is not None:
         _fold(flights, j, image, model, tally, shear)

@@ -1,8 +1,8 @@
-"""Eight pairs at once: the times of their contacts, in vector instructions.
+"""Eight pairs at once: contact times with vector instructions.
 
-A compiler does not find this by itself: eight rows, each a vector of eight numbers, are transposed into
-vectors of one number of eight particles, and the times are computed from these, in the same arithmetic and
-order as in `flight.time_of_contact`, to the same bits.
+Compilers do not find this vectorization. Eight rows, each a vector of eight numbers of one particle, are
+transposed into vectors of one number of eight particles. The times are computed from these, with the same
+arithmetic and order as in `flight.time_of_contact`, so the bits are the same.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from numba.extending import intrinsic
 from gaspart.kernels.model import IMAGE_BITS, NUMBER_BITS
 from gaspart.kernels.simd import WIDTH, Lanes, fields, mask_of
 
-PLACES = 4  # particles of a box that are listed at once
+PLACES = 4  # number of particles of a box that are listed at once
 _DOUBLE, _INT, _WORD = ir.DoubleType(), ir.IntType(32), ir.IntType(64)
-_STAGES = (  # stages of a transposition: pairs of rows, shuffled within their quarters, or by quarters
+_STAGES = (  # stages of a transposition: pairs of rows, shuffled within quarters, or by quarters
     (1, [0, 8, 2, 10, 4, 12, 6, 14], [1, 9, 3, 11, 5, 13, 7, 15]),
     (2, [0, 1, 4, 5, 8, 9, 12, 13], [2, 3, 6, 7, 10, 11, 14, 15]),
     (4, [0, 1, 4, 5, 8, 9, 12, 13], [2, 3, 6, 7, 10, 11, 14, 15]),
@@ -53,17 +53,17 @@ def load_row(builder: ir.IRBuilder, data: ir.Value, index: ir.Value) -> list[Lan
 
 
 def advance_flight(x: Lanes, v: Lanes, pull: Lanes | None, late: Lanes) -> tuple[Lanes, Lanes]:
-    """Return a coordinate and its velocity some time later, as in `flight.encounter`."""
+    """Return a coordinate and its velocity after some time, as in `flight.encounter`."""
     if not pull:
         return x + v * late, v
     return x + (v + pull * 0.5 * late) * late, v + pull * late
 
 
 def bring_to_start(particle: list[Lanes], clocks: Lanes, pull: list) -> tuple[Lanes, list[tuple]]:
-    """Return the later of the clocks of one particle and eight others, and its flight then.
+    """Return the later clock of a particle and each of eight others, and its flight then.
 
     The flight consists of coordinates and velocities, under an acceleration `pull` (d,). If no other clock is
-    later than its own, as always just after its event, these are known already.
+    later than its own, these values are already known; this is the case just after its event.
     """
     builder, d = clocks.builder, len(pull)
     clock = particle[2 * d]
@@ -88,10 +88,10 @@ def contact_times(
 ) -> Lanes:
     """Return the contact times of one particle and eight others in images (d,) of a container.
 
-    This is `flight.time_of_contact` in columns of rows. All particles fall alike under an acceleration `pull`
-    (d,), or not at all without it.
+    This is `flight.time_of_contact` for columns of rows. All particles fall with the same acceleration `pull`
+    (d,), or do not fall without it.
 
-    lengths : (d,), sides of the container
+    lengths : (d,), side lengths of the container
     """
     d = len(lengths)
     pull = [particle[0].all(component) for component in pull] or [None] * d
@@ -124,7 +124,7 @@ def images_of(candidates: Lanes, axes: int) -> list[Lanes]:
 
 
 def marks(builder: ir.IRBuilder, data: ir.Value, indices: list[ir.Value]) -> ir.Value:
-    """Return a bit for each particle, from an array of bytes 0 or 1."""
+    """Return one bit per particle, from an array of bytes 0 or 1."""
     mask = ir.IntType(WIDTH)(0)
     for n, index in enumerate(indices):
         mark = builder.load(builder.gep(data, [index]))
@@ -133,7 +133,7 @@ def marks(builder: ir.IRBuilder, data: ir.Value, indices: list[ir.Value]) -> ir.
 
 
 def sooner(time: Lanes, number: Lanes, other_time: Lanes, other_number: Lanes) -> tuple[Lanes, Lanes]:
-    """Return the earlier of two contacts; of simultaneous ones, the lower index."""
+    """Return the earlier of two contacts; of simultaneous contacts, the lower index."""
     build = time.builder
     sooner = other_time < time
     lower = Lanes(build, build.icmp_signed("<", other_number.value, number.value))
@@ -142,7 +142,7 @@ def sooner(time: Lanes, number: Lanes, other_time: Lanes, other_number: Lanes) -
 
 
 def soonest(time: Lanes, number: Lanes) -> tuple[ir.Value, ir.Value]:
-    """Return the earliest of eight contacts; of simultaneous ones, the lowest index."""
+    """Return the earliest of eight contacts; of simultaneous contacts, the lowest index."""
     build = time.builder
     first = time
     for step in (4, 2, 1):
@@ -167,9 +167,9 @@ def soonest(time: Lanes, number: Lanes) -> tuple[ir.Value, ir.Value]:
 
 
 def load_candidates(builder: ir.IRBuilder, address: ir.Value) -> tuple[Lanes, Lanes, list[ir.Value]]:
-    """Load eight candidates, and their numbers in a vector and one by one.
+    """Load eight candidates, and their numbers as a vector and as scalars.
 
-    The numbers are also loaded one by one because the units that compute with vectors have enough to do.
+    The scalars are loaded separately because the vector units of the processor are busy.
     """
     mask, numbers = (1 << NUMBER_BITS) - 1, []
     for n in range(WIDTH):
@@ -183,13 +183,13 @@ def load_candidates(builder: ir.IRBuilder, address: ir.Value) -> tuple[Lanes, La
 
 @intrinsic
 def earliest(typingctx, flights, i, span, present, boxes, space, gravity):
-    """Return the earliest contact of a particle with candidates if it is sooner than `present`.
+    """Return the earliest contact of a particle with candidates, if it is earlier than `present`.
 
-    The result is (time, partner, bits), with a bit for each candidate whose contact is not computed, since it
-    or the particle may not fall, see `flight.mark_resting`.
+    The result is (time, partner, bits). A bit is set for each candidate whose contact was not computed,
+    because it or the particle may not fall, see `flight.mark_resting`.
 
     span : first candidate and number of candidates
-    present : time and partner
+    present : time and partner of the earliest contact so far
     boxes : named tuple with `candidates` and, under gravity, `resting`
     """
 
@@ -244,7 +244,8 @@ def nearer(typingctx, pages, page, point, offset, square):
     """Return a bit for each of the WIDTH points of a page near a point.
 
     A point is near if the square of its distance is below `square`. The arithmetic is in single precision,
-    and the result is the same from either point. The page is described in `neighbour_lists.page_dtype`.
+    and the result does not depend on the order of the two points. `neighbour_lists.page_dtype` describes the
+    page.
 
     point : (3,)
     offset : (3,), displacement of the page
@@ -278,7 +279,7 @@ def nearer(typingctx, pages, page, point, offset, square):
 def equal(typingctx, numbers, start, number, mask):
     """Return a bit for each of 2 WIDTH numbers that equals `number` after masking.
 
-    The numbers are words of 32 bits of an array, beginning at `start`; only the bits of `mask` are compared.
+    The numbers are 32-bit words of an array, beginning at `start`; only the bits in `mask` are compared.
     """
 
     def generate(context, builder, signature, arguments):
@@ -303,9 +304,9 @@ def equal(typingctx, numbers, start, number, mask):
 
 @intrinsic
 def list_box(typingctx, candidates, count, members, box, image):
-    """Write all positions of a box as candidates of an image into `candidates`.
+    """Write all entries of a box, in an image, into `candidates`.
 
-    The positions are written whether they are filled or not, beginning at index `count`.
+    Unused entries are written, too. Writing begins at index `count`.
     """
 
     def generate(context, builder, signature, arguments):

@@ -1,15 +1,15 @@
 """Time integrals of the stress tensor and of the heat flux.
 
-They follow Helfand, Phys. Rev. 119, 1 (1960). The stress sum S (d, d) grows by m v v dt during flight, and by
-r dp at a collision, with r the vector from the second particle to the first and dp the momentum gained by the
-first. The heat sum Q (d,) grows by E v dt, and at a collision by r times half of the difference of the energy
-gains of the two particles. The energy E includes rotation if there are spins. Velocities v are relative to
-the velocity of the centre of mass, which is conserved: a gas that moves as a whole has the sums of a gas at
-rest.
+They follow Helfand, Phys. Rev. 119, 1 (1960). The stress sum S (d, d) grows by m v v dt in flight, and by r
+dp at a collision. r is the vector from the second particle to the first, and dp the momentum gained by the
+first. The heat sum Q (d,) grows by E v dt in flight. At a collision it grows by r times half of the
+difference between the energy gains of the two particles. The energy E includes rotation if there are spins.
+Velocities v are relative to the centre of mass, whose velocity is conserved. So a gas that moves as a whole
+has the same sums as a gas at rest.
 
-Between collisions the sum K of m v v over all particles is constant. So its integral until the time t is K(t)
-t minus the sum over collisions of their time multiplied by the change of K. Each collision adds the
-contribution of its two particles, and K is summed when S is read. The collisional part of S is also summed
+Between collisions the sum K of m v v over all particles is constant. So its integral up to the time t is K(t)
+t minus a sum over collisions of the collision time multiplied by the change of K. Each collision adds the
+contribution of its two particles. K is summed when S is read. The collisional part of S is also summed
 separately.
 """
 
@@ -56,7 +56,7 @@ def rotational_energy(i, law):
 
 @inner_helper
 def velocity_about(flights, i, axis, stress):
-    """Return a component of a particle's velocity relative to the centre of mass."""
+    """Return a velocity component of a particle relative to the centre of mass."""
     return flights[i].velocity[axis] - stress.drift[axis]
 
 
@@ -118,14 +118,14 @@ def add_flights(flights, time, space, masses, law, stress):
                 add(sums, d * k + n, mass * way * velocity_about(flights, i, n, stress))
 
 
-# Time integrals of the stress tensor and of the heat flux of a sheared gas.
+# Time integrals of the stress tensor and the heat flux of a sheared gas.
 #
-# These are the integrals at the top of this module, with velocities c relative to the flow. The flow is
-# relative to the centre of mass: if this moves across the flow at a speed w, it moves along it with the flow
-# at its position, so that the gas is equivalent to a gas at rest that is w t lower. A flight of constant
-# velocity changes c_x steadily, so its transport consists of polynomials of at most third order and is
-# integrated by Simpson's rule, which is exact: before each event of a particle, from the time of its last
-# event.
+# They are the same integrals as at the top of this module, with velocities c relative to the flow. The flow
+# is relative to the centre of mass. If the centre of mass moves across the flow at a speed w, it also moves
+# along it with the flow at its position. So the gas is equivalent to a gas whose centre of mass is at rest
+# and that is lower by w t. During a flight of constant velocity c_x changes linearly. So the transport
+# consists of polynomials of at most third order. Simpson's rule integrates them exactly, before each event of
+# a particle, from the time of its last event.
 
 
 _SIMPSON = 1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0
@@ -133,20 +133,20 @@ _SIMPSON = 1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0
 
 @inner_helper
 def flow_about(height, time, space, stress, shear):
-    """Return the flow's velocity at a height and a time, relative to the centre of mass."""
+    """Return the flow velocity at a height and a time, relative to the centre of mass."""
     return flow_at(height, space, shear) - shear.rate * stress.drift[GRADIENT] * time
 
 
 @inner_helper
 def relative(flights, i, axis, flow, stress):
-    """Return a component of a particle's velocity relative to the flow."""
+    """Return a velocity component of a particle relative to the flow."""
     v = velocity_about(flights, i, axis, stress)
     return v - flow if axis == FLOW else v
 
 
 @inner_kernel
 def add_flight(flights, i, time, sign, model, stress, shear):
-    """Add, with a sign, the transport by a particle from its clock to `time`."""
+    """Add, multiplied by a sign, the transport by a particle from its clock to `time`."""
     space, sums = model.space, stress.sums
     d, late = len(space.lengths), time - flights[i].clock
     mass, turning = mass_of(i, model.masses, model.law), rotational_energy(i, model.law)
@@ -168,14 +168,14 @@ def add_flight(flights, i, time, sign, model, stress, shear):
 
 @kernel
 def add_sheared_flights(flights, time, sign, model, stress):
-    """Add, with a sign, the transport by all particles from their clocks to `time`."""
+    """Add, multiplied by a sign, the transport by all particles from their clocks to `time`."""
     for i in range(len(flights)):
         add_flight(flights, i, time, sign, model, stress, model.shear)
 
 
 @inner_helper
 def end_flight(flights, i, time, model, stress, shear):
-    """Add the transport by a particle until an event.
+    """Add the transport by a particle up to an event.
 
     The particle has not been advanced to this event yet.
     """
@@ -221,7 +221,7 @@ def _add_sheared(flights, i, j, model, stress, shear):
 
 @inner_helper
 def tally_contact(flights, i, j, time, model, stress, shear):
-    """Add the transfer between two particles at their collision, in a gas sheared or not."""
+    """Add the transfer between two particles at their collision, in a gas that may be sheared."""
     if shear is None:
         add_contact(flights, i, j, time, model.space, model.masses, model.law, stress)
     else:

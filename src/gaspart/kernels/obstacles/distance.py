@@ -1,15 +1,15 @@
-"""Vectors from a point to the nearest point of an interior wall, and rows of walls."""
+"""Vectors from a point to the nearest point of an interior wall, and its data types."""
 
 import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper
 
 SEGMENT = np.dtype([("start", "f8", 2), ("direction", "f8", 2), ("length", "f8")])
-"""Row of a segment: its start, the unit vector along it, its length."""
+"""Data type of a segment: start, unit vector along it, and length."""
 PLATE = np.dtype(
     [("corner", "f8", 3), ("along", "f8", 3), ("length", "f8"), ("across", "f8", 3), ("width", "f8")]
 )
-"""Row of a plate: a corner, and the unit vectors along its two edges with their lengths."""
+"""Data type of a plate: a corner, the unit vectors along its two edges, and their lengths."""
 
 
 @inner_helper
@@ -44,7 +44,7 @@ def to_plate(rows, m, point):
 def to_wall(rows, m, point, lengths):
     """Return the vector from a point to the nearest point of an interior wall.
 
-    lengths : (d,), sides of the container; the dimension determines the kind of wall
+    lengths : (d,), side lengths of the container; their number determines the kind of wall
     """
     if len(lengths) == 2:
         return to_segment(rows, m, point)

@@ -32,14 +32,14 @@ from gaspart.kernels.physics.flight import acceleration_of, advance
 from gaspart.kernels.physics.mass import mass_of
 from gaspart.kernels.physics.running_sum import add
 
-# Contact of a sphere with a plate, an interior wall of three dimensions: on a side, an edge or a corner.
+# Contact of a sphere with a plate (an interior wall in three dimensions), on a side, an edge or a corner.
 #
-# All coordinates are in the plate's own axes: along its two edges, and across it.
+# All coordinates are along the axes of the plate: along its two edges, and normal to it.
 
 
 @inner_helper
 def _components(row, x, y, z):
-    """Return the components of a vector in the plate's axes: along its edges, and across it."""
+    """Return the components of a vector along the edges of a plate, and normal to it."""
     a, b = row.along, row.across
     nx, ny, nz = a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
     return x * a[0] + y * a[1] + z * a[2], x * b[0] + y * b[1] + z * b[2], nx * x + ny * y + nz * z
@@ -70,7 +70,7 @@ def time_to_edge(r, v, g, length, radius):
     A falling sphere may touch the line next to the edge, leave it, and touch it again at the edge.
 
     r, v, g : (3,), separation, velocity and acceleration; the first two components are across the line, the
-        third is along it from its start
+        third component is along the line, measured from its start
     """
     x, z, y = r
     vx, vz, vy = v
@@ -133,7 +133,7 @@ def time_to_plate(flights, i, rows, m, space, gravity):
     return flights[i].clock + best
 
 
-# Interior walls of two dimensions: segments with solid ends, hit from both sides.
+# Interior walls in two dimensions: segments with solid ends, which are hit from both sides.
 
 
 @inner_kernel
@@ -193,7 +193,7 @@ def time_to_wall(flights, i, rows, m, space, gravity, lengths):
 
 @inner_kernel
 def next_wall(flights, predictions, i, boxes, space, gravity, walls, face_time):
-    """Return the next wall near a particle's box that it hits: (time, row).
+    """Return the next wall near the box of a particle that it hits: (time, row).
 
     Without a hit before `face_time` the result is (face_time, -1).
     """
@@ -212,7 +212,7 @@ def next_wall(flights, predictions, i, boxes, space, gravity, walls, face_time):
 
 @inner_helper
 def find_wall(particles, i, boxes, space, gravity, walls, time, face):
-    """Return the earlier of the next interior wall and the given face: (time, face code)."""
+    """Return the earlier of the next interior wall and a given face: (time, face code)."""
     if walls is not None:
         wall_time, m = next_wall(
             particles.flights, particles.predictions, i, boxes, space, gravity, walls, time
@@ -231,9 +231,9 @@ def mass_in(masses, i):
 
 @inner_helper
 def coordinate_along(flights, i, row, edge, lengths):
-    """Return a particle's coordinate along an edge of a wall.
+    """Return the coordinate of a particle along an edge of a wall.
 
-    The result is (coordinate of the centre, length, the edge's unit vector).
+    The result is (coordinate of the centre, length, unit vector of the edge).
     """
     p = flights[i].position
     if len(lengths) == 2:
@@ -258,7 +258,7 @@ def is_at_end(flights, i, row, lengths):
 
 @inner_kernel
 def leave_wall(flights, i, row, space):
-    """Move a particle that has reached the end of a wall beyond it."""
+    """Move a particle that has reached the end of a wall beyond the end."""
     for edge in range(len(space.lengths) - 1):
         at, length, u = coordinate_along(flights, i, row, edge, space.lengths)
         leave(flights, i, u, at, length, space)
@@ -266,7 +266,7 @@ def leave_wall(flights, i, row, space):
 
 @inner_helper
 def leaves(flights, i, m, space, walls, gravity):
-    """Return True if a particle has slid along a wall and leaves it.
+    """Return True if a particle that has slid along a wall leaves it.
 
     Such a particle is released.
     """
@@ -310,7 +310,7 @@ def bounce_off(flights, i, normal, model, tally, law):
 
 @inner_kernel
 def collide_wall(flights, i, m, model, tally, walls, law):
-    """Reflect a particle at an interior wall, or draw a velocity at the wall's temperature.
+    """Reflect a particle at an interior wall, or draw a velocity from the wall's temperature.
 
     The particle touches the wall at a side or at the rim. Returns the number of the wall.
     """

@@ -1,10 +1,10 @@
 """Moving obstacles: vibrating faces, pistons, and a moving interior wall.
 
-A vibrating face is at the container's side at time 0, and moves inwards from there. A particle hits the face
-where its height above the side, h(t) = x + v t + a t^2 / 2, falls to the height of the face, s(t). In each
-period a sawtooth moves up at one speed and returns at once; a sine is at stroke (1 - cos(2 pi t / period)) /
-2. Heights and velocities count from the container's side inwards. The remainder of a division (%) is exact,
-and so the same on every machine.
+A vibrating face is at the side of the container at time 0, and moves inwards from there. A particle hits the
+face when its height above the side, h(t) = x + v t + a t^2 / 2, becomes equal to the height s(t) of the face.
+A sawtooth moves inwards at a constant speed in each period and returns at once; a sine is at
+(stroke / 2) (1 - cos(2 pi t / period)). Heights and velocities are measured inwards from the side of the
+container. The remainder of a division (%) is exact, and so it is the same on every machine.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from gaspart.kernels.physics.mass import mass_of
 from gaspart.kernels.physics.running_sum import add
 from gaspart.kernels.physics.sine import TURN, sine_cosine
 
-# Piston: a face of finite mass, which a constant force pushes inwards and particles push back.
+# Piston: a face of finite mass, which a constant force pushes inwards and which particles push back.
 #
-# A piston starts at the side of the container and bounces there without loss. Between its contacts it
-# therefore moves on one parabola, or on two: one outwards to the side, and one from there. Positions and
-# velocities count from the container's side inwards.
+# A piston starts at the side of the container, and bounces there without loss. Between its contacts it
+# therefore moves on one parabola, or on two: outwards to the side, and from there inwards. Positions and
+# velocities are measured inwards from the side of the container.
 
 
 @inner_helper
@@ -35,7 +35,7 @@ def time_to_stop(position, velocity, push):
 
 @kernel
 def fly_piston(position, velocity, push, late):
-    """Return (position, velocity) of a piston some time later, without a hit by a particle."""
+    """Return (position, velocity) of a piston after some time without a hit by a particle."""
     stop = time_to_stop(position, velocity, push)
     if late < stop:
         return advance_coordinate(position, velocity, push, late), velocity + push * late
@@ -102,7 +102,7 @@ def advance_piston(motion, push, time):
 def collide_with_piston(flights, i, face, model, tally, piston):
     """Exchange momentum between a particle and the piston without loss.
 
-    Their speed of separation is large enough for the clocks to resolve the next contact: this is a push,
+    Their separation speed is large enough for the clocks to resolve the next contact. This adds a small push,
     which a piston needs that lies on a particle at rest.
     """
     axis, inwards = face // 2, -1.0 if face % 2 else 1.0
@@ -135,7 +135,7 @@ def is_piston(face, piston):
     return face == piston.face
 
 
-# Moving wall across the container: of finite mass, pushed by the particles on both its sides.
+# Moving wall across the container: it has a finite mass and is pushed by the particles on both sides.
 #
 # Between its contacts its velocity is constant, and each particle stays on its side.
 
@@ -173,8 +173,8 @@ def find_moving(flights, i, moving, time, face):
 def collide_moving_wall(flights, i, model, tally, moving):
     """Exchange momentum between a particle and the wall without loss.
 
-    Their speed of separation is larger than rounding, or they would collide for ever. Returns the number of
-    the wall, counted after the faces.
+    Their separation speed exceeds rounding errors; otherwise they would collide forever. Returns the number
+    of the wall, counted after the faces.
     """
     axis, side, motion = moving.axis, moving.side[i], moving.motion
     advance_wall(motion, flights[i].clock)
@@ -214,13 +214,13 @@ def bounce(flights, i, face, model, tally, law):
     return collide_wall_by_law(flights, i, normal, 0.0, model.space, tally, law)
 
 
-_RESOLVED = 2.0**-52  # shortest step of a search, as a fraction of clock and period
-_SLACK = 1.0 + 2.0**-20  # distance in strokes beyond which a particle needs no search
+_RESOLVED = 2.0**-52  # minimum step of a search, as a fraction of clock and period
+_SLACK = 1.0 + 2.0**-20  # distance, in strokes, beyond which a particle needs no search
 
 
 @kernel
 def place_and_velocity(time, sine, stroke, period):
-    """Return position and inward velocity of a face at a time of its period."""
+    """Return position and inward velocity of a face at a time within its period."""
     if not sine:
         speed = stroke / period
         return speed * time, speed
@@ -230,9 +230,9 @@ def place_and_velocity(time, sine, stroke, period):
 
 @inner_helper
 def time_to_sawtooth(gap, closing, pull, duration):
-    """Return the time until a particle touches a steadily moving face, and whether it does.
+    """Return the time until a particle touches a uniformly moving face, and True if it does.
 
-    duration : time for which the face moves steadily; it is the result if there is no contact
+    duration : time for which the face moves uniformly; without a contact it is the result
     """
     time = time_to_side(gap, closing, pull)
     return (time, True) if time < duration else (duration, False)
@@ -240,7 +240,7 @@ def time_to_sawtooth(gap, closing, pull, duration):
 
 @inner_helper
 def time_to_sine(gap, closing, most):
-    """Return a time before which a particle cannot touch a face, and whether it touches now.
+    """Return a time before which a particle cannot touch a face, and if it touches now.
 
     The time is the root for the largest acceleration `most` of their approach.
     """
@@ -255,16 +255,17 @@ def time_to_sine(gap, closing, most):
 def time_to_vibrating(x, v, a, clocks, at, sine, stroke, period):
     """Return the time until a particle hits a vibrating face; inf if it does not.
 
-    At the contact the two approach each other. The result is also inf if there is no contact before the
-    clocks' epoch ends: all is predicted anew in the next epoch. Without this end, a particle that comes to
-    the stroke at 1e-16 of its former speed would be searched for in 1e16 periods, whose phases rounding
-    decides. Above the stroke the particle flies on to it. Within the stroke, each step of the search ends
-    before the first contact, for any motion of the face, so that no contact is missed; a step with the
-    largest acceleration of the face converges to the contact quadratically, like Newton's method.
+    At the contact the two must approach each other. The result is also inf if there is no contact before the
+    end of the epoch, because all events are predicted again in the next epoch. Without this limit, a particle
+    that approaches the stroke at 1e-16 of its former speed would be searched for in 1e16 periods, whose
+    phases depend on rounding. Above the stroke the particle flies to the stroke without a search. Within the
+    stroke, each step of the search ends before the first contact, for any motion of the face, so no contact
+    is missed. With the largest acceleration of the face, the steps converge quadratically to the contact,
+    like Newton's method.
 
     x, v, a : height, inward velocity and acceleration of the particle
-    clocks : time since the epoch of the clocks began, and its length, at the time of x and v
-    at : time of the face's period, at the time of x and v
+    clocks : time since the start of the epoch, and length of the epoch, at the time of x and v
+    at : time within the period of the face, at the time of x and v
     """
     largest = 0.5 * stroke * (TURN / period) * (TURN / period) + abs(a)
     clock, epoch = clocks
@@ -343,10 +344,10 @@ def find_vibrating(particles, i, axis, boxes, space, gravity, motion):
 
 @inner_kernel
 def collide_vibrating(flights, i, face, model, tally, law, motion):
-    """Reflect a particle in the frame of a vibrating face.
+    """Reflect a particle in the rest frame of a vibrating face.
 
-    The work of the face is its velocity multiplied by the momentum. The speed of separation is large enough
-    for the clocks to resolve the next contact: this is a push, whose energy is counted as well.
+    The work of the face is its velocity multiplied by the transferred momentum. The separation speed is large
+    enough for the clocks to resolve the next contact. The energy of this small push is also counted.
     """
     axis, period = face // 2, motion.period[face]
     inwards = -1.0 if face % 2 else 1.0

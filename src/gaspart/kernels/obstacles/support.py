@@ -1,7 +1,7 @@
 """Planes of walls on which particles rest, or along which they slide, under gravity.
 
-The part of gravity that no wall supports remains: its projection on the directions that lead into none of
-them.
+The part of gravity that no wall supports remains. It is the projection of gravity on the directions that lead
+into none of the walls.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from gaspart.kernels.physics.contact import SHORTEST, is_alone
 from gaspart.kernels.physics.flight import face_plane
 from gaspart.kernels.physics.running_sum import add
 
-_PARALLEL = 2.0**-40  # squared sine of an angle between planes that are taken for one
+_PARALLEL = 2.0**-40  # squared sine of the angle below which two planes count as one
 
 
 @inner_kernel
 def pull_along(gravity, axis):
-    """Return gravity along an axis, 0 along a third axis in two dimensions."""
+    """Return gravity along an axis; 0 along a third axis in two dimensions."""
     return gravity.acceleration[axis] if axis < len(gravity.acceleration) else 0.0
 
 
@@ -33,7 +33,7 @@ def dot(a, b):
 
 @inner_helper
 def is_resting_on(support, i, row):
-    """Return True if a particle rests on, or slides along, a row of a wall.
+    """Return True if a particle rests on, or slides along, the wall with this row.
 
     The wall is an interior wall.
     """
@@ -47,7 +47,7 @@ def is_resting_on(support, i, row):
 
 @inner_helper
 def rests_on(i, row, gravity):
-    """Return True if a particle rests on, or slides along, a row of a wall.
+    """Return True if a particle rests on, or slides along, the wall with this row.
 
     Without gravity the result is False.
     """
@@ -60,7 +60,7 @@ def rests_on(i, row, gravity):
 def within(support, i, planes, vector, dimension):
     """Project a vector on a plane, or on the intersection of two planes.
 
-    planes : two planes; without the second, -1, the projection is on the first one
+    planes : two planes; if the second is -1, the projection is on the first plane
     """
     first, second = planes
     n = support.normal[i, first]
@@ -81,10 +81,10 @@ def within(support, i, planes, vector, dimension):
 
 @inner_kernel
 def leave_of(acceleration, support, i, dimension):
-    """Determine the acceleration that remains on the planes of a particle; return its square.
+    """Compute the acceleration that the planes of a particle leave; return its square.
 
-    It is the largest projection of the `acceleration` (3,) on one or two planes that leads into no
-    plane; zero if there is no such projection.
+    It is the largest projection of the `acceleration` (3,) on one or two planes that leads into no plane;
+    without such a projection it is zero.
     """
     least = _INTO * sqrt(dot(acceleration, acceleration))
     best, pull = 0.0, support.pull[i]
@@ -103,7 +103,7 @@ def leave_of(acceleration, support, i, dimension):
 
 @inner_kernel
 def find_pull(gravity, i, dimension):
-    """Determine the acceleration that remains of gravity on the planes of a particle.
+    """Compute the part of gravity that the planes of a particle leave.
 
     Planes from which it leads away are removed.
     """
@@ -144,7 +144,7 @@ def add_plane(flights, i, normal, row, space, support):
 def lies_on_floor(flights, i, axis, space, gravity, longest):
     """Return True if a particle lies on a face of the container along an axis.
 
-    It also lies there if its bounce is at most as long as the longest bounce that is taken for rest.
+    It also lies there if its bounce is at most as long as the longest bounce that counts as rest.
     """
     if axis >= len(space.lengths) or space.periodic[axis]:
         return False
@@ -169,8 +169,8 @@ def add_floors(flights, i, space, gravity, longest):
 def pressing(flights, i, normal, space, gravity, longest):
     """Return the acceleration of a particle in the direction of a unit vector (3,).
 
-    It is the component of gravity, or if this leads away, the part that remains on the floors on which the
-    particle lies.
+    It is the component of gravity. If this leads away, it is the part that the floors below the particle
+    leave.
     """
     if gravity.support.number[i] > 0:
         return dot(normal, gravity.support.pull[i])
@@ -184,9 +184,9 @@ def pressing(flights, i, normal, space, gravity, longest):
 
 @inner_kernel
 def release(flights, i, space, support):
-    """Remove the support of a particle, so that gravity acts on it in full.
+    """Remove the support of a particle, so that the full gravity acts on it.
 
-    The particle is moved exactly to the walls on which it rested.
+    The particle is placed exactly at the walls on which it rested.
     """
     if support is None:
         return
@@ -208,12 +208,12 @@ def release_after(flights, i, space, gravity):
 
 # Particles that slide along a wall into an acute wedge, under an overhanging wall or fixed particle.
 #
-# The overhang throws the particle down; it comes to rest below, and hits the overhang again at once, with
-# less of its speed: infinitely often, in no time. So it is put to rest between both; its velocity along both
-# remains.
+# The overhang reflects the particle downwards. The particle comes to rest below, and hits the overhang again
+# at once with a lower speed, so there would be infinitely many hits in zero time. Therefore it is put to rest
+# between both obstacles. Its velocity along both remains.
 
 
-_INTO = 2.0**-40  # fraction of the speed; a smaller component into a plane counts as motion along it
+_INTO = 2.0**-40  # fraction of the speed; smaller components into a plane count as motion along it
 
 
 @inner_helper
@@ -234,7 +234,7 @@ def plane_normal(support, i, n):
 
 @inner_helper
 def fastest_at_rest(gravity, longest, support):
-    """Return the speed across a horizontal wall below which a bounce is taken for rest."""
+    """Return the speed across a horizontal wall below which a bounce counts as rest."""
     square = 0.0
     for k in range(len(gravity.acceleration)):
         square += gravity.acceleration[k] * gravity.acceleration[k]
@@ -249,8 +249,8 @@ def fastest_at_rest(gravity, longest, support):
 def come_to_rest_again(flights, i, longest, space, gravity, support):
     """Return the velocity of a bounced particle that comes to rest again on its support.
 
-    The result is (velocity (3,), number of planes that it led into, normal (3,) of the last plane). The
-    number is 0 without such planes, or if the particle is fast enough to bounce there as well.
+    The result is (velocity (3,), number of planes into which it led, normal (3,) of the last such plane). The
+    number is 0 without such planes, or if the particle is fast enough to bounce on them as well.
     """
     w, normal, number = velocity_of(flights, i, space), (0.0, 0.0, 0.0), 0
     planes, fastest = count_planes(support, i), fastest_at_rest(gravity, longest, support)
@@ -273,12 +273,12 @@ def come_to_rest_again(flights, i, longest, space, gravity, support):
 
 @inner_kernel
 def rest_in_wedge(flights, i, normal, particle, space, tally, gravity, support):
-    """Put a particle to rest in a wedge after a bounce; return whether it rests.
+    """Put a particle to rest in a wedge after a bounce; return True if it rests.
 
-    It rests between the obstacle of the bounce, in the direction of the unit vector `normal` (3,), and its
-    support, if it would hit the obstacle again at once.
+    It rests between its support and the obstacle of the bounce, which is in the direction of the unit vector
+    `normal` (3,), if it would hit the obstacle again at once.
 
-    particle : its mass, and the longest bounce taken for rest
+    particle : its mass, and the longest bounce that counts as rest
     """
     mass, longest = particle
     v = velocity_of(flights, i, space)
@@ -301,16 +301,13 @@ def rest_in_wedge(flights, i, normal, particle, space, tally, gravity, support):
     return True
 
 
-# Particles that come to rest on walls, or leave them, under gravity.
+# Particles that come to rest on walls under gravity, or leave the walls.
 #
-# A bounce too low for positions, or too short for clocks, to resolve is taken for rest: the velocity across
-# the wall becomes zero. The particle is released by the next contact that moves it, and where it leaves the
-# wall.
+# A bounce that positions or clocks cannot resolve counts as rest: the velocity across the wall becomes zero.
+# The particle is released at the next contact that moves it, and at the end of the wall.
 
 
-_HOP = (
-    2.0**20
-)  # times `shortest_bounce`: the shortest bounce where a particle cannot rest, as at the end of a wall
+_HOP = 2.0**20  # shortest bounce where a particle cannot rest, in units of `shortest_bounce`
 
 
 @inner_kernel
@@ -320,8 +317,8 @@ def come_to_rest(flights, i, normal, contact, mass, space, tally, gravity):
     If the particle cannot rest there, its bounce is made long enough to be resolved.
 
     normal : (3,), unit vector towards the wall
-    contact : row of the wall, whether it is touched at an end, where only a balanced particle can rest, and
-        the longest bounce taken for rest
+    contact : row of the wall, True if it is touched at an end (where only a balanced particle can rest), and
+        the longest bounce that counts as rest
     """
     row, at_end, longest = contact
     support = gravity.support
@@ -371,7 +368,7 @@ def time_to_leave(at, speed, pull, length):
 
 @inner_helper
 def leave(flights, i, edge, at, length, space):
-    """Move a particle at the end of a wall beyond it, by more than the rounding.
+    """Move a particle at the end of a wall beyond the end, by more than rounding.
 
     edge : (3,), unit vector along which the coordinate of the particle is `at`
     """
@@ -388,15 +385,15 @@ def leave(flights, i, edge, at, length, space):
         flights[i].position[k] += more * edge[k]
 
 
-# Bounces that are shorter than the duration of a contact: the particle comes to rest.
+# If bounces become shorter than the contact duration, the particle comes to rest.
 #
-# The contact of a single particle with a floor then never ends. A particle that others press against it rests
-# only after much shorter bounces: otherwise it would take the energy of contacts that are elastic.
+# The contact of a single particle with a floor then never ends. A particle that others press against the
+# floor rests only after much shorter bounces. Otherwise it would absorb the energy of elastic contacts.
 
 
 @inner_helper
 def longest_rest(flights, i, gravity, law):
-    """Return the longest bounce at a wall that is taken for rest, as half its time."""
+    """Return half of the duration of the longest bounce at a wall that counts as rest."""
     if law is not None:
         return _longest_rest(flights, i, gravity, law.duration)
     return gravity.shortest_bounce

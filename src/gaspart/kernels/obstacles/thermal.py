@@ -1,6 +1,6 @@
-"""Faces and walls that draw, absorb or change velocities: thermal walls, sticky walls, wells.
+"""Faces and walls that draw, absorb or change velocities: thermal walls, sticky walls, and wells.
 
-A particle leaves a thermal wall with a velocity drawn from the temperature of the wall.
+A particle leaves a thermal wall with a random velocity for the wall's temperature.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ from gaspart.kernels.physics.running_sum import add
 
 @inner_helper
 def mirrors(i, face, number, key, accommodation):
-    """Return True if a face mirrors the velocity of a particle at this hit (Maxwell's model).
+    """Return True if a face reflects a particle specularly at this hit (Maxwell's model).
 
-    The decision uses a word of block 0, of which `flux_speed` takes another.
+    The decision uses a random word of block 0; `flux_speed` uses another word of this block.
 
     number : number of the hit
     """
@@ -42,7 +42,7 @@ def mirrors(i, face, number, key, accommodation):
 
 @inner_helper
 def temperature_at(face, position, lengths, level, ramp):
-    """Return the temperature of a thermal face where a particle at a position (d,) hits it."""
+    """Return the temperature of a thermal face at the position (d,) where a particle hits it."""
     if ramp is None:
         return level[face]
     return _on_ramp(face, position, lengths, level[face], ramp)
@@ -94,9 +94,9 @@ def collide_thermal(flights, i, face, model, tally, law, faces):
 
 @inner_helper
 def add_shear(flights, i, face, mass, sliding):
-    """Add a particle's momentum along a face to the momentum given to the face.
+    """Add the momentum of a particle along a face to the momentum given to the face.
 
-    mass : negative if the particle takes the momentum
+    mass : negative if the particle receives the momentum
     """
     if sliding is not None:
         d = sliding.velocity.shape[1]
@@ -107,7 +107,7 @@ def add_shear(flights, i, face, mass, sliding):
 
 @inner_helper
 def drag(flights, i, face, mass, sliding):
-    """Add the velocity of a sliding face to the particle that leaves it."""
+    """Add the velocity of a sliding face to the velocity of a particle that leaves it."""
     if sliding is not None:
         for k in range(sliding.velocity.shape[1]):
             flights[i].velocity[k] += sliding.velocity[face, k]
@@ -116,11 +116,11 @@ def drag(flights, i, face, mass, sliding):
 
 @inner_kernel
 def draw_spin(i, wall, level, key, counter, dimension, tally, law):
-    """Draw the spin of a rough particle, which has one component in two dimensions.
+    """Draw the spin of a rough particle; in two dimensions it has one component.
 
     wall : row of the tally
     level : temperature
-    counter : number of the draw, and first block of random words that the draw may use
+    counter : number of the draw, and first block of random words for the draw
     """
     if law is None:
         return
@@ -136,12 +136,12 @@ def draw_spin(i, wall, level, key, counter, dimension, tally, law):
             law.spins[i, k] = spin
 
 
-# Interior walls at a temperature: a particle leaves them on its side with a velocity drawn from it.
+# Interior walls with a temperature: a particle leaves them on its own side with a random velocity.
 
 
 @inner_helper
 def leave_warm(flights, i, wall, normal, model, tally, law, warm):
-    """Give a particle the velocity with which it leaves an interior wall at a temperature.
+    """Give a particle the velocity with which it leaves an interior wall with a temperature.
 
     Returns the momentum given to the wall along the normal, or -1 if the wall is hard.
 
@@ -181,7 +181,7 @@ def _leave_warm(flights, i, wall, normal, model, tally, law, warm):
 def tangents(normal, dimension):
     """Return two unit vectors (3,) perpendicular to each other and to a unit vector `normal` (3,).
 
-    In two dimensions the first is in the plane.
+    In two dimensions the first vector is in the plane.
     """
     x, y, z = normal
     if dimension == 2:
@@ -199,11 +199,11 @@ def tangents(normal, dimension):
     return first, (y * c - z * b, z * a - x * c, x * b - y * a)
 
 
-# Sticky walls: slow particles stay, and their normal energy becomes energy of a vibration.
+# Sticky walls: slow particles stick to them, and their normal kinetic energy becomes vibrational energy.
 #
-# A particle that is hit while it sticks loses at once the velocity across its faces that the collision gives
-# it. The particle that has hit it may keep a small approach velocity where exact arithmetic gives zero, and
-# must not return because of this rounding.
+# If a particle is hit while it sticks, it immediately loses the velocity across its faces that the collision
+# gives it. The particle that hit it may have a small remaining approach velocity where exact arithmetic gives
+# zero. It must not return because of this rounding error.
 
 
 @inner_helper
@@ -214,7 +214,7 @@ def is_absorbed(energy, face, mass, faces):
 
 @inner_kernel
 def collide_sticky(flights, i, face, model, tally, law, faces):
-    """Decide whether a particle sticks to a face, by its normal energy in flight and vibration."""
+    """Decide whether a particle sticks to a face, from its normal kinetic and vibrational energy."""
     axis = face // 2
     side = 1.0 if face % 2 else -1.0
     mass = mass_of(i, model.masses, law)
@@ -237,7 +237,7 @@ def collide_sticky(flights, i, face, model, tally, law, faces):
 def is_held(flights, i, axis, masses, law, faces, sticky):
     """Return True if a particle sticks to a face across an axis.
 
-    The face absorbs its velocity along this axis.
+    Then the face absorbs its velocity along this axis.
     """
     side = faces.well_side[i, axis]
     face = 2 * axis + (1 if side > 0 else 0)
@@ -250,7 +250,7 @@ def is_held(flights, i, axis, masses, law, faces, sticky):
 
 @inner_helper
 def mobility_of(i, masses, law):
-    """Return the change of a particle's velocity by a unit impulse: 0 if it is fixed."""
+    """Return the velocity change of a particle per unit impulse; 0 if it is fixed."""
     if law is not None:
         return law.inverse_mass[i]
     return 1.0 / mass_of(i, masses, law)
@@ -260,7 +260,8 @@ def mobility_of(i, masses, law):
 def lose_rounding(flights, i, axis, least, space, sticky):
     """Remove a velocity of at most `least` with which a particle would hit its sticky face.
 
-    Such a velocity remains where the particle has given all its velocity to another particle; it is no hit.
+    Such a velocity is a rounding error that remains if the particle has transferred its whole velocity to
+    another particle; it must not cause a hit.
     """
     v = flights[i].velocity[axis]
     upper = v > 0.0
@@ -307,19 +308,19 @@ def _part_if_held(flights, i, j, model, faces, sticky):
 def part_if_held(flights, i, j, model, faces):
     """Separate two particles that have collided if one of them sticks to a face.
 
-    If they would collide again, they get a speed of separation of the order of rounding; and no such speed
-    may lead to a face.
+    If they would collide again, they get a separation speed of the order of rounding errors. Such a speed
+    must not lead towards a face.
     """
     if faces is not None:
         _part_if_held(flights, i, j, model, faces, faces.sticky)
 
 
-# Wells at the container's faces: a step of the potential at a distance from the wall.
+# Wells at the faces of the container: a step of the potential at a distance from the wall.
 
 
 @inner_helper
 def edge_plane(flights, i, face, space, faces):
-    """Return the coordinate of a particle's centre at the edge of a face's well."""
+    """Return the coordinate of a particle's centre at the edge of the well of a face."""
     upper = face % 2 == 1
     width = faces.width[face]
     return face_plane(flights, i, face // 2, upper, space) + (-width if upper else width)
@@ -329,8 +330,8 @@ def edge_plane(flights, i, face, space, faces):
 def time_to_edge(flights, i, axis, space, faces):
     """Return the next edge of a well along an axis: (time, face code).
 
-    For a particle stuck to a face the result is its clock and the face: it is tested again, because a contact
-    has moved it.
+    For a particle stuck to a face, the result is its clock time and the face. The particle is tested again,
+    because a contact has moved it.
     """
     v = flights[i].velocity[axis]
     clock = flights[i].clock
@@ -349,7 +350,7 @@ def time_to_edge(flights, i, axis, space, faces):
 def cross_edge(flights, i, face, model, tally, law, faces):
     """Move a particle into a well, or out of it if it is fast enough.
 
-    The wall takes the momentum of the step.
+    The wall receives the momentum change.
     """
     axis = face // 2
     flights[i].position[axis] = edge_plane(flights, i, face, model.space, faces)
@@ -378,7 +379,7 @@ def collide_edge(flights, i, face, model, tally, law, faces):
 
 @inner_helper
 def meet_edge(flights, i, face, time, model, tally, faces):
-    """Advance a particle to the edge of a well and cross or reflect there.
+    """Advance a particle to the edge of a well, where it crosses or is reflected.
 
     Returns the number of the face.
     """

@@ -1,1 +1,1 @@
-"""Physics that all engines share: contacts, collisions, flight, random numbers."""
+"""Physics shared by all engines: contacts, collisions, flights, and random numbers."""

@@ -1,16 +1,16 @@
-"""Contact times of falling particles: the roots of flights under a uniform acceleration.
+"""Contact times of falling particles, which are roots for flights under a uniform acceleration.
 
-Two particles that fall alike move straight relative to each other, so these roots are needed only if one of
-the two does not fall: a wall, the side of a box, a fixed particle, a particle that lies on a floor. As in
-`contact`, the contact time of a particle that touches and approaches is 0, and every root is taken in the
-form that does not cancel.
+Two particles that fall with the same acceleration move uniformly relative to each other. So these roots are
+needed only if the second object does not fall: a wall, a face of a box, a fixed particle, or a particle on a
+floor. As in `contact`, the contact time of a touching and approaching particle is 0, and every root is
+computed without cancellation.
 """
 
 from math import inf, sqrt
 
 from gaspart.kernels.compile.policy import helper, inner_helper, kernel
 
-_HALVINGS = 2200  # maximum number of bisections; fewer narrow any interval to two adjacent floats
+_HALVINGS = 2200  # maximum number of bisections; fewer suffice to narrow any interval to two adjacent floats
 
 
 @inner_helper
@@ -38,11 +38,11 @@ def time_against(gap, speed, pull):
 def time_along(gap, speed, pull):
     """Return the time to cross a `gap` in the direction of an acceleration `pull` > 0.
 
-    This is the larger root of gap - speed t - pull t^2 / 2 = 0. If the gap is not open (>= 0) at the turning
-    point, as rounding may leave it for a particle that has just left a floor, the result is the time of the
-    turning point.
+    This is the larger root of gap - speed t - pull t^2 / 2 = 0. If rounding leaves the gap closed (< 0) at
+    the turning point, as for a particle that has just left a floor, the result is the time of the turning
+    point.
 
-    speed : initial speed; negative away from the end of the gap
+    speed : initial speed; negative if directed away from the end of the gap
     """
     if speed >= 0.0:
         if gap <= 0.0:
@@ -55,7 +55,7 @@ def time_along(gap, speed, pull):
 
 @inner_helper
 def time_to_side(gap, closing, pull):
-    """Return the time until a particle touches the side that it is on, or inf.
+    """Return the time until a particle touches the side on which it is, or inf.
 
     gap : distance to the side
     closing : speed of approach
@@ -72,10 +72,10 @@ def time_to_side(gap, closing, pull):
 
 @inner_helper
 def time_to_far_side(gap, closing, pull):
-    """Return the time until a particle touches the side that it is not on, or inf.
+    """Return the time until a particle touches the opposite side of a line, or inf.
 
-    The gap is negative. The particle must pass the line, turn and come back. The arguments are explained in
-    `time_to_side`.
+    The gap is negative. The particle must pass the line, turn and come back. `time_to_side` explains the
+    arguments.
     """
     if closing >= 0.0 or pull <= 0.0:
         return inf
@@ -90,9 +90,9 @@ def _polynomial(c0, c1, c2, c3, c4, t):
 
 @inner_helper
 def _root_between(c0, c1, c2, c3, c4, low, high):
-    """Find a root of the quartic between `low` and `high`, where its signs differ.
+    """Find a root of a quartic between `low` and `high`, where its signs differ.
 
-    The method is Newton's within bisection.
+    The method is Newton's method safeguarded by bisection.
     """
     falls = _polynomial(c0, c1, c2, c3, c4, low) > 0.0
     t = 0.5 * (low + high)
@@ -119,12 +119,12 @@ def time_to_contact_pulled(gap, rv, vv, ra, va, aa):
     """Return the time until two particles touch; inf if they never do.
 
     Their separation is r + v t + a t^2 / 2; gap = r.r - sigma^2, rv = r.v, vv = v.v, ra = r.a, va = v.a, aa =
-    a.a > 0. The result is the first time at which they touch or overlap and approach: the quartic f(t) =
-    |r(t)|^2 - sigma^2 is examined between the roots of its derivative, and the derivative between the roots
-    of the second derivative, so that no grazing contact is missed.
+    a.a > 0. The result is the first time at which they touch or overlap and approach each other. The quartic
+    f(t) = |r(t)|^2 - sigma^2 is examined between the roots of its derivative, and the derivative between the
+    roots of the second derivative, so that no grazing contact is missed.
     """
     c0, c1, c2, c3, c4 = gap, 2.0 * rv, vv + ra, va, 0.25 * aa
-    # f'' = 2 c2 + 6 c3 t + 12 c4 t^2 splits time into intervals in which f' is monotonic
+    # f'' = 2 c2 + 6 c3 t + 12 c4 t^2 divides time into intervals in which f' is monotonic
     first = second = 0.0
     square = 9.0 * c3 * c3 - 24.0 * c4 * c2
     if square > 0.0:
@@ -150,7 +150,7 @@ def time_to_contact_pulled(gap, rv, vv, ra, va, aa):
         turn = stop
         if (slope < 0.0 and end_slope > 0.0) or (slope > 0.0 and end_slope < 0.0):
             turn = _root_between(c1, 2.0 * c2, 3.0 * c3, 4.0 * c4, 0.0, start, stop)
-        # f falls from `start` to `turn`, or from `turn` to `stop`, or nowhere in this interval
+        # f decreases from `start` to `turn`, or from `turn` to `stop`, or not at all in this interval
         at_once = slope < 0.0 or (slope == 0.0 and end_slope < 0.0)
         if at_once or end_slope < 0.0:
             low, high = (start, turn) if at_once else (turn, stop)
@@ -164,9 +164,9 @@ def time_to_contact_pulled(gap, rv, vv, ra, va, aa):
 
 @kernel
 def time_of_summit(rv, vv, ra, va, aa):
-    """Return the time of the greatest distance between two approaches; inf for a single approach.
+    """Return the time of the largest distance between two approaches; inf for a single approach.
 
-    The arguments are explained in `time_to_contact_pulled`.
+    `time_to_contact_pulled` explains the arguments.
     """
     c1, c2, c3, c4 = 2.0 * rv, vv + ra, va, 0.25 * aa
     square = 9.0 * c3 * c3 - 24.0 * c4 * c2

@@ -1,8 +1,8 @@
-"""Transfer of momentum between two particles that touch, or between a particle and a wall.
+"""Transfer of momentum between two touching particles, or between a particle and a wall.
 
-Smooth elastic particles exchange momentum alone. A `ContactLaw` adds restitution, spins and fixed particles
-(Spencer 2022, section 2.2); it works with three components. In two dimensions the third component of a
-velocity and the first two of a spin are 0.
+Smooth elastic particles exchange only momentum. A `ContactLaw` adds restitution, spins and fixed particles
+(Spencer 2022, section 2.2). It uses three components. In two dimensions the third component of a velocity and
+the first two of a spin are 0.
 """
 
 from math import sqrt
@@ -22,14 +22,12 @@ from gaspart.kernels.physics.contact import (
 from gaspart.kernels.physics.periodic import nearest
 from gaspart.kernels.physics.running_sum import add
 
-LEAST = (
-    2.0**-48
-)  # minimum speed of separation divided by the particles' speed: rounding would let them collide for ever
+LEAST = 2.0**-48  # minimum separation speed / speed: less would let rounding repeat the collision forever
 
 
 @inner_helper
 def gap_along(flights, i, j, axis, space):
-    """Return the separation of two particles along an axis, by the nearest image.
+    """Return the separation of two particles along an axis, for the nearest image.
 
     Along a third axis in two dimensions it is 0.
     """
@@ -73,11 +71,11 @@ def fastest_component(flights, i, space):
 
 @inner_helper
 def least_speed(flights, i, space):
-    """Return the minimum speed of separation of a particle from a wall.
+    """Return the minimum separation speed of a particle from a wall.
 
-    It is the particle's speed multiplied by the rounding error of the direction to the wall, which is the
-    rounding error of positions divided by the radius. With a smaller speed the particle would hit the wall
-    for ever.
+    It is the speed of the particle multiplied by the rounding error of the direction to the wall, which is
+    the rounding error of positions divided by the radius. With a smaller speed the particle would hit the
+    wall forever.
     """
     longest = flights[i].radius
     for k in range(len(space.lengths)):
@@ -128,7 +126,7 @@ def slip(velocity, spin, normal):
 def lose(approach, mobility, normal, usual, law, tally):
     """Count the energy dissipated by the normal part of a collision with this restitution.
 
-    The energy that the `usual` restitution would have dissipated in addition is counted separately.
+    The additional energy that the `usual` restitution would have dissipated is counted separately.
     """
     add(tally.sums, LOSS, 0.5 * (1.0 - normal * normal) * approach * approach / mobility)
     keep(0.5 * (normal * normal - usual * usual) * approach * approach / mobility, law.duration)
@@ -155,7 +153,7 @@ def rub(velocity, mobility, lever, tangential, law, tally):
 def add_spin(flights, i, normal, impulse, law):
     """Add the spin due to an impulse (3,) at a surface point (Spencer 2022, Eq. 26).
 
-    normal : unit vector towards the point
+    normal : unit vector towards the surface point
     """
     factor = flights[i].radius * law.inverse_inertia[i]
     law.spins[i, 0] += factor * (normal[1] * impulse[2] - normal[2] * impulse[1])
@@ -167,8 +165,8 @@ def add_spin(flights, i, normal, impulse, law):
 def exchange_with_vibration(i, j, approach, mobility, vibrations):
     """Exchange the normal energy of two particles with the energy of a vibrational mode.
 
-    The mode belongs to one of the particles. The exchange conserves the measure v dv dE and is its own
-    inverse in time. Returns the speed of separation, or -1 if neither particle has a mode.
+    The mode belongs to one of the particles. The exchange conserves the measure v dv dE and is reversible in
+    time. Returns the separation speed, or -1 if neither particle has a mode.
     """
     if vibrations is None:
         return -1.0
@@ -226,7 +224,7 @@ def collide_wall_by_law(flights, i, normal, least, space, tally, law):
     Returns the momentum given to the wall along the normal.
 
     normal : (3,), unit vector towards the wall
-    least : minimum speed of separation
+    least : minimum separation speed
     """
     mobility = law.inverse_mass[i]
     velocity = velocity_of(flights, i, space)
@@ -250,7 +248,7 @@ def collide_wall_by_law(flights, i, normal, least, space, tally, law):
 def is_fixed(i, law, duration):
     """Return True if a particle is fixed.
 
-    A particle held by a jam has no mobility either, but is not fixed.
+    A particle fixed by a jam has no mobility, but does not count as fixed.
     """
     if duration is not None:
         return duration.inverse_mass[i] == 0.0

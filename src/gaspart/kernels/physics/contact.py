@@ -1,9 +1,10 @@
 """Physics of one contact: the time at which two particles touch, and the transferred momentum.
 
-Both engines use only these functions. With r and v the separation and relative velocity of two particles
-(second minus first), they work on the invariants rr = r.r, rv = r.v, vv = v.v and ss = sigma^2, sigma the
-distance of the centres at contact; so they depend on no dimension, no container and no engine. The arithmetic
-keeps the type of its arguments (float32 stays float32): hence x + x for 2x.
+Both engines with contacts use these functions. The functions use the invariants rr = r.r, rv = r.v, vv = v.v
+and ss = sigma^2. r and v are the separation and the relative velocity of two particles (second minus first),
+and sigma is the distance of the centres at contact. So they do not depend on the dimension, the container or
+the engine. The arithmetic keeps the type of its arguments (float32 remains float32), so 2x is written as x +
+x.
 """
 
 from __future__ import annotations
@@ -16,11 +17,11 @@ from gaspart.kernels.physics.running_sum import add
 
 @helper
 def contact_root(rr, rv, vv, ss):
-    """Return the time of first touch of a pair on a collision course (rv < 0).
+    """Return the time of first touch for a pair on a collision course (rv < 0).
 
     This is the smaller root of vv t^2 + 2 rv t + (rr - ss) = 0, in the form without cancellation t = c/(-b +
-    sqrt(b^2 - ac)) (Spencer 2022, Eq. 21). It is negative for a pair that overlaps already: the touch was
-    that long ago, and the time-stepped engine rewinds by this time.
+    sqrt(b^2 - ac)) (Spencer 2022, Eq. 21). For a pair that already overlaps it is negative, the time since
+    the touch; the time-stepped engine rewinds by this time.
     """
     c = rr - ss
     return c / (sqrt(rv * rv - vv * c) - rv)
@@ -30,12 +31,12 @@ def contact_root(rr, rv, vv, ss):
 def time_to_contact(rr, rv, vv, ss):
     """Return the time until a pair touches; inf if it never does.
 
-    For a pair that touches or overlaps and approaches it is 0. Overlap due to rounding is never allowed to
-    grow. So a touching, approaching pair collides now (Bannerman, Strobl, Formella & Poeschel, Comput. Part.
+    For a pair that touches or overlaps and approaches it is 0. Overlap due to rounding must never grow. So a
+    touching, approaching pair collides immediately (Bannerman, Strobl, Formella & Poeschel, Comput. Part.
     Mech. 1, 191 (2014)).
     """
     c = rr - ss
-    if not ((rv < 0.0) & (rv * rv >= vv * c)):  # one branch, nearly always taken
+    if not ((rv < 0.0) & (rv * rv >= vv * c)):  # a single branch, which is nearly always taken
         return inf
     if c <= 0.0:
         return 0.0
@@ -46,8 +47,8 @@ def time_to_contact(rr, rv, vv, ss):
 def exchange_equal(rr, rv):
     """Return the factor k of an elastic contact of equal masses.
 
-    The velocities change by v1 += k r, v2 -= k r. The factor is computed with the true r.r, not sigma^2, so
-    that the energy does not depend on the contact's error.
+    The velocities change by v1 += k r, v2 -= k r. The factor is computed with the true r.r instead of
+    sigma^2, so that the energy is conserved in spite of the error of the contact.
     """
     return rv / rr
 
@@ -57,7 +58,7 @@ def exchange(rr, rv, mass1, mass2):
     """Return the factors k1, k2 of an elastic contact.
 
     The velocities change by v1 += k1 r, v2 -= k2 r. This is Spencer 2022, Eq. 39, for smooth particles,
-    written with 2 m2/(m1 + m2), in which no mass is lost however large the ratio.
+    written with 2 m2/(m1 + m2), so that no mass is lost for any mass ratio.
     """
     k = rv / rr
     total = mass1 + mass2
@@ -66,10 +67,10 @@ def exchange(rr, rv, mass1, mass2):
 
 @inner_helper
 def normal_change(approach, restitution, least):
-    """Return the change of the normal relative velocity by a collision.
+    """Return the change of the normal relative velocity in a collision.
 
-    `approach` becomes -restitution * approach (Spencer 2022, Eq. 35), or -least if this gives a higher speed
-    of separation.
+    `approach` becomes -restitution * approach (Spencer 2022, Eq. 35), or -least if this is a higher
+    separation speed.
     """
     return approach + max(restitution * approach, least)
 
@@ -98,8 +99,8 @@ def time_to_growing_contact(rr, rv, vv, sigma, rate):
     """Return the time until two growing particles touch; inf if they never do.
 
     The distance at contact is sigma + rate t. The result is the first root of a t^2 + 2 b t + c, a = vv -
-    rate^2, in the form that does not cancel (Lubachevsky & Stillinger, J. Stat. Phys. 60, 561 (1990)); 0 for
-    a pair that touches or overlaps, and approaches.
+    rate^2, in the form without cancellation (Lubachevsky & Stillinger, J. Stat. Phys. 60, 561 (1990)). It is
+    0 for a pair that touches or overlaps, and approaches.
     """
     a = vv - rate * rate
     b = rv - sigma * rate
@@ -116,23 +117,23 @@ def time_to_growing_contact(rr, rv, vv, sigma, rate):
 
 # Restitution of viscoelastic particles, which decreases with the speed of approach.
 #
-# Elastic and viscous forces of spheres in contact (Brilliantov, Spahn, Hertzsch and Poeschel, Phys. Rev. E
-# 53, 5382 (1996)) depend on one number, the damping b: with scaled lengths and times, x'' + b sqrt(x) x' +
-# x^(3/2) = 0 from x = 0, x' = 1 until the force vanishes. The damping grows as the fifth root of the speed.
-# The restitution is the approximant of Mueller and Poeschel, Phys. Rev. E 84, 021302 (2011), whose error is
-# below 0.009 (tests).
+# The elastic and viscous forces of spheres in contact (Brilliantov, Spahn, Hertzsch and Poeschel, Phys. Rev.
+# E 53, 5382 (1996)) depend on a single number, the damping b. With scaled lengths and times, x'' + b sqrt(x)
+# x' + x^(3/2) = 0 from x = 0, x' = 1 until the force vanishes. The damping is proportional to the fifth root
+# of the speed. The restitution is computed with the approximant of Mueller and Poeschel, Phys. Rev. E 84,
+# 021302 (2011), whose error is below 0.009 (tested).
 
 
 _ABOVE = 0.501086
 _BELOW = (0.501086, 1.15345, 0.577977, 0.532178)
-_STEPS = 6  # steps of Newton's method, to rounding
+_STEPS = 6  # number of steps of Newton's method to reach rounding errors
 
 
 @helper
 def fifth_root(value):
     """Compute the fifth root of a number that is not negative, to 4e-16.
 
-    Only +, -, x and / are used: the bits are the same on every machine.
+    Only +, -, x and / are used, so the bits are the same on every machine.
     """
     if not value > 0.0:
         return 0.0
@@ -148,7 +149,7 @@ def fifth_root(value):
 
 @helper
 def restitution_of(damping):
-    """Return the coefficient of normal restitution, from 1 without damping to 0."""
+    """Return the coefficient of normal restitution; it decreases from 1 (no damping) to 0."""
     w = sqrt(damping)
     below = 1.0 + w * (_BELOW[0] + w * (_BELOW[1] + w * (_BELOW[2] + w * _BELOW[3])))
     return (1.0 + _ABOVE * w) / below
@@ -167,20 +168,20 @@ def normal_restitution(approach, radius, mobility, normal, viscous):
     return restitution_of(viscous * fifth_root(max(approach, 0.0) * radius * mobility * mobility))
 
 
-# Contacts that last: dissipation at most once in a contact duration.
+# Lasting contacts: dissipation occurs at most once per contact duration.
 #
 # Hard particles that lose energy collide infinitely often in a finite time, and a pile at rest has contacts
 # all the time. In the TC model (Luding & McNamara, Granular Matter 1, 113 (1998)) a contact dissipates only
-# if neither particle has had another contact for a time t_c, the duration of a contact of real particles;
-# otherwise it is elastic. Contacts with walls count as well; a fixed particle is a wall.
+# if neither particle has had another contact for a time t_c, the contact duration of real particles.
+# Otherwise the contact is elastic. Contacts with walls also count; a fixed particle counts as a wall.
 #
-# Elastic here means: normal restitution 1, and no friction, not even for perfectly rough particles, which
-# would lose nothing: in a corner such particles exchange spin and velocity for ever, without leaving it
-# (no-slip billiards).
+# Elastic means a normal restitution of 1 and no friction, even for perfectly rough particles, which would not
+# lose energy. In a corner such particles would exchange spin and velocity forever without leaving it (no-slip
+# billiards).
 
 
 SHORTEST = 2.0**-7
-"""Shortest time between contacts of particles that are pressed together, as a fraction of the contact
+"""Minimum time between contacts of particles that are pressed together, as a fraction of the contact
 duration.
 """
 
@@ -198,7 +199,7 @@ def restitution_of_pair(flights, i, j, normal, law, duration):
 
     The particles have been advanced to the contact.
 
-    normal : restitution by the law alone
+    normal : restitution from the law alone
     """
     if duration is not None:
         time = flights[i].clock
@@ -219,7 +220,7 @@ def restitution_of_pair(flights, i, j, normal, law, duration):
 def restitution_at_wall(flights, i, normal, law, duration):
     """Return the (normal, tangential) restitution of a contact of a particle and a wall.
 
-    The arguments are explained in `restitution_of_pair`.
+    `restitution_of_pair` explains the arguments.
     """
     if duration is not None:
         time = flights[i].clock
@@ -242,7 +243,7 @@ def keep(energy, duration):
 def meet_often(flights, i, j, duration):
     """Return True if contacts of both particles are far more frequent than under gravity alone.
 
-    The particles have been advanced to the present time; gravity alone may press particles together.
+    The particles have been advanced to the present time. Gravity alone may press particles together.
     """
     late = flights[i].clock - min(duration.latest[i], duration.latest[j])
     return late < SHORTEST * SHORTEST * duration.length
@@ -250,7 +251,7 @@ def meet_often(flights, i, j, duration):
 
 @inner_helper
 def is_alone(flights, i, duration):
-    """Return True if a particle has met no other for the duration of a contact.
+    """Return True if a particle has had no contact with another one for the contact duration.
 
     The particle has been advanced to the present time.
     """

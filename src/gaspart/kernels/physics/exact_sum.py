@@ -1,9 +1,9 @@
 """Exact sums of float64 numbers of any size, independent of the order of addition.
 
-A sum is a row of whole numbers, the digits of a number in base 2^32 (Kulisch, Computer Arithmetic and
-Validity (2013), ch. 8): digit n counts units of 2^(32 n - 1074), so that the digits hold every float64. Each
-term is added to three of them, without a carry. The last number of a row counts the terms since the last
-carry; carries are made in time, so that nothing overflows and nothing is rounded. Sums of threads are added
+A sum is a row of integers, the digits of a number in base 2^32 (Kulisch, Computer Arithmetic and Validity
+(2013), ch. 8). Digit n counts units of 2^(32 n - 1074), so the digits can represent every float64. Each term
+is added to three of the digits, without carries. The last integer of a row counts the terms since the last
+carry. Carries are performed in time, so nothing overflows and nothing is rounded. Sums of threads are added
 digit by digit.
 """
 
@@ -15,17 +15,18 @@ from gaspart.kernels.compile.policy import inner_helper, kernel
 
 DIGITS = 68
 WIDTH = DIGITS + 1
-"""Number of whole numbers of a sum: its digits, the last of which has the sign, and the count of terms."""
+"""Number of integers in a sum: its digits, of which the last contains the sign, and the number of terms."""
 _BITS, _LOWEST = 32, -1074
 _MASK, _FRACTION, _HIDDEN, _EXPONENT = 2**32 - 1, 2**52 - 1, 2**52, 2**11 - 1
 _MOST_TERMS = 2**29  # a term adds less than 2^33 to a digit
 UNITS = np.array([math.ldexp(1.0, _BITS * n + _LOWEST) if n < 66 else 0.0 for n in range(DIGITS)])
-"""Units of the digits; the units of the highest two, which only carries reach, are above any float64."""
+"""Units of the digits. The units of the two highest digits, which only carries reach, exceed every float64.
+"""
 
 
 @inner_helper
 def carry(total):
-    """Carry, so that each digit except the last is from 0 to 2^32 - 1."""
+    """Perform carries, so that each digit except the last is between 0 and 2^32 - 1."""
     above = np.int64(0)
     for n in range(DIGITS - 1):
         digit = total[n] + above
@@ -73,7 +74,7 @@ def _magnitude(total):
 
 @inner_helper
 def _two_sum(a, b):
-    """Return a + b, rounded, and the rounding error."""
+    """Return the rounded sum a + b and its rounding error."""
     total = a + b
     added = total - a
     return total, (a - (total - added)) + (b - added)
@@ -83,7 +84,7 @@ def _two_sum(a, b):
 def join(parts, total):
     """Set total (K, WIDTH) to the sum of parts (threads, K, WIDTH), with carries.
 
-    The digits then depend only on the value of the sum.
+    Afterwards the digits depend only on the value of the sum.
     """
     total[...] = 0
     for part in range(parts.shape[0]):
@@ -98,7 +99,7 @@ def join(parts, total):
 def evaluate(sums, units, values):
     """Set values (K, 2) to the values of sums (K, WIDTH), whose digits are overwritten.
 
-    A value is the nearest float64, and the remainder, to 2^-64 of the value.
+    A value consists of the nearest float64 and the remainder, with a relative accuracy of 2^-64.
 
     units : `UNITS`
     """
@@ -109,9 +110,9 @@ def evaluate(sums, units, values):
             top -= 1
         for n in range(top - 2):
             if total[n] != 0:
-                total[top - 2] |= 1  # decides if the digits are half-way between two float64
+                total[top - 2] |= 1  # decides if the digits are exactly between two float64
         value = rest = 0.0
-        for n in range(3):  # 65 bits at least, and few enough for two float64 to hold
+        for n in range(3):  # at least 65 bits, and few enough for two float64
             value, error = _two_sum(value, total[top - n] * units[top - n])
             rest += error
         value, rest = _two_sum(value, rest)

@@ -1,6 +1,6 @@
 """Flights of particles between events: straight, or parabolic under gravity.
 
-`flights` (N,) are records of position, velocity, clock and radius (`model.flight_dtype`). If `gravity` equals
+`flights` (N,) are records of position, velocity, clock and radius (`model.flight_dtype`). If `gravity` is
 None, the machine code contains no gravity.
 """
 
@@ -15,9 +15,9 @@ from gaspart.kernels.physics.contact import time_to_contact
 
 @inner_helper
 def face_plane(flights, i, axis, upper, space):
-    """Return the coordinate at which a face of the container stops a particle's centre.
+    """Return the coordinate at which a face of the container stops the centre of a particle.
 
-    On a periodic axis the centre passes on there.
+    On a periodic axis the centre crosses the face there.
     """
     inset = 0.0 if space.periodic[axis] else space.margin * flights[i].radius
     return space.lengths[axis] - inset if upper else inset
@@ -33,7 +33,7 @@ def is_supported(support, i):
 
 @inner_helper
 def remaining_pull(support, i, axis):
-    """Return the acceleration along an axis of a particle that is supported."""
+    """Return the acceleration along an axis of a particle that is supported by walls."""
     if support is None:
         return 0.0
     return support.pull[i, axis]
@@ -43,7 +43,7 @@ def remaining_pull(support, i, axis):
 def acceleration_of(flights, i, axis, space, gravity):
     """Return the acceleration of a particle along an axis.
 
-    It is 0 if the particle is fixed, or lies at rest on the face below; on walls it is the part of gravity
+    It is 0 if the particle is fixed, or lies at rest on the face below. On walls it is the part of gravity
     that they do not support.
     """
     if is_supported(gravity.support, i) and not gravity.fixed[i]:
@@ -62,9 +62,10 @@ def acceleration_of(flights, i, axis, space, gravity):
 
 @inner_helper
 def mark_resting(flights, i, space, gravity, resting):
-    """Mark in `resting` (N,) whether a particle may not be accelerated.
+    """Mark in `resting` (N,) particles that may not be accelerated.
 
-    This is so if it is fixed, supported, or does not move along an axis with gravity (see `acceleration_of`).
+    A particle is marked if it is fixed, supported, or does not move along an axis with gravity (see
+    `acceleration_of`).
     """
     if gravity is not None:
         rests = gravity.fixed[i] | is_supported(gravity.support, i)
@@ -157,20 +158,20 @@ def time_of_contact(flights, i, j, offset, space, gravity):
     return start + time_to_contact(rr, rv, vv, ss)
 
 
-# Planes across an axis, at the boundaries of equal bins: the planes below which an impulse acts.
+# Planes across an axis at the boundaries of equal bins. An impulse counts for all planes above it.
 #
-# An impulse dp on a particle at z changes the momentum below every plane above z. For the planes within one
-# bin this holds for the fraction 1 - f, where f is the particle's height in the bin as a fraction of it: dp
-# (1 - f) is added to the bin, dp f to the next one, and the mean over the planes of a bin is the sum of all
-# bins up to it (docs/estimators.md). Impulses of any origin count, from contacts, walls and edges of wells:
-# all changes of a velocity between two flights.
+# An impulse dp on a particle at z changes the momentum below every plane above z. Of the planes within the
+# particle's own bin, this holds for the fraction 1 - f, where f is the relative height of the particle in the
+# bin. So dp (1 - f) is added to the bin and dp f to the next one. The mean over the planes of a bin is then
+# the sum of all entries up to the bin (docs/estimators.md). All impulses count, from contacts, walls and
+# edges of wells: every change of a velocity between two flights.
 
 
 @inner_helper
 def row_of(i, row):
-    """Return the row of sums of a particle.
+    """Return the row of sums for a particle.
 
-    `row` (N,) has the rows of the particles, or equals None if there is one row.
+    `row` (N,) contains the rows of the particles, or equals None if there is a single row.
     """
     if row is None:
         return 0
@@ -181,7 +182,7 @@ def row_of(i, row):
 def bin_at(position, bins):
     """Return the bin of a position, and the fraction of the bin below the position.
 
-    The position is counted in bins. A position outside counts in the last bin on that side, by the same
+    The position is in units of bins. A position outside belongs to the last bin on that side, with the same
     linear formula.
     """
     bin_ = min(max(np.int64(position), 0), bins - 1)

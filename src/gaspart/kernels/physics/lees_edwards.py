@@ -1,8 +1,8 @@
 """Gas whose periodic images slide (Lees & Edwards, J. Phys. C 5, 1921 (1972)).
 
 Images above the container are displaced along the flow, axis 0, by the distance that a flow of constant shear
-rate has moved them since time 0, and images below by the same distance against it; their velocities differ by
-the velocity of this motion.
+rate has moved them since time 0. Images below are displaced by the same distance in the opposite direction.
+The velocities of images differ by the velocity of this motion.
 """
 
 from math import copysign, inf
@@ -22,7 +22,7 @@ UPPER_FACE = 2 * GRADIENT + 1
 def displacement(time, shear):
     """Return the displacement of the images above at a clock time.
 
-    Whole lengths of the container are left out.
+    The displacement is reduced modulo the length of the container.
     """
     return shear.origin[0] + shear.velocity * time
 
@@ -35,9 +35,9 @@ def flow_at(y, space, shear):
 
 @inner_kernel
 def cross_sheared(particles, i, upper, mass, space, tally, shear):
-    """Give a particle at a sheared face position and velocity of its image that enters.
+    """Give a particle at a sheared face the position and velocity of its image that enters.
 
-    The energy that it loses is the energy that the face takes.
+    The energy that it loses is the energy that the face receives.
     """
     flights, side, length = particles.flights, 1.0 if upper else -1.0, space.lengths[FLOW]
     x = flights[i].position[FLOW] - side * displacement(flights[i].clock, shear)
@@ -64,9 +64,9 @@ def time_of_sheared_contact(flights, i, j, image, offset, space, shear):
     """Return the time at which two particles touch across a sheared face, or inf.
 
     Particle j is in the images above (`image` 1) or below (-1), in any of the images along the flow. No image
-    is touched before the distance of the centres across the flow equals the distance at contact. Then it is
-    either the nearest image or the next image to arrive: it is still at this distance when it passes, or no
-    image is touched.
+    is touched before the distance of the centres across the flow equals the contact distance. At that time
+    only the nearest image and the next arriving image matter. Either the contact is with one of them, which
+    is still at this distance when it passes, or there is no contact.
 
     offset : displacement of the image along a third axis
     """

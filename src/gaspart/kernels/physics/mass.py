@@ -1,4 +1,4 @@
-"""Mass of a particle, from the entry of the model that has it."""
+"""Mass of a particle, from the entry of the model that contains it."""
 
 from gaspart.kernels.compile.policy import inner_kernel
 

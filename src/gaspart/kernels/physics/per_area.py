@@ -1,7 +1,7 @@
 """Momentum and heat given to faces by particles of several sizes, divided by accessible areas.
 
-The accessible area of a face is the area that centres of particles of a size can reach. Particles of one size
-need no sums of their own: their area is one number.
+The accessible area of a face is the area that centres of particles of one size can reach. If all particles
+have one size, no separate sums are needed, because the area is a single number.
 """
 
 from typing import NamedTuple
@@ -21,7 +21,7 @@ class PerArea(NamedTuple):
     inverse : (sizes, 2d), inverse of the area of each face that centres of particles of a size can reach, 0
         without such an area
     size : (N,), size of each particle
-    sums : (2d (d + 1), 2), momentum of each face along each axis, outwards along the normal, and energy, see
+    sums : (2d (d + 1), 2), momentum of each face along each axis (normal component outwards), and energy, see
         `physics.running_sum.add`
     """
 
@@ -44,7 +44,7 @@ def velocity_before(flights, i, per_area):
 
 @inner_helper
 def spin_energy(i, law):
-    """Return the energy of the spin of a particle; 0 for smooth particles."""
+    """Return the rotational energy of a particle; 0 for smooth particles."""
     if law is None:
         return 0.0
     if law.tangential > -1.0:
@@ -55,7 +55,7 @@ def spin_energy(i, law):
 
 @inner_helper
 def spin_before(i, law, per_area):
-    """Return the energy of the spin of a particle if it is summed, otherwise 0."""
+    """Return the rotational energy of a particle if it is summed, otherwise 0."""
     if per_area is not None:
         return spin_energy(i, law)
     return 0.0
@@ -63,9 +63,9 @@ def spin_before(i, law, per_area):
 
 @inner_helper
 def add_per_area(flights, i, face, before, model, per_area):
-    """Add the momentum and energy that a face has taken from a particle.
+    """Add the momentum and energy that a face has received from a particle.
 
-    before : velocity of the particle before the hit, and the energy of its spin
+    before : velocity of the particle before the hit, and its rotational energy
     """
     if per_area is not None:
         (velocity, spin), law = before, model.law

@@ -1,11 +1,11 @@
-"""Coordinates along an axis: the box of a coordinate, and differences by the nearest image."""
+"""Coordinates along an axis: the box of a coordinate, and differences for the nearest image."""
 
 from gaspart.kernels.compile.policy import inner_helper
 
 
 @inner_helper
 def box_coordinate(x, width, per_side):
-    """Return the index along an axis of the box that contains x; outside, the outermost box."""
+    """Return the index along an axis of the box that contains x; outside, the outermost."""
     c = int(x / width)
     return min(max(c, 0), per_side - 1)
 

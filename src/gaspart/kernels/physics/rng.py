@@ -1,7 +1,7 @@
-"""Random numbers in kernels, functions of a key, a particle and its own count.
+"""Random numbers in kernels, functions of a key, a particle and a count per particle.
 
-So they do not depend on the order in which events are found, nor on anything other than these numbers. All
-results of the random words use only +, -, x, / and the square root, as in `random`.
+So they do not depend on the order in which events are found, or on anything else. All numbers are computed
+from the random words with only +, -, x, / and the square root, as in `random`.
 """
 
 from math import frexp, sqrt
@@ -14,7 +14,7 @@ from gaspart.kernels.physics.logarithm import LN2, LOG_SERIES
 _M0, _M1 = np.uint64(0xD2E7470EE14C6C93), np.uint64(0xCA5A826395121157)
 _W0, _W1 = np.uint64(0x9E3779B97F4A7C15), np.uint64(0xBB67AE8584CAA73B)
 _HALF, _LOW, _ROUNDS = np.uint64(32), np.uint64(0xFFFFFFFF), 10
-_SPARE = np.uint64(12)  # bits of a word that a uniform number leaves unused
+_SPARE = np.uint64(12)  # number of bits of a word that a uniform number does not use
 
 
 @helper
@@ -55,7 +55,7 @@ def uniform(random_bits):
 
 @kernel
 def log_of(x):
-    """Compute ln x of a positive number, to the same bits as `random.natural_log`."""
+    """Compute ln x of a positive number, with the same bits as `random.natural_log`."""
     mantissa, exponent = frexp(x)
     if mantissa < 0.7071067811865476:
         mantissa = 2.0 * mantissa
@@ -84,7 +84,7 @@ def normal_pair(key, particle, number, block):
 
     Also returns the first unused block of random words.
 
-    block : first block to use, at least 1, since `flux_speed` takes block 0
+    block : first block to use, at least 1, because `flux_speed` uses block 0
     """
     while True:
         words = random_words(key, particle, number, block)
@@ -92,6 +92,6 @@ def normal_pair(key, particle, number, block):
         for n in (0, 2):
             u, v = 2.0 * uniform(words[n]) - 1.0, 2.0 * uniform(words[n + 1]) - 1.0
             s = u * u + v * v
-            if s < 1.0:  # and above 0, since u and v are odd multiples of 2^-52
+            if s < 1.0:  # and above 0, because u and v are odd multiples of 2^-52
                 factor = sqrt(-2.0 * log_of(s) / s)
                 return u * factor, v * factor, block

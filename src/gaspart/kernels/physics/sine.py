@@ -1,6 +1,6 @@
 """Sine and cosine with the same bits on every machine.
 
-They are computed by +, -, x and / alone.
+They are computed with only +, -, x and /.
 """
 
 from math import floor
@@ -16,7 +16,7 @@ COSINE_SERIES = (
     1.0, -1.0 / 2.0, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40320.0, -1.0 / 3628800.0, 1.0 / 479001600.0,
     -1.0 / 87178291200.0, 1.0 / 20922789888000.0,
 )  # fmt: skip
-"""Coefficients of the series in even powers; the sine's series lacks its first factor x.
+"""Coefficients of the series in even powers. The series of the sine must be multiplied by x.
 
 Within an eighth of a turn around 0 the truncation error is below 1e-16.
 """
@@ -24,9 +24,9 @@ Within an eighth of a turn around 0 the truncation error is below 1e-16.
 
 @helper
 def sine_cosine(turns):
-    """Compute sin and cos of 2 pi turns, to 3e-16.
+    """Compute sin and cos of 2 pi turns, with an error of at most 3e-16.
 
-    The series is evaluated about the nearest quarter of a turn.
+    The series is evaluated relative to the nearest quarter of a turn.
     """
     quarter = floor(4.0 * turns + 0.5)
     x = TURN * (turns - 0.25 * quarter)

@@ -1,9 +1,9 @@
-"""Contacts by rules of the event-driven engine: special faces, rough or vibrating particles.
+"""Contacts with rules of the event-driven engine: special faces, and rough or vibrating particles.
 
-Special faces are faces with a kind. The physics is the event-driven engine's own, on its flights: this module
-writes a particle into its flight, with the clock at 0, the end of the step, finds the past time at which it
-reached a face, and writes it back. Only one thread does this; the sums are integers all the same, since the
-order of slots is not fixed.
+The functions of the event-driven engine are applied to its flights. This module writes a particle into its
+flight with the clock at 0, the end of the step. It finds the past time at which the particle reached a face,
+and writes the flight back. Only one thread does this. The sums are nevertheless integers, because the order
+of slots is not fixed.
 """
 
 from __future__ import annotations
@@ -24,23 +24,22 @@ from gaspart.kernels.physics.flight import advance, bin_at, face_plane, row_of
 from gaspart.kernels.physics.running_sum import add, add_whole
 from gaspart.kernels.step.model import LOSS, VIRIAL
 
-# Impulses by the position where a particle receives them, along one axis (`kernels.physics.flight`), in
-# steps.
+# Impulses, tallied by the position where a particle receives them, along one axis (`kernels.physics.flight`),
+# for time steps.
 #
-# Between two impulses a particle flies freely here too, for a time that may be negative: the position of a
-# contact is the one to which the pair is rewound, the position of a reflection is the face. So positions
-# change by flights alone, and the transport through planes follows from the impulses, to rounding, for any
-# step.
+# Between two impulses a particle flies freely, possibly for a negative time. The position of a contact is the
+# position to which the pair is rewound, and the position of a reflection is the face. So positions change
+# only by flights, and the transport through planes follows from the impulses, up to rounding, for any step.
 
 
 @inner_helper
 def place_and_speed(particles, slot, ago, tally, impulses):
-    """Return a particle's past position, and its velocity at the end of the step.
+    """Return the past position of a particle, and its velocity at the end of the step.
 
-    The position is on its present flight. Both are along the axis of the impulses; they are 0 if no impulses
+    The position is on its present flight. Both are along the axis of the impulses. They are 0 if no impulses
     are tallied.
 
-    ago : time before the end of the step, negative
+    ago : time relative to the end of the step, negative
     """
     if impulses is not None:
         v = np.float64(particles.velocities[tally.axis, slot])
@@ -50,7 +49,7 @@ def place_and_speed(particles, slot, ago, tally, impulses):
 
 @inner_helper
 def add_impulse(particles, slot, position, change, tally, thread, impulses):
-    """Add the impulse, at a position, that has changed a particle's velocity along the axis."""
+    """Add the impulse that has changed a particle's velocity, at a position along the axis."""
     if impulses is not None:
         if change != 0.0:
             bins, number = impulses.shape[2] - 1, particles.index[slot]
@@ -80,7 +79,7 @@ def add_contact(particles, slot, before, tally, impulses):
 def add_reflection(particles, slot, axis, at, tally, thread, impulses):
     """Add the impulse of a face across an axis.
 
-    at : position of the face, and the change of the velocity
+    at : position of the face, and change of the velocity
     """
     if impulses is not None:
         if axis == tally.axis:
@@ -105,7 +104,7 @@ def own_impulses(impulses, part):
     return impulses[part : part + 1]
 
 
-_SHORT = 2.0**-12  # time as a fraction of a step below which bounces on a floor are not distinguished
+_SHORT = 2.0**-12  # fraction of a step below which bounces on a floor are not distinguished
 
 
 class Rules(NamedTuple):
@@ -116,8 +115,8 @@ class Rules(NamedTuple):
     flights : (N,), workspace for particles
     model : the law and the faces
     tally : workspace for the contribution of one event
-    free : (d, 2), coordinates between which a particle that no face holds hits no face and no edge
-    holds : whether any face may hold particles
+    free : (d, 2), coordinates between which a particle that is not stuck to a face hits no face and no edge
+    holds : True if any face can hold particles
     heat : (2d, 2), heat given to each face, by `physics.running_sum.add_whole`
     """
 
@@ -145,7 +144,7 @@ def is_free(particles, slot, rules):
 def gather(particles, slot, rules):
     """Write the particle in a slot into its flight, with the clock at 0.
 
-    Returns its number.
+    Returns the number of the particle.
     """
     flights, i = rules.flights, np.int64(particles.index[slot])
     for k in range(particles.positions.shape[0]):
@@ -158,7 +157,7 @@ def gather(particles, slot, rules):
 
 @inner_kernel
 def scatter(particles, slot, rules):
-    """Write a flight back into its slot; return the square of the particle's speed."""
+    """Write a flight back into its slot; return the squared speed of the particle."""
     flights, i = rules.flights, particles.index[slot]
     square = 0.0
     for k in range(particles.positions.shape[0]):
@@ -172,9 +171,9 @@ def scatter(particles, slot, rules):
 def crossing_time(flights, i, axis, space, faces):
     """Return when a particle crossed a face or the edge of a well: (time, face code).
 
-    The crossing is along an axis, on the present flight, before the end of the step; without one the result
-    is (inf, NONE). A particle that is stuck to a face but moves left its plane then; the decision whether it
-    is released is made at that time.
+    The crossing is along an axis, on the present flight, before the end of the step. Without a crossing the
+    result is (inf, NONE). A particle that is stuck to a face but moves has left its plane at this time, when
+    its release is decided.
     """
     v = flights[i].velocity[axis]
     if v == 0.0:
@@ -183,7 +182,7 @@ def crossing_time(flights, i, axis, space, faces):
     side = faces.well_side[i, axis]
     if side != 0 and faces.kind[2 * axis + (1 if side > 0 else 0)] == STICKY:
         upper = side > 0
-    else:  # no particle comes to a plane before the edge of its well
+    else:  # no particle reaches a plane before the edge of its well
         time, face = time_to_edge(flights, i, axis, space, faces)
         if time <= 0.0:
             return time, face
@@ -193,10 +192,10 @@ def crossing_time(flights, i, axis, space, faces):
 
 @inner_kernel
 def crossing_time_pulled(flights, i, axis, pull, space, dt):
-    """Return when a particle crossed a face under gravity along an axis: (time, face code).
+    """Return the time at which a particle crossed a face under gravity: (time, face code).
 
-    The formulas are the ones of `motion.reflect_falling`. If a particle was pushed out by a contact, or comes
-    down too slowly to resolve its bounces, the time is the end of the step.
+    `motion.reflect_falling` has the same formulas. If a contact has pushed a particle out, or if it falls
+    too slowly to resolve its bounces, the time is the end of the step.
     """
     v = flights[i].velocity[axis]
     for side in range(2):
@@ -237,7 +236,7 @@ def first_crossing(flights, i, space, dt, faces, gravity):
 
 @inner_helper
 def pop_sum(sums, n):
-    """Reset one of the sums (K, 2) to zero; return its value before."""
+    """Reset one of the sums (K, 2) to zero; return its previous value."""
     x = sums[n, 0] + sums[n, 1]
     sums[n, 0] = sums[n, 1] = 0.0
     return x
@@ -280,7 +279,7 @@ def add_impulse_of_face(particles, slot, before, rules, tally, impulses):
 def meet_faces(particles, slot, rules, dt, tally, law):
     """Process all faces that a particle has crossed, one after another.
 
-    Returns whether there was any.
+    Returns True if there was any.
     """
     i = gather(particles, slot, rules)
     flights, model, met = rules.flights, rules.model, False
@@ -309,11 +308,11 @@ def meet_faces(particles, slot, rules, dt, tally, law):
 
 @inner_kernel
 def collide_flights(particles, i, j, contact, rules, tally, law):
-    """Apply the collision law to the particles in two slots; return the squares of both speeds.
+    """Apply the collision law to the particles in two slots; return both squared speeds.
 
-    Particles fall alike, so that relative to each other they move straight.
+    All particles have the same acceleration, so they move uniformly relative to each other.
 
-    contact : time since the contact, negative, and the invariants rr, rv then
+    contact : time of the contact, negative, and the invariants rr, rv at this time
     """
     ago, rr, rv = contact
     flights, space = rules.flights, rules.model.space

@@ -1,7 +1,7 @@
-"""Search of overlapping pairs by the boxes of Frederickx & Meerts (2010), and the time step.
+"""Search of overlapping pairs with the boxes of Frederickx & Meerts (2010), and the time step.
 
-The number of boxes is arbitrary, down to one. Each pair is tested once: the rest of the particle's own box
-first, then the neighbouring boxes of higher index.
+The number of boxes is arbitrary, and may be one. Each pair is tested once: first the rest of the particle's
+own box, then the neighbouring boxes with higher indices.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class StepBoxes(NamedTuple):
     at : (N, 3), coordinates of each slot's box
     head : (boxes,), first slot of each box
     following : (N,), next slot after each slot
-    near : whether neighbouring boxes are left out that are farther from a particle's centre than `reach`
+    near : True to skip neighbouring boxes that are farther from the centre of a particle than `reach`
     reach : distance at contact
     """
 
@@ -72,7 +72,7 @@ def sort_in(particles, boxes):
 
 @inner_helper
 def gap_squared(particles, slot, boxes, axis, offset):
-    """Return the squared distance of a particle from the slab of a box along an axis.
+    """Return the squared distance between a particle and the slab of a box along an axis.
 
     offset : position of the box relative to the particle's box (-1, 0, 1)
     """
@@ -89,7 +89,7 @@ def gap_squared(particles, slot, boxes, axis, offset):
 
 @inner_kernel
 def is_out_of_reach(particles, slot, boxes, dx, dy, dz):
-    """Return True if a neighbouring box is too far away to hold a partner's centre."""
+    """Return True if a neighbouring box is too far away for the centre of a partner."""
     square = gap_squared(particles, slot, boxes, 0, dx - 1)
     square += gap_squared(particles, slot, boxes, 1, dy - 1)
     if particles.positions.shape[0] == 3:
@@ -99,7 +99,7 @@ def is_out_of_reach(particles, slot, boxes, dx, dy, dz):
 
 @inner_kernel
 def search_all(particles, i, space, step, overlaps):
-    """Test a particle against all particles before it; return the number of tests.
+    """Test a particle against all preceding particles; return the number of tests.
 
     For each block of particles the test is a loop without branches.
     """
@@ -122,7 +122,7 @@ def search_all(particles, i, space, step, overlaps):
 
 @inner_helper
 def search_list_of_box(particles, i, j, boxes, space, step, overlaps):
-    """Test a particle against slot j and all slots that follow in its box.
+    """Test a particle against slot j and all following slots in its box.
 
     Returns the number of tests.
     """
@@ -172,12 +172,13 @@ def search_boxes(particles, boxes, space, step, overlaps, tally):
     tally.counts[BOX_VISITS] += visits
 
 
-# Sequence of small steps: the canonical step of the time-stepped engine.
+# Sequence of time steps of the time-stepped engine.
 #
-# A step moves all particles, reflects the particles that left through a wall, finds all pairs that overlap
-# and approach, and resolves them in the order of their contact time and indices, testing each again; further
-# passes find pairs that the first has left or made. The kind of search changes no bit of the result. All
-# arithmetic keeps the precision of the positions (float32 or float64): hence dt - dt for 0 and x + x for 2x.
+# A step moves all particles, reflects particles that left through a wall, and finds all pairs that overlap
+# and approach. It resolves them in the order of contact time and indices, testing each pair again. Further
+# passes find pairs that the first pass missed or created. The kind of search does not change any bit of the
+# result. All arithmetic has the precision of the positions (float32 or float64), so 0 is written as dt - dt
+# and 2x as x + x.
 
 
 @inner_helper
@@ -192,7 +193,7 @@ def total_pull(gravity):
 
 @inner_allocating_kernel
 def update_list(particles, pairs, space, tally, before, threads, cells):
-    """Renew the list if it is outdated; return its pairs, and `before`, see `Step`."""
+    """Renew the neighbour list if it is outdated; return its pairs, and `before`, see `Step`."""
     if cells is not None:
         if is_outdated(particles, cells, space, threads):
             return make_list(particles, cells, pairs, space, tally, threads), int64(0)
@@ -227,11 +228,11 @@ def find_contacts(particles, search, space, step, overlaps, tally, threads):
 
 @allocating_kernel
 def run_steps(particles, search, model, settings, steps, tally, threads):
-    """Perform a number of steps; for zero steps, only renew the list if it is outdated.
+    """Perform a number of steps; for zero steps, only renew an outdated neighbour list.
 
     Returns the present pairs of the list.
 
-    settings : length of the steps, whether contacts are rewound, and the maximum number of passes
+    settings : length of the steps, True to rewind contacts, and the maximum number of passes
     threads : number of threads, or None for one thread
     """
     boxes, cells, pairs = search

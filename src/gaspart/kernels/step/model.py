@@ -1,10 +1,10 @@
-"""Data structures of the time-stepped engine's kernels: particles, search, model, step, tally.
+"""Data structures of the kernels of the time-stepped engine: particles, search, model, step, and counters.
 
-A *slot* is a particle's present position in memory; `index` gives the particle's number. Arrays are by axis,
-in the order of slots. Arguments have one order: the particles and their indices, the structures of the
-search, the model, the step, the tally, the thread, and last arguments that may be absent, as in
-`kernels.model`. All real numbers have the precision of the positions (float32 or float64). Sums of several
-threads are integers, so that they do not depend on the order of addition.
+A *slot* is the present position of a particle in memory; `index` contains the number of the particle in each
+slot. Arrays are indexed by axis, then by slot. Arguments have a fixed order: the particles and their indices,
+the structures of the search, the model, the step, the tally, the thread, and finally arguments that may be
+None, as in `kernels.model`. All floating-point numbers have the precision of the positions (float32 or
+float64). Sums over several threads are integers, so they do not depend on the order of addition.
 """
 
 from __future__ import annotations
@@ -26,7 +26,9 @@ COUNTS = (
     "fixed_collisions",
 )
 SUMS, EXTREMES = ("virial_sum", "dissipated_energy"), ("deepest_overlap", "worst_contact")
-"""Entries of StepTally by the fields of `state.tally.Tally`; two more counts are for the engine alone."""
+"""Indices of StepTally, under the names of fields of `state.tally.Tally`; two additional counters are used
+only by the engine.
+"""
 _NUMBERS = range(len(COUNTS) + 2)
 COLLISIONS, PAIR_TESTS, BOX_VISITS, OVERLAPS_LEFT, MULTIPLE, REBUILDS, FIXED, LATE, PASSED = _NUMBERS
 VIRIAL, LOSS = range(len(SUMS))
@@ -46,8 +48,8 @@ class StepParticles(NamedTuple):
     masses : (N,), by particle
     last_pass : (N,), number of the pass of the last contact, by slot
     bounds : (2,), upper bounds of the speed of the FASTEST particle and of the largest DISPLACEMENT since the
-        list was made
-    ordinary : number of slots in boxes and cells; the particles beyond, too large for them, come last
+        neighbour list was made
+    ordinary : number of slots in boxes and cells; oversized particles come after these slots
     """
 
     positions: np.ndarray
@@ -68,7 +70,7 @@ class StepModel(NamedTuple):
     ----------
     normal : restitution of smooth contacts
     impulse_share : impulse of such a contact divided by the elastic impulse, (1 + normal) / 2
-    inset : largest radius of an ordinary particle that a wall stops
+    inset : largest radius of an ordinary particle, as far as walls stop surfaces
     gravity : (d,), or None
     rules : see `boundaries.Rules`, or None
     law : or None
@@ -84,7 +86,7 @@ class StepModel(NamedTuple):
 
 
 class Search(NamedTuple):
-    """Search for contacts: boxes, or cells and pairs of a neighbour list.
+    """Search for contacts: boxes, or the cells and pairs of a neighbour list.
 
     Attributes
     ----------
@@ -104,11 +106,11 @@ class Step(NamedTuple):
     Attributes
     ----------
     dt : length of the step
-    rewind : whether pairs collide in the state of their contact
-    parting : whether overlaps count that began in this step and shrink
+    rewind : True if pairs collide in the state of their contact
+    parting : True if overlaps count that began in this step and shrink
     number : number of this pass, counted from 1 over all steps
     first : number of the first pass of the step
-    before : number of the previous pass if only its contacts have changed the result of a search, otherwise 0
+    before : number of the previous pass if only its contacts changed since the last search, otherwise 0
     """
 
     dt: float
@@ -120,9 +122,9 @@ class Step(NamedTuple):
 
 
 class StepTally(NamedTuple):
-    """Counts and sums of a run in steps.
+    """Counters and sums of a run with time steps.
 
-    They are not in nested tuples: numba passes no tuples in tuples to threads.
+    They are not in nested tuples, because numba does not pass nested tuples to threads.
 
     Attributes
     ----------
@@ -142,9 +144,9 @@ class StepTally(NamedTuple):
     row : (N,), row of each particle, or None if there is one row
     per_area : (threads, 2d, 2, 2), by `add_whole`, momentum along its normal and heat given to each face,
         both multiplied by `share`; None unless accessible areas differ between sizes
-    share : (sizes, 2d), least area of a face that centres of particles of any size can reach, divided by the
-        area for the particle's size
-    size : (N,), size of each particle
+    share : (sizes, 2d), smallest accessible area of a face over all sizes, divided by the accessible area for
+        the particle's size
+    size : (N,), size number of each particle
     fixed : True if there are fixed particles, whose collisions are counted separately, otherwise None
     """
 
@@ -175,7 +177,7 @@ class Overlaps(NamedTuple):
     ----------
     pairs : (threads, room, 2), slots
     times : (threads, room)
-    number : (threads,), which may exceed the room
+    number : (threads,), number of contacts, which may exceed the capacity
     tests : (threads,), number of tested pairs
     touching : (threads, n), workspace for the touching pairs of a block
     """
@@ -196,14 +198,14 @@ def part_of(part, parts, count):
     return part * count // parts, (part + 1) * count // parts
 
 
-# Cells of a neighbour list: rows along the first axis, and the particles in memory in their order.
+# Cells of a neighbour list: rows along the first axis. Particles are stored in memory in the order of cells.
 #
-# So the particles in three consecutive cells of a row are one range of slots. A layer of empty cells
-# surrounds the cells; behind a periodic face a row of this layer holds the slots of the row across the
-# container.
+# So the particles in three consecutive cells of a row occupy one range of slots. A layer of empty cells
+# surrounds the cells. Behind a periodic face, a row of this layer contains the slots of the row at the
+# opposite side of the container.
 
 
-ONE = np.uint32(1)  # whole numbers of this type index arrays without a test for negative ones
+ONE = np.uint32(1)  # unsigned indices need no test for negative values
 
 
 class Cells(NamedTuple):
@@ -211,14 +213,14 @@ class Cells(NamedTuple):
 
     Attributes
     ----------
-    per_side : (3,), number of cells along each axis, without the layer around them
+    per_side : (3,), number of cells along each axis, without the surrounding layer
     inverse : (3,), inverse widths of the cells
-    strides : (3,), strides of the index with that layer, which is two cells deep where a row begins
-    wraps : (3,), whether the first and the last cell along an axis are neighbours
-    ends : (cells,), slot behind which the particles of each cell end
+    strides : (3,), index strides including the layer, which is two cells deep where a row begins
+    wraps : (3,), True if the first and the last cell along an axis are neighbours
+    ends : (cells,), end of the slots of each cell
     cell : (N,), cell of the particle in each slot when the list was made
     order : (N,), workspace of the sort
-    skin : distance beyond a contact up to which pairs are listed
+    skin : skin: distance beyond a contact up to which pairs are listed
     origin : (d, N), position of the particle in each slot when the list was made
     held : (N,), see `shared_contacts`
     listed : (threads,), length of each thread's list
@@ -239,7 +241,7 @@ class Cells(NamedTuple):
 
 @inner_helper
 def coordinate(x, inverse, per_side):
-    """Return the index along an axis of the cell that contains x; outside, the outermost cell."""
+    """Return the index along an axis of the cell that contains x; outside, the outermost."""
     return min(max(int(x * inverse), 0), per_side - 1)
 
 
@@ -265,7 +267,7 @@ def locate_part(particles, part, cells):
 def divide_cells(cells, ordinary, shares):
     """Divide the cells among threads so that each has about the same number of particles.
 
-    This holds if the particles are where they were at the last sort.
+    The particle numbers of the last sort are used.
 
     shares : (threads + 1,), cells shares[n] to shares[n + 1] belong to thread n
     """
@@ -280,7 +282,7 @@ def divide_cells(cells, ordinary, shares):
 def order_part(cells, ordinary, first, end):
     """Sort the slots in one thread's cells, from `first` to `end`, by cell and number.
 
-    Also find where each cell's slots end then.
+    Also find the new end of the slots of each cell.
     """
     ends, order, width = cells.ends[first:end], cells.order, np.uint32(end - first)
     ends[:] = 0

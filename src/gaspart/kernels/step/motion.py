@@ -1,6 +1,6 @@
 """Motion of the particles in one step: free flight, then return through faces.
 
-Faces are periodic faces or walls. The free flight is a loop without branches; the particles of a block are
+A face is a periodic face or a wall. The free flight is a loop without branches. The particles of a block are
 tested one by one only if one of them has left the container.
 """
 
@@ -17,14 +17,14 @@ _BLOCK = 128
 
 @inner_helper
 def wrap(particles, slot, axis, length):
-    """Move a particle back into the container on a periodic axis."""
+    """Move a particle back into the container along a periodic axis."""
     x = particles.positions[axis, slot]
     if 0.0 <= x < length:
         return
     images = np.floor(x / length)
     if images != 0.0:
         x -= images * length
-        if x >= length:  # a tiny negative x rounds up to the length itself
+        if x >= length:  # a tiny negative x is rounded up to the length itself
             x -= length
             images += 1
         particles.positions[axis, slot] = x
@@ -33,7 +33,7 @@ def wrap(particles, slot, axis, length):
 
 @inner_helper
 def reflect(particles, slot, axis, planes, model, tally, thread):
-    """Reflect a particle that left through a wall, as long as it moves outward.
+    """Reflect a particle that left through a wall, as long as it moves outwards.
 
     planes : (lower, upper)
     """
@@ -64,10 +64,11 @@ def reflect(particles, slot, axis, planes, model, tally, thread):
 def reflect_falling(particles, slot, axis, planes, pull, dt, tally, thread):
     """Reflect a particle that left through a wall under gravity.
 
-    The particle goes back along the parabola to the plane, and on from there with the speed that it had. y is
-    the height over the plane, u its rate and a the acceleration, all counted inward. y = u s + a s^2/2 gives
-    the time s since the particle crossed the plane (Spencer 2022, Eq. 14, in the form that does not cancel),
-    and w^2 = u^2 - 2 a y its speed there. Bounces that fit into the rest of the step are made at once.
+    The particle is moved back along its parabola to the plane, and continues from there with its speed at the
+    plane. y is the height over the plane, u its rate of change and a the acceleration, all directed inwards.
+    y = u s + a s^2/2 gives the time s since the particle crossed the plane (Spencer 2022, Eq. 14, in the form
+    without cancellation), and w^2 = u^2 - 2 a y its speed there. Bounces that fit into the rest of the step
+    are performed at once.
     """
     lower, upper = planes
     x = particles.positions[axis, slot]
@@ -77,7 +78,7 @@ def reflect_falling(particles, slot, axis, planes, pull, dt, tally, thread):
         side = 0 if x < lower else 1
         y, u, a = (upper - x, -v, -pull) if side else (x - lower, v, pull)
         square = u * u - (y + y) * a
-        if square < 0.0:  # pushed out by a contact, too slow to have crossed by itself
+        if square < 0.0:  # pushed out by a contact, and too slow to have crossed by itself
             if u < 0.0:
                 at = x, -v - v
                 add_reflection(particles, slot, axis, at, tally, thread, tally.impulses)
@@ -107,7 +108,7 @@ def reflect_falling(particles, slot, axis, planes, pull, dt, tally, thread):
 
 @inner_helper
 def displacement_since_rebuild(particles, slot, cells, space):
-    """Return the distance of a particle from its position when the list was made."""
+    """Return the distance of a particle from its position when the neighbour list was made."""
     square = space.margin - space.margin
     for k in range(len(space.lengths)):
         gap = particles.positions[k, slot] - cells.origin[k, slot]
@@ -118,7 +119,7 @@ def displacement_since_rebuild(particles, slot, cells, space):
 
 @inner_helper
 def raise_bounds(particles, slot, speed_squared, space, cells):
-    """Update the bounds of all particles for one particle that has changed."""
+    """Update the bounds of all particles after a change of one particle."""
     bounds = particles.bounds
     bounds[FASTEST] = max(bounds[FASTEST], np.sqrt(speed_squared))
     if cells is not None:
@@ -129,7 +130,7 @@ def raise_bounds(particles, slot, speed_squared, space, cells):
 
 @inner_kernel
 def apply_rules(particles, slot, model, dt, tally, rules, law, cells):
-    """Move one particle back into a container whose walls have rules of their own."""
+    """Move one particle back into a container whose walls have special rules."""
     met = meet_faces(particles, slot, rules, dt, tally, law)
     space = model.space
     square = dt - dt
@@ -169,7 +170,7 @@ def is_outside(particles, slot, space, inset):
 
 @inner_kernel
 def fly(x, v, lower, upper, dt):
-    """Move particles along one axis; return the number outside [lower, upper) then."""
+    """Move particles along one axis; return the number of particles outside [lower, upper)."""
     outside = 0
     for n in range(len(x)):
         moved = x[n] + v[n] * dt
@@ -180,9 +181,9 @@ def fly(x, v, lower, upper, dt):
 
 @inner_kernel
 def fall(x, v, pull, lower, upper, dt):
-    """Move particles along one axis exactly along the parabola of an acceleration.
+    """Move particles along one axis, exactly along the parabola of an acceleration.
 
-    Returns the number outside [lower, upper) then.
+    Returns the number of particles outside [lower, upper).
     """
     outside = 0
     gain = pull * dt
@@ -207,7 +208,7 @@ def advance_axis(particles, slots, axis, limits, dt, gravity):
 
 @inner_kernel
 def move_by_rules(particles, model, dt, tally, rules, law, cells, gravity):
-    """Perform the motion of one step where walls have rules of their own."""
+    """Perform the motion of one step if walls have special rules."""
     count = particles.positions.shape[1]
     for start in range(0, count, _BLOCK):
         stop = min(start + _BLOCK, count)
@@ -242,14 +243,14 @@ def move(particles, slots, model, dt, tally, thread, gravity):
 
 @inner_kernel
 def add_squares(values, squares):
-    """Add the squares of some values (n,) to others (n,)."""
+    """Add the squares of values (n,) to `squares` (n,)."""
     for n in range(len(values)):
         squares[n] += values[n] * values[n]
 
 
 @inner_kernel
 def add_gaps(x, origin, length, squares):
-    """Add the squared distances of coordinates x (n,) from others, on an axis of a period."""
+    """Add squared distances of coordinates x (n,) from their origin, on an axis with a period."""
     for n in range(len(x)):
         gap = abs(x[n] - origin[n])
         gap = min(gap, abs(length - gap))
@@ -260,8 +261,8 @@ def add_gaps(x, origin, length, squares):
 def highest(squares, most):
     """Return the maximum of some values (n,) and `most`.
 
-    The values are compared one by one only if one of them exceeds `most`, since a maximum must wait for the
-    one before.
+    Values are compared one by one only if one of them exceeds `most`, because each comparison must wait for
+    the previous one.
     """
     above = 0
     for square in squares:
@@ -289,7 +290,7 @@ def fastest_part(particles, slots):
 
 @inner_allocating_kernel
 def displacement_part(particles, slots, cells, space):
-    """Return the largest squared displacement since the list was made, of some slots.
+    """Return the largest squared displacement of some slots since the neighbour list was made.
 
     slots : first slot, and the end of the slots
     """

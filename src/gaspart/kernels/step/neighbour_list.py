@@ -1,10 +1,10 @@
-"""Search of overlapping pairs by a neighbour list.
+"""Search of overlapping pairs with a neighbour list.
 
-The list has all pairs nearer than a contact and a `skin`. It is renewed when particles may have crossed the
-skin. An entry of the list is one word: a slot, the first of eight others in a row, and a mark for each of
-these that is near. So it is made, and searched, by loading eight particles at once. Entries are always
-written, and entries without a mark are removed later: a position that depends on the entry before would have
-to wait for it.
+The list contains all pairs closer than the contact distance plus a `skin`. It is renewed if particles may
+have crossed the skin. An entry of the list is one word: a slot, the first of eight other consecutive slots,
+and a bit for each of these that is near. So making and searching the list loads eight particles at once.
+Entries are always written, and entries without a set bit are removed later. Otherwise the position of an
+entry would depend on the preceding entry and have to wait for it.
 """
 
 from __future__ import annotations
@@ -24,13 +24,12 @@ from gaspart.kernels.simd import WIDTH, Lanes, fields, lowest
 from gaspart.kernels.step.model import DISPLACEMENT, part_of
 from gaspart.kernels.step.resolve import examine
 
-# Eight slots at once: the particles near another particle, in vector instructions.
+# Eight slots at once: the particles near another particle, with vector instructions.
 #
-# Particles are in memory in the order of their cells, so the particles that may be near a particle fill a few
-# unbroken ranges of slots. Eight of these are eight numbers in a row, which are loaded as a vector at once;
-# the near ones are written one after another, without a branch. All arithmetic is the arithmetic of
-# `resolve`, to the same bits. Data loaded beyond the end of a range, or of an array (see `roomy`), are never
-# used.
+# Particles are stored in the order of their cells, so the candidates for neighbours of a particle occupy a
+# few contiguous ranges of slots. Eight consecutive slots are loaded as a vector. The near ones are written
+# one after another, without a branch. All arithmetic is the same as in `resolve`, so the bits are the same.
+# Data loaded beyond the end of a range, or of an array (see `roomy`), are never used.
 
 
 _BYTE, _WORD = ir.IntType(WIDTH), ir.IntType(64)
@@ -38,12 +37,12 @@ _MARKS, _WORDS = ir.VectorType(ir.IntType(1), WIDTH), ir.VectorType(_WORD, WIDTH
 
 
 def roomy(shape: tuple[int, ...], dtype: DTypeLike) -> np.ndarray:
-    """Return an array of zeros behind whose end a vector can be loaded."""
+    """Return an array of zeros that allows loading a vector beyond its end."""
     return np.zeros(prod(shape) + WIDTH, dtype)[: prod(shape)].reshape(shape)
 
 
 def _call(builder: ir.IRBuilder, name: str, kind: ir.Type, *arguments: ir.Value) -> ir.Value:
-    """Return the result of an LLVM instruction, given by its name.
+    """Return the result of an LLVM instruction, by its name.
 
     kind : type of the result
     """
@@ -60,10 +59,11 @@ def _size(lanes: Lanes) -> Lanes:
 
 @intrinsic
 def nearer(typingctx, positions, radii, space, slot, skin, first):
-    """Return a bit for each of the eight slots from `first` on.
+    """Return a bit for each of the eight slots starting at `first`.
 
-    The lowest bit belongs to the first slot. A bit is set if the distance of the slot's particle from the
-    particle in `slot` is below a contact and the skin. See `resolve.distance_squared`.
+    The lowest bit belongs to the first slot. A bit is set if the distance between the particle of its slot
+    and the particle in `slot` is below the contact distance plus the skin. `resolve.distance_squared`
+    computes the same distance.
     """
 
     def generate(context, builder, signature, arguments):
@@ -99,7 +99,7 @@ def nearer(typingctx, positions, radii, space, slot, skin, first):
 
 @intrinsic
 def equals(typingctx, values, first, value):
-    """Return a bit for each of eight elements that is equal to a value.
+    """Return a bit for each of eight elements that equals a value.
 
     The lowest bit belongs to the element `first`.
     """
@@ -121,8 +121,8 @@ def equals(typingctx, values, first, value):
 def compact_eight(typingctx, words, first, least, kept, number):
     """Write the words, out of eight, that are at least `least` into `kept`.
 
-    Returns their number. The eight words begin at index `first`, the result at index `number`. There must be
-    space for eight.
+    Returns their number. The eight words begin at index `first`. Writing begins at index `number`. There must
+    be space for eight words.
     """
 
     def generate(context, builder, signature, arguments):
@@ -144,7 +144,7 @@ def compact_eight(typingctx, words, first, least, kept, number):
 
 @intrinsic
 def bits(typingctx, value):
-    """Return the number of bits that are set in a word."""
+    """Return the number of set bits in a word."""
 
     def generate(context, builder, signature, arguments):
         return _call(builder, "llvm.ctpop.i64", _WORD, arguments[0])
@@ -153,19 +153,19 @@ def bits(typingctx, value):
 
 
 _SAFE = 0.99  # usable fraction of the skin, because of rounding
-_ROOM = np.uint64(1024)  # entries written before the ones without a mark are removed
-_BLOCK = 64  # slots whose partners in one row are searched before the next row
+_ROOM = np.uint64(1024)  # number of entries that are written before entries without a set bit are removed
+_BLOCK = 64  # number of slots whose neighbours in one row are searched before the next row
 ONE, _TWO, _EIGHT = np.uint64(1), np.uint64(2), np.uint64(WIDTH)
-_PLACE, _SHIFT = np.uint64(28), np.uint64(56)  # first bits of the slot and of the marks in an entry
+_PLACE, _SHIFT = np.uint64(28), np.uint64(56)  # first bits of the slot and of the near bits in an entry
 _SLOTS = (ONE << _PLACE) - ONE
 
 
 @inner_kernel
 def compact(entries, number, pairs, listed):
-    """Write the entries with a mark into pairs (room,), as long as there is space.
+    """Write the entries with a set bit into pairs (room,), as long as there is space.
 
     number : number of entries
-    listed : number of entries in `pairs` before; the new number is returned
+    listed : number of entries in `pairs` so far; the new number is returned
     """
     most = np.uint64(len(pairs)) - _EIGHT
     for n in range(WIDTH):
@@ -177,11 +177,11 @@ def compact(entries, number, pairs, listed):
 
 @inner_helper
 def record_near(particles, slot, others, cells, space, entries, pairs, filled):
-    """Record the slots from others[0] to others[1] that are near a slot, eight in an entry.
+    """Record the slots from others[0] to others[1] that are near a slot, eight per entry.
 
-    A slot is near if its distance is below a contact and the skin.
+    A slot is near if its distance is below the contact distance plus the skin.
 
-    filled : number of entries, and of entries in the list; the new numbers are returned
+    filled : numbers of entries, and of entries in the list; the new numbers are returned
     """
     number, listed = filled
     first, last = np.uint64(others[0]), np.uint64(others[1])
@@ -200,9 +200,9 @@ def record_near(particles, slot, others, cells, space, entries, pairs, filled):
 
 @inner_helper
 def rows_ahead(dimension):
-    """Return the number of rows of cells with which the pairs of a row are listed.
+    """Return the number of rows of cells with which the particles of a row are paired.
 
-    These are the row itself, and the rows that come next to it along the other axes.
+    These are the row itself, and the next rows along the other axes.
     """
     return 5 if dimension == 3 else 2
 
@@ -217,12 +217,12 @@ def ahead(cells, n):
 
 @inner_helper
 def find_stretches(slots, n, cells, stretches):
-    """Find the ranges of slots that may hold partners in row n, for slots[0] to slots[1].
+    """Find the ranges of slots that may contain neighbours in row n, for slots[0] to slots[1].
 
-    The ranges are the cells in the same column and in the adjacent columns. Ranges that are not empty are
-    written into stretches (2, m), as entries without marks and as the slots behind. Returns the number of
-    ranges, and of partners. (A test of an empty range takes as long as eight slots, and no branch can foresee
-    which are empty.)
+    The ranges cover the cells in the same column and in the adjacent columns. Nonempty ranges are written
+    into stretches (2, m), as entries without set bits and as the end of the slots. Returns the number of
+    ranges, and the number of candidates. (Testing an empty range takes as long as eight slots, and processors
+    cannot predict which ranges are empty.)
     """
     ends = cells.ends
     on = np.uint64(ahead(cells, n))
@@ -239,7 +239,7 @@ def find_stretches(slots, n, cells, stretches):
 
 @inner_helper
 def record_stretches(particles, stretches, stop, cells, space, entries, pairs, filled):
-    """Perform `record_near` for the slots and partners in stretches[:, :stop]; return the numbers."""
+    """Perform `record_near` for slots and candidates in stretches[:, :stop]; return the numbers."""
     for k in range(stop):
         slot, others = stretches[0, k] >> _PLACE, (stretches[0, k] & _SLOTS, stretches[1, k])
         filled = record_near(particles, slot, others, cells, space, entries, pairs, filled)
@@ -248,10 +248,10 @@ def record_stretches(particles, stretches, stop, cells, space, entries, pairs, f
 
 @inner_helper
 def record_across(particles, at, across, cells, space, entries, pairs, filled):
-    """Perform `record_near` for a cell and the cells across the container.
+    """Perform `record_near` for a cell and the cells at the opposite side of the container.
 
-    The slots are in cell `at`, their partners in cell `across` and in the same column of the rows ahead.
-    Returns the new numbers of entries, and the number of tests.
+    The slots are in cell `at`. The candidates are in cell `across` and in the same column of the following
+    rows. Returns the new numbers of entries, and the number of tests.
     """
     ends = cells.ends
     tests = np.uint64(0)
@@ -266,10 +266,10 @@ def record_across(particles, at, across, cells, space, entries, pairs, filled):
 
 @inner_allocating_kernel
 def list_part(particles, part, cells, pairs, space, tests):
-    """List all pairs nearer than a contact and the skin that one thread must find.
+    """List all pairs closer than the contact distance plus the skin that one thread must find.
 
-    The entries are written into pairs[part] (room,), their number into cells.listed (without space for all,
-    the last are missing), and the number of tests into tests (threads,).
+    The entries are written into pairs[part] (room,), their number into cells.listed, and the number of tests
+    into tests (threads,). If the space is insufficient, the last entries are missing.
     """
     parts, rows, mine = len(pairs), rows_ahead(len(space.lengths)), pairs[part]
     start, stop = part_of(part, parts, particles.ordinary)
@@ -301,7 +301,7 @@ def list_part(particles, part, cells, pairs, space, tests):
 
 @inner_kernel
 def is_complete(particles, cells):
-    """Return True if no pair can have come nearer by more than the skin.
+    """Return True if no pair can have approached by more than the skin.
 
     The reference is the time at which the list was made.
     """
@@ -312,11 +312,12 @@ def is_complete(particles, cells):
 def search_pairs(particles, entries, space, step, overlaps, thread):
     """Record the pairs of some entries (n,) that must be resolved.
 
-    With a pass `step.before`, only pairs are searched with a particle that had a contact in that pass: for
-    all others nothing has changed since their last search.
+    With a pass `step.before`, only pairs are searched that contain a particle with a contact in that pass,
+    because all other particles have not changed since the last search.
     """
     touching, before, last_pass = overlaps.touching[thread], step.before, particles.last_pass
-    # The number goes into `overlaps` at the end: threads that write to one cache line wait for each other.
+    # The number is written to `overlaps` only at the end, because threads that write to one cache line wait
+    # for each other.
     tests = np.uint64(0)
     for low in range(0, len(entries), len(touching)):
         number = np.uint64(0)

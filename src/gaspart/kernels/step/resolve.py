@@ -1,9 +1,9 @@
-"""Contacts of one step: the overlaps that count, their order, and their resolution.
+"""Contacts of one step: which overlaps count, their order, and their resolution.
 
-The order - time of contact, lower index, higher index - does not depend on slots, boxes or threads, so
-neither does any bit of the result. A contact is a contact of `kernels.physics.contact`. Its form here keeps
-float32, collides particles in the state at the time of the contact without moving them there, and transfers
-only a part of the elastic impulse where there is restitution: a test compares it bit for bit with
+The order (time of contact, lower index, higher index) does not depend on slots, boxes or threads, so no bit
+of the result does. The physics is the same as in `kernels.physics.contact`. The form here keeps float32, and
+collides particles in the state at the time of the contact without moving them there. With restitution it
+transfers only a fraction of the elastic impulse. A test compares it bit for bit with
 `collision.collide_smooth` (test_resolve.py).
 """
 
@@ -31,15 +31,15 @@ from gaspart.kernels.step.motion import raise_bounds, wrap
 
 _ONE = np.uint32(1)
 _RUN = 16
-_AHEAD = 4  # contacts by which the prefetch is ahead
+_AHEAD = 4  # number of contacts by which the prefetch is ahead
 _LATE = 1.125  # time in steps; earlier contacts belong to an earlier step, for any rounding of float32
 
 
 @inner_helper
 def distance_squared(particles, i, j, space):
-    """Return the squared distance of two slots, by the nearest image.
+    """Return the squared distance of two slots, for the nearest image.
 
-    The bits are the same as in `invariants`, without a branch.
+    The bits are the same as in `invariants`, but there is no branch.
     """
     rr = space.margin - space.margin
     for k in range(len(space.lengths)):
@@ -52,7 +52,7 @@ def distance_squared(particles, i, j, space):
 
 @inner_helper
 def invariants(particles, i, j, space):
-    """Return rr, rv, vv of a pair (see `contact`), j by its nearest image."""
+    """Return rr, rv, vv of a pair (see `contact`), with the nearest image of j."""
     rr = rv = vv = space.margin - space.margin
     for k in range(len(space.lengths)):
         gap = particles.positions[k, j] - particles.positions[k, i]
@@ -68,8 +68,8 @@ def invariants(particles, i, j, space):
 def entry_time(rr, rv, vv, ss):
     """Return the past time of first touch of an overlapping pair in uniform motion.
 
-    For an approaching pair it is `contact_root`; for a separating pair the root is in the form that does not
-    cancel for it.
+    For an approaching pair it is `contact_root`. For a separating pair the other form of the root is used,
+    which does not cancel.
     """
     if rv < 0.0:
         return contact_root(rr, rv, vv, ss)
@@ -78,7 +78,7 @@ def entry_time(rr, rv, vv, ss):
 
 @inner_helper
 def must_resolve(rr, rv, vv, ss, step):
-    """Return True if an overlap grows, or (if `step.parting`) began in this step."""
+    """Return True if an overlap grows, or (if `step.parting`) if it began in this step."""
     if not rr < ss:
         return False
     return rv < 0.0 or (step.parting and rv > 0.0 and -entry_time(rr, rv, vv, ss) < step.dt)
@@ -116,7 +116,7 @@ def earlier(index, pairs, times, m, n):
 def spread(times):
     """Sort contacts into equal intervals of time, as many as there are contacts.
 
-    The result is nearly in the order of time.
+    The result is nearly sorted by time.
     """
     number = len(times)
     first, last = times.min(), times.max()
@@ -172,8 +172,8 @@ def merge(index, pairs, times, order, room, low, middle, high):
 def in_order(index, pairs, times):
     """Return the order in which contacts are resolved.
 
-    Contacts are spread by time, sorted in runs, and the runs are merged where necessary. (numba's own sorts
-    take 15 s to compile.)
+    Contacts are first sorted into intervals of time and then in runs, and the runs are merged if necessary.
+    (numba's own sorts take 15 s to compile.)
     """
     number = len(times)
     order = spread(times)
@@ -195,7 +195,7 @@ def impulse_factors(rr, rv, mass1, mass2):
     """Return the factors k1, k2 of an elastic contact, and |r.p|.
 
     The velocities change by v1 += k1 r, v2 -= k2 r, and p is the transferred momentum. The velocity of a
-    particle of infinite mass does not change, where `exchange` has no value.
+    particle of infinite mass does not change; `exchange` has no value in this case.
     """
     if mass1 == np.inf:
         return rr - rr, (rv + rv) / rr, (mass2 + mass2) * abs(rv)
@@ -207,9 +207,9 @@ def impulse_factors(rr, rv, mass1, mass2):
 
 @inner_helper
 def record_contact(particles, slot, speed_squared, space, step, tally, cells):
-    """Record a contact of a particle, count it unless first, and update all bounds.
+    """Record a contact of a particle, and update all bounds.
 
-    It is counted if it is not the particle's first contact in this step.
+    It is counted if it is not the first contact of the particle in this step.
     """
     tally.counts[MULTIPLE] += particles.last_pass[slot] >= step.first
     particles.last_pass[slot] = step.number
@@ -218,9 +218,9 @@ def record_contact(particles, slot, speed_squared, space, step, tally, cells):
 
 @inner_helper
 def collide_smooth(particles, i, j, contact, model, tally):
-    """Apply a collision to two smooth particles; return the squares of both speeds.
+    """Apply a collision to two smooth particles; return both squared speeds.
 
-    contact : time since the contact, negative, and the invariants rr, rv then
+    contact : time of the contact, negative, and the invariants rr, rv at this time
     """
     ago, rr, rv = contact
     space = model.space
@@ -263,8 +263,8 @@ def count_fixed(particles, i, j, tally, fixed):
 def resolve(particles, i, j, model, step, tally, law, cells):
     """Resolve a pair, if it must still be resolved.
 
-    The pair is rewound to its contact, exchanges momentum along the normal at contact, and moves for the rest
-    of the step with the new velocities.
+    The pair is rewound to its contact, exchanges momentum along the normal, and moves for the rest of the
+    step with the new velocities.
     """
     space = model.space
     rr, rv, vv = invariants(particles, i, j, space)
@@ -313,7 +313,7 @@ def fetch_particle(particles, slot, cells):
 
 @inner_helper
 def fetch_ahead(particles, pairs, order, n, cells):
-    """Prefetch the data of the contacts soon after order[n], while this one is resolved."""
+    """Prefetch the data of the contacts that follow order[n], while order[n] is resolved."""
     last = len(order) - 1
     for side in range(2):
         fetch_particle(particles, pairs[order[min(n + 2 * _AHEAD, last)], side], cells)
@@ -331,7 +331,7 @@ def resolve_all(particles, pairs, order, model, step, tally, law, cells):
 
 @inner_kernel
 def count_left(particles, pairs, space, tally):
-    """Count the pairs found that still overlap and approach."""
+    """Count the found pairs that still overlap and approach."""
     for n in range(len(pairs)):
         i, j = pairs[n, 0], pairs[n, 1]
         rr, rv, _ = invariants(particles, i, j, space)

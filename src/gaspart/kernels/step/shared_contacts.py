@@ -1,9 +1,9 @@
-"""Contacts of a step shared among threads, to the same bits as with one thread.
+"""Contacts of a step shared among threads, with the same bits as with one thread.
 
-Contacts that have no particle in common may be resolved in any order. So each thread resolves, in order, the
-contacts between two of its own slots. Contacts between slots of two threads are postponed, and with them the
-later contacts of their particles, of these contacts' particles, and so on. Postponed contacts follow in
-order; the terms of sums are stored by contact, and added in the order of all contacts.
+Contacts without a common particle may be resolved in any order. So each thread resolves, in order, the
+contacts between two of its own slots. Contacts between slots of two threads are postponed. Later contacts of
+their particles are also postponed, and so on. Postponed contacts are resolved afterwards in order. The terms
+of sums are stored per contact, and added in the order of all contacts.
 """
 
 from typing import NamedTuple
@@ -32,7 +32,7 @@ class Contacts(NamedTuple):
     pairs : (n, 2), slots
     order : (n,), order in which they are resolved
     terms : (n, ..., 2), terms of the tally's sums
-    postponed : (n,), whether a contact is postponed
+    postponed : (n,), True if a contact is postponed
     counts : (threads, 8), counts of each thread
     extremes, bounds : (threads, 2), extremes and bounds of each thread
     """
@@ -54,9 +54,9 @@ def is_among(slot, slots):
 
 @inner_kernel
 def select_own(contacts, slots, held, own):
-    """Select the contacts between two of one thread's slots, in order; return their number.
+    """Select the contacts between two slots of one thread, in order; return their number.
 
-    Particles of the thread in contact with a particle of another thread are held.
+    Particles in contact with a particle of another thread are marked in `held`.
     """
     number = 0
     for contact in contacts.order:
@@ -73,9 +73,9 @@ def select_own(contacts, slots, held, own):
 
 @inner_helper
 def tally_of_contact(tally, terms):
-    """Return the tally whose sums are the terms (..., 2) of one contact.
+    """Return a tally whose sums are the terms (..., 2) of one contact.
 
-    It is meant for kernels that make no arrays: others count references, which this function does not.
+    This function is for kernels that create no arrays, because it does not count references.
     """
     return StepTally(
         tally.counts, terms, tally.extremes, tally.wall_hits, tally.wall_impulse, tally.wall_loss,
@@ -117,8 +117,8 @@ def resolve_postponed(particles, contacts, model, step, tally, cells):
 def resolve_part(particles, part, contacts, model, step, tally, cells):
     """Resolve the contacts of one thread.
 
-    The thread writes its counts, extremes and bounds only at the end: threads that write to one cache line
-    wait for each other.
+    The thread writes its counts, extremes and bounds only at the end, because threads that write to one cache
+    line wait for each other.
     """
     own = np.empty(len(contacts.order), np.uint32)
     slots = part_of(part, len(cells.listed), particles.positions.shape[1])
@@ -178,7 +178,8 @@ def resolve_shared(particles, ordered_pairs, model, step, tally, cells):
 def resolve_found(particles, ordered_pairs, model, step, tally, threads, law, cells):
     """Resolve the pairs of one search, in their order.
 
-    The work is shared among threads if there are several threads and a list, and contacts are smooth.
+    The work is shared among threads if there are several threads and a neighbour list, and if contacts are
+    smooth.
     """
     if law is None:
         if cells is not None:

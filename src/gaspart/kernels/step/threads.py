@@ -1,8 +1,9 @@
-"""Parts of a step that threads share: the motion, and making and searching a list.
+"""Parts of a step that threads share: the motion, and making and searching a neighbour list.
 
-With `threads` None there is one thread, and the machine code has no other threads. Each part writes to rows
-of its own, and the set of contacts does not depend on the thread that finds them. numba passes no tuples in
-tuples to threads: a `StepModel` or a `Space` is passed in parts and put together again there.
+If `threads` equals None, there is one thread, and the machine code contains no threading. Each part writes to
+its
+own rows, and the set of contacts does not depend on which thread finds them. numba does not pass nested
+tuples to threads, so a `StepModel` or a `Space` is passed in parts and reassembled.
 """
 
 import numpy as np
@@ -33,7 +34,7 @@ from gaspart.kernels.step.model import (
 from gaspart.kernels.step.motion import displacement_part, fastest_part, move, move_by_rules
 from gaspart.kernels.step.neighbour_list import WIDTH, is_complete, list_part, search_pairs
 
-_BLOCK = 1024  # pairs that are tested before the touching ones are examined
+_BLOCK = 1024  # number of pairs that are tested before the touching pairs are examined
 
 
 @inner_allocating_kernel
@@ -137,7 +138,7 @@ def search_list(particles, pairs, space, step, overlaps, threads, cells):
 
 @inner_kernel
 def reorder(values, order, room, threads):
-    """Set values[n] to values[order[n]], with `room` as workspace; later values stay."""
+    """Set values[n] to values[order[n]], with `room` as workspace; later values are unchanged."""
     permuted = room[: len(order)]
     if threads is None:
         permute(values, order, (0, len(order)), permuted)
@@ -213,10 +214,10 @@ def measure_displacement(particles, cells, space, threads):
 
 @inner_allocating_kernel
 def is_outdated(particles, cells, space, threads):
-    """Return True if the list must be renewed.
+    """Return True if the neighbour list must be renewed.
 
-    The bound of the fastest particle's displacement is tested first; if it is too large, the displacements of
-    all particles are measured.
+    First the bound on the displacement of the fastest particle is tested. If it is too large, the
+    displacements of all particles are measured.
     """
     if is_complete(particles, cells):
         return False
@@ -227,7 +228,7 @@ def is_outdated(particles, cells, space, threads):
 
 @inner_allocating_kernel
 def make_list(particles, cells, pairs, space, tally, threads):
-    """Make the list anew; return its pairs (threads, room) in the same or a larger array."""
+    """Remake the neighbour list; return its pairs (threads, room) in the same or a larger array."""
     sort_into_cells(particles, cells, threads)
     tests = np.zeros(len(pairs), np.int64)
     while True:

@@ -1,4 +1,4 @@
-"""Contents of an archive in addition to the tables of its provenance: sources, results, captions."""
+"""Contents of an archive except its tables: sources, results, captions."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ from gaspart.reproduction.points.points import figure_points
 from gaspart.trajectory.recipe import read_recipe
 from gaspart.yaml_text import read_yaml
 
-# The scene files that a config names.
+# Scene files that a config names.
 
 
 def scene_files(config: Any) -> list[str]:
-    """Return the paths of the scene files of all experiments of a merged config, each once.
+    """Return the distinct paths of the scene files of all experiments in a merged config.
 
-    Paths have no "./" and the like. They are the values of `scene` in a point and in a grid; anything else
-    under that key is left to the validation of configs.
+    Paths are normalised, without "./". They are the values of `scene` in points and grids. Values of another
+    type are ignored here; the validation of configs reports them.
     """
     paths: dict[str, None] = {}
     blocks = [config.get("experiments") if isinstance(config, dict) else None]
@@ -45,23 +45,23 @@ def scene_files(config: Any) -> list[str]:
     return list(paths)
 
 
-# A finished run of the workflow: its folder, its config, and the results that it must have.
+# Finished run of the workflow: its folder, its config, and the results that it must have.
 
 
 _BASE = Path("config/config.yaml")
 _WORKFLOWS = ("Snakefile", "workflow/Snakefile")
 _WHOLE = {"experiments", "figures"}
-"""Keys of a config that is laid over no other."""
+"""Keys of a config that is complete by itself; other configs are merged over a default config."""
 
 
 @dataclass(frozen=True)
 class Finished:
     """Finished run; its paths are relative to `root`, the folder of the workflow.
 
-    results : `results`, or `results/<run>`; below the prefix of a module, if it has one.
+    results : `results` or `results/<run>`, in the folder of the module's prefix if there is a prefix.
     config : the merged config.
-    points : the points of which figures and films are made.
-    configs : the files of the config that are in `root`.
+    points : points from which figures and films are made.
+    configs : files of the config that are in `root`.
     """
 
     root: Path
@@ -72,31 +72,31 @@ class Finished:
 
     @property
     def workflow(self) -> str:
-        """The path of the Snakefile."""
+        """Path of the Snakefile."""
         return next(name for name in _WORKFLOWS if (self.root / name).is_file())
 
     @property
     def is_copy(self) -> bool:
         """True if `root` is a copy of the project.
 
-        Otherwise it is a folder with a workflow that uses it as a module.
+        Otherwise `root` has another workflow, which uses this project as a module.
         """
         return (self.root / "workflow/rules/common.smk").is_file()
 
     @property
     def figures(self) -> list[str]:
-        """The names of the figures."""
+        """Names of the figures."""
         return list(self.config["figures"])
 
     @property
     def report(self) -> str:
-        """The path of the report."""
+        """Path of the report."""
         return f"{self.results}/report.html"
 
     def outputs(self) -> Iterator[str]:
-        """Return the results that go into every archive as they are: figures, tables, measurements, films.
+        """Yield the results that every archive contains unchanged: figures, tables, measurements, films.
 
-        Figures for a column of a journal are not among them: they are a third of all.
+        Figures in the width of a journal's column are left out, because they are a third of all figures.
         """
         folder = self.results
         yield f"{folder}/tables/claims.csv"
@@ -109,21 +109,22 @@ class Finished:
         yield from (point.path for point in self.points if point.job != TRAJECTORIES)
 
     def trajectories(self) -> Iterator[tuple[Point, str]]:
-        """Point and path of each trajectory."""
+        """Yield the point and the path of each trajectory."""
         for point in self.points:
             if point.job == TRAJECTORIES:
                 yield from ((point, path) for path in point.replica_paths)
 
 
 def find_finished(results: str | Path, config: str | Path | None = None) -> Finished:
-    """Find the run whose results are in a folder, `results` or `results/<run>`.
+    """Find the finished run whose results are in the folder `results` or `results/<run>`.
 
-    The default of `config` is the only config in the folders `config` and above with the name of this run.
-    The workflow may also be a module of another one, in a folder with its Snakefile and config. If the module
-    has a prefix, the results lie in a folder below.
+    By default, `config` is searched in the folders `config` of the project and of its parent folders. Exactly
+    one config must have the name of this run. Another workflow may use this one as a module. Then the folder
+    has the Snakefile and config of the other workflow. If the module has a prefix, the results lie in a
+    subfolder with that name.
 
-    Raises SceneError for a folder without results, results that are not complete, and trajectories that were
-    made with other settings than the config states.
+    Raises SceneError if the folder has no results, if results are missing, or if trajectories were made with
+    settings that differ from the config.
     """
     folder = resolve_path(results)
     if not (folder / "tables/claims.csv").is_file():
@@ -142,7 +143,7 @@ def find_finished(results: str | Path, config: str | Path | None = None) -> Fini
         raise SceneError("run", merged.get("run"), f"must be {name or 'absent'}, as {results} is", str(file))
     prefix = parent.relative_to(root)
     inside = [str(path.relative_to(root)) for path in files if path.is_relative_to(root)]
-    with chdir(root):  # from which scene files are read
+    with chdir(root):  # folder from which scene files are read
         points = _select_points(merged, check(merged, files))
         points = [replace(point, root=str(prefix / point.root)) for point in points]
         run = Finished(root, str(folder.relative_to(root)), merged, points, inside)
@@ -151,7 +152,7 @@ def find_finished(results: str | Path, config: str | Path | None = None) -> Fini
 
 
 def _project_of(folder: Path) -> Path | None:
-    """Return the nearest folder with a workflow, from `folder` upwards, or None."""
+    """Return the nearest folder with a workflow, `folder` or a parent; None without one."""
     for candidate in (folder, *folder.parents):
         if any((candidate / name).is_file() for name in _WORKFLOWS):
             return candidate
@@ -159,9 +160,9 @@ def _project_of(folder: Path) -> Path | None:
 
 
 def _select_points(config: dict, planned: dict[str, dict[str, Point]]) -> list[Point]:
-    """Return the points of figures and films, each once.
+    """Return the distinct points of figures and films.
 
-    No rule of `all` makes the other points.
+    The rule `all` makes no other points.
     """
     points = [point for figure in config["figures"] for point in figure_points(config, figure, planned)]
     films = [block for block in config.get("animations", {}).values() if block]
@@ -170,9 +171,9 @@ def _select_points(config: dict, planned: dict[str, dict[str, Point]]) -> list[P
 
 
 def _config_of(root: Path, name: str | None) -> Path:
-    """Return the config of a run of this name, None for the run without a name.
+    """Return the config of the run of this name; None for the run without a name.
 
-    Raises SceneError unless there is exactly one.
+    Raises SceneError unless there is exactly one such config.
     """
     if name is None and (root / _BASE).is_file():
         return root / _BASE
@@ -185,7 +186,10 @@ def _config_of(root: Path, name: str | None) -> Path:
 
 
 def _is_config_of(file: Path, name: str | None) -> bool:
-    """Return True if a file is a config with this key `run`, or whole without it."""
+    """Return True if a file is a config with this value of `run`.
+
+    For the run without a name, the config must be complete.
+    """
     try:
         content = read_yaml(file)
     except SceneError:
@@ -196,7 +200,7 @@ def _is_config_of(file: Path, name: str | None) -> bool:
 
 
 def _check(run: Finished, file: Path, results: str | Path) -> None:
-    """Raise SceneError for points outside the project's folder, missing results, or other settings."""
+    """Raise SceneError for points outside the project's folder, missing results, or different settings."""
     folder = Path(run.config.get("points", "results/points"))
     if folder.is_absolute() or ".." in folder.parts:
         raise SceneError("points", str(folder), "must be in the project's folder for an archive", str(file))
@@ -225,17 +229,17 @@ FOLDERS = {
     "profiles": "Snakemake's settings for one machine and for a cluster",
     "src": "the library",
 }
-"""Folders of sources, and what they are."""
+"""Folders of sources, with their descriptions."""
 _OF_PACKAGE = Path(__file__).parents[4]
-"""The project, where gaspart runs from a checkout of it."""
+"""Folder of the project, if gaspart runs from a checkout."""
 
 
 def sources(run: Finished) -> Iterator[str]:
     """Yield the files of the project with which the run can be repeated.
 
-    They are the workflow, its config and scenes, the library, the locked environment. A workflow that uses
-    this one as a module has some of these files, and CITATION.cff. Raises SceneError if a necessary file is
-    missing.
+    They are the workflow, its config and scenes, the library, the locked environment. If another workflow
+    uses this one as a module, it has some of these files, and CITATION.cff. Raises SceneError if a necessary
+    file is missing.
     """
     required = (run.workflow, CITATION, *(_NEEDED if run.is_copy else ()))
     for name in required:
@@ -255,14 +259,14 @@ def sources(run: Finished) -> Iterator[str]:
 
 
 def folders(run: Finished) -> list[str]:
-    """Return the folders of sources that the project has."""
+    """Return the folders of sources that exist in the project."""
     return [folder for folder in FOLDERS if (run.root / folder).is_dir()]
 
 
 def _files(root: Path, folder: str) -> Iterator[str]:
-    """Yield the files in a folder and below, without hidden files and caches.
+    """Yield the files in a folder and its subfolders, except hidden files and caches.
 
-    Caches are left there by Python and pip.
+    Python and pip write these caches.
     """
     for parent, folders, names in os.walk(root / folder):
         folders[:] = sorted(name for name in folders if name != "__pycache__" and _is_kept(name))
@@ -277,7 +281,7 @@ def _is_kept(name: str) -> bool:
 
 
 def report(run: Finished) -> str:
-    """Return the report without its pictures for narrow screens, which are not in the archive."""
+    """Return the report without its pictures for narrow screens; the archive has no such pictures."""
     page = (run.root / run.report).read_text(encoding="utf-8")
     return re.sub(r'<source\b[^>]*\bsrcset="figures/journal/[^>]*>', "", page)
 
@@ -295,9 +299,9 @@ def captions(run: Finished) -> dict[str, str]:
 
 
 def _caption(run: Finished, figure: str) -> str | None:
-    """Return the caption of a figure, with places for its measured numbers.
+    """Return the caption of a figure, with placeholders for its measured numbers.
 
-    The caption of a module, whose files are elsewhere, is only in the report; None is returned.
+    None for a figure of a module: its caption is in another folder, and only the report contains it.
     """
     block = run.config["figures"][figure]
     if "kind" in block:

@@ -1,4 +1,4 @@
-"""Limits of an archive: its names, and sizes that are read in bounded time and memory."""
+"""Limits for archives: safe names, and sizes that are read in bounded time and memory."""
 
 from __future__ import annotations
 
@@ -15,23 +15,26 @@ from gaspart.errors import SceneError
 from gaspart.trajectory.opening import open_netcdf_file
 
 MOST_BYTES = 1 << 25
-"""Maximum size of a manifest, and of a table; the tables of ten thousand points are a tenth of it."""
+"""Maximum size of a manifest or a table, in bytes; tables of ten thousand points have a tenth of this size.
+"""
 MOST_ROWS = 200_000
 MOST_FILES = 100_000
 _DIRECTORY = 1 << 24
-"""Bytes of the list of entries at the end of a zip file; each takes about 100, and much more in memory."""
+"""Maximum size of the list of entries at the end of a zip file, in bytes. Each entry takes about 100 bytes on
+disk, and much more in memory."""
 _EXPANSION, _ALWAYS = 200, 1 << 28
-"""Maximum ratio of the size of contents to their size on disk, and a size that is always allowed.
+"""Maximum ratio of unpacked size to size on disk, and an unpacked size that is always allowed.
 
-Tables and trajectories shrink to a tenth at least; a file made to fill a disk, or never to end, by a
-thousand.
+Tables and trajectories shrink by a factor of 10 at most. A malicious file that fills a disk, or never ends,
+shrinks by a factor of a thousand.
 """
 _LONGEST = 1024  # characters of a name
 _LENGTHS, _DESCRIPTOR, _HAS_DESCRIPTOR = 26, 24, 8
-"""Offset of the lengths of name and extra field in the header of an entry.
+"""Layout of the header of a zip entry.
 
-The lengths are at its end. The second number is the maximum size of a descriptor after the contents, the
-third the flag that states that there is a descriptor.
+The first number is the offset, in bytes, of the lengths of name and extra field; they end the header. The
+second is the maximum size of a descriptor after the contents. The third is the flag that states that there is
+a descriptor.
 """
 _END, _END_64 = b"PK\x05\x06", b"PK\x06\x06"
 _END_BYTES, _COMMENT = 22, (1 << 16) - 1
@@ -50,10 +53,10 @@ def name_fault(name: str) -> str:
 
 
 def check_names(path: Path, names: Iterable[str]) -> None:
-    """Raise SceneError for names that cannot be unpacked next to one another.
+    """Raise SceneError for names that cannot be unpacked into one folder.
 
-    These are two equal names, perhaps but for their case, a file that is also a folder, and names with a
-    `name_fault`. Names of folders end in /.
+    Names must not be equal, even if upper and lower case are ignored. A file must not be a folder as well. No
+    name may have a `name_fault`. Names of folders end in "/".
     """
     seen: dict[str, str] = {}
     folders: set[str] = set()
@@ -76,16 +79,16 @@ def check_names(path: Path, names: Iterable[str]) -> None:
 
 
 def check_size(path: Path, stated: int, there: int) -> None:
-    """Raise SceneError for contents of `stated` bytes that take implausibly few bytes on disk."""
+    """Raise SceneError if contents of `stated` bytes take implausibly few bytes on disk."""
     if stated > _ALWAYS + _EXPANSION * there:
         rule = f"has contents of {stated:.3g} bytes in {there:.3g}: no archive of gaspart is so compressed"
         raise SceneError("archive", str(path), rule)
 
 
 def check_places(path: Path, file: IO[bytes], entries: Sequence[ZipInfo], end: int) -> None:
-    """Raise SceneError unless the entries of a zip file lie one after another up to `end`.
+    """Raise SceneError unless the entries of a zip file lie without gaps up to `end`.
 
-    Other programs might unpack what lies between them. May raise struct.error for a file that is cut short.
+    Other programs might unpack data in the gaps. May raise struct.error for a truncated file.
     """
     at = gap = 0
     for entry in sorted(entries, key=lambda entry: entry.header_offset):
@@ -104,7 +107,7 @@ def check_places(path: Path, file: IO[bytes], entries: Sequence[ZipInfo], end: i
 def check_directory(path: Path, file: IO[bytes]) -> None:
     """Raise SceneError for a zip file whose list of entries is too long.
 
-    The list is read as a whole.
+    The reader loads the complete list into memory.
     """
     size = file.seek(0, os.SEEK_END)
     file.seek(max(0, size - _END_BYTES - _COMMENT - 56 - 20))
@@ -114,7 +117,7 @@ def check_directory(path: Path, file: IO[bytes]) -> None:
         while offset >= 0:
             if offset + at + struct.calcsize(form) <= len(tail):
                 (length,) = struct.unpack_from(form, tail, offset + at)
-                if _DIRECTORY < length <= size:  # a larger one than the file is refused by its reader
+                if _DIRECTORY < length <= size:  # if the size exceeds the file, the zip reader reports it
                     raise SceneError("archive", str(path), "has a list of entries that is too long")
             offset = tail.find(mark, offset + 1)
 
@@ -124,13 +127,13 @@ def check_directory(path: Path, file: IO[bytes]) -> None:
 
 _CHUNK = 1 << 20
 _CHECKSUM = "checksum"
-"""The variable of a trajectory that depends on the file's header, and so on versions and git revision."""
+"""Variable of a trajectory that depends on the file's header, and therefore on versions and git revision."""
 
 
 def digest(file: IO[bytes], copy: IO[bytes] | None = None) -> str:
     """Compute the digest of the rest of an open file.
 
-    The rest is also written to `copy`, if given.
+    If `copy` is given, the rest is also written to `copy`.
     """
     total = hashlib.sha256()
     while data := file.read(_CHUNK):
@@ -141,7 +144,10 @@ def digest(file: IO[bytes], copy: IO[bytes] | None = None) -> str:
 
 
 def digest_of_file(path: Path) -> str:
-    """Return the digest of a file; may raise OSError."""
+    """Return the digest of a file.
+
+    May raise OSError.
+    """
     with path.open("rb") as file:
         return digest(file)
 
@@ -149,9 +155,9 @@ def digest_of_file(path: Path) -> str:
 def digest_of_numbers(path: Path) -> str:
     """Compute the digest of a trajectory's variables.
 
-    It is equal for equal bits, whatever versions and git revision the attributes state. Each variable
-    contributes its name, type, shape and bytes, in the order of the names. Raises SceneError for a file that
-    is no trajectory of gaspart.
+    Equal bits have equal digests, even if the attributes state different versions and git revisions. Each
+    variable contributes its name, type, shape and bytes, in the order of the names. Raises SceneError for a
+    file that is no trajectory of gaspart.
     """
     total = hashlib.sha256()
     with open_netcdf_file(path) as file:
@@ -165,19 +171,20 @@ def digest_of_numbers(path: Path) -> str:
 
 
 def joint_digest(paths: Iterable[str], digests: Mapping[str, str]) -> str:
-    """Compute the digest of a set of files, from the lines "<digest>  <path>".
+    """Compute a joint digest of a set of files, from the lines "<digest> <path>".
 
-    The lines are in the order of the paths.
+    The lines are sorted by path.
 
-    paths : files, or folders, which stand for all files of `digests` in them.
+    paths : files or folders; a folder represents all files of `digests` in it.
     digests : digest of each file.
 
-    Raises KeyError for a path that is neither.
+    Raises KeyError for any other path.
     """
     lines: set[str] = set()
     names = sorted(digests)
     for path in paths:
-        below = slice(bisect(names, f"{path}/"), bisect(names, f"{path}0"))  # "0" comes after "/"
+        # in the order of characters, "0" follows "/"
+        below = slice(bisect(names, f"{path}/"), bisect(names, f"{path}0"))
         files = [path] if path in digests else names[below]
         if not files:
             raise KeyError(path)

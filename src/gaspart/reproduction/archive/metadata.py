@@ -22,7 +22,7 @@ class Citation(NamedTuple):
     """Title, creators and licence of an archive, from the project's CITATION.cff.
 
     creators : persons and organisations, as entities of the metadata.
-    licence : its identifier at spdx.org, such as BSD-3-Clause.
+    licence : identifier of the licence at spdx.org, such as BSD-3-Clause.
     url : address of the project, or "".
     """
 
@@ -36,7 +36,7 @@ class Citation(NamedTuple):
 def read_citation(path: Path) -> Citation:
     """Read a CITATION.cff, version 1.2.0.
 
-    Raises SceneError for a file that cannot be read or lacks a key that an archive needs.
+    Raises SceneError if the file cannot be read, or lacks a key that an archive needs.
     """
     content = read_yaml(path)
     for key in ("title", "authors", "license"):
@@ -76,9 +76,9 @@ _PROFILES = {
     "https://w3id.org/workflowhub/workflow-ro-crate/1.0": ("Workflow RO-Crate", "1.0"),
 }
 _TERMS = "https://w3id.org/ro/terms/workflow-run/context"
-"""The context that defines `sha256`."""
+"""Context of JSON-LD that defines `sha256`."""
 _BIOSCHEMAS = "https://bioschemas.org/profiles/{}/1.0-RELEASE"
-_ENCODINGS = MimeTypes().types_map[True] | {  # of other files: text/plain
+_ENCODINGS = MimeTypes().types_map[True] | {  # all other files are text/plain
     ".cff": "application/yaml",
     ".md": "text/markdown",
     ".rst": "text/x-rst",
@@ -118,7 +118,10 @@ class Described:
 
 
 def metadata(described: Described, citation: Citation) -> str:
-    """Return the text of the file; raise SceneError if the package rocrate is missing."""
+    """Return the text of `ro-crate-metadata.json`.
+
+    Raises SceneError if the package rocrate is missing.
+    """
     crate = optional("rocrate.rocrate", "archive", "archives").ROCrate(version="1.1")
     crate.metadata.extra_contexts.append(_TERMS)
     creators = _single([crate.add_jsonld(dict(creator)) for creator in citation.creators])
@@ -127,7 +130,7 @@ def metadata(described: Described, citation: Citation) -> str:
         path: _add_file(crate, path, described)
         for path in described.files
         if path != described.workflow and path.partition("/")[0] not in contents.FOLDERS
-    }  # files in folders of sources are described by their folder
+    }  # folders of sources are described as a whole, not file by file
     folders = [
         crate.add_dataset(
             dest_path=f"{name}/", properties={"name": name, "description": contents.FOLDERS[name]}
@@ -148,12 +151,12 @@ def _results(described: Described) -> str:
 
 
 def _add_work(crate: Any, identity: str, name: str, **properties: str) -> Any:
-    """Add a creative work to which others refer, such as a profile."""
+    """Add a creative work, such as a profile, to which other entities refer."""
     return crate.add_jsonld({"@id": identity, "@type": "CreativeWork", "name": name, **properties})
 
 
 def _single(entities: list[Any]) -> Any:
-    """Return one entity by itself, as RO-Crate recommends, or several as a list."""
+    """Return a single entity without a list, as RO-Crate recommends, or several as a list."""
     return entities[0] if len(entities) == 1 else entities
 
 
@@ -177,7 +180,7 @@ def _describe_root(crate: Any, described: Described, citation: Citation, creator
 
 
 def _sizes(described: Described, path: str) -> dict[str, str]:
-    """Return size, digest and encoding of a file."""
+    """Return the entries size, digest and encoding of a file."""
     size, digest = described.files[path]
     encoding = _ENCODINGS.get(PurePosixPath(path).suffix, "text/plain")
     return {"contentSize": str(size), "sha256": digest, "encodingFormat": encoding}
@@ -198,7 +201,7 @@ def _add_file(crate: Any, path: str, described: Described) -> Any:
 
 
 def _add_workflow(crate: Any, described: Described, citation: Citation, files: Mapping[str, Any]) -> Any:
-    """Add the main entity, the Snakefile, with its input and output in this run."""
+    """Add the Snakefile as main entity, with its input and output in this run."""
     summary, results = described.summary, _results(described)
     version = f"{summary['gaspart']} ({summary['revision']})" if summary["revision"] else summary["gaspart"]
     properties = {"name": citation.title, "version": version, **_sizes(described, described.workflow)}
@@ -229,7 +232,7 @@ def _add_workflow(crate: Any, described: Described, citation: Citation, files: M
 
 
 def _add_run(crate: Any, workflow: Any, described: Described) -> Any:
-    """Add the run, from its first job to the end of its last."""
+    """Add the run, from its first job's start to its last job's end."""
     ends = [
         (datetime.fromisoformat(job.ended), timedelta(seconds=float(job.seconds))) for job in described.jobs
     ]

@@ -1,7 +1,7 @@
-"""An archive that is read: a zip file, or the folder into which one was unpacked.
+"""An archive to be read: a zip file, or the folder into which it was unpacked.
 
-It may come from a stranger. What it holds is checked by its names, kinds and sizes before anything of it is
-read, and only files that are in it are ever opened.
+The archive may come from a stranger. All names, kinds and sizes are checked before any content is read. Only
+files inside the archive are opened.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ DAMAGE = (
     *(zipfile.BadZipFile, zlib.error, struct.error, EOFError),
     *(OSError, RuntimeError, ValueError, OverflowError, MemoryError),
 )
-"""Errors that reading a damaged file of an archive may raise."""
+"""Errors that may occur when a damaged file of an archive is read."""
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 _DIGITS = 64
 
@@ -71,7 +71,10 @@ class Stored:
 
     @contextmanager
     def open(self, name: str) -> Iterator[IO[bytes]]:
-        """Open a file of the archive; raise SceneError for one that is missing or damaged."""
+        """Open a file of the archive.
+
+        Raises SceneError if the file is missing or damaged.
+        """
         if name not in self.names:
             raise self.make_error(f"has no file {name}")
         try:
@@ -83,7 +86,10 @@ class Stored:
             raise self.make_error(f"has a damaged {name}: {_reason(error)}") from None
 
     def text(self, name: str, most: int = MOST_BYTES) -> str:
-        """Read a file of at most `most` bytes as text; raise SceneError."""
+        """Read a file of at most `most` bytes as text.
+
+        Raises SceneError if that fails.
+        """
         with self.open(name) as file:
             content = file.read(most + 1)
             if len(content) > most:
@@ -91,12 +97,18 @@ class Stored:
             return content.decode()
 
     def copy(self, name: str, target: Path) -> None:
-        """Write a file to `target`; raise SceneError."""
+        """Copy a file of the archive to the path `target`.
+
+        Raises SceneError if that fails.
+        """
         with self.open(name) as source, target.open("xb") as file:
             shutil.copyfileobj(source, file)
 
     def rows(self, name: str, columns: Sequence[str] = ()) -> list[dict[str, str]]:
-        """Return the rows of a table that has at least these columns; raise SceneError."""
+        """Return the rows of a table that has at least these columns.
+
+        Raises SceneError for another table.
+        """
         text = self.text(name)
         try:
             return rows_of(text, columns)
@@ -112,9 +124,9 @@ class Stored:
             return ""
 
     def summary(self) -> dict[str, Any]:
-        """Return the content of `run.json`, of which `verify` uses texts.
+        """Return the content of `run.json`.
 
-        Raises SceneError for another content.
+        Raises SceneError if a text that `verify` needs is missing.
         """
         text = self.text(RUN, 1 << 20)
         try:
@@ -127,7 +139,10 @@ class Stored:
         return dict(content)
 
     def manifest(self) -> dict[str, str]:
-        """Return {path: digest} as the manifest states them; raise SceneError for another text."""
+        """Return {path: digest} from the manifest.
+
+        Raises SceneError for a manifest of another form.
+        """
         digests: dict[str, str] = {}
         for line in io.StringIO(self.text(MANIFEST)):
             value, gap, name = line.removesuffix("\n").partition("  ")
@@ -145,8 +160,9 @@ def _reason(error: BaseException) -> str:
 def opened_archive(path: str | Path) -> Iterator[Stored]:
     """Open an archive within the `with` block.
 
-    Raises SceneError for a file that cannot be read, or that is no archive of gaspart: with two entries of
-    one name, names that lead out of it or cannot be shown, links, or contents of unreasonable size.
+    Raises SceneError for a file that cannot be read, or that is no archive of gaspart. An archive has no
+    equal names, no names that lead out of it, no unprintable names, no links, and no contents of unreasonable
+    size.
     """
     path = Path(path)
     try:
@@ -189,10 +205,10 @@ def _zip_file(path: Path, source: IO[bytes]) -> Stored:
 
 
 def _check_entry(path: Path, entry: zipfile.ZipInfo) -> None:
-    """Refuse entries that `gaspart archive` does not write.
+    """Reject entries that `gaspart archive` does not write.
 
-    These are links and the like, other compressions, folders with contents, and names that readers interpret
-    differently.
+    Rejected are links and other special files, other compression methods, folders with contents, and names
+    that programs interpret differently.
     """
     kind = stat.S_IFMT(entry.external_attr >> 16)
     rule = ""
@@ -233,14 +249,14 @@ def _folder(path: Path) -> Stored:
     )
 
 
-# Points of an archive simulated again: the same bits, or not.
+# Points of an archive are simulated again, to compare their bits.
 
 
 def chosen(stored: Stored, folder: Path, count: int) -> list[Point]:
-    """Return `count` points of an archive that have trajectories, drawn at random.
+    """Return `count` random points of an archive that have trajectories.
 
-    If there are fewer, all are returned. They are planned anew from the archive's config and scenes, which
-    are written to `folder`. Raises SceneError for a config that cannot be planned.
+    If there are fewer such points, all are returned. The points are planned again from the archive's config
+    and scenes, which are written to `folder`. Raises SceneError if the config cannot be planned.
     """
     _write_config(stored, folder)
     with open_config(folder / "config/config.yaml") as (_, planned):
@@ -257,10 +273,10 @@ def chosen(stored: Stored, folder: Path, count: int) -> list[Point]:
 
 
 def _write_config(stored: Stored, folder: Path) -> None:
-    """Write the config and the scene files that it names.
+    """Write the config of an archive, and the scene files that it names, to a folder.
 
-    Raises SceneError for a scene file that is not in the archive: a config of a stranger must not read files
-    of this machine.
+    Raises SceneError for a scene file that is not in the archive: the config of a stranger must not read
+    files of this machine.
     """
     config = parse_yaml(stored.text(tables.CONFIG), tables.CONFIG)
     for name in scene_files(config):
@@ -274,7 +290,7 @@ def _write_config(stored: Stored, folder: Path) -> None:
 
 
 def rerun(stored: Stored, point: Point, folder: Path) -> Check:
-    """Simulate all replicas of a point, and compare the digests of their numbers."""
+    """Simulate all replicas of a point, and compare their digests with the archive's digests."""
     load_numba(ours=True)
     rows = stored.rows(tables.POINTS, tables.PointFile._fields)
     digests = {
@@ -286,7 +302,7 @@ def rerun(stored: Stored, point: Point, folder: Path) -> Check:
     for replica, recipe in enumerate(recipes(**point.arguments)):
         output = folder / "again.nc"
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of coarse settings, which the config has on purpose
+            warnings.simplefilter("ignore")  # warnings of coarse settings, which the config has on purpose
             record(recipe, output, True)
         if digest_of_numbers(output) != digests.get(str(replica)):
             other.append(str(replica))
@@ -308,17 +324,17 @@ def rerun(stored: Stored, point: Point, folder: Path) -> Check:
 
 _JUDGED = ("figure", "claim", "verdict")
 _NAMED = 3
-"""Maximum number of files that a message names."""
+"""Maximum number of files that a message lists."""
 
 
 def verify(path: str | Path, points: int = 0) -> Iterator[Check]:
-    """Recompute the digests of an archive, and simulate points again.
+    """Recompute the digests of an archive, and simulate some of its points again.
 
-    The archive is a zip file or an unpacked one; `points` is the number of points, among those with
-    trajectories, that are drawn at random. Yields a check for the archive as a whole, its files, its claims,
-    and each of these points. If files are damaged, nothing that follows from them is checked.
+    The archive is a zip file or an unpacked folder. The number `points` of points with trajectories are drawn
+    at random. The function yields a check for the complete archive, its files, its claims, and each of these
+    points. If files are damaged, checks that depend on them are left out.
 
-    Raises SceneError for anything but an archive, and as simulations do.
+    Raises SceneError if the file is no archive, or if a simulation raises it.
     """
     with opened_archive(path) as stored:
         stated = stored.manifest()
@@ -334,7 +350,7 @@ def verify(path: str | Path, points: int = 0) -> Iterator[Check]:
 
 
 def _files(stored: Stored, stated: Mapping[str, str]) -> Check:
-    """Check that the files of the archive are the files of the manifest, with their digests."""
+    """Check that the archive has the files of the manifest, with the same digests."""
     missing = sorted(stated.keys() - stored.names)
     unknown = sorted(stored.names - stated.keys() - {MANIFEST})
     changed = [name for name in sorted(stated.keys() & stored.names) if stored.digest(name) != stated[name]]
@@ -349,15 +365,15 @@ def _join_names(names: list[str]) -> str:
 
 
 def _tables(stored: Stored, stated: Mapping[str, str]) -> Iterator[Check]:
-    """Yield the checks of the statements of the tables.
+    """Yield the checks of the tables.
 
-    Raises SceneError for tables that `gaspart archive` cannot have written, though they have their digests.
+    Raises SceneError if `gaspart archive` cannot have written a table, even if its digest is correct.
     """
     try:
         run = stored.summary()
         revision = f", revision {run['revision']}" if run["revision"] else ""
         about = f"{run['title']}; gaspart {run['gaspart']}{revision}; {run['archived'][:10]}"
-        yield Check("run", True, about)  # which cannot fail
+        yield Check("run", True, about)  # this cannot fail
         yield _claims(stored, stated)
         yield _points(stored)
     except SceneError as error:
@@ -370,7 +386,7 @@ def _tables(stored: Stored, stated: Mapping[str, str]) -> Iterator[Check]:
 def _claims(stored: Stored, stated: Mapping[str, str]) -> Check:
     """Check that each claim of the results is listed, with the digests of its data.
 
-    The data are in the archive.
+    The archive contains the data.
     """
     run, points = stored.summary(), stored.rows(tables.POINTS, tables.PointFile._fields)
     listed = stored.rows(tables.CLAIMS, tables.ClaimData._fields)
@@ -391,7 +407,7 @@ def _claims(stored: Stored, stated: Mapping[str, str]) -> Check:
 
 
 def _inputs(stored: Stored, name: str) -> list[str]:
-    """Return the points, or tables of claims, of which a measurement in an archive is made."""
+    """Return the points, or tables of claims, from which a measurement in an archive is made."""
     with TemporaryDirectory(prefix="gaspart-") as folder:
         copy = Path(folder, "measurement.nc")
         stored.copy(name, copy)
@@ -402,7 +418,7 @@ def _inputs(stored: Stored, name: str) -> list[str]:
 
 
 def _points(stored: Stored) -> Check:
-    """Check that the points in the archive have the digests that its table states."""
+    """Check that the points in the archive have the digests that the table of points states."""
     listed = stored.rows(tables.POINTS, tables.PointFile._fields)
     rows = [row for row in listed if row["path"] in stored.names]
     wrong = [row["path"] for row in rows if stored.digest(row["path"]) != row["sha256"]]

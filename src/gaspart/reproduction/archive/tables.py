@@ -1,4 +1,4 @@
-"""Origin of the numbers of an archive: tables of points, claims and jobs, and the machine."""
+"""Tables on the origin of the numbers in an archive: points, claims, jobs, machine."""
 
 from __future__ import annotations
 
@@ -31,10 +31,11 @@ RUN = f"{FOLDER}/run.json"
 
 
 class PointFile(NamedTuple):
-    """A row of `points.csv`: a file that a point consists of.
+    """Row of `points.csv`: a file of a point.
 
-    replica: "" for a point without trajectories, as then are numbers_sha256, the digest of the numbers in a
-    trajectory without its attributes, and revision, the git revision at which it was begun.
+    For a point without trajectories these fields are "": `replica`; `numbers_sha256`, the digest of the
+    numbers in a trajectory without its attributes; and `revision`, the git revision at which the trajectory
+    was begun.
     """
 
     experiment: str
@@ -51,9 +52,9 @@ class PointFile(NamedTuple):
 class ClaimData(NamedTuple):
     """Row of `claims.csv`: a claim and the digests of its data.
 
-    data : measurement from which it is judged.
-    inputs_sha256 : joint digest of the files from which that was measured, the points of the figure or the
-        claims of other figures (see `joint_digest`).
+    data : measurement from which the claim is judged.
+    inputs_sha256 : joint digest of the inputs of the measurement, points or other claims (see
+        `joint_digest`).
     """
 
     figure: str
@@ -65,9 +66,9 @@ class ClaimData(NamedTuple):
 
 
 class JobTime(NamedTuple):
-    """Row of `jobs.csv`: the time, memory and end of a job, in s, MB and UTC.
+    """Row of `jobs.csv`: time in s, memory in MB and end in UTC of a job.
 
-    cpu_seconds, largest_memory : as the job states them; "" for a job of an older version.
+    cpu_seconds, largest_memory : values that the job states; "" for a job of an older version.
     """
 
     rule: str
@@ -79,7 +80,10 @@ class JobTime(NamedTuple):
 
 
 def point_files(run: Finished) -> list[PointFile]:
-    """Return the files of all points, with their digests; reads all of them."""
+    """Return the files of all points, with their digests.
+
+    All files are read.
+    """
     rows = []
     for point in run.points:
         is_folder = point.job == TRAJECTORIES
@@ -92,7 +96,7 @@ def point_files(run: Finished) -> list[PointFile]:
 
 
 def inputs_of(measurement: Path) -> list[str]:
-    """Return the points, or tables of claims, that a measurement states it is made of."""
+    """Return the points, or tables of claims, that a measurement states as its origin."""
     from netCDF4 import Dataset
 
     with Dataset(measurement) as file:
@@ -116,8 +120,8 @@ def claim_rows(run: Finished, files: Iterable[PointFile]) -> list[ClaimData]:
 def job_times(run: Finished) -> list[JobTime]:
     """Return the time of each job of the run.
 
-    The times are from Snakemake's benchmarks and the jobs' logs, without points that the config no longer
-    has.
+    The times are read from Snakemake's benchmarks and from the logs of the jobs. Points that the config no
+    longer has are left out.
     """
     folder = run.root / run.results / "benchmarks"
     kept = {(point.experiment, point.name) for point in run.points}
@@ -147,8 +151,8 @@ def text_of(rows: Iterable[tuple], columns: tuple[str, ...]) -> str:
 def rows_of(text: str, columns: Sequence[str] = ()) -> list[dict[str, str]]:
     """Return the rows of a text made by `text_of`.
 
-    The table must have at least these columns. Raises ValueError for another text, for a field of more than
-    131072 characters, and for more than `MOST_ROWS` rows.
+    The table must have at least these columns. Raises ValueError if a column is missing, if a field has more
+    than 131072 characters, or if there are more than `MOST_ROWS` rows.
     """
     lines = csv.reader(io.StringIO(text, newline=""), strict=True)
     rows: list[dict[str, str]] = []
@@ -170,7 +174,7 @@ def rows_of(text: str, columns: Sequence[str] = ()) -> list[dict[str, str]]:
 def _machine() -> dict[str, Any]:
     """Return processor, memory and system of this machine, and the installed packages."""
     processor = platform.processor()
-    with suppress(OSError, StopIteration):  # the model, as Linux names it
+    with suppress(OSError, StopIteration):  # model of the processor, as Linux states it
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
         processor = next(line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
     packages = {package.name: package.version for package in distributions() if package.name}
@@ -186,7 +190,7 @@ def _machine() -> dict[str, Any]:
 
 
 def summary_of(run: Finished, files: Iterable[PointFile], trajectories: bool) -> Mapping[str, Any]:
-    """Return the content of `run.json`: the run, its revisions, and the machine of the archive."""
+    """Return the content of `run.json`: run, revisions, and the machine that wrote the archive."""
     revisions = {file.revision for file in files if file.revision}
     return {
         "title": run.config["title"],

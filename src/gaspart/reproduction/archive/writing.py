@@ -1,4 +1,4 @@
-"""Writing the archive of a finished run."""
+"""Functions that write the archive of a finished run."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from gaspart.reproduction.archive.metadata import METADATA, Described, metadata,
 from gaspart.yaml_text import dump_yaml
 
 MANIFEST = "manifest-sha256.txt"
-"""The digest of every other file of an archive, in the form of the program sha256sum."""
+"""File with the digests of all other files of an archive, in the format of the program `sha256sum`."""
 _TIME = (1980, 1, 1, 0, 0, 0)
-"""Time of all files: the digest of an archive depends on their contents only."""
+"""Time stamp of all files. It is constant, so that the digest of an archive depends on its contents only."""
 _LARGE = 1 << 31
 
 
@@ -43,16 +43,16 @@ def write_archive(
     trajectories: bool = False,
     overwrite: bool = False,
 ) -> str:
-    """Write the archive of a finished run, and return a line on its contents.
+    """Write the archive of a finished run, and return a line that describes its contents.
 
-    results : folder of its results, `results` or `results/<run>`.
-    config : its config, by default found by its name.
-    trajectories : include them, not only their digests.
+    results : folder of the results, `results` or `results/<run>`.
+    config : config of the run. Default: the config with the name of the run.
+    trajectories : True to include the trajectories, not only their digests.
 
-    Raises SceneError as `find_finished` does, if a file of the project or the package rocrate is missing, and
-    for a path that cannot be written.
+    Raises SceneError like `find_finished`. Raises it also if a file of the project or the package rocrate is
+    missing, or if the path cannot be written.
     """
-    optional("rocrate.rocrate", "archive", "archives")  # before the work
+    optional("rocrate.rocrate", "archive", "archives")  # fails before the work starts
     if output_path(path).suffix != ".zip":
         raise SceneError("path", str(path), "must end in .zip")
     with writing(path, ARCHIVE, overwrite) as partial:
@@ -64,22 +64,24 @@ def write_archive(
                 if isinstance(error, SceneError):
                     raise
                 rule = (
-                    f"has a table or measurement that cannot be read: {error}"  # edited by hand, or cut short
+                    # the file was edited or truncated
+                    f"has a table or measurement that cannot be read: {error}"
                 )
                 raise SceneError("results", str(results), rule) from None
     return f"{path}: {line}, {Path(path).stat().st_size / 1e6:.1f} MB"
 
 
 class _Writer:
-    """An archive that is being written, and the size and digest of each file in it."""
+    """An archive during writing, with the size and digest of each file in it."""
 
     def __init__(self, file: zipfile.ZipFile) -> None:
         self._file = file
         self._files: dict[str, tuple[int, str]] = {}
 
     def write(self, run: Finished, trajectories: bool) -> str:
-        """Write everything; returns what is in it, in words."""
-        for folder in contents.folders(run):  # described as folders, so that they are entries of their own
+        """Write all contents, and return a description of them."""
+        # folders have entries of their own, because the metadata describe them
+        for folder in contents.folders(run):
             self._file.writestr(zipfile.ZipInfo(f"{folder}/", _TIME), b"")
         for name in [*contents.sources(run), *run.outputs()]:
             self._add_file(name, run.root / name)

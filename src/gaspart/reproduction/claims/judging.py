@@ -1,4 +1,4 @@
-"""Verdicts of the claims of one figure, corrected for their number, and a joint test."""
+"""Verdicts of the claims of a figure, corrected for their number, and a joint test."""
 
 from __future__ import annotations
 
@@ -13,46 +13,49 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
-# The form of a claim: an estimate, what is expected of it, and the deviation between them.
+# A claim: an estimate, its expected value, and the deviation between them.
 
 
 CLAIM_KINDS = ("test", "identity", "reproduction", "family")
-"""Kinds of claims: a test could be false, an identity is true by construction and checks the code.
+"""Kinds of claims.
 
-A reproduction repeats a source's report, a family states that the deviations of a figure's value claims
-scatter as their uncertainties state.
+A test could be false. An identity is true by construction, and checks the code. A reproduction repeats a
+published result. A family states that the deviations of a figure's values scatter as their uncertainties
+predict.
 """
 POWER = 2.0
-"""Standard deviations between the expected value and the alternative that a conclusive claim must resolve."""
+"""Resolution of a conclusive claim: expected and alternative value differ by at least this many standard
+deviations."""
 NEGLIGIBLE = 0.1
-"""Part of the measurement's uncertainty below which an allowance does not change a deviation (0.5 %)."""
+"""Largest allowance that counts as negligible, divided by the uncertainty of the measurement; it changes a
+deviation by 0.5 %."""
 UNVERIFIED = "the reference is quoted from memory and has not been verified"
-"""Why a claim has no verdict: see `Claim.no_verdict`."""
+"""Reason for a claim without a verdict; see `Claim.no_verdict`."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Claim:
-    """Measured number and its expected value, in the unit that the claim's text gives.
+    """Measured number and its expected value; the claim's text gives their unit.
 
     claim : the statement in words.
-    expected : a plain number is exact; the uncertainty of an Estimate is the allowance for the uncertainty of
-        the theory or the literature, whose origin is `allowance_source`, and which must not be derived from
-        the data.
+    expected : expected value. A plain number is exact. The uncertainty of an Estimate is the allowance: the
+        uncertainty of the theory or the literature. Its origin is `allowance_source`; it must not be derived
+        from the data.
     source : source of the expected value.
-    required : largest uncertainty of the measurement at which the claim means anything.
-    fails_if : faults that would make it fail.
+    required : largest uncertainty of the measurement at which the claim is conclusive.
+    fails_if : faults that would make the claim fail.
     kind : one of CLAIM_KINDS.
-    bounds : lowest and highest allowed number, for a statement of bounds instead of a value (see `at_least`,
+    bounds : lowest and highest allowed number, if the claim states bounds instead of a value (see `at_least`,
         `at_most`, `within`).
-    exact_deviation : for numbers that are not Gaussian, their deviation as a Gaussian one (see `chi_square`).
-    alternative : value of a competing theory, which a claim that agrees must exclude.
-    follows : True if the number follows, or nearly, from other claims, so that the joint test does not count
-        it again.
-    no_verdict : reason why the number is reported only, such as UNVERIFIED.
-    source_error : for a reproduction, reason why the source errs if it is not reproduced.
+    exact_deviation : deviation of a number that is not Gaussian. It is the deviation of a Gaussian number
+    with the same probability (see `chi_square`).
+    alternative : value of a competing theory. A claim agrees only if it excludes this value.
+    follows : True if the number is (nearly) determined by other claims. The joint test then leaves it out.
+    no_verdict : reason why the number is reported without a verdict, such as UNVERIFIED.
+    source_error : error of the source that explains why its result is not reproduced.
 
-    Raises ValueError for an unknown kind, an empty text, source or fails_if, a negative required uncertainty,
-    and an allowance without a source.
+    Raises ValueError for an unknown kind, an empty text, `source` or `fails_if`, a negative required
+    uncertainty, or an allowance without a source.
     """
 
     claim: str
@@ -109,8 +112,8 @@ class Claim:
     def within(cls, *, claim: str, expected: Number, half_width: Number, **others: Any) -> Claim:
         """Return the claim that the measured number lies within `half_width` of `expected`.
 
-        `others` are the remaining fields. The required uncertainty defaults to half of half_width: the
-        measurement's 95 % interval is then no wider than the band.
+        `others` are the remaining fields. The required uncertainty defaults to `half_width` / 2. The 95 %
+        interval of the measurement is then no wider than the interval of the claim.
         """
         low, high = expected - half_width, expected + half_width
         text = f"{claim} (within {low:g} to {high:g})"
@@ -122,14 +125,14 @@ class Claim:
     def chi_square(
         cls, *, chi_square: Number, degrees_of_freedom: int, error_freedom: Number = math.inf, **others: Any
     ) -> Claim:
-        """Return a claim on chi-square per degree of freedom of many deviations, expected to be 1.
+        """Return the claim that chi-square per degree of freedom is 1.
 
-        The deviation is the Gaussian deviation with the same two-sided probability, because a chi-square that
-        is far too small is also an error (too large error bars). The uncertainty sqrt(2 / dof) is the scatter
-        of the statistic itself.
+        The deviation of the claim is the deviation of a Gaussian number with equal two-sided probability. It
+        is two-sided because a chi-square that is far too small is also an error: the error bars are too
+        large. The uncertainty sqrt(2 / dof) is the scatter of the statistic itself.
 
-        error_freedom : degrees of freedom of the uncertainty if all deviations have one in common, from the
-            scatter of a few samples; the statistic per degree of freedom then follows Fisher's distribution.
+        error_freedom : degrees of freedom of a common uncertainty of all deviations, if it was computed from
+            a few samples. The statistic per degree of freedom then follows Fisher's distribution.
         others : the remaining fields of the claim.
         """
         from scipy.special import chdtr, chdtrc, fdtr, fdtrc, ndtri
@@ -148,7 +151,10 @@ class Claim:
 
     @classmethod
     def joint(cls, *, claim: str, deviations: ArrayLike, **others: Any) -> Claim:
-        """Return the `chi_square` of independent deviations, in standard deviations, of any shape."""
+        """Return the `chi_square` claim on independent deviations.
+
+        Deviations are in standard deviations, and have any shape.
+        """
         import numpy as np
 
         deviations = np.asarray(deviations, dtype=float)
@@ -158,18 +164,17 @@ class Claim:
 
     @property
     def form(self) -> str:
-        """The kind of statement: "value", "bound" (or two), or "distribution", of many numbers at once."""
+        """Form of the statement: "value", "bound" (one or two), or "distribution" (of many numbers)."""
         if self.exact_deviation is not None:
             return "distribution"
         return "value" if self.bounds is None else "bound"
 
     @property
     def deviation_sigma(self) -> float:
-        """Signed distance from the claimed value, in standard deviations; 0 inside of bounds.
+        """Signed distance from the expected value, in standard deviations; 0 within bounds.
 
-        (measured - expected) / sqrt(sum of the squares of both uncertainties); for bounds, the nearer bound
-        is used as the expected value. See `Estimate.deviation` for uncertainties that come from a few
-        samples.
+        It is (measured - expected) / sqrt(u1^2 + u2^2) with the uncertainties u1 and u2 of both. For bounds,
+        the nearer bound is the expected value. See `Estimate.deviation` for uncertainties from a few samples.
         """
         if self.exact_deviation is not None:
             return self.exact_deviation
@@ -199,17 +204,17 @@ class Claim:
 
     @property
     def is_conclusive(self) -> bool:
-        """True if agreement would mean something.
+        """True if agreement would be significant.
 
-        The uncertainty is not above the required one, and the alternative would be noticed.
+        The uncertainty is at most the required one, and the alternative would be distinguished.
         """
         return self.is_finite and self.measured.error <= self.required and self.has_power
 
     @property
     def is_scattered(self) -> bool:
-        """True if the deviation of a true claim is an independent standard Gaussian one.
+        """True if the deviation of a true claim is an independent standard Gaussian number.
 
-        This is so for a test of a value, with a verdict, whose allowance is negligible relative to the
+        This holds for a test of a value with a verdict. Its allowance must be negligible relative to the
         uncertainty of the measurement.
         """
         return (
@@ -224,19 +229,21 @@ class Claim:
 
 
 VERDICTS = ("agrees", "disagrees", "inconclusive", "reproduced", "source in error", "no verdict")
-"""Tests and identities have one of the first three; a reproduction is reproduced, its source is in error (if
-there is a reason why), it disagrees for no known reason, or is inconclusive; no verdict: the number is
-reported only."""
+"""Verdicts. The first three are for tests and identities. A reproduction is reproduced; or its source is in
+error, if an error is known; or it disagrees for an unknown reason; or it is inconclusive. With "no verdict"
+the number is only reported."""
 FAMILY_LEVEL = math.erfc(3.0 / math.sqrt(2.0))
-"""Chance that a family of true statements has any "disagrees", as in one two-sided 3-sigma test, 0.0027."""
+"""Probability that a family of true claims has at least one "disagrees": 0.0027, that of one two-sided
+3-sigma test."""
 
 
 def holm(p_values: Sequence[float], level: float = FAMILY_LEVEL) -> list[bool]:
-    """Return the rejected hypotheses of a family, as a list of bool, by Holm's step-down procedure.
+    """Return True for each hypothesis of a family that Holm's step-down procedure rejects.
 
-    The smallest of m probabilities is compared with level / m, the next with level / (m-1) ... until one is
-    above. The probability of any wrong rejection is at most `level`, for any dependences (Holm, Scand. J.
-    Stat. 6, 65 (1979)).
+    The smallest of m probabilities is compared with level / m, the second smallest with level / (m-1), and so
+    on. The procedure stops at the first probability above its threshold. The probability of any wrong
+    rejection is at most `level`, even if the hypotheses depend on each other (Holm, Scand. J. Stat. 6, 65
+    (1979)).
     """
     rejected = [False] * len(p_values)
     order = sorted(range(len(p_values)), key=lambda index: p_values[index])
@@ -248,12 +255,12 @@ def holm(p_values: Sequence[float], level: float = FAMILY_LEVEL) -> list[bool]:
 
 
 def family_test(claims: Sequence[Claim]) -> list[Claim]:
-    """Return the joint test of a figure's claims, [one claim], or [].
+    """Return a list with the joint test of a figure's claims, or an empty list.
 
-    The result is [] if fewer than two claims have a value that is not counted exactly, or if no such value
-    scatters. With an allowance that is not negligible, a deviation is not a standard Gaussian number. Holm's
-    correction detects one deviation that is too large. This two-sided chi-square detects many deviations that
-    are a little too large, and uncertainties that are too large.
+    The list is empty if fewer than two claims count, or if no value scatters. A claim counts if it states a
+    value that other claims do not determine. If an allowance is not negligible, the deviation is not a
+    standard Gaussian number. Holm's correction detects a single deviation that is too large. This two-sided
+    chi-square detects many deviations that are a little too large, and uncertainties that are too large.
     """
     tested = [claim for claim in claims if claim.form == "value" and claim.kind == "test"]
     if sum(claim.measured.error != 0.0 for claim in tested) < 2:
@@ -269,13 +276,13 @@ def family_test(claims: Sequence[Claim]) -> list[Claim]:
 
 
 def judge(claims: Sequence[Claim]) -> list[str]:
-    """Return verdicts of one figure's claims, in their order.
+    """Return the verdicts of the claims of one figure, in the order of the claims.
 
-    Holm's correction determines which deviations are significant, for the family of all tests and
-    reproductions with finite numbers. Identities do not depend on chance, and the joint test represents all
-    claims, so each of these is tested at 3 sigma. A claim that does not deviate significantly is inconclusive
-    if its uncertainty is larger than required, if it does not exclude the alternative, or if it is outside of
-    its bounds.
+    All tests and reproductions with finite numbers are one family. Holm's correction determines which of
+    their deviations are significant. Identities do not depend on chance, and the joint test represents all
+    claims; therefore these are tested separately at 3 sigma. A claim without a significant deviation is
+    inconclusive in three cases: its uncertainty is larger than required, it does not exclude the alternative,
+    or its number is outside of the bounds.
     """
     family = [
         claim
@@ -290,7 +297,7 @@ def judge(claims: Sequence[Claim]) -> list[str]:
 
 
 def _verdict(claim: Claim, is_significant: bool) -> str:
-    """Return the verdict of one claim, whose deviation is significant or not."""
+    """Return the verdict of one claim from the significance of its deviation."""
     if claim.no_verdict:
         return "no verdict"
     if not claim.is_finite:
@@ -304,10 +311,10 @@ def _verdict(claim: Claim, is_significant: bool) -> str:
 
 
 def reason(claim: Claim, verdict: str) -> str:
-    """Return the reason of a verdict that is inconclusive or missing, or of a source's error.
+    """Return the reason for a verdict that is inconclusive or missing, or for a source's error.
 
-    For an inconclusive claim it contains the multiple of the measurement that would make it conclusive. The
-    reason is empty for other verdicts.
+    For an inconclusive claim the reason contains a factor: a measurement longer by this factor would make the
+    claim conclusive. The reason is empty for other verdicts.
     """
     if verdict == "no verdict":
         return claim.no_verdict
@@ -329,10 +336,10 @@ def reason(claim: Claim, verdict: str) -> str:
 
 
 def sufficient(claim: Claim) -> float:
-    """Compute the multiple of the measurement that would just make a claim conclusive.
+    """Compute the factor by which the measurement must be longer to be just conclusive.
 
-    The uncertainty falls as the inverse root of the length. The multiple is below 1 where less would do,
-    infinite where no length would. NaN without numbers, and for a measurement without uncertainty.
+    The uncertainty falls as the inverse root of the length. The factor is below 1 if a shorter measurement
+    suffices, and infinite if no length suffices. It is NaN without numbers, or without an uncertainty.
     """
     error = claim.measured.error
     if not claim.is_finite or not error > 0.0:

@@ -1,4 +1,4 @@
-"""Tables of judged claims: written per figure as CSV, read, collected and counted."""
+"""Tables of judged claims as CSV files, a file per figure: written, read, joined and counted."""
 
 from __future__ import annotations
 
@@ -48,15 +48,15 @@ COLUMNS = (
 
 allowance : uncertainty of the expected value.
 lowest, highest : stated bounds, NaN for a value.
-scattered : 1 where `deviation_sigma` is a standard Gaussian number if the claim is true
-    (`Claim.is_scattered`), else 0.
+scattered : 1 if `deviation_sigma` of a true claim is a standard Gaussian number (`Claim.is_scattered`), else
+    0.
 """
 PLURALS = {"test": "tests", "identity": "identities", "reproduction": "reproductions", "family": "families"}
 COUNTED = {"agrees": "agree", "disagrees": "disagree"}
 
 
 def write(path: str | Path, figure: str, claims: Sequence[Claim]) -> None:
-    """Judge the claims of `figure` and write them as CSV with COLUMNS, atomically.
+    """Judge the claims of `figure`, and write them atomically as CSV with `COLUMNS`.
 
     The joint test of the claims is written too. Raises ValueError if two claims have the same text: their
     rows could not be distinguished.
@@ -75,7 +75,7 @@ def write(path: str | Path, figure: str, claims: Sequence[Claim]) -> None:
 
 
 def _row(claim: Claim, verdict: str) -> dict[str, str]:
-    """Return a judged claim as a row, by column."""
+    """Return a judged claim as a row: a value for each column."""
     lowest, highest = claim.bounds or (math.nan, math.nan)
     return {
         "claim": claim.claim,
@@ -102,9 +102,10 @@ def _row(claim: Claim, verdict: str) -> dict[str, str]:
 def read(path: str | Path) -> list[dict[str, Any]]:
     """Read the rows of a claims table as dictionaries by column, with numbers as floats.
 
-    A number that pandas left out is NaN.
+    Empty entries, which pandas writes for missing numbers, are read as NaN.
 
-    Raises ValueError, naming the file, if its columns are not COLUMNS or a number or verdict is invalid.
+    Raises ValueError with the file's name if the columns are not `COLUMNS`, or if a number or verdict is
+    invalid.
     """
     with Path(path).open(newline="", encoding="utf-8") as file:
         table = csv.DictReader(file)
@@ -123,9 +124,9 @@ def read(path: str | Path) -> list[dict[str, Any]]:
 
 
 def collect(paths: Iterable[str | Path]) -> pandas.DataFrame:
-    """Join the claims of several tables to one pandas DataFrame with COLUMNS.
+    """Join the claims of several tables to one pandas DataFrame with `COLUMNS`.
 
-    The order is that in `paths`.
+    The order is the order of `paths`.
     """
     import pandas
 
@@ -135,7 +136,7 @@ def collect(paths: Iterable[str | Path]) -> pandas.DataFrame:
 def counts(rows: Iterable[dict[str, Any]]) -> dict[str, dict[str, int]]:
     """Count the claims of each kind by verdict: {kind: {verdict: number}}.
 
-    Kinds and verdicts are in the order of CLAIM_KINDS and VERDICTS; kinds and verdicts without claims are
+    Kinds and verdicts are in the order of `CLAIM_KINDS` and `VERDICTS`. Kinds and verdicts without claims are
     omitted.
     """
     pairs = [(row["kind"], row["verdict"]) for row in rows]
@@ -147,7 +148,7 @@ def counts(rows: Iterable[dict[str, Any]]) -> dict[str, dict[str, int]]:
 
 
 def summary(path: str | Path) -> str:
-    """Summarise a claims table in lines.
+    """Summarise a claims table as text.
 
     The first line has the number of claims. Then follow a line for each kind, "tests: 205 agree, 3 disagree",
     and a line for each claim that disagrees. Raises ValueError as `read` does.
@@ -161,11 +162,9 @@ def summary(path: str | Path) -> str:
     return "\n".join(map(visible, lines))
 
 
-# Measured numbers in captions: filled in from the claims, and copies of them found.
-#
-# A caption names a measured number by the beginning of its claim, in double braces:
-#
-#     the sphere's energy is {{equipartition M<V^2>/3kT, mass 1 times}} of that in equilibrium
+# Measured numbers in captions. They are filled in from the claims, and literal copies of them are detected. A
+# caption names a measured number by the beginning of its claim, in double braces: the sphere's energy is
+# {{equipartition M<V^2>/3kT, mass 1 times}} of that in equilibrium
 
 
 _PLACE = re.compile(r"\{\{\s*(.*?)\s*\}\}", re.DOTALL)
@@ -174,10 +173,10 @@ NOT_MEASURED = "(not measured in this run)"
 
 
 def fill_caption(caption: str, rows: Iterable[dict[str, Any]], absent: str = NOT_MEASURED) -> str:
-    """Fill in the measured values of claims, as 0.930(16), at the places of a caption.
+    """Replace the placeholders of a caption by measured values, such as 0.930(16).
 
-    The values are from the rows of its figure in the claims table, or `absent` if there is no such claim.
-    Raises ValueError if a place names several claims.
+    The values come from the rows of the figure in the claims table. If there is no such claim, `absent` is
+    inserted. Raises ValueError if a placeholder fits several claims.
     """
     entries = list(rows)
 
@@ -194,7 +193,7 @@ def fill_caption(caption: str, rows: Iterable[dict[str, Any]], absent: str = NOT
 
 
 def place_fault(caption: str) -> str:
-    """Return the fault of the places of a caption; "" without a fault."""
+    """Return the fault of the placeholders in a caption; "" without a fault."""
     if any(not beginning.strip() for beginning in _PLACE.findall(caption)):
         return "{{ }} must hold the beginning of a claim"
     if "{{" in _PLACE.sub("", caption):
@@ -203,14 +202,14 @@ def place_fault(caption: str) -> str:
 
 
 def _number(row: dict[str, Any], name: str) -> float:
-    """Return a column of a table as a number; NaN for an empty entry of pandas."""
+    """Return a column of a row as a number; NaN for an empty entry."""
     return math.nan if row[name] == "" else float(row[name])
 
 
 def concise(value: float, error: float) -> str:
     """Format a number with its uncertainty in units of the last digit.
 
-    The uncertainty has two digits if they are below 20.
+    The uncertainty has two digits if these are below 20, else one digit.
     """
     if not (error > 0.0 and math.isfinite(error)):
         return f"{value:.5g}"
@@ -223,10 +222,12 @@ def concise(value: float, error: float) -> str:
 
 
 def literal_copies(caption: str, rows: Iterable[dict[str, Any]]) -> list[str]:
-    """Return numbers that a caption contains literally although they are measured, "1.34: claim".
+    """Return measured numbers that a caption contains as literal text.
 
-    Such a number has a decimal point, and equals the measured value of a claim, but not its expected value,
-    both rounded to the same number of digits. By chance a few are found that have another origin.
+    Each result has the form "1.34: claim".
+
+    Such a number has a decimal point. It equals the measured value of a claim, but not its expected value, if
+    both are rounded to the same number of digits. A few numbers of another origin are reported by chance.
     """
     copies = []
     for text in _NUMBER.findall(_PLACE.sub("", caption)):

@@ -1,1 +1,1 @@
-"""The figures: a folder per family, with `measure.py`, `claims.py` and `figure.py`."""
+"""Families of figures: a folder for each family, with `measure.py`, `claims.py` and `figure.py`."""

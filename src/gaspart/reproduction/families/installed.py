@@ -1,8 +1,8 @@
-"""Kinds of figures that other installed packages bring, found by their entry points.
+"""Kinds of figures in other installed packages, discovered by entry points.
 
-A package names each kind in the entry points of the group `gaspart.families`; what it names is a package that
-has the form of a family of this one (see `families.registry`), with the kind in its `KINDS`. Only the names
-are read until a config has a figure of the kind: its package is then imported, and no other.
+A package declares each kind as an entry point of the group `gaspart.families`. The entry point refers to a
+package that has the form of a family of gaspart (see `families.registry`), with the kind in its `KINDS`.
+Entry points are read without import. A package is imported only if the config has a figure of its kind.
 """
 
 from __future__ import annotations
@@ -29,24 +29,24 @@ _PARTS = ("measure", "claims", "figure")
 
 @cache
 def _entry_points() -> dict[str, list[EntryPoint]]:
-    """Return the entry points of each kind, of which there should be one."""
+    """Return the entry points of each kind; a valid kind has exactly one."""
     by_kind: dict[str, list[EntryPoint]] = {}
     for entry_point in entry_points_of(GROUP):
         others = by_kind.setdefault(entry_point.name, [])
-        if entry_point not in others:  # a package that is on the path twice
+        if entry_point not in others:  # a package may be on the path twice
             others.append(entry_point)
     return by_kind
 
 
 def kinds() -> list[str]:
-    """Return the kinds of installed packages, in alphabetical order; no package is imported."""
+    """Return the kinds of installed packages in alphabetical order, without import."""
     return sorted(_entry_points())
 
 
 def family(kind: str) -> str:
     """Return the family of a kind, the import name of its package.
 
-    Raises SceneError if several packages bring it.
+    Raises SceneError if several packages define the kind.
     """
     return _entry_point(kind).value
 
@@ -54,8 +54,8 @@ def family(kind: str) -> str:
 def package(kind: str) -> ModuleType:
     """Return the package of a kind.
 
-    Raises SceneError, with the installed package, its entry point and the reason, for a package that cannot
-    be imported or does not have the form of a family.
+    Raises SceneError if the package cannot be imported, or does not have the form of a family. The message
+    has the installed package, its entry point and the reason.
     """
     with blame_package(kind):
         module = import_module(family(kind))
@@ -64,22 +64,22 @@ def package(kind: str) -> ModuleType:
 
 
 def source(kind: str) -> str:
-    """Name and version of the installed package that brings a kind."""
+    """Return name and version of the installed package that defines a kind."""
     distribution = _entry_point(kind).dist
     return f"{distribution.name} {distribution.version}" if distribution else "a package without metadata"
 
 
 def files(family: str) -> list[Path]:
-    """Return the Python files of the whole package that a family belongs to, in alphabetical order."""
+    """Return the Python files of the package of a family, in alphabetical order."""
     spec = find_spec(family.partition(".")[0])
     folders = (spec.submodule_search_locations if spec else None) or ()
     return sorted(path for folder in folders for path in Path(folder).rglob("*.py"))
 
 
 def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) -> None:
-    """Apply the function `validate` of a kind's package, if any, to a figure of a config.
+    """Apply the function `validate` of a kind's package, if any, to a configured figure.
 
-    Raises the SceneError of the function, or one which blames the package.
+    Raises the SceneError of the function, or a SceneError that names the package.
     """
     rules = getattr(package(settings["kind"]), "validate", None)
     if rules is not None:
@@ -88,7 +88,9 @@ def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) 
 
 
 def caption(settings: Mapping[str, Any]) -> str:
-    """Return the caption of a figure, made by the package of its kind from the settings.
+    """Return the caption of a figure, made by the package of its kind.
+
+    The package makes the caption from the settings.
 
     Raises SceneError.
     """
@@ -104,15 +106,14 @@ def caption(settings: Mapping[str, Any]) -> str:
 def blame_package(kind: str, where: str = "") -> Iterator[None]:
     """Convert any error of a package within this context to a SceneError that names it.
 
-    The message has one line.
-
-    `where` is the position of the figure in the config, unless the caller adds it.
+    The message has one line. `where` is the position of the figure in the config. If the caller adds the
+    position, `where` is "".
     """
     try:
         yield
     except SceneError:
         raise
-    except (Exception, SystemExit) as error:  # the code of others may raise anything
+    except (Exception, SystemExit) as error:  # the code of another package may raise any exception
         entry_point = f"{GROUP}: {kind} = {family(kind)}"
         reason = f"{type(error).__name__}: {error}"
         rule = f"the entry point ({entry_point}) of {source(kind)} cannot be used: {reason}"
@@ -133,9 +134,9 @@ def _entry_point(kind: str) -> EntryPoint:
 
 
 def _check(module: ModuleType, kind: str) -> None:
-    """Raise an error with the reason unless a package has the form of a family.
+    """Raise an error unless a package has the form of a family of this kind.
 
-    The family has the kind.
+    The error states the reason.
     """
     from jsonschema import Draft202012Validator, SchemaError
 

@@ -1,16 +1,17 @@
-"""The figures, by family: found in the folders of this package.
+"""Registry of the families of figures, found in the folders of this package.
 
-The folder of a family states its `TITLE`, its `CHAPTER` of the report and its `FIGURES` in `__init__.py`,
-which imports nothing heavy, and holds a function of the name of each figure in `measure.py`, `claims.py` and
-`figure.py`. `FIGURES` declares the settings of each figure: the kind of each key, with its meaning.
+Each family is a folder. Its `__init__.py` states the `TITLE`, the `CHAPTER` of the report, and the `FIGURES`.
+It imports nothing that takes long. The modules `measure.py`, `claims.py` and `figure.py` each have a function
+with the name of each figure. `FIGURES` declares the settings of each figure: the kind of each key, with its
+meaning.
 
-A family may also state `OF_CLAIMS`, that its figures are made of the claims of all others instead of points;
-and what readers may vary on the page of the report (`report.explore`): `SERIES`, figures of an equation of
-state with the dimension and the largest packing fraction to choose; `COSTS`, figures of the cost of an
-accuracy. `KINDS` are kinds of figures, with their settings, to which a config gives names of its own: the
-entry of such a figure has `kind`, the name of the functions. Such a family also has the functions
-`caption(settings)` and, if its settings have rules of their own, `validate(figure, settings, points)`. Other
-installed packages may bring families of this form (`families.installed`).
+A family may also state `OF_CLAIMS`: its figures are then made from the claims of all other figures, instead
+of points. Two more constants define choices of the reader on the page of the report (`report.explore`).
+`SERIES` are figures of an equation of state, with dimension and largest packing fraction. `COSTS` are figures
+of the cost of an accuracy. `KINDS` are kinds of figures, with their settings; a config chooses the names of
+such figures. The config entry of such a figure has `kind`, the name of the functions. Such a family also has
+the function `caption(settings)`. If its settings have rules of their own, it has `validate(figure, settings,
+points)`. Other installed packages may define families of this form (`families.installed`).
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from gaspart.reproduction.points.point import Point
 
 _OWN = "own"
-"""The family, and its chapter, of figures to which a config gives names."""
+"""Family, and chapter, of figures whose names a config chooses."""
 
 
 @cache
@@ -45,7 +46,7 @@ def titles() -> dict[str, str]:
 
 
 def title(figure: str, entry: Mapping[str, Any]) -> str:
-    """Return the title of the family of a figure of a config, given its entry.
+    """Return the title of the family of a figure from the figure's config entry.
 
     Raises SceneError.
     """
@@ -54,7 +55,7 @@ def title(figure: str, entry: Mapping[str, Any]) -> str:
 
 
 def chapter(family: str) -> str:
-    """Return the chapter of the report in which a family stands."""
+    """Return the chapter of the report that contains a family."""
     return str(_packages().get(family, _packages()[_OWN]).CHAPTER)
 
 
@@ -71,10 +72,10 @@ def _kinds() -> dict[str, str]:
 
 
 def functions(figure: str, entry: Mapping[str, Any]) -> tuple[str, str]:
-    """Return the family of a figure of a config and the name of its functions there.
+    """Return the family of a figure of a config, and the name of its functions.
 
-    `entry` is the entry of the config. The family of another installed package has the name by which it is
-    imported. Raises SceneError.
+    `entry` is the config entry of the figure. A family of another installed package is named by its import
+    name. Raises SceneError.
     """
     kind = entry.get("kind")
     if kind is None:
@@ -83,26 +84,26 @@ def functions(figure: str, entry: Mapping[str, Any]) -> tuple[str, str]:
 
 
 def module(family: str, part: str) -> str:
-    """Return the name of a module of a family; part is `measure`, `claims` or `figure`."""
+    """Return the name of a module of a family; `part` is `measure`, `claims` or `figure`."""
     return f"{_packages()[family].__name__ if family in _packages() else family}.{part}"
 
 
 def files(family: str) -> tuple[Path, ...]:
-    """Return the files of the other installed package that brings a family.
+    """Return the files of the other installed package that defines a family.
 
-    A family of this package has none.
+    The list is empty for a family of this package.
     """
     return () if family in _packages() else tuple(installed.files(family))
 
 
 def package_of(entry: Mapping[str, Any]) -> str:
-    """Return name and version of the other package that brings a kind; "" for this one."""
+    """Return name and version of the other package that defines a kind; "" for this package."""
     kind = entry.get("kind")
     return "" if kind is None or kind in _kinds() else installed.source(kind)
 
 
 def caption(settings: Mapping[str, Any]) -> str:
-    """Return the caption of a figure to which a config gives a name, from its settings.
+    """Return the caption of a figure whose name a config chooses, from its settings.
 
     Raises SceneError.
     """
@@ -112,9 +113,9 @@ def caption(settings: Mapping[str, Any]) -> str:
 
 
 def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) -> None:
-    """Apply a figure's own rules, beyond the kinds of its settings.
+    """Apply the rules of a figure that go beyond the kinds of its settings.
 
-    `points` are the points that it shows. Raises SceneError.
+    `points` are the points of the figure. Raises SceneError.
     """
     if settings["kind"] in _kinds():
         _packages()[_kinds()[settings["kind"]]].validate(figure, settings, points)
@@ -123,13 +124,13 @@ def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) 
 
 
 def of_claims() -> frozenset[str]:
-    """Return the figures that are made of the claims of all others."""
+    """Return the figures that are made from the claims of all other figures."""
     stated = (package for package in _packages().values() if getattr(package, "OF_CLAIMS", False))
     return frozenset(figure for package in stated for figure in package.FIGURES)
 
 
 def series() -> dict[str, tuple[int, float]]:
-    """Return the dimension and the largest packing fraction for each figure of an equation of state."""
+    """Return dimension and largest packing fraction for each figure of an equation of state."""
     parts = (getattr(package, "SERIES", {}) for package in _packages().values())
     return {figure: stated for part in parts for figure, stated in part.items()}
 
@@ -145,29 +146,32 @@ def settings() -> dict[str, dict[str, Kind]]:
 
 
 def kinds() -> dict[str, dict[str, Kind]]:
-    """Return the settings of each kind of figures to which a config gives a name.
+    """Return the settings of each kind of figures whose name a config chooses.
 
-    The kinds are of this package.
+    Only kinds of this package are returned.
     """
     parts = (getattr(package, "KINDS", {}) for package in _packages().values())
     return {kind: keys for part in parts for kind, keys in part.items()}
 
 
 def known_kinds() -> list[str]:
-    """Return the kinds of this package, then those in other installed ones, without import."""
+    """Return the kinds of this package, then of other installed packages, without import."""
     return [*_kinds(), *(kind for kind in installed.kinds() if kind not in _kinds())]
 
 
 def settings_of_kind(kind: str) -> dict[str, Kind]:
-    """Return the settings of a kind of figures, of this or another package; raise SceneError."""
+    """Return the settings of a kind of figures, of this or another package.
+
+    Raises SceneError.
+    """
     settings: dict[str, Kind] = kinds()[kind] if kind in _kinds() else installed.package(kind).KINDS[kind]
     return settings
 
 
 def stated_claims(entry: Mapping[str, Any]) -> list[Any]:
-    """Return [the claims of the config] if a figure's kind has such a setting, else [].
+    """Return [claims of the config] if a figure's kind has such a setting, else [].
 
-    The function of the claims of the figure takes them in addition to its numbers.
+    The claims function of the figure takes them as a further argument.
     """
     takes = "kind" in entry and "claims" in settings_of_kind(entry["kind"])
     return [entry.get("claims", [])] if takes else []

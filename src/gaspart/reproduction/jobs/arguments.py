@@ -1,8 +1,8 @@
-"""The arguments of a job's function in plain values, which decide whether the job runs again.
+"""Arguments of a job's function as plain values, which determine if the job must run again.
 
-A job sees its arguments only. So its result depends on nothing of a point that the plain values lack: neither
-on the point's name, nor on the modules that make a scene, an engine and a schedule of its settings. This
-module loads engines; it is apart from `data` so that jobs without contacts do not depend on their physics.
+A job receives only its arguments. Therefore its result cannot depend on other properties of a point, such as
+its name, or on the modules that make scene, engine and schedule from its settings. This module loads engines.
+It is separate from `data`, so that jobs without contacts do not depend on the physics of engines.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _FORMS: dict[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
     "until": (asdict, Until.from_dict),
     "rival": (lambda rival: to_plain(rival), lambda values: from_plain(values)),
 }
-"""Conversions to plain values, and back, by the name of an argument; other arguments are plain."""
+"""Conversions to plain values and back, by the name of an argument; other arguments are plain already."""
 
 
 def to_plain(arguments: dict[str, Any]) -> dict[str, Any]:
@@ -41,7 +41,7 @@ def to_plain(arguments: dict[str, Any]) -> dict[str, Any]:
 def from_plain(values: dict[str, Any]) -> dict[str, Any]:
     """Convert the result of `to_plain` back.
 
-    Raises SceneError for a scene or an engine that another version made.
+    Raises SceneError for a scene or an engine of another version.
     """
     return _convert(values, 1)
 

@@ -1,13 +1,13 @@
-"""Errors of time stepping: each setting compared with an exact run from the same state.
+"""Errors of time stepping: each setting is compared with an exact run from the same state.
 
 The exact run is event-driven.
 
-Both engines start from the same equilibrium snapshot and run for the same short time, about one collision per
-particle. Where a step finds every contact, the two runs are the same except for rounding; so their difference
-is due to missed, spurious or wrong contacts only, and its noise is the noise of these few contacts instead of
-the noise of all. (In long runs, errors of 0.01 % are hidden by the noise of 1e8 collisions.)
+Both engines start from the same equilibrium snapshot, and run for the same short time, about one collision
+per particle. If a step detects every contact, both runs are equal except for rounding. Their difference is
+therefore due only to missed, spurious or wrong contacts. Its noise comes from these few contacts, instead of
+from all contacts. (In long runs, the noise of 1e8 collisions hides errors of 0.01 %.)
 
-Planning reads this module, so slow imports are made inside functions.
+The planning of a workflow imports this module, so slow imports are made inside functions.
 """
 
 from __future__ import annotations
@@ -36,18 +36,21 @@ KEYS: dict[str, Kind] = {
     "scan_time_steps": SCAN_TIME_STEPS,
 }
 LEAST_STEPS = 4
-"""Fewest steps of a run, so that the initial state without overlaps has no effect."""
-_LISTED = 0.25  # collisions per particle in the part of a run that is compared particle by particle
+"""Minimum number of steps of a run, so that the initial state without overlaps has no effect."""
+_LISTED = 0.25  # collisions per particle in the part of a run in which single particles are compared
 _LISTED_STEPS = 64  # a longer part adds time but little information
 
 
 def engines(point: Point) -> list[Engine]:
-    """Return the time-stepped engines that are compared with the exact one."""
+    """Return the time-stepped engines that are compared with the exact engine."""
     return point.engines
 
 
 def arguments(point: Point) -> dict:
-    """Return the arguments of `compare`; raise SceneError."""
+    """Return the arguments of `compare`.
+
+    Raises SceneError.
+    """
     if point.engine.name != "step":
         raise point.make_error("engine", "must be step with job: compare")
     return {"scene": point.scene, "engines": point.engines, "seed": point.seed(), **intervals(point)}
@@ -61,19 +64,22 @@ def compare(
     interval: float,
     samples: int,
 ) -> PointData:
-    """Run the time-stepped `engines` and the event-driven one from equal states of a gas.
+    """Run the time-stepped `engines` and the event-driven engine from equal states of a gas.
 
-    There are `samples` states, an `interval` of time apart; each run takes that time (rounded to whole steps,
-    at least `LEAST_STEPS`).
+    There are `samples` states at time intervals `interval`. Each run takes one interval, rounded to whole
+    steps, and at least `LEAST_STEPS`.
 
-    `equilibration` and `interval` are in the scene's time. Returns over ``setting`` (the engines) and
-    ``snapshot``, each for both, the exact one with the prefix ``exact_``: ``collisions``; ``virial``, the sum
-    of |dr.dp|; ``memory``, sum v(0).v(t) / sum v(0)^2; ``z``, of the exact run; of the time-stepped one
-    ``energy_drift``, relative; ``deepest_overlap`` as a part of the contact distance; ``pair_tests``. In the
-    first part of a run, against the list of exact events: particles that a step should have changed and did
-    not, ``missed`` (or late), or the reverse, ``made_up``; and ``listed``, the entries of that list; NaN
-    where it takes too many steps. Over ``setting``: ``time_step``, ``steps``, and ``refused``, 1 if the
-    engine refuses that step (all is NaN).
+    `equilibration` and `interval` are in the scene's time. The dimensions of the result are ``setting`` (the
+    engines) and ``snapshot``. Both runs have ``collisions``; ``virial``, the sum of |dr.dp|; and ``memory``,
+    sum v(0).v(t) / sum v(0)^2. Names of the exact run have the prefix ``exact_``. The exact run also has
+    ``z``. The time-stepped run also has the relative ``energy_drift``, ``deepest_overlap`` divided by the
+    contact distance, and ``pair_tests``.
+
+    The first part of a run is compared with the list of exact events. ``missed`` counts particles that a step
+    should have changed but did not (or too late). ``made_up`` counts particles that a step changed but should
+    not have. ``listed`` is the number of events in the list. These are NaN if the part has too many steps.
+    Over ``setting`` are ``time_step``, ``steps``, and ``refused``, 1 if the engine rejects the step; then all
+    other values are NaN.
     """
     import numpy as np
 
@@ -117,7 +123,7 @@ def compare(
 
 
 def _run(scene: Scene, engine: Engine, state: State, duration: float) -> dict:
-    """Return the results of one engine after a time."""
+    """Run an engine from a state for a time, and return its results."""
     from gaspart.state.tally import compressibility_factor
 
     dynamics = engine.start(scene, state)
@@ -137,7 +143,7 @@ def _run(scene: Scene, engine: Engine, state: State, duration: float) -> dict:
 
 
 def _pair(scene: Scene, engine: TimeStepped, state: State, steps: int, exact: dict) -> dict:
-    """Compare one engine with the exact run; NaN throughout if it refuses its step."""
+    """Compare an engine with the exact run; all values are NaN if it rejects its step."""
     references = {f"exact_{name}": exact[name] for name in ("collisions", "virial", "memory", "z")}
     try:
         stepped = _run(scene, engine, state, (steps + SLACK) * engine.time_step)
@@ -153,11 +159,11 @@ def _pair(scene: Scene, engine: TimeStepped, state: State, steps: int, exact: di
 
 
 def _missed_contacts(scene: Scene, engine: TimeStepped, state: State, steps: int, collisions: float) -> dict:
-    """Count particles with missed and with made up contacts.
+    """Count particles with missed contacts, and with spurious contacts.
 
-    A step leaves the velocity of the former unchanged although the exact list has a contact in it, and
-    changes the velocity of the latter although it has none. The first time counts for each particle, as later
-    ones may follow from it.
+    A step with a missed contact leaves the particle's velocity unchanged, although the exact list has a
+    contact in this step. A step with a spurious contact changes the velocity, although the list has none.
+    Only the first such step counts for each particle, because later ones may follow from it.
     """
     import numpy as np
 

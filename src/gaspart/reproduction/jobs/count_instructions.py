@@ -1,7 +1,8 @@
 """Instructions that an absent feature leaves in the machine code of a kernel.
 
-Optional physics is passed to kernels as None, and numba removes the branches on it. Here they are removed
-from the source of the kernels instead, in a copy of the package, and the instructions of both are counted.
+Absent optional physics is passed to kernels as None, and numba removes its branches. This job also removes
+the branches from the source of the kernels, in a copy of the package. The instructions of both kernels are
+counted.
 """
 
 from __future__ import annotations
@@ -32,15 +33,15 @@ FEATURES = {
     "ramp", "record", "reservoirs", "row", "rules", "shear", "sliding", "sticky", "stress",
     "support", "velocity", "vibrations", "viscous", "walls", "warm",
 }  # fmt: skip
-"""Arguments of the kernels that have the value None for a plain gas."""
+"""Arguments of the kernels that are None for a plain gas."""
 COUNTED_ENGINES = ("event", "step")
 _PACKAGE = Path(__file__).parents[2]
 
 
 class Strip(ast.NodeTransformer):
-    """Transformer that removes the branches of absent features.
+    """Transformer of a syntax tree that removes the branches of absent features.
 
-    Every test of such a feature for None is resolved, and code after a return is removed.
+    Every comparison of such a feature with None is resolved. Code after a return is removed.
     """
 
     def _evaluate(self, test: ast.expr) -> bool | None:
@@ -50,7 +51,7 @@ class Strip(ast.NodeTransformer):
         return None
 
     def visit_If(self, node: ast.If) -> ast.stmt | list[ast.stmt]:
-        """Keep the branch that is taken."""
+        """Replace an if statement by the branch that is executed."""
         self.generic_visit(node)
         value = self._evaluate(node.test)
         if value is None:
@@ -58,7 +59,7 @@ class Strip(ast.NodeTransformer):
         return (node.body if value else node.orelse) or ast.Pass()
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.stmt:
-        """Drop the statements after a return that has become unconditional."""
+        """Remove the statements after a return that has become unconditional."""
         self.generic_visit(node)
         returns = [k for k, statement in enumerate(node.body) if isinstance(statement, ast.Return)]
         if returns:
@@ -66,29 +67,32 @@ class Strip(ast.NodeTransformer):
         return node
 
     def visit_IfExp(self, node: ast.IfExp) -> ast.AST:
-        """Keep the value that is taken."""
+        """Replace a conditional expression by the value that is used."""
         self.generic_visit(node)
         value = self._evaluate(node.test)
         return node if value is None else node.body if value else node.orelse
 
 
 def strip_features(source: str) -> str:
-    """Return a module's source without the branches of absent features."""
+    """Return the source of a module without the branches of absent features."""
     return ast.unparse(ast.fix_missing_locations(Strip().visit(ast.parse(source))))
 
 
 def engines(point: Point) -> list[Engine]:
-    """Return the event-driven engine; the other one's kernel is compiled within the job."""
+    """Return the event-driven engine; the kernel of the other engine is compiled in the job."""
     return [point.engine]
 
 
 def arguments(point: Point) -> dict:
-    """Return the argument of `count_instructions`; raise SceneError."""
+    """Return the argument of `count_instructions`.
+
+    Raises SceneError.
+    """
     return {"scene": point.scene}
 
 
 def count_instructions(scene: Scene) -> PointData:
-    """Return the instructions of each engine's main kernel for a scene.
+    """Count the instructions of each engine's main kernel for a scene.
 
     The scene should be a plain gas.
 

@@ -1,4 +1,4 @@
-"""The data of a job of a grid point, and their file."""
+"""Data of the job of a point, and their file."""
 
 from __future__ import annotations
 
@@ -17,13 +17,12 @@ _NONE: Mapping = MappingProxyType({})
 
 
 class PointData(NamedTuple):
-    """Variables, coordinates and attributes, as xarray.Dataset takes them: `xr.Dataset(*data)`.
+    """Variables, coordinates and attributes, as arguments for `xr.Dataset(*data)`.
 
-    variables, coordinates : by name, their dimensions (one name, or several), values (numbers or words), and
-        attributes if there are any.
+    variables, coordinates : by name, dimensions (names), values (numbers or words), optional attributes.
 
-    Jobs neither make nor write data sets of xarray, which takes a quarter of a second to load: most of them
-    are short timings, at the same time as which nothing may run.
+    Jobs do not use xarray, because loading it takes 0.25 s. Most jobs are short timings, during which no
+    other work may run.
     """
 
     variables: Mapping[str, tuple]
@@ -31,7 +30,10 @@ class PointData(NamedTuple):
     attributes: Mapping[str, Any] = _NONE
 
     def write(self, path: str | Path) -> None:
-        """Write a netCDF file that xarray.load_dataset reads. May raise OSError."""
+        """Write a netCDF file that xarray.load_dataset reads.
+
+        May raise OSError.
+        """
         import netCDF4
         import numpy as np
 
@@ -50,11 +52,11 @@ class PointData(NamedTuple):
             file.setncatts(self.attributes)
 
 
-# Common to jobs that run a scene: keys, and the division of a run into intervals.
+# Common parts of jobs that run a scene: keys, and the division of a run into intervals.
 
 
 SLACK = 1e-6
-"""Part of a time step by which a run is longer, so that rounding of its duration loses no step."""
+"""Fraction of a time step by which a run is longer, so that rounding of its duration loses no step."""
 EQUILIBRATION_KEY = describe(
     NOT_NEGATIVE,
     "time before the length, in the same unit; rounded up to whole samples, which are not measured",

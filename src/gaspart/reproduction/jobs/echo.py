@@ -1,12 +1,13 @@
 """Loschmidt's echo: a gas is run, all velocities are reversed, and it is run back.
 
-The distance from its initial state is measured.
+The distance of the final state from the initial state is measured.
 
-Exact mechanics returns. Rounding errors grow by exp(lambda) with every collision of a particle, in both
-directions, so the echo's distance shows how long the memory of the initial state lasts, and its growth is the
-largest Lyapunov exponent, which the linearised dynamics of the same gas give without rounding.
+Exact mechanics would return to the initial state. Rounding errors grow by exp(lambda) with every collision of
+a particle, in both directions. Therefore the distance shows how long the memory of the initial state lasts.
+Its growth rate is the largest Lyapunov exponent. The linearised dynamics of the same gas determine this
+exponent without rounding errors.
 
-Planning reads this module, so slow imports are made inside functions.
+The planning of a workflow imports this module, so slow imports are made inside functions.
 """
 
 from __future__ import annotations
@@ -34,9 +35,10 @@ KEYS: dict[str, Kind] = {
     ),
 }
 DISPLACEMENT = 1e-13
-"""Root-mean-square displacement, in diameters, from which the exact flow's divergence is measured."""
+"""Root-mean-square displacement, in diameters, with which the divergence of the exact dynamics is measured.
+"""
 TANGENT_COLLISIONS = 100.0
-"""Collisions per particle over which the exponent of the linearised dynamics is measured, for each seed."""
+"""Collisions per particle for the exponent of the linearised dynamics, for each seed."""
 
 
 def engines(point: Point) -> list[Engine]:
@@ -45,7 +47,10 @@ def engines(point: Point) -> list[Engine]:
 
 
 def arguments(point: Point) -> dict:
-    """Return the arguments of `echo`; raise SceneError."""
+    """Return the arguments of `echo`.
+
+    Raises SceneError.
+    """
     return {"scene": point.scene, "engine": point.engine, "seeds": point.seeds, **intervals(point)}
 
 
@@ -59,12 +64,13 @@ def echo(
 ) -> PointData:
     """Measure echoes from equilibrium states of a scene, one for each seed.
 
-    Returns over ``seed`` and ``sample``, of runs of 1 ... `samples` intervals: ``collisions`` per particle
-    before the reversal, twice the number of contacts over the number of particles; ``echo``, the
-    root-mean-square distance from the initial state after the return, in diameters; ``divergence``, the
-    distance of two event-driven runs which start `DISPLACEMENT` apart, at the reversal. Over ``seed``:
-    ``exponent``, the largest Lyapunov exponent per collision of a particle, of the event-driven engine; NaN
-    of others. Attributes: the gas (`side` in diameters) and engine.
+    The results over ``seed`` and ``sample`` are for runs of 1 to `samples` intervals. ``collisions`` is the
+    number of collisions per particle before the reversal: twice the number of contacts divided by the number
+    of particles. ``echo`` is the root-mean-square distance from the initial state after the return, in
+    diameters. ``divergence`` is the distance at the reversal between two event-driven runs whose initial
+    distance is `DISPLACEMENT`. Over ``seed``: ``exponent`` is the largest Lyapunov exponent per collision of
+    a particle, for the event-driven engine, and NaN for other engines. Attributes describe the gas (`side` in
+    diameters) and the engine.
     """
     import numpy as np
 
@@ -112,11 +118,11 @@ def echo(
 
 
 def _exponent(equilibrium: Simulation, interval: float) -> float:
-    """Measure the Lyapunov exponent of the run, continued until `TANGENT_COLLISIONS`.
+    """Measure the Lyapunov exponent of a run that is continued until `TANGENT_COLLISIONS`.
 
-    It is continued by intervals of time.
+    The run is continued by intervals of time.
     """
-    from gaspart.analysis.lyapunov import lyapunov_exponent  # loads xarray, which other jobs do not need
+    from gaspart.analysis.lyapunov import lyapunov_exponent  # this loads xarray, which other jobs do not need
 
     equilibrium.reset_tally()
     equilibrium.record_events = True
@@ -128,7 +134,10 @@ def _exponent(equilibrium: Simulation, interval: float) -> float:
 
 
 def _displace(state: State, seed: tuple[int, ...]) -> State:
-    """Return all particles displaced at random, by so little that only touching ones can overlap."""
+    """Return a state in which all particles are displaced at random.
+
+    The displacement is so small that only touching particles can overlap.
+    """
     import numpy as np
 
     away = np.random.default_rng(seed).standard_normal(state.positions.shape)
@@ -138,7 +147,10 @@ def _displace(state: State, seed: tuple[int, ...]) -> State:
 
 
 def _distance(state: State, other: State) -> float:
-    """Compute the root-mean-square distance of all particles between walls, in diameters."""
+    """Compute the root-mean-square distance between two states, in diameters.
+
+    Positions are those between walls, not periodic.
+    """
     import numpy as np
 
     apart = ((state.positions - other.positions) ** 2).sum(axis=1)

@@ -1,6 +1,6 @@
-"""Random sequential insertion into a container up to saturation, with all failures counted.
+"""Random sequential insertion into a container up to saturation, with a count of failures.
 
-Planning reads this module, so slow imports are made inside functions.
+The planning of a workflow imports this module, so slow imports are made inside functions.
 """
 
 from __future__ import annotations
@@ -24,28 +24,30 @@ CHUNK = 1 << 16
 
 
 def engines(point: Point) -> list[Engine]:
-    """Return no engine: the particles do not move."""
+    """Return no engine, because the particles do not move."""
     return []
 
 
 def arguments(point: Point) -> dict:
-    """Return the arguments of `fill`; raise SceneError."""
+    """Return the arguments of `fill`.
+
+    Raises SceneError.
+    """
     if "attempts" not in point.settings:
         raise point.make_error("attempts", "is required with job: fill")
     return {"scene": point.scene, "attempts": point.settings["attempts"], "seeds": point.seeds}
 
 
 def fill(scene: Scene, attempts: int, seeds: list[tuple[int, ...]]) -> PointData:
-    """Offer the container ``attempts`` random positions for each particle, once per seed.
+    """Fill the container by up to ``attempts`` random positions per particle, once per seed.
 
-    The scene has one species.
+    The scene has one species. Its count is the maximum number of particles, which may exceed saturation.
+    Insertion stops when all particles are placed, or when the total number of attempts, ``attempts`` times
+    the count, is reached.
 
-    The scene's count is the largest number of particles, which may exceed saturation: insertion stops when
-    all are placed or the attempts (``attempts`` times the count) are used up.
-
-    Returns a dataset: ``failures`` (replica, particle), failed attempts before each particle was placed, -1
-    for one never placed; ``placed`` and ``attempts`` (replica,). Attributes: packing_fraction_per_particle,
-    side, radius.
+    Returns a dataset with ``failures`` (replica, particle), the number of failed attempts before each
+    particle was placed, or -1 if it was never placed; ``placed`` (replica,); and ``attempts`` (replica,).
+    Attributes are packing_fraction_per_particle, side and radius.
     """
     import numpy as np
 
@@ -69,15 +71,19 @@ def fill(scene: Scene, attempts: int, seeds: list[tuple[int, ...]]) -> PointData
 
 
 def _fill_once(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarray, int]:
-    """Compute failures before each particle (N,), -1 for one never placed; and the number of attempts."""
+    """Count failures before each particle (N,), and attempts.
+
+    The number of failures is -1 for a particle that was never placed.
+    """
     before, used, _ = insert(scene, attempts, seed)
     return before, used
 
 
 def insert(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarray, int, np.ndarray]:
-    """Insert particles, and count failures (N,) before each one, -1 if it was never placed.
+    """Insert particles, and count the failures (N,) before each particle.
 
-    Returned are also the number of attempts and the positions (M, d) of the placed particles.
+    The number of failures is -1 for a particle that was never placed. The function also returns the number of
+    attempts, and the positions (M, d) of the placed particles.
     """
     import numpy as np
 

@@ -1,13 +1,13 @@
-"""Cost of a run: work that is counted, and time that is measured.
+"""Cost of a run: counted operations, and measured time.
 
-The work is the same on every machine.
+The number of operations is the same on every machine.
 
-Every timing starts from one and the same state, so the repeated timings of an engine are of exactly the same
-work, and differ by disturbances of the clock alone; and engines that differ in their partition are timed
-alternately, in alternating order, so that a machine that slows down favours none of them. Runs on several
-cores are timed in wall-clock time: CPU time does not distinguish waiting from work.
+All timings start from the same state. Repeated timings of an engine therefore do exactly the same work, and
+differ only by disturbances. Engines with different partitions are timed alternately, in alternating order, so
+that a machine that slows down favours none of them. Runs on several cores are timed in wall-clock time,
+because CPU time does not distinguish waiting from work.
 
-Planning reads this module, so slow imports are made inside functions.
+The planning of a workflow imports this module, so slow imports are made inside functions.
 """
 
 from __future__ import annotations
@@ -66,19 +66,22 @@ KEYS: dict[str, Kind] = {
 EXTRAS = ("record_events", "stress", "copies")
 """Keys of additional work.
 
-It is to write down all events, and forget them; to tally the stress; to do the same on other cores at once.
+A timed run may record all events and discard them, tally the stress, or run as several copies on other cores.
 """
 _NONE: Mapping[str, Any] = MappingProxyType({})
 COUNTED = ("steps", "collisions", "wall_hits", "pair_tests", "box_visits", "crossings")
 
 
 def engines(point: Point) -> list[Engine]:
-    """Return the engines that are timed, without those for the rival."""
+    """Return the timed engines, without the engines of the rival."""
     return point.engines
 
 
 def arguments(point: Point) -> dict:
-    """Return the arguments of `measure_cost`; raise SceneError."""
+    """Return the arguments of `measure_cost`.
+
+    Raises SceneError.
+    """
     extras = {key: point.settings[key] for key in EXTRAS if point.settings.get(key)}
     if "record_events" in extras and not point.engine.records_events:
         raise point.make_error("record_events", "has a meaning with job: measure_cost and engine: event only")
@@ -97,9 +100,9 @@ def arguments(point: Point) -> dict:
 
 
 def _rival(point: Point) -> dict | None:
-    """Return the scene and engines that are timed alternately with a point's, or None.
+    """Return the rival's scene and engines, which are timed alternately with a point's, or None.
 
-    They are the point's without the settings that `without` lists.
+    The rival has the point's settings except for the settings in `without`.
     """
     if "without" not in point.settings:
         return None
@@ -109,7 +112,7 @@ def _rival(point: Point) -> dict | None:
 
 
 class _Run(NamedTuple):
-    """Timed run of an engine with some of `EXTRAS`, from a state of a scene."""
+    """Timed run of an engine from a state of a scene, with some of `EXTRAS`."""
 
     scene: Scene
     state: State
@@ -118,12 +121,12 @@ class _Run(NamedTuple):
 
     @property
     def copies(self) -> int:
-        """Number of runs that advance at once."""
+        """Number of simultaneous runs."""
         return self.extras.get("copies", 1)
 
     @property
     def cores(self) -> int:
-        """On how many cores they run."""
+        """Number of cores on which the runs execute."""
         return self.copies * engine_to_dict(self.engine).get("threads", 1)
 
 
@@ -137,28 +140,30 @@ def measure_cost(
     extras: Mapping[str, Any] = _NONE,
     rival: dict[str, Any] | None = None,
 ) -> PointData:
-    """Time an interval of one gas `samples` times, with each of the engines.
+    """Time an interval of a gas `samples` times, with each of the engines.
 
-    equilibration, interval : in the scene's time.
-    extras : some of `EXTRAS`, with their values.
-    rival : another `scene` and `engines`, timed alternately with these and without extras: the last
-        partitions. Engines without a step of their own take the scene's.
+    equilibration, interval : times in the scene's unit.
+    extras : a selection of `EXTRAS`, with their values.
+    rival : another `scene` and `engines`, timed alternately with these and without extras; they are the last
+        partitions. Engines without a time step use the scene's default.
 
-    Returns a dataset over ``partition`` (the engines, in their order) and ``repeat``: ``seconds`` and
-    ``wall_seconds`` (partition, repeat), CPU time of all threads and wall-clock time of the advance alone
-    (filling the container, setting up and compiling are left out); over ``partition``: ``cores`` used,
-    ``boxes`` in all, ``boxes_per_side`` (of the first axis; both 0 if the engine chooses itself),
-    ``duration`` (scene's time), the counts of the tally, and ``bits``, a digest of the final state and of the
-    sums over collisions. Attributes: count, dimension, radius, side (first axis), packing_fraction, engine,
-    search (event-driven), model (DSMC) or time_step, extras, and cores, the number that kernels may use here.
-    Where a run would need more of them, all run once, for their counts and bits, and all times are NaN.
+    Returns a dataset over ``partition`` (the engines, in their order) and ``repeat``. ``seconds`` and
+    ``wall_seconds`` (partition, repeat) are times of the advance alone: CPU time of all threads, and
+    wall-clock time. Times for filling the container, setup and compilation are left out. Over ``partition``
+    are the number of ``cores`` in use, the total number of ``boxes``, ``boxes_per_side`` (of the first axis;
+    both are 0 if the engine chooses them), ``duration`` (in the scene's time), the counts of the tally, and
+    ``bits``, a digest of the final state and of the sums over collisions. Attributes are count, dimension,
+    radius, side (first axis), packing_fraction, engine, search (event-driven), model (DSMC) or time_step,
+    extras, and cores, the number that kernels may use on this machine. If a run needs more cores than this,
+    all engines run once, for their counts and bits, and all times are NaN.
 
-    Raises SceneError, and SimulationError if the counted work or the bits of a repeat, or of a copy, differ
-    from the first one's.
+    Raises SceneError. Raises SimulationError if the counts or the bits of a repeat or a copy differ from the
+    first run.
     """
     from numba import config
 
-    # By the shortest step: a longer one leaves overlaps, which would count against a shorter one.
+    # The state is made with the shortest step, because overlaps left by a longer step would cost time with a
+    # shorter step.
     careful = min(engines, key=lambda engine: engine.quantum or 0.0)
     start = _start(scene, careful, seed, equilibration)
     runs = [_Run(scene, start, engine.for_scene(scene), extras) for engine in engines]
@@ -189,9 +194,9 @@ def measure_cost(
 
 
 def _in_turn(runs: Sequence[_Run], interval: float, repeats: int) -> tuple[np.ndarray, list[dict]]:
-    """Measure CPU time and wall-clock time (2, runs, repeats), and the counts of each run.
+    """Measure CPU and wall-clock time (2, runs, repeats), and the counts of each run.
 
-    Raises SimulationError if the counts differ between repeats.
+    Runs alternate. Raises SimulationError if the counts differ between repeats.
     """
     import numpy as np
 
@@ -224,9 +229,9 @@ def _attributes(scene: Scene, engine: Engine) -> dict:
 
 
 def _start(scene: Scene, engine: Engine, seed: tuple[int, ...], equilibration: float) -> State:
-    """Return the state from which everything is timed.
+    """Return the state from which all timings start.
 
-    No partition or search changes a bit of it.
+    No partition or search method changes any bit of this state.
     """
     from gaspart.simulation import Simulation
     from gaspart.state.initial import initial_state
@@ -250,7 +255,7 @@ def _time(run: _Run, interval: float) -> tuple[tuple[float, float], dict]:
     for _ in range(run.copies):
         dynamics = engine.start(scene, run.state, tallies=[StressTally()] if "stress" in run.extras else [])
         log = EventLog(scene.dimension, scene.rough) if "record_events" in run.extras else None
-        # This loads the kernels, and the first step touches all memory.
+        # This loads the kernels, and the first step accesses all memory.
         dynamics.advance(run.state.time + step * (1 + SLACK), log=log)
         dynamics.reset_tally()
         copies.append((dynamics, dynamics.time + interval + step * SLACK, log))
@@ -285,7 +290,7 @@ def _count(dynamics: Dynamics) -> dict:
 
 
 def _sides(engine: Engine, dimension: int) -> tuple[int, ...]:
-    """Return boxes along each axis; zeros if the engine chooses them itself."""
+    """Return the number of boxes along each axis; 0 if the engine chooses the boxes itself."""
     settings = engine_to_dict(engine)
     if settings.get("search", "boxes") not in ("automatic", "boxes"):
         return (1,) * dimension

@@ -1,6 +1,6 @@
-"""The densest random states of a scene: inserted to saturation, or grown until jammed.
+"""Dense random states of a scene: inserted up to saturation, or grown until jammed.
 
-Planning reads this module, so slow imports are made inside functions.
+The planning of a workflow imports this module, so slow imports are made inside functions.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 RESULT = "random insertion until nothing more fits; with `arrangement: compressed` growth until all jam"
 KEYS: dict[str, Kind] = {"attempts": ATTEMPTS}
 GROWTH = 2.0**-6
-"""Rate of growth towards jamming: slow enough to find all contacts, too fast to crystallise."""
+"""Growth rate of particles until jamming: slow enough to find all contacts, too fast to crystallise."""
 
 
 def engines(point: Point) -> list[Engine]:
@@ -28,7 +28,10 @@ def engines(point: Point) -> list[Engine]:
 
 
 def arguments(point: Point) -> dict:
-    """Return the arguments of `pack`; raise SceneError."""
+    """Return the arguments of `pack`.
+
+    Raises SceneError.
+    """
     if ("attempts" in point.settings) == (point.settings.get("arrangement") == "compressed"):
         raise point.make_error("attempts", "is required with job: pack, unless the arrangement is compressed")
     return {"scene": point.scene, "attempts": point.settings.get("attempts"), "seeds": point.seeds}
@@ -37,11 +40,12 @@ def arguments(point: Point) -> dict:
 def pack(scene: Scene, attempts: int | None, seeds: list[tuple[int, ...]]) -> PointData:
     """Pack a scene of one species, once per seed, by insertion or growth.
 
-    The container is offered `attempts` random positions for each particle, or, with None, the particles grow
-    until they jam.
+    Insertion tries up to `attempts` random positions for each particle. If `attempts` has the value None, the
+    particles grow until they jam instead.
 
-    Returns a dataset: position (replica, particle, axis), NaN for a particle never placed; radius and
-    packing_fraction (replica,); pressure (replica,), reduced, NaN for an insertion; length (axis,).
+    Returns a dataset with position (replica, particle, axis), NaN for a particle that was never placed;
+    radius and packing_fraction (replica,); reduced pressure (replica,), NaN for insertion; and length
+    (axis,).
     """
     import numpy as np
 

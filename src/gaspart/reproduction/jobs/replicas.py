@@ -1,4 +1,4 @@
-"""A folder of trajectories, one for each replica of a point."""
+"""Folder of trajectories, one for each replica of a point."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from gaspart.trajectory.recipe import Recipe
 
 Record: TypeAlias = "Callable[[Recipe, Path, bool], None]"
-"""Makes one trajectory of a recipe: path, and whether another file there is replaced."""
+"""Function that makes the trajectory of a recipe, from path and True if an existing file is replaced."""
 
 
 def write_replicas(
@@ -24,16 +24,17 @@ def write_replicas(
     report: Callable[[str], None] | None = None,
     overwrite: bool = True,
 ) -> None:
-    """Write the trajectory of each recipe; report(line) is called for each.
+    """Write the trajectory of each recipe, and call report(line) for each.
 
-    They lie next to `folder`, which Snakemake deletes before a rerun, until all are complete: an interrupted
-    run resumes there. If `overwrite`, they replace the remainder of a run of another recipe. Raises
-    SceneError for a folder there in which anything else lies: only what gaspart wrote is removed.
+    Snakemake deletes `folder` before a rerun. Therefore trajectories are written to a folder next to it until
+    all are complete, and an interrupted run resumes there. If `overwrite` is True, they replace files of an
+    unfinished run with another recipe. Raises SceneError if that folder has other files: only files that
+    gaspart wrote are removed.
     """
     partial = Path(f"{folder}.partial")
     _make(partial)
     paths = replica_paths(partial, len(recipes))
-    _remainders(partial, paths)  # before the work: refused if it is not ours
+    _remainders(partial, paths)  # before the work: raises an error if the folder is not ours
     for path, recipe in zip(paths, recipes, strict=True):
         if report:
             report(f"{path}: seed {recipe.seed}")
@@ -47,7 +48,10 @@ def write_replicas(
 
 
 def _make(folder: Path) -> None:
-    """Make a folder if it is missing. Raises SceneError for a link and for a file."""
+    """Make a folder if it is missing.
+
+    Raises SceneError for a link or a file.
+    """
     try:
         folder.mkdir(parents=True, exist_ok=True)
         if folder.is_symlink():
@@ -57,7 +61,7 @@ def _make(folder: Path) -> None:
 
 
 def _remainders(folder: Path, paths: list[Path]) -> list[Path]:
-    """Return the files that runs of other recipes have left in a folder.
+    """Return the files that runs of other recipes left in a folder.
 
     Raises SceneError for a file that gaspart did not write, and for a folder or link.
     """
@@ -74,5 +78,5 @@ def _remainders(folder: Path, paths: list[Path]) -> list[Path]:
 
 
 def replica_paths(folder: Path, replicas: int) -> list[Path]:
-    """Return the trajectories of a folder, in the order of the seeds."""
+    """Return the trajectories in a folder, in the order of the seeds."""
     return [folder / f"replica-{replica}.nc" for replica in range(replicas)]

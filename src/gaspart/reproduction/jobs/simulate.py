@@ -1,6 +1,6 @@
 """Trajectories, one for each replica of a point.
 
-Planning reads this module, so slow imports are made inside functions.
+The planning of a workflow imports this module, so slow imports are made inside functions.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ KEYS: dict[str, Kind] = {
 }
 _NOT_WITH_UNTIL = ("lags", "frames", "stress")
 EXAMINER = "gaspart.accuracy.reached"
-"""The module that examines a run with `until`."""
+"""Module that decides when a run with `until` ends."""
 
 
 def engines(point: Point) -> list[Engine]:
@@ -67,7 +67,7 @@ def engines(point: Point) -> list[Engine]:
 
 
 def modules(point: Point) -> list[str]:
-    """Return the modules that this one imports by their names.
+    """Return the modules that this module imports by name.
 
     Only runs with `until` depend on the analysis.
     """
@@ -75,7 +75,10 @@ def modules(point: Point) -> list[str]:
 
 
 def arguments(point: Point) -> dict:
-    """Return the arguments of `simulate`; raise SceneError."""
+    """Return the arguments of `simulate`.
+
+    Raises SceneError.
+    """
     times, settings = point.schedule, point.settings
     common = {"scene": point.scene, "engine": point.engine, "seeds": point.seeds}
     options = {key: settings[key] for key in OPTIONS if settings.get(key)}
@@ -105,7 +108,10 @@ def arguments(point: Point) -> dict:
 
 
 def _frame_interval(point: Point) -> float:
-    """Compute the time between two frames that are kept; raise SceneError."""
+    """Compute the time between two stored frames.
+
+    Raises SceneError.
+    """
     times, settings = point.schedule, point.settings
     if "frames" in settings:
         if "lags" not in settings:
@@ -118,13 +124,16 @@ def _frame_interval(point: Point) -> float:
 def simulate(folder: Path, **arguments: Any) -> None:
     """Write a trajectory for each seed; see `write_replicas`.
 
-    The other arguments belong to `recipes`.
+    The other arguments are passed to `recipes`.
     """
     write_replicas(record, recipes(**arguments), folder, print)
 
 
 def record(recipe: Recipe, path: Path, overwrite: bool) -> None:
-    """Make one trajectory, or continue it, or find it complete."""
+    """Make, continue, or verify a trajectory.
+
+    A complete trajectory is left unchanged.
+    """
     from gaspart.trajectory import run as trajectory
 
     examiner = import_module(EXAMINER).Examiner() if recipe.until else None

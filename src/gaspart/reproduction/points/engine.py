@@ -1,4 +1,4 @@
-"""The engines of a point."""
+"""Engines and schedule of a point."""
 
 from __future__ import annotations
 
@@ -21,15 +21,18 @@ if TYPE_CHECKING:
 
 
 def engine(point: Point) -> Engine:
-    """Return the engine with the settings of a point; raise SceneError."""
+    """Return the engine with the settings of a point.
+
+    Raises SceneError.
+    """
     return _made(point, point.settings)
 
 
 def scan_engines(point: Point) -> list[Engine]:
     """Return the engine of a point, or an engine for each value of its scan.
 
-    Scans are over time steps or partitions; equal partitions are used once. Parts of a step refer to the step
-    that the engine has in the scene. Raises SceneError.
+    Scans are over time steps or partitions. Equal partitions are used only once. A fractional step is a
+    fraction of the engine's default step for the scene. Raises SceneError.
     """
     settings = point.settings
     scans = [key for key in SCANS if key in settings]
@@ -59,16 +62,16 @@ def scan_engines(point: Point) -> list[Engine]:
 def boxes_per_side(
     per_particle: float, count: int, radius: float, lengths: tuple[float, ...]
 ) -> tuple[int, ...]:
-    """Return nearly cubic boxes per axis (d,), ``per_particle`` for each particle.
+    """Return the number of boxes along each axis (d,), with ``per_particle`` boxes per particle.
 
-    No box is smaller than a diameter.
+    Boxes are nearly cubic, and not smaller than a diameter.
     """
     edge = (math.prod(lengths) / (per_particle * count)) ** (1.0 / len(lengths))
     return tuple(max(1, min(round(length / edge), int(length / (2.0 * radius)))) for length in lengths)
 
 
 def _made(point: Point, settings: dict) -> Engine:
-    """Return the engine of some settings, with the particles and the container of a point."""
+    """Return the engine with given settings, for the particles and the container of a point."""
     name = settings.get("engine", "event")
     _check(point, name, settings)
     fields = {key: settings[key] for key in ENGINE_KEYS[name] if key in settings}
@@ -80,14 +83,14 @@ def _made(point: Point, settings: dict) -> Engine:
     if len(sides) != len(lengths):
         raise SceneError("boxes_per_side", partition, "must be one number, or one per axis")
     for length, boxes in zip(lengths, sides, strict=True):
-        if boxes > 1 and length / boxes < 2.0 * radius:  # found before any job starts
+        if boxes > 1 and length / boxes < 2.0 * radius:  # errors are found before any job starts
             rule = f"boxes must not be narrower than the largest diameter, {2.0 * radius:g}"
             raise SceneError("boxes_per_side", partition, rule)
     return engines.ENGINES[name](**fields)
 
 
 def _check(point: Point, name: str, settings: dict) -> None:
-    """Refuse keys that the engine lacks or does not know."""
+    """Raise SceneError for required keys that are missing, and for unknown keys."""
     for key in required_settings(engines.ENGINES[name]):
         if key not in settings:
             raise point.make_error(key, f"must be given with engine: {name}")
@@ -98,14 +101,14 @@ def _check(point: Point, name: str, settings: dict) -> None:
         raise point.make_error("boxes_per_particle", "excludes boxes_per_side")
 
 
-# The engine that `engine: auto` of a config stands for.
+# The engine that `engine: auto` of a config selects.
 
 
 def chosen(settings: dict, scene: Scene, where: str) -> dict:
-    """Return the settings of a point with `engine: auto` for the selected engine.
+    """Return the settings of a point with `engine: auto`, with the selected engine.
 
-    The choice is made for the table's machine, so that a config means the same everywhere. A length is set
-    only if the point has none. Raises SceneError.
+    The choice is made for the machine of the table, so that a config has the same meaning everywhere. A
+    length is set only if the point has no length. Raises SceneError.
     """
     from gaspart.accuracy.plan import plan_from_table
     from gaspart.accuracy.table import EQUILIBRATION
@@ -127,20 +130,19 @@ def chosen(settings: dict, scene: Scene, where: str) -> dict:
     return merged
 
 
-# Duration and sampling of a point's runs.
-#
-# Planning a workflow reads every point of every grid, so slow imports are made inside functions.
+# Duration and sampling of a point's runs. The planning of a workflow processes every point of every grid, so
+# slow imports are made inside functions.
 
 
-_MOST_INTERVALS = 2.0**53  # above, float64 does not distinguish their numbers
-_SIZES = 64  # of a polydisperse gas, by which its collision rate is estimated
+_MOST_INTERVALS = 2.0**53  # for larger numbers, float64 does not distinguish them
+_SIZES = 64  # sizes of a polydisperse gas for the estimate of its collision rate
 
 
 @dataclass(frozen=True)
 class Schedule:
     """Schedule of the samples of a run, in the scene's time.
 
-    The first ``equilibration_frames`` frames are dropped. `samples_per_frame` is set where the run correlates
+    The first ``equilibration_frames`` frames are discarded. `samples_per_frame` is set if the run correlates
     more samples than it stores frames.
     """
 
@@ -152,16 +154,16 @@ class Schedule:
 
     @property
     def equilibration(self) -> float:
-        """The time before the measurement."""
+        """Time before the measurement."""
         return self.equilibration_frames * self.sample_interval
 
 
 def schedule(point: Point) -> Schedule:
     """Return duration and sampling of a point's runs, in the scene's time.
 
-    The length is divided into ``samples`` intervals (whole time steps with the step engine). The
-    equilibration, rounded up to complete intervals, precedes it. With ``frames``, intervals are those between
-    frames.
+    The length is divided into ``samples`` intervals. With the step engine, an interval has a whole number of
+    time steps. The equilibration, rounded up to complete intervals, precedes it. If ``frames`` is set,
+    intervals are those between frames.
     """
     settings = point.settings
     lengths = [key for key in LENGTHS if key in settings]
@@ -190,9 +192,9 @@ def schedule(point: Point) -> Schedule:
 
 
 def _unit_of_time(point: Point, unit: str) -> float:
-    """Return the scene's time in one ``unit`` of length.
+    """Return the scene's time for a ``unit`` of length.
 
-    For collisions per particle it follows from Enskog's rate.
+    For collisions per particle it is computed from Enskog's rate.
     """
     if unit == "duration":
         return 1.0
@@ -219,9 +221,13 @@ def _unit_of_time(point: Point, unit: str) -> float:
 
 
 def _mean_rate(mixture: Mixture) -> float:
-    """Compute the mean collision rate of the particles (of some, for many sizes)."""
+    """Compute the mean collision rate of the particles.
+
+    If there are many sizes, a sample of them is used.
+    """
     from gaspart import theory
 
     few = mixture.thin(_SIZES)
     rates = theory.mixture_collision_rates(*few.sizes, temperature=few.temperature, masses=few.masses)
-    return math.fsum(rates.sum(axis=1) * few.counts) / sum(few.counts)  # by BLAS it depends on the processor
+    # a matrix product by BLAS would depend on the processor
+    return math.fsum(rates.sum(axis=1) * few.counts) / sum(few.counts)

@@ -1,6 +1,6 @@
-"""The kinds of jobs, each a module of `reproduction.jobs`.
+"""Kinds of jobs, each a module of `reproduction.jobs`.
 
-A job runs again when its module, or its arguments in plain values, change.
+A job runs again when its module changes, or its arguments as plain values.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ JOBS: Mapping[str, Job] = {
 
 
 def validate(point: Point) -> None:
-    """Make the arguments of a point's job, which may have no keys of other jobs.
+    """Make the arguments of a point's job, to validate them.
 
-    Raises SceneError.
+    Keys of other jobs are not allowed. Raises SceneError.
     """
     others = {key for job in JOBS.values() for key in job.KEYS} - JOBS[point.job].KEYS.keys()
     for key in others & point.settings.keys():

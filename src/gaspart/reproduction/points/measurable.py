@@ -1,4 +1,4 @@
-"""Observables that the trajectories of a point can have, before they are made."""
+"""Observables that the trajectories of a point will have, known before the run."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from gaspart.trajectory.run_options import OPTIONS, contents_of
 if TYPE_CHECKING:
     from gaspart.reproduction.points.point import Point
 
-_ENOUGH = 64  # particles of a kind: observables do not distinguish more
+_ENOUGH = 64  # number of particles of a kind; more make no difference for observables
 
 
 def require_observable(name: str, point: Point) -> None:
-    """Raise SceneError for an observable that no trajectory of a point has, however long it is."""
+    """Raise SceneError for an observable that trajectories of a point never have."""
     contents, scene = contents_of(point.arguments), point.scene
     if contents.keep:
         raise point.make_error("keep", "observables need all that frames may hold")
@@ -27,7 +27,7 @@ def require_observable(name: str, point: Point) -> None:
 
 
 def distinct(points: Iterable[Point]) -> list[Point]:
-    """Return a point of each kind whose trajectories have the same observables."""
+    """Return one point of each kind; points of a kind have the same observables."""
     from gaspart.reproduction.points.point import variant
 
     kinds: dict[tuple, Point] = {}

@@ -1,11 +1,11 @@
-"""Modules of each stage of the workflow, found from their imports.
+"""Modules that each stage of the workflow uses, found from imports.
 
-A digest of these modules is a parameter of the stage's rules: editing one reruns the stages that use it, and
-no others. As inputs of rules they would be half a million files for ten thousand points. Imports are found by
-a search of the text, since parsing the whole package would take most of the time of planning. A test compares
-the result with the result of a parser. If a package loads a name when it is used (`gaspart.public`), the name
-stands for the module that defines it. If such a package is imported as a whole, it stands for all of these
-modules.
+A digest of these modules is a parameter of the rules of a stage. If a module is edited, only the stages that
+use it are run again. If modules were inputs of rules, ten thousand points would have half a million input
+files. Imports are found by text search, because parsing the whole package would take most of the planning
+time. A test compares the result with that from a parser. Some packages load a name on first use
+(`gaspart.public`). Such a name represents the module that defines it. If such a package is imported as a
+whole, it represents all of these modules.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ _PLAIN = re.compile(r"^[ \t]*import (gaspart[\w.]*)", re.MULTILINE)
 
 @cache
 def closure(*roots: str | Path) -> frozenset[Path]:
-    """Return the files of the package that modules or scripts need, directly or not.
+    """Return the files of the package that modules or scripts need, directly or indirectly.
 
-    Modules are given by dotted names, and scripts by paths. Tables in a folder `data` next to a module are
-    included.
+    Modules are given by dotted names, and scripts by paths. Tables in a folder `data` next to a module that
+    names it are included.
     """
     files: set[Path] = set()
     queue = [root if isinstance(root, Path) else _file(root) for root in roots]
@@ -39,18 +39,19 @@ def closure(*roots: str | Path) -> frozenset[Path]:
         for path in find_imports(queue.pop()) - files:
             files.add(path)
             queue.append(path)
-    folders = {path.parent for path in files}
-    return frozenset(files.union(*map(_tables, folders)))
+    return frozenset(files.union(*map(_tables, files)))
 
 
 @cache
-def _tables(folder: Path) -> frozenset[Path]:
-    return frozenset(folder.glob("data/*.csv"))
+def _tables(path: Path) -> frozenset[Path]:
+    """Return the tables that a module reads."""
+    reads = '"data"' in path.read_text(encoding="utf-8")
+    return frozenset(path.parent.glob("data/*.csv") if reads else ())
 
 
 @cache
 def find_imports(path: Path) -> frozenset[Path]:
-    """Return the files that a file of the package imports directly, and their packages."""
+    """Return the files that a file of the package imports directly, with their packages."""
     text = _TYPES.sub("", path.read_text(encoding="utf-8"))
     names = set(_PLAIN.findall(text))
     for base, items in _FROM.findall(text):
@@ -65,14 +66,14 @@ def find_imports(path: Path) -> frozenset[Path]:
 
 @cache
 def _homes(package: str) -> dict[str, str]:
-    """Return the module of each name that a package loads when it is used."""
+    """Return the module of each name that a package loads on first use."""
     stub = PACKAGE.joinpath(*package.split(".")[1:], "__init__.pyi")
     return read_stub(str(stub)) if stub.is_file() else {}
 
 
 @cache
 def _file(module: str) -> Path | None:
-    """Return the file of a module of the package, or None without such a module."""
+    """Return the file of a module of the package; None if there is no such module."""
     top, *below = module.split(".")
     path = PACKAGE.joinpath(*below)
     if top != PACKAGE.name:
@@ -87,14 +88,14 @@ def _file(module: str) -> Path | None:
 def digest(*roots: str | Path, others: tuple[Path, ...] = ()) -> str:
     """Return a short digest of the files of a closure, and of other files.
 
-    These files belong to another installed package. Docstrings and comments do not change the digest.
+    The other files belong to another installed package. Docstrings and comments do not change the digest.
     """
     return _digest_of([*_in_order(closure(*roots)), *others])
 
 
 @cache
 def kernel_digest(*roots: str | Path) -> str:
-    """Return a short digest of the compiled modules in a closure that `warm` may compile.
+    """Return a short digest of those modules in a closure that `warm` may compile.
 
     Jobs that need equal modules share their stamps.
     """
@@ -105,7 +106,7 @@ def kernel_digest(*roots: str | Path) -> str:
 def _in_order(paths: frozenset[Path]) -> list[Path]:
     """Sort paths by their text.
 
-    Paths compare their parts, which for a hundred closures takes 0.1 s.
+    A comparison of path objects compares their parts. For a hundred closures this takes 0.1 s.
     """
     return sorted(paths, key=str)
 

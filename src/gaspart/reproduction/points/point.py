@@ -1,4 +1,4 @@
-"""Point of a grid: its name, paths and seeds, and objects described by its settings.
+"""Point of a grid: its name, paths and seeds, and the objects that its settings describe.
 
 Each object is made once.
 """
@@ -30,31 +30,37 @@ if TYPE_CHECKING:
 
 
 TRAJECTORIES = "simulate"
-"""The job whose result is a folder of trajectories, one for each replica."""
+"""Job whose result is a folder of trajectories, one for each replica."""
 _JOBS = "gaspart.reproduction.jobs"
-_LONGEST_NAME = 200  # of the 255 bytes of a file name, with which suffixes and names of logs are made
+_LONGEST_NAME = 200  # of the 255 bytes of a file name; the rest is for suffixes and names of logs
 
 
 class Job(Protocol):
-    """Declarations of a job for planning, in addition to the function that does its work."""
+    """Declarations of a job for planning.
+
+    The function that does the work is separate.
+    """
 
     RESULT: str
-    """Result of the job, in words."""
+    """Description of the result of the job."""
     KEYS: dict[str, Kind]
-    """Keys that have a meaning for the job, in addition to the scene, the engine and the length."""
+    """Keys that have a meaning for this job, in addition to those for scene, engine and length."""
 
     def engines(self, point: Point) -> list[Engine]:
-        """Return the engines whose kernels it compiles, if particles are not only placed."""
+        """Return the engines whose kernels the job compiles; none if particles are only placed."""
 
     def arguments(self, point: Point) -> dict:
-        """Return the arguments of the point's function; raise SceneError."""
+        """Return the arguments of the point's function.
+
+        Raises SceneError.
+        """
 
 
 @dataclass(frozen=True)
 class Point:
-    """Point of a grid: one job of the workflow, with one output at ``path``.
+    """Point of a grid: a job of the workflow, with one output at ``path``.
 
-    The properties that are made of the settings raise SceneError where these contradict each other.
+    Properties that are computed from the settings raise SceneError if the settings contradict each other.
     """
 
     experiment: str
@@ -66,7 +72,7 @@ class Point:
 
     @property
     def path(self) -> str:
-        """Path of the result: a folder of trajectories (see TRAJECTORIES) or one netCDF file."""
+        """Path of the result: a folder of trajectories (see TRAJECTORIES), or a netCDF file."""
         suffix = "" if self.job == TRAJECTORIES else ".nc"
         return f"{self.root}/{self.experiment}/{self.name}{suffix}"
 
@@ -76,16 +82,16 @@ class Point:
         return self.settings.get("replicas", 1)
 
     def replica_path(self, replica: int) -> str:
-        """Return the trajectory of one replica (of the job TRAJECTORIES only)."""
+        """Return the path of the trajectory of a replica; only for the job TRAJECTORIES."""
         return f"{self.path}/replica-{replica}.nc"
 
     @property
     def replica_paths(self) -> list[str]:
-        """The trajectories of all replicas, in order."""
+        """Paths of the trajectories of all replicas, in order."""
         return [self.replica_path(k) for k in range(self.replicas)]
 
     def seed(self, replica: int = 0) -> tuple[int, ...]:
-        """Return four 32-bit words that depend on the names alone.
+        """Return four 32-bit words that depend only on names.
 
         The seeds do not depend on the position of the point in its grid.
         """
@@ -95,7 +101,7 @@ class Point:
 
     @property
     def seeds(self) -> list[tuple[int, ...]]:
-        """The seed of each replica."""
+        """Seeds of all replicas."""
         return [self.seed(k) for k in range(self.replicas)]
 
     @cached_property
@@ -110,68 +116,67 @@ class Point:
 
     @cached_property
     def engine(self) -> Engine:
-        """The engine of its runs."""
+        """Engine of the runs."""
         return engine.engine(self)
 
     @cached_property
     def engines(self) -> list[Engine]:
-        """Engines that the job runs: ``engine``, or one for each value of the scan."""
+        """Engines that the job runs: ``engine``, or an engine for each value of the scan."""
         return engine.scan_engines(self)
 
     @cached_property
     def schedule(self) -> Schedule:
-        """Duration and sampling of its runs."""
+        """Duration and sampling of the runs."""
         return schedule.schedule(self)
 
     @cached_property
     def kind_of_job(self) -> Job:
         """Module of the job.
 
-        In this module jobs are imported by their names, so measurements, which read points too, do not depend
-        on any job.
+        It is imported by name, so that measurements, which use points too, do not depend on any job.
         """
         return import_module(f"{_JOBS}.{self.job}")
 
     @property
     def modules(self) -> list[str]:
-        """The modules that do the work of its job, by their names."""
+        """Modules that do the work of the job, by name."""
         named = getattr(self.kind_of_job, "modules", None)
         return [f"{_JOBS}.{self.job}", *(named(self) if named else ())]
 
     @cached_property
     def ending(self) -> dict:
-        """The end of its runs with `until`, as fields of their recipes."""
+        """End of runs with `until`, as fields of their recipes."""
         return import_module("gaspart.reproduction.points.point_keys").ending(self)
 
     @cached_property
     def arguments(self) -> dict:
-        """Arguments of the job's function: exactly the values on which its result depends."""
+        """Arguments of the job's function; the result depends on exactly these values."""
         return self.kind_of_job.arguments(self)
 
     @property
     def parameters(self) -> dict:
-        """The arguments of the job in plain values."""
+        """Arguments of the job as plain values."""
         return import_module(f"{_JOBS}.arguments").to_plain(self.arguments)
 
     def make_error(self, key: str, rule: str) -> SceneError:
-        """Return the error that a setting breaks a rule."""
+        """Return the error that a setting violates a rule."""
         return SceneError(f"experiments.{self.experiment}.{key}", self.settings.get(key), rule)
 
     def to_dict(self) -> dict:
-        """Return plain values without `root`, which depends on the folder of the files of a workflow."""
+        """Return plain values without `root`, which depends on the location of the workflow."""
         return {key: value for key, value in asdict(self).items() if key != "root"}
 
     @classmethod
     def from_dict(cls, values: dict, path: str) -> Point:
-        """Return the point of `to_dict` whose result lies at `path`."""
+        """Return the point from the values of `to_dict`; its result is at `path`."""
         return cls(**values, root=str(Path(path).parents[1]))
 
 
 def name_of(varying: dict, where: str) -> str:
     """Return the name of a point for a file system: its varying keys and their values.
 
-    Raises SceneError, naming the key below ``where``, for a value that a file name cannot contain, and for a
-    name that is too long.
+    Raises SceneError for a value that a file name cannot contain, and for a name that is too long. The error
+    names the key below ``where``.
     """
     parts = [f"{_text(key, where)}={_text(value, f'{where}.{key}')}" for key, value in varying.items()]
     name = ",".join(parts) or "single"
@@ -189,16 +194,16 @@ def _text(value: object, where: str) -> str:
     return text
 
 
-# The name of the compiled kernels that a point needs, and a tiny run that compiles them.
+# Name of the compiled kernels that a point needs, and a tiny run that compiles them.
 
 
-_FEW = 8  # particles and walls that a tiny run has of each kind
-_LAW = {"restitution", "roughness"}  # which the kernels have in one law of contacts
-_NUMBERS = {"centres_to_walls", "polydispersity"}  # which change no kernel
+_FEW = 8  # number of particles and walls of each kind in a tiny run
+_LAW = {"restitution", "roughness"}  # keys that the kernels combine to one collision law
+_NUMBERS = {"centres_to_walls", "polydispersity"}  # keys that change no kernel
 
 
 def variant(point: Point) -> str:
-    """Return the kernels of a point, as text.
+    """Return a text that identifies the compiled kernels of a point.
 
     The text has engine, search or precision, dimension, and a digest of the features of its scene. Kernels
     are compiled for features, not for numbers. Raises SceneError.
@@ -206,7 +211,7 @@ def variant(point: Point) -> str:
     scene = point.scene
     parts = ["fill", "random", f"{scene.dimension}d"]
     if engines := point.kind_of_job.engines(point):
-        engine = engines[0]  # which differ in numbers only
+        engine = engines[0]  # names that differ only in numbers
         parts = [engine.name, engine.variant(scene), f"{scene.dimension}d"]
     present = sorted(compiled_features(scene))
     if point.settings.get("stress"):
@@ -221,13 +226,13 @@ def variant(point: Point) -> str:
 def compiled_features(scene: Scene) -> set[str]:
     """Return the names of features that change the kernels of a scene.
 
-    They include features that every engine models but compiles only for scenes with these features.
+    They include features that every engine models but compiles only if a scene has them.
     """
     names = scene.features - _NUMBERS - {"contact_duration"}
     if names & _LAW:
         names = (names - _LAW) | {"law"}
     extra = {
-        "contact_duration": scene.contact_duration > 0.0,  # by default under gravity
+        "contact_duration": scene.contact_duration > 0.0,  # the default under gravity
         "masses": len({kind.mass for kind in scene.kinds}) > 1,
         "dragged": scene.drags_faces,
         "compressed": any(kind.arrangement == "compressed" for kind in scene.species),
@@ -237,7 +242,7 @@ def compiled_features(scene: Scene) -> set[str]:
 
 
 def _has_oversized(scene: Scene) -> bool:
-    """Return True if a particle is too large for the boxes of the others."""
+    """Return True if a particle is too large for the boxes of the other particles."""
     if scene.largest_radius == scene.smallest_radius:
         return False
     from gaspart.state.boxes import largest_in_boxes
@@ -248,8 +253,8 @@ def _has_oversized(scene: Scene) -> bool:
 def compile_task(point: Point) -> str:
     """Return the task of `compile_kernels` for a point, as JSON.
 
-    The task consists of the engine, the scene, and two flags: whether stress is tallied, and whether events
-    are recorded. The scene has only a few particles if these have all of its features.
+    The task consists of the engine, the scene, and two flags: one for the tally of stress, one for the record
+    of events. The scene is reduced to a few particles if these have all of its features.
     """
     from gaspart.scene.scene import Scene
 
@@ -257,13 +262,13 @@ def compile_task(point: Point) -> str:
     scene = {key: value[:_FEW] if isinstance(value, list) else value for key, value in full.to_dict().items()}
     for kind in scene.get("species", ()):
         kind["count"] = min(kind["count"], _FEW)
-        if kind["arrangement"] in LATTICES:  # which need fewer kernels
+        if kind["arrangement"] in LATTICES:  # these need fewer kernels
             kind["arrangement"] = "random"
     if compiled_features(Scene.from_dict(scene)) != compiled_features(full):
         scene = full.to_dict()
     if engines := point.kind_of_job.engines(point):
         engine = engine_to_dict(engines[0].for_small_scene(full))
-    options = {"stress": "stress", "events": "pairs"}  # of the task, by a key of the point
+    options = {"stress": "stress", "events": "pairs"}  # field of the task, by a key of the point
     extra = {name: True for name, key in options.items() if point.settings.get(key)}
     return json.dumps({"scene": scene, "engine": engine, **extra})
 
@@ -285,7 +290,7 @@ def compile_kernels(job: str) -> None:
         simulation.record_events = True
     step = engine.quantum
     limits: dict = {"duration": 4 * step} if step else {"duration": 1.0, "max_work": 1000}
-    with suppress(SimulationError):  # a collapse; everything has been compiled before
+    with suppress(SimulationError):  # the run collapsed; everything has been compiled before
         simulation.advance(**limits)
         simulation.restore(simulation.checkpoint())
         simulation.advance(**limits)

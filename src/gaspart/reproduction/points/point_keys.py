@@ -1,9 +1,7 @@
 """Keys of a point that describe its scene, its engine and its length.
 
-Each has its kind, default and meaning.
-
-The keys of a job are defined in its module in `reproduction.jobs`; `config_keys` has the keys of a whole
-config.
+Each key has its kind, default and meaning. The keys of a job are defined in its module in
+`reproduction.jobs`. `config_keys` has the keys of a complete config.
 """
 
 from __future__ import annotations
@@ -20,7 +18,7 @@ if TYPE_CHECKING:
 
 
 PREFIX = "scene."
-"""Start of a key that replaces a value of the scene file: ``scene.species.0.mass``."""
+"""Prefix of a key that replaces a value of the scene file, such as ``scene.species.0.mass``."""
 
 _PER_AXIS = {"minItems": 2, "maxItems": 3}
 
@@ -36,7 +34,7 @@ EXTENTS: dict[str, Kind] = {
         default=None,
     ),
 }
-"""Exactly three of them are given; the fourth follows."""
+"""Extents of a gas; exactly three are given, and the fourth is computed."""
 
 GAS: dict[str, Kind] = {
     "dimension": choice("2 for discs, 3 for spheres; required", 2, 3, default=None),
@@ -107,9 +105,9 @@ _BOXES_PER_PARTICLE = positive(
 
 
 def _settings(engine: Any) -> dict[str, Kind]:
-    """Return the keys of an engine from its fields.
+    """Return the keys of an engine, from its fields.
 
-    A point with another engine does not require them.
+    Points with another engine do not require them.
     """
     declared = schema_of(engine)
     kinds = {name: Kind({"default": None, **kind}) for name, kind in declared["properties"].items()}
@@ -129,7 +127,7 @@ ENGINE_KEYS: dict[str, dict[str, Kind]] = {
         ),
     },
 }
-"""The keys that each engine has a meaning for."""
+"""Keys that have a meaning for each engine."""
 
 LENGTHS: dict[str, Kind] = {
     "collisions_per_particle": positive(
@@ -140,15 +138,14 @@ LENGTHS: dict[str, Kind] = {
     "duration": positive("length in the scene's time", default=None),
     "steps": count("length in time steps; needs an engine that makes steps", default=None),
 }
-"""Exactly one of them is given."""
+"""Keys of the length of a run; exactly one is given."""
 
 SCANS = ("scan_boxes_per_side", "scan_boxes_per_particle", "scan_time_steps", "scan_step_parts")
-"""Keys of the jobs that run several engines alternately."""
+"""Keys of jobs that run several engines alternately."""
 
 
-# The end of the runs of a point with `until`.
-#
-# It is made here, and not by the job, whose module must not depend on the analysis.
+# The end of the runs of a point with `until`. It is computed here instead of in the job, whose module must
+# not depend on the analysis.
 
 
 def ending(point: Point) -> dict[str, Any]:

@@ -1,8 +1,7 @@
-"""Scene of a point, made of its settings, or read from a scene file.
+"""Scene of a point, made from its settings, or read from a scene file.
 
-In a scene file, some values are replaced.
-
-Planning a workflow makes the scene of every point, so slow imports are made inside functions.
+Settings may replace values of the scene file. The planning of a workflow makes the scene of every point, so
+slow imports are made inside functions.
 """
 
 from __future__ import annotations
@@ -27,7 +26,10 @@ if TYPE_CHECKING:
 
 
 class Extents(NamedTuple):
-    """Number of particles, largest radius (of a polydisperse species the mean) and side lengths (d,)."""
+    """Number of particles, largest radius, and side lengths (d,).
+
+    For a polydisperse species the radius is the mean radius.
+    """
 
     particles: int
     radius: float
@@ -35,16 +37,19 @@ class Extents(NamedTuple):
 
 
 def scene(point: Point) -> Scene:
-    """Return the point's ``Scene``; raise SceneError."""
+    """Return the ``Scene`` of a point.
+
+    Raises SceneError.
+    """
     return _read(point) if "scene" in point.settings else _made(point)
 
 
 def extents(point: Point) -> Extents:
-    """Return the extents of a point; raise SceneError.
+    """Return the extents of a point.
 
     Three of count, radius, packing fraction and side are given, and the fourth is computed. A computed count
-    is rounded to a whole number. A computed side is the same on every axis. With a scene file, all of them
-    are known from the file.
+    is rounded to an integer. A computed side is equal on all axes. With a scene file, all extents are known
+    from the file. Raises SceneError.
     """
     settings = point.settings
     if "scene" in settings:
@@ -76,7 +81,7 @@ def extents(point: Point) -> Extents:
 
 
 def _check_gas(point: Point) -> None:
-    """Refuse settings that do not describe a gas in a container."""
+    """Raise SceneError for settings that do not describe a gas in a container."""
     settings = point.settings
     replaced = next((key for key in settings if key.startswith(PREFIX)), None)
     if replaced:
@@ -96,7 +101,7 @@ def _small_count(point: Point) -> int:
 
 
 def _mean_volume(point: Point) -> float:
-    """Compute the mean of the radii's power d, relative to the radius in the settings."""
+    """Compute the mean of (radius / radius in the settings)^d over the particles."""
     from gaspart.scene.sizes import relative_radii
 
     settings = point.settings
@@ -120,7 +125,7 @@ def _mean_volume(point: Point) -> float:
 
 
 def _made(point: Point) -> Scene:
-    """Return the scene of one species, or of two sizes, that the settings describe."""
+    """Return the scene that the settings describe: one species, or two sizes."""
     from gaspart.scene.container import Container
     from gaspart.scene.scene import Scene
     from gaspart.scene.species import Species
@@ -153,7 +158,7 @@ def _made(point: Point) -> Scene:
 def _read(point: Point) -> Scene:
     """Read the scene of the scene file, or of its content.
 
-    Settings replace values.
+    Settings replace values of the scene.
     """
     from gaspart.scene.scene import Scene
 
@@ -174,12 +179,12 @@ def _read(point: Point) -> Scene:
 
 
 def _of_file(point: Point, path: str) -> tuple[Any, Scene]:
-    """Return the content of the scene file of a point, and its scene without changes."""
+    """Return the content of the scene file of a point, and its unmodified scene."""
     try:
         changed = Path(path).stat().st_mtime_ns
     except OSError as error:
         raise point.make_error("scene", f"cannot be read: {error.strerror}") from None
-    except ValueError:  # a NUL, or a character that no file name can hold
+    except ValueError:  # a NUL, or a character that file names cannot contain
         raise point.make_error("scene", "is not a file name") from None
     return _file(path, changed)
 
@@ -188,7 +193,7 @@ def _of_file(point: Point, path: str) -> tuple[Any, Scene]:
 def _file(path: str, changed: int) -> tuple[Any, Scene]:
     """Return the content of a scene file, and its scene.
 
-    The file is read again if it has changed.
+    A changed file is read again.
     """
     from gaspart.scene.scene import Scene
 
@@ -199,7 +204,7 @@ def _file(path: str, changed: int) -> tuple[Any, Scene]:
 def _replace(content: dict, key: str, point: Point) -> None:
     """Replace the value at a dotted key; add the key if a mapping lacks it.
 
-    The key is `scene.` and then names in mappings and numbers in lists.
+    The key is `scene.`, followed by names in mappings and indices in lists.
     """
     _, *parents, last = key.split(".")
     block = content
@@ -212,7 +217,7 @@ def _replace(content: dict, key: str, point: Point) -> None:
 
 
 def _place(block: object, part: str, key: str, point: Point) -> str | int:
-    """Return the key or index to which `part` of a dotted key leads.
+    """Return the key or index that `part` of a dotted key denotes.
 
     The `block` is a mapping or a list.
     """

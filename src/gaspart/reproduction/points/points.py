@@ -1,11 +1,11 @@
 """Points of the grids of a config.
 
-An *experiment* of the config has ``point`` (defaults) and ``grid``. The grid is a mapping from each key to
-the list of its values; the points are the product of the lists. It may also be a list of such mappings, whose
-points are concatenated. A key that is null counts as absent, so that a config merged over another can remove
-a key.
+An *experiment* of the config has ``point`` (defaults) and ``grid``. The grid maps each key to the list of its
+values. The points are all combinations of these values. The grid may also be a list of such mappings, whose
+points are concatenated. A key with the value null counts as absent, so that a config merged over another
+config can remove a key.
 
-Measurements do not import this module, so that none depends on the trade-off's table.
+Measurements do not import this module, so that they do not depend on the trade-off's table.
 """
 
 from __future__ import annotations
@@ -30,26 +30,25 @@ from gaspart.reproduction.points.point_keys import (
     SCENE_FILE,
 )
 
-# The settings of a point whose runs have a multiple of their length.
-#
-# An uncertainty falls as the inverse root of the length. So a point of which no claim needs much can be
-# shorter than the others of its grid: `lengths` of a config has the multiples.
+# Settings of a point whose run length is multiplied. An uncertainty falls as the inverse root of the length.
+# If the claims of a point need less accuracy, its runs can be shorter than others of its grid: `lengths` of a
+# config has the multiples.
 
 
 _LEAST_REPLICAS = 6
-"""Number of replicas below which their scatter is no measure of the uncertainty."""
+"""Minimum number of replicas whose scatter measures the uncertainty."""
 _LEAST_SAMPLES = 32
-"""Number of samples below which runs have no fewer: blocks are made of them."""
+"""Minimum number of samples of a run, because blocks are made from them."""
 _LEAST_TIMINGS = 3
 _OF_SEEDS = ("echo", "fill", "pack")
-"""Jobs whose work is the same for each replica, whatever the length."""
+"""Jobs whose work is the same for each replica, for any length."""
 
 
 def scale_length(job: str, settings: Mapping[str, Any], multiple: float) -> dict[str, Any]:
     """Return the settings with `multiple` times as many replicas, and then longer runs.
 
-    The interval between samples is retained as long as there are enough samples. The length of a run that
-    does not begin with an equilibration is not changed: it describes how something proceeds.
+    The interval between samples is kept as long as there are enough samples. If a run does not begin with an
+    equilibration, its length is not changed, because such a run describes a process in time.
     """
     result = dict(settings)
     replicas = result.get("replicas", 1)
@@ -66,11 +65,11 @@ def scale_length(job: str, settings: Mapping[str, Any], multiple: float) -> dict
 def _resample(settings: Mapping[str, Any], multiple: float, least: int, even: bool) -> dict[str, Any]:
     """Return the length and the samples of a run that is `multiple` times as long.
 
-    If `even`, all intervals between samples stay as they are, for example between lags and in timings.
+    If `even`, all intervals between samples are kept, for example between lags and in timings.
     """
     changes: dict[str, Any] = {}
     samples = settings.get("samples", 1)
-    each = samples // settings["frames"] if "frames" in settings else 1  # samples of a frame
+    each = samples // settings["frames"] if "frames" in settings else 1  # samples per frame
     frames = math.ceil(samples / each * multiple - 1e-9)
     frames = max(frames, min(samples // each, least))
     if "samples" in settings:
@@ -86,26 +85,25 @@ def _resample(settings: Mapping[str, Any], multiple: float, least: int, even: bo
     return changes
 
 
-# The keys of a config, of an experiment and of all its points: kind, default and meaning of each.
-#
-# Validation, the JSON schema and the reference page follow from these tables. The settings of a figure are
-# declared in the `__init__.py` of its family.
+# Keys of a config, of an experiment and of its points, with kind, default and meaning. Validation, the JSON
+# schema and the reference page are derived from these tables. The settings of a figure are declared in the
+# `__init__.py` of its family.
 
 
-_WORD = r"[a-z][a-z0-9_]*$(?!\n)"  # $ matches before a final line break too
+_WORD = r"[a-z][a-z0-9_]*$(?!\n)"  # $ also matches before a final line break
 _NAME = {"pattern": rf"^{_WORD}", "maxLength": 100}
 
 _TAKEN = (
     *("animations", "benchmarks", "claims", "coverage", "docs", "figures", "kernels", "logs"),
     *("measurements", "points", "tables"),
 )
-"""Folders of `results`, which are no names of a run."""
+"""Folders of `results`, which cannot be names of a run."""
 
 
 def _of_any_engine() -> dict[str, Kind]:
     """Return the keys of all engines.
 
-    If an engine gives another meaning to a key, the description lists the meaning for each engine.
+    If a key has different meanings for engines, the description lists them.
     """
     merged: dict[str, Kind] = {}
     for engine, keys in ENGINE_KEYS.items():
@@ -118,9 +116,9 @@ def _of_any_engine() -> dict[str, Kind]:
 
 
 def _of_any_job() -> dict[str, Kind]:
-    """Return the keys of all jobs, each with its meaning for every job that has it."""
+    """Return the keys of all jobs, with their meaning for every job."""
     kinds: dict[str, Kind] = {}
-    meanings: dict[str, dict[str, list[str]]] = {}  # of each key: meaning, jobs
+    meanings: dict[str, dict[str, list[str]]] = {}  # for each key: meaning, and jobs
     for job, module in JOBS.items():
         for name, kind in module.KEYS.items():
             kinds.setdefault(name, kind)
@@ -141,16 +139,16 @@ POINT: dict[str, Kind] = {
     name: kind if name == "dimension" else nullable(kind)
     for name, kind in (EXTENTS | GAS | SCENE_FILE | ENGINE | _of_any_engine() | LENGTHS | RUN).items()
 }
-"""All keys of a point; null takes a key back."""
+"""All keys of a point; null removes a key."""
 
 WHOLE = frozenset(
     name
     for name, kind in POINT.items()
     if kind.get("type") == ["integer", "null"] or all(isinstance(item, int) for item in kind.get("enum", "-"))
 )
-"""Keys of whole numbers, which may be written 1e3."""
+"""Keys whose values are integers, which may be written as 1e3."""
 
-_BLOCK = {"type": "object"}  # each value is checked against its key's kind
+_BLOCK = {"type": "object"}  # each value is checked by the kind of its key
 _JOBS = "; ".join(f"`{name}`: {module.RESULT}" for name, module in JOBS.items())
 EXPERIMENT: dict[str, Kind] = {
     "job": choice(_JOBS, *JOBS, default="simulate"),
@@ -180,7 +178,7 @@ ANIMATION: dict[str, Kind] = {
 
 
 MULTIPLE: Kind = positive("", maximum=100)
-"""A multiple of the length of a point."""
+"""Multiple of the length of a point."""
 
 
 def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
@@ -238,7 +236,7 @@ MOST_POINTS = 100_000
 def points(config: dict, experiment: str) -> list[Point]:
     """Return all points of an experiment.
 
-    Raises SceneError for an empty grid, or two points of one name.
+    Raises SceneError for an empty grid, or for two points of equal name.
     """
     block = config["experiments"][experiment]
     where = f"experiments.{experiment}"
@@ -273,7 +271,10 @@ def _plain(key: str, value: Any) -> Any:
 
 
 def _chosen(point: Point) -> Point:
-    """Return a point with the engine that `engine: auto` chooses; raise SceneError."""
+    """Return a point with the engine that `engine: auto` selects.
+
+    Raises SceneError.
+    """
     where = f"experiments.{point.experiment}"
     if point.settings.get("engine") == "auto":
         from gaspart.reproduction.points.engine import chosen
@@ -286,7 +287,10 @@ def _chosen(point: Point) -> Point:
 
 
 def all_points(config: dict) -> dict[str, dict[str, Point]]:
-    """Return the points of all experiments, by experiment and name; raise SceneError as `points`."""
+    """Return the points of all experiments, by experiment and name.
+
+    Raises SceneError as in `points`.
+    """
     return {
         experiment: {point.name: point for point in points(config, experiment)}
         for experiment in config["experiments"]
@@ -294,7 +298,7 @@ def all_points(config: dict) -> dict[str, dict[str, Point]]:
 
 
 def figure_points(config: dict, figure: str, planned: Mapping[str, Mapping[str, Point]]) -> list[Point]:
-    """Return the points of all experiments that a figure names, in its order.
+    """Return the points of all experiments that a figure lists, in the figure's order.
 
     `planned` is a result of `all_points`. Raises SceneError for an unknown experiment.
     """
@@ -307,7 +311,10 @@ def figure_points(config: dict, figure: str, planned: Mapping[str, Mapping[str, 
 
 
 def _combinations(grid: Any, where: str) -> list[dict]:
-    """Return the product of a mapping's lists; for several mappings, one after the other."""
+    """Return all combinations of the values in a mapping of lists.
+
+    For several mappings, their combinations are concatenated.
+    """
     if isinstance(grid, list):
         if not grid:
             raise SceneError(where, grid, "must not be empty")

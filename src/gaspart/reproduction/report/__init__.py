@@ -1,6 +1,6 @@
-"""The report: one page of all figures, their claims and what they show.
+"""The report: one page with all figures, their claims and captions.
 
-`caption.py` divides a caption into its finding, how to read the figure, and the rest; `strip.py` places
-claims on an axis of deviations; `references.py` links citations to the list of references; `page.py` fills
-the template, `workflow/report/report.html.j2`, with them.
+`page.py` divides a caption into its finding, the instructions to read the figure, and details. It places
+claims on an axis of deviations, and fills the template `workflow/report/report.html.j2`. `explore.py` has the
+choices of a reader on the page, and links citations to the list of references.
 """

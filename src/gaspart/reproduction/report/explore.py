@@ -1,7 +1,7 @@
-"""Choices of a reader on the page, from data that the figures have measured.
+"""Choices of a reader on the page, from measured data of figures.
 
-The user selects the packing fraction of a virial series; or the observable, the packing fraction and the
-accuracy for which an engine is wanted.
+The reader selects the packing fraction of a virial series. For the choice of an engine, the reader selects
+observable, packing fraction and accuracy.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _STEPS = 100
 
 
 def states(paths: Mapping[str, str]) -> list[dict[str, Any]]:
-    """Return `series` of all measured equations of state among {figure: path}."""
+    """Return the `series` of all measured equations of state in {figure: path}."""
     import xarray as xr
 
     stated = {figure: declaration for figure, declaration in registry.series().items() if figure in paths}
@@ -37,9 +37,9 @@ def states(paths: Mapping[str, str]) -> list[dict[str, Any]]:
 
 
 def choice_of_engine(paths: Mapping[str, str]) -> dict[str, Any] | None:
-    """Return the `engines` of the figure of the cost of an accuracy, with its name.
+    """Return the `engines` of the figure on the cost of an accuracy, with the figure's name.
 
-    None unless the figure is on the page.
+    None if the figure is not on the page.
     """
     import xarray as xr
 
@@ -52,9 +52,9 @@ def series(
 ) -> list[dict[str, Any]]:
     """Return the data of each figure of an equation of state.
 
-    The data are the packing fractions to choose from, the partial sums of the virial series to each order, Z
-    of the best equation of state, and the measured Z with its standard error. `states` contains the dimension
-    of each figure and the largest packing fraction that can be chosen.
+    The data are the available packing fractions, the partial sums of the virial series by order, Z of the
+    best equation of state, and the measured Z with its standard error. `states` has the dimension of each
+    figure, and the largest available packing fraction.
     """
     rows = []
     for figure, (dimension, largest) in states.items():
@@ -79,10 +79,11 @@ def series(
 def engines(dataset: xr.Dataset) -> dict[str, Any]:
     """Return the costs and errors of all engines, from a dataset of `families.tradeoff.maps`.
 
-    `count` of particles; `accuracies`; `engines`: name and colour of each; `parts`: causes of errors;
-    `observables`: for each its name, its packing fractions and two arrays. Over packing fraction, accuracy
-    and engine: `cost` in s (None if the engine was not run, -1 if no setting is so accurate). Over part too:
-    `error`, relative (None if unknown).
+    `count` is the number of particles. `engines` has name and colour of each engine. `parts` are the causes
+    of errors. `observables` has for each observable its name, its packing fractions and two arrays. The array
+    `cost`, in s, is over packing fraction, accuracy and engine. An element equals None if the engine was not
+    run, and -1 if no setting is accurate enough. The array `error` has `parts` as further axis. It is
+    relative, and None if unknown. `accuracies` has the values of the second axis.
     """
     from matplotlib.colors import to_hex
 
@@ -116,23 +117,21 @@ def engines(dataset: xr.Dataset) -> dict[str, Any]:
 
 
 def _nest(values: np.ndarray) -> list:
-    """Convert an array to nested lists of numbers for JSON, with three digits."""
+    """Convert an array to nested lists for JSON; numbers have three digits."""
     if values.ndim > 1:
         return [_nest(part) for part in values]
     return [float(f"{value:.3g}") if math.isfinite(value) else None for value in values.tolist()]
 
 
 def _numbers(values: np.ndarray) -> list[float | None]:
-    """Convert numbers for JSON, with six digits; None for numbers that are not finite."""
+    """Convert numbers for JSON, with six digits; infinite numbers and NaN become None."""
     return [
         float(f"{value:.6g}") if math.isfinite(value) else None for value in np.asarray(values, dtype=float)
     ]
 
 
-# The numbered references of the page, and the citations of them.
-#
-# A text cites a reference by its key in square brackets: "the law of [Haff 1983]", "figure 4 of [source
-# A]".
+# Numbered references of the page, and citations of them. A text cites a reference by its key in square
+# brackets: "the law of [Haff 1983]", "figure 4 of [source A]".
 
 
 CITATION = re.compile(r"\[([^][<>]+)\]")
@@ -142,11 +141,11 @@ CITATION = re.compile(r"\[([^][<>]+)\]")
 class Reference:
     """Reference of the literature.
 
-    number : from 1.
-    key : by which texts cite it.
+    number : number in the list, from 1.
+    key : key by which texts cite the reference.
     authors : surnames, the last perhaps "others".
     where : journal, volume, page, or a title.
-    doi : "" without a DOI.
+    doi : DOI, or "".
     """
 
     number: int
@@ -158,9 +157,9 @@ class Reference:
 
     @property
     def is_source(self) -> bool:
-        """True if its key is a name, such as "source A".
+        """True if the key is a name, such as "source A".
 
-        Other keys have an author and a year.
+        Other keys consist of an author and a year.
         """
         return str(self.year) not in self.key
 
@@ -179,9 +178,9 @@ class Reference:
 
 
 def read_references(path: str | Path) -> dict[str, Reference]:
-    """Read the references of a file by key, numbered in its order.
+    """Read the references of a file by key, numbered in the order of the file.
 
-    Raises SceneError if it is not YAML.
+    Raises SceneError for invalid YAML.
     """
     return {
         key: Reference(**{**entry, "number": number, "key": key, "authors": tuple(entry["authors"])})
@@ -190,13 +189,19 @@ def read_references(path: str | Path) -> dict[str, Reference]:
 
 
 def find_reference(citation: re.Match[str], references: Mapping[str, Reference]) -> Reference | None:
-    """Return the reference that a match of `CITATION` cites; None for other texts in square brackets."""
+    """Return the reference that a match of `CITATION` cites.
+
+    None for other texts in square brackets.
+    """
     key = " ".join(citation[1].split())
     return references.get(key) or references.get(key[0].lower() + key[1:])
 
 
 def cited_references(texts: Iterable[str], references: Mapping[str, Reference]) -> dict[str, Reference]:
-    """Return the references that some texts cite, by key, in the same order, numbered from 1."""
+    """Return the references that some texts cite, by key.
+
+    Their order is the order of `references`. They are numbered from 1.
+    """
     matches = (find_reference(citation, references) for text in texts for citation in CITATION.finditer(text))
     keys = {reference.key for reference in matches if reference is not None}
     kept = (reference for key, reference in references.items() if key in keys)
@@ -204,7 +209,7 @@ def cited_references(texts: Iterable[str], references: Mapping[str, Reference]) 
 
 
 def link_citations(text: str, references: Mapping[str, Reference]) -> str:
-    """Return HTML in which each citation has become names and a numbered link into the list."""
+    """Return HTML with citations replaced by names and a numbered link to the list."""
 
     def link(citation: re.Match[str]) -> str:
         reference = find_reference(citation, references)

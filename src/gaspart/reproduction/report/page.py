@@ -1,4 +1,4 @@
-"""The page: what the template is filled with."""
+"""Content of the report's page for its template."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ if TYPE_CHECKING:
     from docutils import nodes
 
 
-# Claims on an axis of deviations: where each dot is, and how it looks.
+# Claims on an axis of deviations: position and look of each dot.
 
 
 LIMIT = 5.0
-"""Standard deviations at the ends of the axis; what lies beyond is drawn at its end."""
+"""Standard deviations at the ends of the axis; claims beyond are drawn at the end."""
 _BAND = 3.0
 _WIDTH = 0.24
-"""Standard deviations below which two dots would overlap."""
+"""Distance in standard deviations below which two dots would overlap."""
 _LEVELS = 4
 
 
@@ -38,7 +38,7 @@ class Dot:
 
     row : row of the claims table.
     position : position in percent of the axis.
-    level : 0, 1, ... from below, so that dots do not hide one another.
+    level : height 0, 1, ... of the dot, so that dots do not hide one another.
     """
 
     row: dict[str, Any]
@@ -49,8 +49,8 @@ class Dot:
 def deviation(row: dict[str, Any]) -> float:
     """Return the position of a claim in standard deviations.
 
-    The position is the deviation of a value. A measured number between two bounds has its relative position
-    between them, where the bounds are at -3 and 3. Without a deviation the position is 0.
+    The position of a value is its deviation. For a measured number between two bounds, the bounds are at -3
+    and 3, and the number is at its relative position between them. Without a deviation the position is 0.
     """
     low, high, measured = row["lowest"], row["highest"], row["measured"]
     if math.isfinite(low) and math.isfinite(high) and math.isfinite(measured) and high > low:
@@ -72,21 +72,20 @@ def dots(rows: Iterable[dict[str, Any]]) -> list[Dot]:
     return placed
 
 
-# The parts of a caption: its finding, how to read the figure, and what is folded below.
-#
-# A caption is reStructuredText. Its first words, in bold, are the finding. The rest of that paragraph and
-# the paragraph that begins with *Panels.* state how to read the figure.
+# Parts of a caption: its finding, the instructions to read the figure, and folded details. A caption is
+# reStructuredText. Its first words, in bold, are the finding. The rest of this paragraph, and the paragraph
+# that begins with *Panels.*, explain how to read the figure.
 
 
 _FINDING = re.compile(r"\*\*(?=[^\s*])(.+?)\*\*\s*", re.DOTALL)
 _SCHEME = re.compile(r"([a-z][a-z0-9+.-]*):")
 _SCHEMES = ("http", "https", "mailto", "doi")
-"""Beginnings that an address in a caption may have, unless it is within the report."""
+"""Schemes that an address in a caption may have, unless it is an address in the report."""
 _SETTINGS = {
     "file_insertion_enabled": False,
     "raw_enabled": False,
     "math_output": "MathML",
-    "warning_stream": False,  # faults are raised
+    "warning_stream": False,  # docutils raises faults as errors
     "halt_level": 5,
 }
 _HTML: dict[str, Any] = {"writer": "html5", "settings_overrides": _SETTINGS}
@@ -98,7 +97,7 @@ class Caption:
     """Caption of a figure.
 
     finding : inline HTML.
-    plain : the finding without marks, where only text is possible.
+    plain : the finding as plain text.
     reading, details : HTML; `details` may be empty.
     """
 
@@ -111,7 +110,7 @@ class Caption:
 def split_caption(text: str) -> Caption:
     """Return the parts of a caption.
 
-    Raises ValueError if it does not begin with words in bold, and as `html_of`.
+    Raises ValueError if the caption does not begin with words in bold, or if `html_of` raises it.
     """
     paragraphs = re.split(r"\n\s*\n", text.strip())
     finding = _FINDING.match(paragraphs[0])
@@ -121,7 +120,7 @@ def split_caption(text: str) -> Caption:
     seen = [paragraph for paragraph in paragraphs[1:] if paragraph.startswith(_SEEN)]
     others = [paragraph for paragraph in paragraphs[1:] if not paragraph.startswith(_SEEN)]
     reading = [opening, *(paragraph.removeprefix(_SEEN).strip() for paragraph in seen)]
-    reading = [re.sub(r"^\(", r"\\(", paragraph) for paragraph in reading]  # "(a)" begins no list
+    reading = [re.sub(r"^\(", r"\\(", paragraph) for paragraph in reading]  # "(a)" is not the start of a list
     title = html_of(finding[1]).removeprefix("<p>").removesuffix("</p>").rstrip(".")
     return Caption(
         finding=title,
@@ -132,27 +131,27 @@ def split_caption(text: str) -> Caption:
 
 
 def html_of(text: str) -> str:
-    """Return reStructuredText as a fragment of HTML.
+    """Convert reStructuredText to a fragment of HTML.
 
-    Raises ValueError for marks that are not closed and other faults, and for an address whose scheme is not
-    one of the web or of mail: `javascript:` would run where the report is read.
+    Raises ValueError for unclosed marks and other faults. Raises ValueError also for an address whose scheme
+    is not for web or mail: `javascript:` would run on the reader's machine.
     """
     from docutils.core import publish_doctree, publish_parts
 
     try:
         fault = _fault(publish_doctree(text, settings_overrides=_SETTINGS))
         body = "" if fault else str(publish_parts(text, **_HTML)["body"]).strip()
-    except Exception as error:  # docutils 0.22 raises AttributeError and others for formulas
+    except Exception as error:  # docutils 0.22 raises AttributeError and other errors for formulas
         raise ValueError(f"cannot be read as reStructuredText: {type(error).__name__}: {error}") from None
     if fault:
         raise ValueError(fault)
-    if '<aside class="system-message">' in body:  # of a formula, which is read when it is written
+    if '<aside class="system-message">' in body:  # error in a formula, which is parsed when it is written
         raise ValueError("holds a formula that cannot be read")
     return body
 
 
 def _fault(tree: nodes.document) -> str:
-    """Return the error of a parsed text; "" without an error."""
+    """Return the error of a parsed text; "" if there is no error."""
     from docutils import nodes
 
     said = [*tree.findall(nodes.system_message), *tree.parse_messages, *tree.transform_messages]
@@ -167,16 +166,17 @@ def _fault(tree: nodes.document) -> str:
 
 
 def _is_safe(address: str) -> bool:
-    """Return True if an address is one of the web, of mail, or relative.
+    """Return True if an address is relative, or for web or mail.
 
-    Browsers skip white space and control characters within a scheme.
+    Browsers ignore white space and control characters in a scheme.
     """
     scheme = _SCHEME.match("".join(c for c in address if c.isprintable() and c != " ").lower())
     return scheme is None or scheme[1] in _SCHEMES
 
 
 _PIXELS_PER_INCH = 96.0 * 1.5
-"""Pixels of the page per inch of a figure, so that its lettering of 8 points is as large as the text."""
+"""Pixels of the page per inch of a figure. With this value, 8-point lettering of a figure is as large as the
+text."""
 CHAPTERS = (
     "Equation of state and structure",
     "Motion and its memory",
@@ -186,20 +186,21 @@ CHAPTERS = (
     "Pictures and checks",
     "Own figures",
 )
-"""In the order of the page."""
+"""Chapters in the order of the page."""
 _THUMBNAIL, _SHARPNESS = 360, 1.6
-"""Width of a thumbnail, and pixels of a picture for each of the page, in a page that holds its pictures."""
+"""Width of a thumbnail in pixels, and resolution of pictures inside the page, in pixels per pixel of the
+page."""
 
 
 @dataclass(frozen=True)
 class Section:
     """Figure on the page.
 
-    family_name : family of its functions.
-    claims : its rows of the claims table.
-    films : names of its films.
-    settings : settings of its measurement, as text.
-    points : files of its simulations.
+    family_name : family that has the functions of the figure.
+    claims : rows of the figure in the claims table.
+    films : names of the films.
+    settings : settings of the measurement, as text.
+    points : files of the simulations.
     """
 
     name: str
@@ -212,17 +213,17 @@ class Section:
 
     @property
     def dots(self) -> list:
-        """Claims on the axis of deviations, but for the joint test of the others."""
+        """Claims on the axis of deviations, without the joint test."""
         return dots(row for row in self.claims if row["kind"] != "family")
 
     @property
     def verdicts(self) -> dict[str, int]:
-        """Number of its claims with each verdict."""
+        """Number of claims with each verdict."""
         return verdicts(self.claims)
 
     @property
     def family(self) -> dict[str, Any] | None:
-        """The joint test of the claims of the figure, if there are enough claims."""
+        """Joint test of the claims of the figure, if there are enough claims."""
         return next((row for row in self.claims if row["kind"] == "family"), None)
 
 
@@ -237,7 +238,8 @@ def by_chapter(sections: Iterable[Section]) -> dict[str, list[Section]]:
 def findings(chosen: Iterable[Mapping[str, str]], rows: list[dict[str, Any]]) -> list[dict[str, str]]:
     """Return the key findings of the figures that have claims, [{figure, text}].
 
-    Their measured numbers are filled in; `chosen` are the findings with places for numbers as in a caption.
+    `chosen` are the findings with placeholders for numbers, as in a caption. The measured numbers are filled
+    in.
     """
     present = {row["figure"] for row in rows}
     return [
@@ -255,7 +257,7 @@ def findings(chosen: Iterable[Mapping[str, str]], rows: list[dict[str, Any]]) ->
 def headline(rows: list[dict[str, Any]]) -> dict[str, Any]:
     """Return the claims on the first screen: counts by kind and verdict, and disagreements.
 
-    Families are counted too, so that the numbers of all kinds add up to the number of claims.
+    Families are counted too, so that the numbers of all kinds add up to the total.
     """
     return {
         "kinds": counts(rows),
@@ -270,9 +272,9 @@ def verdicts(rows: Iterable[dict[str, Any]]) -> dict[str, int]:
 
 @dataclass(frozen=True)
 class Picture:
-    """Addresses of a figure's picture: full, in one column for narrow screens, and as a thumbnail.
+    """Addresses of a figure's picture: full size, in one column for narrow screens, and thumbnail.
 
-    The sizes of the first two are in pixels of the page, which so does not move while they are loaded.
+    The first two have sizes in pixels of the page, so that the page does not move while they are loaded.
     """
 
     large: str
@@ -285,8 +287,8 @@ class Picture:
 def picture(path: Path, one_file: bool) -> Picture:
     """Return the picture of a figure whose PNG is `path`.
 
-    The SVG lies in the same folder, and the picture in one column below in journal/. If `one_file`, pictures
-    are stored in the page, as WebP, which is a third of their size.
+    The SVG is in the same folder. The picture in one column is in the subfolder journal/. If `one_file`,
+    pictures are stored in the page as WebP, with a third of the size.
     """
     column = path.parent / "journal" / path.name
     size, narrow = _size(path), _size(column)
@@ -299,7 +301,7 @@ def picture(path: Path, one_file: bool) -> Picture:
 
 
 def _size(path: Path) -> tuple[int, int]:
-    """Return the width and height of a PNG, in pixels of the page."""
+    """Return width and height of a PNG, in pixels of the page."""
     from PIL import Image
 
     with Image.open(path) as image:
@@ -308,9 +310,9 @@ def _size(path: Path) -> tuple[int, int]:
 
 
 def address(path: Path, one_file: bool = False) -> str:
-    """Return the address of a file of results/, relative to the page.
+    """Return the address of a file in results/, relative to the page.
 
-    If `one_file`, the address contains the file.
+    If `one_file`, the address contains the data of the file.
     """
     if one_file:
         return _data(mimetypes.guess_type(path.name)[0] or "", path.read_bytes())
@@ -320,8 +322,7 @@ def address(path: Path, one_file: bool = False) -> str:
 def films(paths: list[Path], one_file: bool) -> dict[str, str]:
     """Return name and address of each film that the page shows.
 
-    A page in one file contains only the first film, because all films together are larger than everything
-    else.
+    A page in one file has only the first film, because all films together are larger than the rest.
     """
     return {path.stem: address(path, one_file) for path in (paths[:1] if one_file else paths)}
 
@@ -331,7 +332,7 @@ def _data(kind: str, content: bytes) -> str:
 
 
 def _webp(path: Path, width: int) -> str:
-    """Return the address that contains a picture, at most this many pixels wide."""
+    """Return an address that contains a picture of limited width, in pixels."""
     from PIL import Image
 
     content = BytesIO()
@@ -343,5 +344,5 @@ def _webp(path: Path, width: int) -> str:
 
 
 def make_caption(text: str, rows: list[dict[str, Any]]) -> Caption:
-    """Return the caption of a figure with its measured numbers."""
+    """Return the caption of a figure, with its measured numbers filled in."""
     return split_caption(fill_caption(text, rows))

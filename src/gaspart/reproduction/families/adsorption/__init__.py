@@ -1,4 +1,4 @@
-"""Walls that hold particles."""
+"""Figures on adsorption: walls that attract or capture particles."""
 
 from gaspart.keys import count, positive
 

@@ -1,4 +1,4 @@
-"""Claims about walls that adsorb particles."""
+"""Claims about adsorption of particles on walls."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from gaspart.reproduction.table import Table, each
 from gaspart.theory.adsorption import planck_constant, slow_flux_share
 
 KINDS = ("ideal", "layer", "sticky")
-"""Kinds of walls: wide wells, wells thinner than a particle, and the source's rule."""
+"""Kinds of walls: potential wells wider than a particle, narrower wells, and the sticky wall of the source.
+"""
 LANGMUIR = (
     "Boltzmann factor of the well (exact for an ideal gas; Langmuir's formula, [source A], section 4.5); "
     "what spheres close to each other is subtracted, to first order in their density"
@@ -25,7 +26,7 @@ OWN_LENGTH = (
 def adsorption(dataset: xr.Dataset) -> list[Claim]:
     """Return the claims on slope, prefactor, hard layer, and detailed balance.
 
-    The rule of the source violates the latter.
+    The sticky wall of the source violates detailed balance.
     """
     walls = Table(dataset, "point")
     ideal, layer, sticky = (walls[walls.kind == kind] for kind in KINDS)
@@ -52,7 +53,7 @@ def _ideal(wells: Table) -> list[Claim]:
 
 
 def _slopes(well: Table, depth: float) -> list[Claim]:
-    """Return the claims on dependence on temperature of one well."""
+    """Return the claims on the temperature dependence of adsorption in one well."""
     slope = fit_polynomial(1.0 / well.temperature, well.log_ratio)
     planck = planck_constant(1.0, well.mass, well.temperature) * well.length
     power = fit_power_law(well.temperature, planck)
@@ -77,9 +78,9 @@ def _slopes(well: Table, depth: float) -> list[Claim]:
 
 
 def _layer(layers: Table) -> list[Claim]:
-    """Return the claims on coverages by the pressure of the gas.
+    """Return the claims on the coverage of layers as a function of the gas pressure.
 
-    A further claim states that its activity does not determine the coverage where the coverage is low.
+    A further claim states that the activity of the gas alone does not determine a low coverage.
     """
     if not layers:
         return []

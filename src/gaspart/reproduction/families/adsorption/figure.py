@@ -1,4 +1,4 @@
-"""Figure of adsorbing walls: wells, a hard layer, and the source's sticky wall."""
+"""Figure of adsorption: wide wells, a layer of hard particles, and a sticky wall."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from gaspart.theory.adsorption import (
 
 
 def adsorption(dataset: xr.Dataset) -> Figure:
-    """Draw ratio and prefactor of ideal gases, isotherms of layer and wall, speeds of desorption."""
+    """Draw ratio and prefactor of ideal gases, isotherms, and speeds of desorbed particles."""
     figure, axes = style.new((2.2, 1.1), (1.7,), (2.0,), (1.4,), (1.9,))
     walls = Table(dataset, "point")
     ideal, layer, sticky = (walls[walls.kind == kind] for kind in KINDS)
@@ -35,7 +35,7 @@ def adsorption(dataset: xr.Dataset) -> Figure:
 
 
 def _ratios(top: Axes, bottom: Axes, wells: Table) -> None:
-    """Draw adsorbed per free particles against 1 / kT, and the deviation from the exact ratio."""
+    """Draw the ratio of adsorbed to free particles against 1 / kT, and its relative deviation."""
     style.level(bottom, 0.0)
     inverse = np.linspace(0.0, 1.05 / wells.temperature.min(), 50)
     for kind, (depth, width, well) in enumerate(wells.by("depth", "width")):
@@ -54,7 +54,7 @@ def _ratios(top: Axes, bottom: Axes, wells: Table) -> None:
 
 
 def _lengths(axis: Axes, wells: Table) -> None:
-    """Draw the length in Langmuir's formula, in widths of the well, against temperature."""
+    """Draw the length in Langmuir's formula, divided by the width of the well, against temperature."""
     temperatures = np.geomspace(0.8 * wells.temperature.min(), 1.25 * wells.temperature.max(), 50)
     axis.plot(temperatures, temperatures**-0.5, color=style.DATA, ls=":", label="thermal wavelength")
     axis.axhline(1.0, color=style.REFERENCE, label="width of the well")
@@ -95,7 +95,7 @@ def _sticky_coverage(axis: Axes, walls: Table) -> None:
 
 
 def _leaving(axis: Axes, wells: Table, walls: Table) -> None:
-    """Draw normal speeds of the particles that leave a well, and a sticky wall."""
+    """Draw the normal speeds of particles that leave a well or a sticky wall."""
     line = np.linspace(0.0, walls.speed[-1], 200)
     axis.plot(line, flux_density(line), color=style.REFERENCE, label=r"$v\,e^{-v^2/2}$")
     dense = walls[np.argmax(walls.gas_density.value)]

@@ -1,7 +1,8 @@
 """Adsorption on a wall: the amount, the coverage, and the speeds of desorption.
 
-The wall is the face x_low, a well or a sticky one; opposite is a wall at the temperature. Runs are cut into
-`blocks` of each replica, which are assumed independent; errors are the jackknife's over them.
+The adsorbing wall is the face x_low; it has a potential well or is sticky. The opposite face is a thermal
+wall. Each replica is cut into `blocks`, which are assumed independent. Errors are jackknife errors over these
+blocks.
 """
 
 from __future__ import annotations
@@ -31,17 +32,18 @@ from gaspart.theory.geometry import particle_volume
 from gaspart.theory.state import compressibility_factor
 from gaspart.theory.tables import excess_chemical_potential, packing_fraction_at
 
-_REACH = 4.0  # of the histogram of speeds, in units of sqrt(kT/m)
+_REACH = 4.0  # bins of the histogram of speeds, in units of sqrt(kT/m)
 
 
 @dataclass(frozen=True)
 class Holder:
-    """Adsorbing wall, and the gas next to it; lengths in the scene's units.
+    """Adsorbing wall, and the gas next to it; lengths are in the scene's units.
 
-    kind : "ideal" (a gas dilute also in the well), "layer" (a well narrower than a particle) or "sticky".
-    depth, width : of the well, 0 without a well.
-    momentum : momentum below which particles stick, or 0.
-    outside : length along x that centres of the gas can reach.
+    kind : "ideal" (the gas is dilute even in the well), "layer" (the well is narrower than a particle) or
+    "sticky".
+    depth, width : depth and width of the well; 0 without a well.
+    momentum : momentum below which particles stick; 0 if they do not stick.
+    outside : length along x that is accessible to the centres of gas particles.
     """
 
     kind: str
@@ -56,7 +58,7 @@ class Holder:
 
     @classmethod
     def of(cls, point: Point) -> Holder:
-        """Return the wall of a point of one species in three dimensions.
+        """Return the adsorbing wall of a point with one species in three dimensions.
 
         The gas is between x_low and a thermal x_high.
         """
@@ -82,10 +84,10 @@ class Holder:
         )
 
     def holds(self, height: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-        """Return True for particles in the well, or stuck.
+        """Return True for particles in the well, or stuck to the wall.
 
-        Only stuck particles have no velocity along x. The heights are of centres above the lowest position,
-        in any shape, and the velocities along x have the same shape.
+        Only stuck particles have zero velocity along x. Heights are measured from particle centres to the
+        lowest position. Heights and velocities along x have the same, arbitrary shape.
         """
         return height < self.width if self.kind != "sticky" else velocity == 0.0
 
@@ -94,29 +96,29 @@ class Holder:
         return count * particle_volume(2, 2.0 * self.radius) / self.area
 
     def gas_density(self, count: np.ndarray) -> np.ndarray:
-        """Compute the number density of `count` particles at least a diameter from walls and well."""
+        """Compute the density of `count` particles, at least a diameter from walls and well."""
         return count / ((self.outside - 4.0 * self.radius) * self.area)
 
     def activity(self, density: float | np.ndarray) -> float | np.ndarray:
-        """Compute the pressure of the gas in k_B T, as the coverage of an ideal layer.
+        """Compute the coverage of a layer of particles without interaction, at the pressure of the gas.
 
-        Its particles do not interact: beta P w e^{depth/kT} pi sigma^2 / 4, a packing fraction (0 without a
-        well).
+        It is beta P w e^{depth/kT} pi sigma^2 / 4, a packing fraction; 0 without a well.
         """
         eta = density * particle_volume(3, 2.0 * self.radius)
         pressure = density * compressibility_factor(eta, 3)
         return pressure * self._hold
 
     def ideal_ratio(self, held: np.ndarray, others: np.ndarray) -> np.ndarray:
-        """Compute the ratio of particles in the well to the others, for an ideal gas instead."""
+        """Compute the ideal-gas ratio of the particles in the well to all other particles."""
         densities = held / (self.width * self.area), others / (self.outside * self.area)
         excess = excess_in_well(*densities, 2.0 * self.radius, self.width, self.outside)
         return held / others * np.exp(-excess)
 
     def filling(self, held: float, density: float, others: float) -> float:
-        """Compute the coverage of a layer relative to hard discs in equilibrium with a gas.
+        """Compute the coverage of a layer divided by the coverage of hard discs in equilibrium.
 
-        The layer has `held` particles; the gas has this density and `others` particles.
+        The layer has `held` particles. The gas in equilibrium with the discs has the given density and
+        `others` particles.
         """
         diameter, coverage = 2.0 * self.radius, float(self.coverage(held))
         width = self.width / diameter
@@ -129,9 +131,10 @@ class Holder:
         return self.width * np.exp(self.depth / self.temperature) * particle_volume(2, 2.0 * self.radius)
 
     def fugacity(self, density: float | np.ndarray) -> float | np.ndarray:
-        """Compute the `activity` with the gas's activity in place of its pressure.
+        """Compute `activity` with the activity of the gas instead of its pressure.
 
-        It is rho exp(mu_excess / kT): the result if the layer felt nothing of the gas in front of it.
+        It is rho exp(mu_excess / kT). This would be exact if the gas in front of the layer did not affect the
+        layer.
         """
         eta = density * particle_volume(3, 2.0 * self.radius)
         return density * np.exp(excess_chemical_potential(eta, 3)) * self._hold
@@ -140,20 +143,23 @@ class Holder:
 def adsorption(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure adsorption on a wall, by point.
 
-    The settings are `blocks` of each replica, `layer_blocks` where the wall holds a layer; `near`, the
-    distance from the edge of the well, or from where particles stick, within which the velocities of leaving
-    particles are read; `bins` of their speeds.
+    The settings are: `blocks`, the number of blocks of each replica; `layer_blocks`, this number for a wall
+    with a layer; `near`, a distance from the edge of the well or from the sticky wall; and `bins`, the number
+    of bins of speeds. The velocities of leaving particles are read within the distance `near`.
 
-    Dimensions point, bin. Of every point: kind, temperature, depth, width, momentum, mass and outside, as in
-    `Holder`; with _error: held, the mean number of held particles; ratio, its ratio to the others; coverage,
-    the fraction of the wall's area that they cover; gas_density far from both walls; flux (bin), the density
-    of the normal speeds of particles that leave, in units of sqrt(kT/m), and slow_share, the fraction of
-    speeds below `slow_speed`, the sticky wall's limit (1 for wells; NaN both for layers). Of wide wells,
-    whose gas is ideal but for what spheres close to each other: log_ratio, ln of the ideal gas's ratio, and
-    length, which takes the place of the thermal wavelength in it. Of layers: activity, beta P w e^(depth/kT)
-    pi sigma^2/4, and filling, the coverage divided by the coverage of hard discs in equilibrium with the gas
-    (see `theory.adsorption.layer_activity`); filling_by_activity, the same with the gas's activity alone in
-    the place of its pressure. `_freedom` are the degrees of freedom of the errors.
+    The dimensions of the result are point and bin. Every point has kind, temperature, depth, width, momentum,
+    mass and outside, as in `Holder`. The following variables have errors, with the suffix _error: `held`, the
+    mean number of held particles; `ratio`, `held` divided by the number of other particles; `coverage`, the
+    fraction of the wall's area that held particles cover; `gas_density`, far from both walls; `flux` (bin),
+    the probability density of the normal speeds of leaving particles, in units of sqrt(kT/m); and
+    `slow_share`, the fraction of speeds below `slow_speed`. The speed `slow_speed` is the limit of the sticky
+    wall, and 1 for wells. `flux` and `slow_share` are NaN for layers. The gas at wide wells is ideal except
+    for the volume that spheres exclude. Wide wells have `log_ratio`, ln of the ideal-gas ratio, and `length`,
+    which replaces the thermal wavelength in this ratio. Layers have `activity`, beta P w e^(depth/kT) pi
+    sigma^2/4; `filling`, the coverage divided by the coverage of hard discs in equilibrium with the gas (see
+    `theory.adsorption.layer_activity`); and `filling_by_activity`, the same ratio with the activity of the
+    gas instead of its pressure. Variables with the suffix `_freedom` are the degrees of freedom of the
+    errors.
     """
     dataset = table("point", points, _measure_point, settings, inner=("bin",))
     return dataset.assign_coords(speed=("bin", _speeds(settings).middles[0])).set_coords("experiment")
@@ -179,7 +185,7 @@ def _measure_point(point: Point, settings: dict) -> dict[str, Any]:
     estimates = _amounts(holder, held, free, far) | {"log_ratio": absent, "length": absent}
     if holder.kind == "ideal":
         estimates |= _well(holder, held, free)
-    if layer:  # hardly any particle leaves it
+    if layer:  # hardly any particle leaves the layer
         estimates |= {"flux": (np.full(bins, np.nan),) * 2, "slow_share": absent}
         estimates |= _isotherm(holder, held, free, far)
     else:
@@ -195,9 +201,9 @@ def _measure_point(point: Point, settings: dict) -> dict[str, Any]:
 
 
 def _amounts(holder: Holder, held: np.ndarray, free: np.ndarray, far: np.ndarray) -> dict[str, tuple]:
-    """Compute (value, error) of the adsorbed amount, and of the density of the gas, by name.
+    """Compute (value, error) of the adsorbed amount and of the gas density, by name.
 
-    The amounts are the number, its ratio to the free particles and the coverage.
+    The amounts are the number of held particles, its ratio to the number of free particles, and the coverage.
     """
     return {
         "held": jackknife(lambda inside: inside, held),
@@ -208,7 +214,7 @@ def _amounts(holder: Holder, held: np.ndarray, free: np.ndarray, far: np.ndarray
 
 
 def _well(holder: Holder, held: np.ndarray, free: np.ndarray) -> dict[str, tuple]:
-    """Compute (value, error) of the ratio of an ideal gas, and of the length that follows."""
+    """Compute (value, error) of the ideal-gas ratio, and of the length derived from it."""
     depth = holder.depth / holder.temperature
 
     def length(inside: np.ndarray, others: np.ndarray) -> np.ndarray:
@@ -221,7 +227,7 @@ def _well(holder: Holder, held: np.ndarray, free: np.ndarray) -> dict[str, tuple
 
 
 def _desorption(slowly: np.ndarray, flux: np.ndarray, width: float) -> dict[str, tuple]:
-    """Compute (value, error) of the density of normal speeds in bins, and of slow ones' fraction."""
+    """Compute (value, error) of the density of normal speeds, and of the slow fraction."""
     return {
         "flux": jackknife(lambda share: share / (share.sum() * width), flux),
         "slow_share": jackknife(lambda some, share: some / share.sum(), slowly, flux),
@@ -254,16 +260,17 @@ def _isotherm(holder: Holder, held: np.ndarray, free: np.ndarray, far: np.ndarra
 def counts_of(holder: Holder, height: np.ndarray, velocity: np.ndarray, settings: dict, slow: float) -> tuple:
     """Average counts of particles and fluxes over the frames of one block.
 
-    The counts are of held particles, of the others, and of the gas a diameter and more from both walls (and
-    from the well); the fluxes are of particles that leave near the wall, below the speed `slow`, and (bins,)
-    by speed. `height` (T, N) are heights of centres above the lowest position, `velocity` (T, N) is along x.
+    The counts are for three groups: held particles, other particles, and gas particles at least a diameter
+    from both walls (and from the well). The fluxes are for particles that leave the wall and are near it:
+    particles with speeds below `slow`, and particles in each bin of speed (bins,). `height` (T, N) are
+    heights of centres above the lowest position. `velocity` (T, N) is along x.
     """
     held = holder.holds(height, velocity)
     above = height - holder.width
     far = (above > 2.0 * holder.radius) & (above < holder.outside - 2.0 * holder.radius)
     leaving = ~held & (above < settings["near"]) & (velocity > 0.0)
     speed = velocity[leaving] / np.sqrt(holder.temperature / holder.mass)
-    # a particle is near for a time proportional to 1 / speed
+    # a particle stays near for a time proportional to 1 / speed
     grid = _speeds(settings)
     flux = grid.sums(grid.cells(speed[:, None]), speed)
     frames = len(height)

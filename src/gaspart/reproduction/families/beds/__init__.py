@@ -1,4 +1,4 @@
-"""Settling, discharge and vibrated beds."""
+"""Figures on settling, discharge and vibrated beds of grains."""
 
 from gaspart.keys import count, positive
 

@@ -17,7 +17,7 @@ BEVERLOO = "[Beverloo 1961], in two dimensions: free fall from an arch as wide a
 def settling(dataset: xr.Dataset) -> list[Claim]:
     """Return the claims on rest, contacts of a pile, and the law of discharge.
 
-    Rest is rest, and a pile has as many contacts as its equilibrium needs.
+    All discs come to rest. A pile has as many contacts as mechanical equilibrium requires.
     """
     return [*_piles(Table(dataset, "pile")), *_flows(Table(dataset, "orifice"))]
 
@@ -101,9 +101,10 @@ def _flows(flows: Table) -> list[Claim]:
 
 
 def _log_head_ratio(flows: Table) -> Estimate:
-    """Average over all orifices, whose errors have one scatter in common.
+    """Average ln(head_ratio) over all orifices.
 
-    So they have its degrees of freedom in common.
+    The errors of all orifices are computed from one common scatter. The mean has the degrees of freedom of
+    this scatter.
     """
     ratio = flows.head_ratio
     mean = combine(np.log(ratio.value), ratio.error / ratio.value)
@@ -111,7 +112,7 @@ def _log_head_ratio(flows: Table) -> Estimate:
 
 
 WAVEFORMS = {0: "sawtooth", 1: "sine"}
-"""Names of the motions of the floor."""
+"""Names of the waveforms of the floor's motion."""
 BALANCE = (
     "energy balance of an isothermal, nearly elastic bed, to first order in the density "
     "(gaspart.theory.vibrated), losses at the floor included; the form is that of [Kumaran 1998] and of "
@@ -120,27 +121,27 @@ BALANCE = (
 
 
 def small_parameter(beds: Table) -> np.ndarray:
-    """Compute the power that each bed would lose over its weight and the speed sqrt(T)."""
+    """Compute the power that each bed would lose, divided by its weight and by sqrt(T)."""
     return np.asarray(theory.bed_loss(beds.layers, beds.restitution, beds.packing_fraction))
 
 
 def expected_temperature(beds: Table) -> np.ndarray:
-    """Compute the temperature of each bed where that parameter is small."""
+    """Compute the temperature of each bed in the limit of small `small_parameter`."""
     of = beds.layers, beds.restitution, beds.packing_fraction
     sawtooth, sine = theory.sawtooth_temperature(*of), theory.sine_temperature(*of)
     return np.where(beds.sine == 1, sine, sawtooth) * beds.speed**2
 
 
 def extrapolation(beds: Table) -> Fit:
-    """Fit the temperature over theory's by a polynomial of second order in the small parameter."""
+    """Fit measured over theoretical temperature by a second-order polynomial in `small_parameter`."""
     ratio = beds.temperature / expected_temperature(beds)
     return fit_polynomial(small_parameter(beds), ratio, powers=(0, 1, 2))
 
 
 def vibrated_bed(dataset: xr.Dataset) -> list[Claim]:
-    """Return the claims on given and lost energy, and on temperature and height of balance.
+    """Return the claims on the energy balance, the temperature and the height of vibrated beds.
 
-    The floor gives energy, contacts take it.
+    The floor supplies the energy that is lost in collisions.
     """
     table, claims = Table(dataset, "bed"), []
     for kind, name in WAVEFORMS.items():

@@ -21,7 +21,7 @@ TIME = r"time $t\,\sqrt{g/d}$"
 
 
 def settling(dataset: xr.Dataset) -> Figure:
-    """Draw energy and contacts of piles, discs left in the hopper, and the rate of flow."""
+    """Draw energy and contacts of piles, discs that remain in the hopper, and flow rates."""
     figure, axes = style.new((2.4,), (2.4,), (2.4,), (2.4,))
     piles, flows = Table(dataset, "pile"), Table(dataset, "orifice")
     _piles(axes[0], axes[1], piles)
@@ -32,7 +32,7 @@ def settling(dataset: xr.Dataset) -> Figure:
 
 
 def _piles(energies: Axes, contacts: Axes, piles: Table) -> None:
-    """Draw the first pile of each duration of contacts; a cross where all comes to rest."""
+    """Draw the first pile of each contact duration; a cross marks the time of rest."""
     style.level(contacts, 2.0)
     for kind, (duration, alike) in enumerate(piles.by("duration")):
         pile, colour = alike[0], style.COLOURS[kind]
@@ -59,7 +59,7 @@ def _discs_left(axis: Axes, flows: Table) -> None:
 
 
 def _rates(axis: Axes, flows: Table) -> None:
-    """Draw the rate against the width less the fitted offset.
+    """Draw the flow rate against the width of the orifice minus the fitted offset.
 
     Beverloo's law is a straight line.
     """
@@ -74,7 +74,7 @@ def _rates(axis: Axes, flows: Table) -> None:
 
 
 def vibrated_bed(dataset: xr.Dataset) -> Figure:
-    """Draw temperature over theory's, with fits, and density of the most elastic beds."""
+    """Draw temperature divided by theory, with fits, and density of the most elastic beds."""
     figure, (upper, lower) = style.new((2.4,), (2.4,))
     table = Table(dataset, "bed")
     style.level(upper, 1.0)

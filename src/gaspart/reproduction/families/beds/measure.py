@@ -27,22 +27,30 @@ from gaspart.scene.faces import Vibrating
 from gaspart.scene.scene import Scene
 from gaspart.theory.granular import DISCHARGE_EXPONENT
 
-_FILLED = 0.84  # packing fraction of a filling of discs of two sizes (random close packing)
+_FILLED = 0.84  # packing fraction of randomly packed discs of two sizes (random close packing)
 
 
 def settling(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure piles and flows through the orifice between two walls.
 
-    Piles are points without interior walls, flows the others.
+    Points without interior walls are piles; the other points are flows. The settings are `gap`, `start` and
+    `head` (see FIGURES).
 
-    The settings are `gap`, `start`, `head` (see FIGURES). Returns over `pile` and `frame` time, kinetic
-    (energy of a disc) and contacts (per disc, with walls); over `pile` duration (of contacts), rest (the time
-    from which on nothing moves, NaN without rest), contacts at the end (final_contacts), the kinetic energy
-    at the end divided by `_lasting` (residual), the largest displacement after rest (0 without), and the
-    largest rise of the energy from frame to frame over its initial value; over `orifice` its width, the rate
-    of flow with its error, the ratio of the rates in the first and the second half of it (head_ratio), and
-    the ratio of a liquid (liquid_ratio); over `orifice` and `flow_frame` the discs `left` at `flow_time`; and
-    the parameters of `_fit`.
+    Variables of the result:
+
+    time, kinetic, contacts : time; kinetic energy and contacts (also with walls) per disc (`pile`, `frame`)
+    duration : duration of contacts, over `pile`
+    rest : time after which nothing moves, over `pile`; NaN if discs never come to rest
+    final_contacts : contacts per disc at the end
+    residual : kinetic energy at the end divided by `_lasting`
+    displacement : largest displacement after `rest`; 0 without rest
+    rise : largest rise of the energy between frames, divided by its initial value
+    width, rate : width of the orifice, and flow rate with its error, over `orifice`
+    head_ratio : flow rate of the first half of the discs divided by the rate of the second half
+    liquid_ratio : `head_ratio` of a liquid
+    left, flow_time : discs above the orifice, and time, over `orifice` and `flow_frame`
+
+    The result also has the parameters of `_fit`.
     """
     hoppers = [point for point in points if point.scene.walls]
     floors = [point for point in points if not point.scene.walls]
@@ -56,14 +64,18 @@ def _diameter(radii: np.ndarray) -> float:
 
 
 def _pile(run: Run, gap: float) -> dict:
-    """Measure one pile, gravity along -y; see `settling`."""
+    """Measure one pile; see `settling`.
+
+    Gravity is along -y.
+    """
     scene, time, positions = run.scene, run.time, run.positions
-    radii = run.data["radius"].values.astype(float)  # in single precision, as the positions
+    radii = run.data["radius"].values.astype(float)  # in single precision, like the positions
     diameter, strength = _diameter(radii), math.hypot(*(scene.gravity or ()))
     mass = scene.species[0].mass
     kinetic = 0.5 * mass * (run.velocities**2).sum(axis=(1, 2))
     energy = kinetic - mass * positions.sum(axis=1) @ np.array(scene.gravity)
-    still = np.flatnonzero(kinetic > 0.0)[-1] + 1  # the first frame of those that are all at rest
+    # the first frame at rest whose later frames are all at rest
+    still = np.flatnonzero(kinetic > 0.0)[-1] + 1
     rests = still < len(time)
     contacts = np.array([count_contacts(scene, frame, radii, gap * diameter) for frame in positions])
     unit = math.sqrt(diameter / strength)
@@ -81,13 +93,12 @@ def _pile(run: Run, gap: float) -> dict:
 
 
 def _lasting(scene: Scene, positions: np.ndarray) -> float:
-    """Compute the mean kinetic energy of discs of speed g h t_c at depths h.
+    """Compute the mean kinetic energy of discs with speed g h t_c at depth h.
 
-    The depths are below the surface of a pile.
-
-    Slower discs meet their neighbours within t_c, and lose no energy. A disc at this depth carries a weight
-    of h discs. Neighbours with a gap s that move with v give it the force m v^2 / s, and meet after s / v = v
-    / (g h).
+    The depth is measured from the surface of the pile, and t_c is the duration of a contact. Two neighbours
+    with gap s and relative speed v collide after the time s / v. At depth h a disc carries the weight of h
+    discs. For the force m v^2 / s between neighbours to carry this weight, s / v = v / (g h). Slower discs
+    collide again within t_c, and lose no energy.
     """
     height = 2.0 * positions[:, 1].mean()
     speed = math.hypot(*(scene.gravity or ())) * height * scene.contact_duration
@@ -95,9 +106,10 @@ def _lasting(scene: Scene, positions: np.ndarray) -> float:
 
 
 def count_contacts(scene: Scene, positions: np.ndarray, radii: np.ndarray, gap: float) -> int:
-    """Count pairs of discs, and discs and faces, that are less than `gap` apart.
+    """Count the contacts between discs, and between discs and faces.
 
-    Positions (N, 2), radii (N,) and gap are in the scene's units.
+    Two surfaces are in contact if their gap is below `gap`. Positions (N, 2), radii (N,) and gap are in the
+    scene's units.
     """
     apart = np.hypot(*(positions[:, None] - positions).transpose(2, 0, 1)) - radii[:, None] - radii
     low, high = positions - radii[:, None], positions + radii[:, None] - np.array(scene.container.lengths)
@@ -112,8 +124,8 @@ class Flow:
     count : number of discs whose passage is timed.
     rates : (R,), rates of flow.
     ratios : (R,), rate in the first half of the discs divided by the rate in the second half.
-    liquid : this ratio for a liquid, sqrt of the head.
-    time, remaining : (frames,), times and discs above the orifice, of the first replica.
+    liquid : this ratio for a liquid, whose rate is proportional to the square root of its height.
+    time, remaining : (frames,), times and number of discs above the orifice, in the first replica.
     """
 
     width: float
@@ -128,12 +140,12 @@ class Flow:
 def _flow(point: Point, settings: dict) -> Flow:
     """Measure the flow of a point.
 
-    Raises ValueError if fewer discs leave the hopper than are to be timed.
+    Raises ValueError if too few discs leave the hopper.
     """
     scene = point.scene
     _, left_end, right_end, _ = sorted(end for wall in scene.walls for end in wall.corners.values())
     height, width = left_end[1], right_end[0] - left_end[0]
-    filled = _FILLED * scene.container.lengths[0]  # area of discs in a unit of height
+    filled = _FILLED * scene.container.lengths[0]  # area of discs per unit of height
     intervals, seen = [], []
     for run in runs(point, first=0):
         time, radii = run.time, run.data["radius"].values.astype(float)
@@ -185,10 +197,10 @@ def _flows(flows: list[Flow]) -> xr.Dataset:
 
 
 def _mean_logarithms(flows: list[Flow], replicas: list[np.ndarray]) -> Estimate:
-    """Average the logarithms of the values (R,) of each flow, (orifices,).
+    """Average the logarithms of the values (R,) of each flow; return (orifices,).
 
-    Their variance is taken to be inversely proportional to the number of discs, by one factor for all
-    orifices, which is measured by all replicas.
+    The variance of a logarithm is assumed to be inversely proportional to the number of discs. All orifices
+    have the same constant of proportionality. It is measured from all replicas.
     """
     logarithms = [np.log(values) for values in replicas]
     freedom = sum(len(values) - 1 for values in logarithms)
@@ -209,9 +221,9 @@ def _exponential(logarithm: Estimate) -> Estimate:
 def _fit(width: np.ndarray, rate: Estimate) -> dict[str, tuple]:
     """Fit rate = amplitude (width - offset)^exponent, and return the variables.
 
-    The exponent is a parameter, or that in Beverloo's law (beverloo_amplitude, beverloo_offset and the
-    chi_square of this fit). `width` has the shape (orifices,), `rate` (orifices,) are logarithms. The offset
-    is not negative.
+    In a first fit the exponent is free. In a second fit it has the value of Beverloo's law
+    (`beverloo_amplitude`, `beverloo_offset` and `chi_square`). `width` has the shape (orifices,); `rate`
+    (orifices,) are logarithms. The offset is not negative.
     """
 
     def law(
@@ -239,21 +251,26 @@ def _fit(width: np.ndarray, rate: Estimate) -> dict[str, tuple]:
     return {name: ((), value) for name, value in variables.items()}
 
 
-_FLOOR = 2  # the number of the face y_low
+_FLOOR = 2  # index of the face y_low
 
 
 def vibrated_bed(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure temperature, energy flows and density of vibrated beds of one kind of discs.
 
-    The discs have the mass 1.
+    The discs have mass 1. The settings are `bins` of the density profile, and `highest`, the height of the
+    profile in units of T/g.
 
-    The settings are `bins` of the density profile, and `highest`, the height up to which it reaches, over
-    T/g. Returns over `bed`: sine, 1 if the floor's motion is a sine, 0 for a sawtooth; restitution; layers,
-    (N - 1) d / width; packing_fraction that an ideal gas of the measured temperature has at the floor; speed,
-    of the sawtooth, or the rms speed of the sine; temperature, of both components; given and lost, the
-    energies per time that the floor gives and contacts take, over the weight; height, the mean height above
-    the floor's lowest place times g over the vertical temperature; and over (bed, bin) density, the fraction
-    of discs in a bin over its width, in units of T/g, at `place`. All with errors from replicas.
+    Variables over `bed`, with errors from replicas:
+
+    sine : 1 if the floor moves as a sine, 0 for a sawtooth
+    restitution : coefficient of restitution
+    layers : (N - 1) d / width
+    packing_fraction : packing fraction at the floor of an ideal gas with the measured temperature
+    speed : speed of the sawtooth, or rms speed of the sine
+    temperature : temperature, averaged over both components
+    given, lost : power supplied by the floor, and power lost in collisions, divided by the weight
+    height : mean height above the floor's lowest position, times g, divided by the vertical temperature
+    density : fraction of discs per bin width, in units of T/g, over (bed, bin), at `place`
     """
     units = {"temperature": "energy", **dict.fromkeys(("speed", "given", "lost"), "length / time")}
     beds = table("bed", points, _measure_bed, settings, inner=("bin",), units=units)

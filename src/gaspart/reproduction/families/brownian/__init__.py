@@ -1,4 +1,4 @@
-"""A large particle in a gas."""
+"""Figures on Brownian motion: a large particle in a gas."""
 
 from gaspart.keys import count
 

@@ -1,4 +1,4 @@
-"""Claims about a large particle in a gas."""
+"""Claims about Brownian motion of a large particle."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ STATISTICAL = "the statistical error of the direct simulation"
 
 
 def _name(row: Row) -> str:
-    """Return the particle that a row describes."""
+    """Return the name of the particle in a row."""
     gas = ", gas of equal speeds" if row.equal_speeds else ""
     steps = "time-stepped, " if row.stepped else ""
     return f"{steps}mass {row.mass / row.gas_mass:g} times a gas particle's{gas}"
@@ -33,7 +33,7 @@ def _source(row: Row) -> str:
 
 
 def brownian_paths(ds: xr.Dataset) -> list[Claim]:
-    """Return the claims on distances from the start at the end of the paths."""
+    """Return the claims on the distances from the start at the end of the paths."""
     return [
         Claim.chi_square(
             claim=f"ends of {row.replicas} paths over their variance from rest, {_name(row)}",
@@ -49,8 +49,8 @@ def brownian_paths(ds: xr.Dataset) -> list[Claim]:
 def brownian_msd(ds: xr.Dataset) -> list[Claim]:
     """Return the claims on equipartition, friction and diffusion of every point.
 
-    They include the mean free path that theory requires, and the ratio of both engines where both have run a
-    scene.
+    Some claims state that the mean free path suffices for the theory. If both engines simulated a scene,
+    further claims compare their results.
     """
     points = Table(ds, "point")
     claims = [claim for row in points for claim in _coefficients(row)]
@@ -62,7 +62,10 @@ def brownian_msd(ds: xr.Dataset) -> list[Claim]:
 
 
 def _both_engines(steps: Row, events: Row) -> list[Claim]:
-    """Return the claims on the ratio of time steps to events, from independent runs."""
+    """Return the claims on ratios of the time-stepped to the event-driven engine.
+
+    The runs are independent.
+    """
     return [
         Claim(
             claim=f"{text} by time steps over that by events, {_name(events)}",
@@ -84,8 +87,8 @@ def _both_engines(steps: Row, events: Row) -> list[Claim]:
 def _alternative(row: Row, key: str) -> float | None:
     """Return the value of a competing theory.
 
-    For a gas of equal speeds the competing theory states that it is in equilibrium; for a gas in equilibrium,
-    that the particle's own radius counts instead of the distance of contact.
+    If the gas has equal speeds, the competing theory assumes that it is in equilibrium. If the gas is in
+    equilibrium, the competing theory uses the radius of the large particle instead of the contact distance.
     """
     if row.equal_speeds:
         return 1.0 if key == "equipartition" else float(row[key])
@@ -111,7 +114,7 @@ def _coefficients(row: Row) -> list[Claim]:
                 source=_source(row),
                 allowance_source=STATISTICAL,
                 alternative=_alternative(row, key),
-                follows=key == "diffusion",  # nearly energy over friction
+                follows=key == "diffusion",  # nearly energy divided by friction
                 fails_if=FAILS_IF[key],
             )
         )

@@ -1,4 +1,4 @@
-"""A large sphere in a gas: its paths, its mean-squared displacement, its velocity autocorrelation."""
+"""Figures of a large sphere in a gas: paths, mean-squared displacement, velocity autocorrelation."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from gaspart.rendering import style
 from gaspart.reproduction.table import Row, Table
 
 LONGEST = 3.2
-"""Friction times up to which the velocity autocorrelation is drawn: noise dominates beyond."""
+"""Maximum time at which the velocity autocorrelation is drawn, in friction times; noise dominates later."""
 MOST = 10
-"""Approximate number of points that are drawn for each sphere."""
+"""Approximate number of points per sphere in the figure."""
 
 
 def brownian_paths(ds: xr.Dataset) -> Figure:
-    """Draw paths from above, a panel for each point; in the middle, the sphere to scale."""
+    """Draw paths from above, a panel for each point, with the sphere to scale."""
     from matplotlib.patches import Circle
 
     spheres = Table(ds, "point")
@@ -44,8 +44,8 @@ def brownian_paths(ds: xr.Dataset) -> Figure:
 def brownian_msd(ds: xr.Dataset) -> Figure:
     """Draw mean-squared displacement and velocity autocorrelation, with the Langevin equation.
 
-    Below are the deviations from the Langevin equation, with the expected deviations of a light particle as
-    lines.
+    Lower panels show the deviations from the Langevin equation. Lines are the expected deviations of a light
+    particle.
     """
     figure, (far, ratio, memory, difference) = style.new((2.4, 1.1), (2.4, 1.1))
     spheres = Table(ds, "point")
@@ -74,12 +74,12 @@ def brownian_msd(ds: xr.Dataset) -> Figure:
 
 
 def _langevin(time: np.ndarray) -> np.ndarray:
-    """Compute the mean-squared displacement in reduced units."""
+    """Compute the mean-squared displacement of the Langevin equation in reduced units."""
     return np.asarray(theory.langevin_msd(time, 1.0 / 6.0, 1.0))
 
 
 def _displacement(axis: Axes, residual: Axes, sphere: Row, label: str, look: dict) -> None:
-    """Draw the mean-squared displacement of one sphere, and its ratio to the Langevin equation."""
+    """Draw the mean-squared displacement of a sphere, and its ratio to the Langevin equation."""
     time = sphere.time[np.isfinite(sphere.time)]
     frames = np.unique(np.round(np.geomspace(1, time.size - 1, 16)).astype(int))
     msd = sphere.msd[frames]
@@ -91,7 +91,7 @@ def _displacement(axis: Axes, residual: Axes, sphere: Row, label: str, look: dic
 
 
 def _memory(axis: Axes, residual: Axes, sphere: Row, label: str, look: dict) -> None:
-    """Draw the velocity autocorrelation of one sphere, and its deviation from Langevin's."""
+    """Draw the velocity autocorrelation of a sphere, and its deviation from the Langevin equation."""
     early = np.flatnonzero(sphere.time < LONGEST)
     if sphere.is_light:
         expected = sphere.expected_vacf[early] - np.exp(-sphere.time[early])

@@ -1,9 +1,9 @@
-"""A large particle among small ones: its paths, its mean-squared displacement, its friction.
+"""Brownian motion of a large particle in a gas: paths, mean-squared displacement, friction.
 
-The scene's first particle is the tracked one; its gas is the first species. Theory's time is the time of the
-friction: 1 / `friction`, from the actual gas density, outside the large particle. A heavy particle is
-expected to follow Langevin's equation, a particle that is not much heavier than a gas particle the linear
-Boltzmann equation.
+The first particle of the scene is tracked. The gas is the first species. The unit of time in theory is the
+friction time 1 / `friction`, computed from the actual gas density outside the large particle. A heavy
+particle is compared with Langevin's equation. A particle not much heavier than a gas particle is compared
+with the linear Boltzmann equation.
 """
 
 from __future__ import annotations
@@ -26,32 +26,33 @@ from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import table
 from gaspart.theory.boltzmann import relaxing_speeds, tagged_paths
 
-# Theory of a large particle's motion, by Langevin's and by the linear Boltzmann equation.
-#
-# The latter is for a light particle.
+# Theory of a large particle's motion: Langevin's equation, and the linear Boltzmann equation for a light
+# particle.
 
 
 HEAVY = 10.0
-"""Mass divided by a gas particle's mass above which Langevin's equation is taken as exact.
+"""Mass ratio (to a gas particle) above which Langevin's equation is taken as exact.
 
-It is exact for a sphere in the limit of a large ratio; the velocity autocorrelation of a particle of equal
-mass decays 0.6 % more slowly up to half a friction time.
+For a sphere, the equation is exact in the limit of a large mass ratio. At equal masses the velocity
+autocorrelation decays 0.6 % more slowly, up to half a friction time.
 """
 GROUPS, MOST = 200, 300
-"""Groups of paths of the linear Boltzmann equation, and the maximum number of paths in each.
+"""Number of groups of paths of the linear Boltzmann equation, and maximum number of paths per group.
 
-Each group has as many paths as the point has replicas, up to MOST: the statistical error of theory is the
-error of the measurement divided by sqrt(200), which is negligible, or the error of 60 000 paths.
+Each group has as many paths as the point has replicas, up to MOST. The statistical error of theory is then
+the error of the measurement divided by sqrt(200), which is negligible. If the point has more replicas than
+MOST, the error is the error of 60 000 paths.
 """
 GAS = 100_000
-"""Gas particles from whose speeds those that hit are drawn."""
+"""Number of gas particles from whose speeds the speeds of hitting particles are drawn."""
 
 
 @dataclass(frozen=True)
 class BrownianMotion:
     """Theory's predictions for a point.
 
-    `share` is the large particle's part of all mass where momentum is conserved (all axes periodic), else 0.
+    `share` is the large particle's mass divided by the total mass. It is 0 if momentum is not conserved, that
+    is, unless all axes are periodic.
     """
 
     mass: float
@@ -71,9 +72,9 @@ class BrownianMotion:
 
 
 def motion_of(point: Point) -> BrownianMotion:
-    """Return the motion of a point's scene of one particle and one species.
+    """Return the Brownian motion in a point's scene of one particle and one species.
 
-    Raises SceneError for others.
+    Raises SceneError for other scenes.
     """
     scene, where = point.scene, f"experiments.{point.experiment}.scene"
     if len(scene.particles) != 1 or len(scene.species) != 1:
@@ -102,14 +103,14 @@ def motion_of(point: Point) -> BrownianMotion:
 
 
 def light_paths(point: Point, motion: BrownianMotion) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """Yield paths of the linear Boltzmann equation from rest, in GROUPS.
+    """Yield groups of paths of the linear Boltzmann equation that start at rest.
 
-    They are sampled as the point's runs: times (T,), displacements and velocities (T, N, 3). A gas of equal
-    speeds relaxes by its own collisions meanwhile.
+    They are sampled like the point's runs: times (T,), displacements and velocities (T, N, 3). A gas of equal
+    speeds relaxes meanwhile, by its own collisions.
     """
     gas, times = point.scene.species[0], point.schedule
     frames = times.equilibration_frames + times.samples
-    # n pi d^2, from the mean free path of Maxwell's gas, 1 / (sqrt(2) n pi d^2)
+    # n pi d^2, from the mean free path 1 / (sqrt(2) n pi d^2) of a gas with Maxwell's distribution
     own = 1.0 / (math.sqrt(2.0) * motion.mean_free_path)
     middle = times.sample_interval * (np.arange(frames) + 0.5)
     if gas.speed is not None:
@@ -128,20 +129,21 @@ def light_paths(point: Point, motion: BrownianMotion) -> Iterator[tuple[np.ndarr
 
 
 LONGEST = 8.0
-"""Friction times up to which curves are taken."""
+"""Length of the measured curves, in friction times."""
 FRICTION_TO, DIFFUSION_AT = 0.5, 5.0
-"""Friction times up to which the velocity autocorrelation gives the friction, from all lags, and at which the
-msd gives the diffusion."""
+"""Friction times. The velocity autocorrelation up to FRICTION_TO gives the friction, from all lags. The
+mean-squared displacement at DIFFUSION_AT gives the diffusion coefficient."""
 NAMES = {
     "equipartition": "equipartition",
     "friction": "measured_friction",
     "diffusion": "measured_diffusion",
 }
-"""Columns of the numbers that are derived from measured paths; `friction` and `diffusion` are theory's."""
+"""Columns of the numbers that are derived from measured paths. The columns `friction` and `diffusion` are
+theory."""
 
 
 def _read_paths(point: Point) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """Yield times (T,) of each replica, displacements and velocities of its first particle (T, 1, 3)."""
+    """Yield times (T,), displacements and velocities (T, 1, 3) of the first particle, by replica."""
     if not point.settings.get("displacements", False):
         raise SceneError(f"experiments.{point.experiment}.displacements", False, "must be true")
     for run in runs(point, first=0):
@@ -152,10 +154,11 @@ def _read_paths(point: Point) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarr
 def brownian_paths(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure the first `paths` paths of each point, and the final displacements of all replicas.
 
-    Lengths are the scene's. `end_chi_square` is computed from the components of all ends, each divided by the
-    variance that is expected from rest. The variance of the Langevin equation has the share of the gas, as in
-    `brownian_msd`, with its drift of mean square (1 - share) share k_B T / M along each axis (its momentum is
-    drawn with the velocities). Dimensions point, path, frame, axis.
+    Lengths are in the scene's units. `end_chi_square` is computed from the components of all final
+    displacements. Each component is divided by the variance that theory predicts for a particle that starts
+    at rest. The variance of the Langevin equation is corrected for the share of the gas, as in
+    `brownian_msd`. It includes the drift, with mean square (1 - share) share k_B T / M along each axis,
+    because the momentum is drawn with the velocities. The dimensions are point, path, frame, axis.
     """
     return table("point", points, _ends, settings["paths"], inner=("path", "frame", "axis"))
 
@@ -175,7 +178,7 @@ def _ends(point: Point, paths: int) -> dict[str, Any]:
 
 
 def _end_variance(point: Point, motion: BrownianMotion, duration: float) -> float:
-    """Compute the expected mean square of a component of the displacement at the end."""
+    """Compute the expected mean square of a component of the final displacement."""
     if motion.is_light:
         return float(np.mean([(moved[-1] ** 2).mean() for _, moved, _ in light_paths(point, motion)]))
     rest = 1.0 - motion.share
@@ -188,19 +191,22 @@ def _end_variance(point: Point, motion: BrownianMotion, duration: float) -> floa
 def brownian_msd(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure the displacement and velocity autocorrelation of the large particle.
 
-    Quantities derived from them are measured too.
+    Numbers derived from these curves are measured too.
 
-    In a periodic container the gas as a whole drifts, and absorbs the momentum that the particle loses: with
-    `share` s and friction g the correlation is (k_B T / M)(1 - s)(exp(-g' t) + s), g' = g / (1 - s). The
-    constant part is subtracted from correlation and msd; what follows is brought to an infinite gas:
-    `equipartition` is M <V^2> / (3 k_B T (1 - s)), `measured_friction` (1 - s) times the decay rate, the
-    slope of ln C until FRICTION_TO, `measured_diffusion` D times the msd at DIFFUSION_AT divided by the msd
-    of the Langevin equation. `equal_speeds` and `stepped` state properties of the gas at the start, and by
-    the time-stepped engine. `expected_...` are the predictions of theory, with the statistical error of its
-    direct simulation, if it is one.
+    In a periodic container the gas as a whole drifts, and absorbs the momentum that the particle loses. Let s
+    be `share` and g the friction. Then the velocity autocorrelation is (k_B T / M)(1 - s)(exp(-g' t) + s),
+    with g' = g / (1 - s). The constant part is subtracted from the autocorrelation and from the mean-squared
+    displacement (msd). The results are converted to an infinite gas:
 
-    Dimensions point, lag: `time` in 1 / g', `vacf` in (1 - s) k_B T / M, `msd` in 6 (1 - s) k_B T / (M g'^2),
-    `expected_vacf` and `expected_msd`. Errors: standard errors over replicas (bootstrap for the numbers).
+    equipartition : M <V^2> / (3 k_B T (1 - s))
+    measured_friction : (1 - s) times the decay rate, which is the slope of ln C until FRICTION_TO
+    measured_diffusion : D times the msd at DIFFUSION_AT, divided by the msd of the Langevin equation
+    equal_speeds, stepped : properties of the gas at the start, and use of the time-stepped engine
+    expected_... : predictions of theory, with a statistical error if they are computed by direct simulation
+
+    Curves over point and lag are `time` in 1 / g', `vacf` in (1 - s) k_B T / M, `msd` in 6 (1 - s) k_B T / (M
+    g'^2), `expected_vacf` and `expected_msd`. Errors are standard errors over replicas. Errors of derived
+    numbers are computed by bootstrap.
     """
     return table("point", points, _statistics, inner=("lag",))
 
@@ -224,7 +230,7 @@ def _statistics(point: Point) -> dict[str, Any]:
 def _reduce_curves(
     point: Point, motion: BrownianMotion, paths: Iterable[tuple[np.ndarray, np.ndarray, np.ndarray]]
 ) -> tuple[dict[str, Any], dict[str, Estimate]]:
-    """Compute the correlations of paths in reduced units, their errors, and derived quantities."""
+    """Compute time correlations in reduced units, their errors, and derived numbers."""
     rest = 1.0 - motion.share
     rate, curves = motion.friction / rest, _curves(point, motion, paths)
     time = rate * curves[0].time
@@ -242,7 +248,7 @@ def _reduce_curves(
     both = np.concatenate([vacf[:, : early.size + 1], msd[:, [late]]], axis=1)
 
     def decay(x: np.ndarray) -> float:
-        """Compute the slope of the line through -ln C / C(0).
+        """Compute the slope of a line through -ln C / C(0).
 
         The line is 0 at the first lag.
         """
@@ -265,7 +271,7 @@ def _reduce_curves(
 def _curves(
     point: Point, motion: BrownianMotion, paths: Iterable[tuple[np.ndarray, np.ndarray, np.ndarray]]
 ) -> list[Curves]:
-    """Time correlations of each of the paths, after equilibration."""
+    """Compute the time correlations of each path, after equilibration."""
     drop = point.schedule.equilibration_frames
     rate, curves = motion.friction / (1.0 - motion.share), []
     for time, moved, velocities in paths:
@@ -276,7 +282,7 @@ def _curves(
 
 
 def _facts(point: Point, motion: BrownianMotion) -> dict[str, Any]:
-    """Return the columns of every row."""
+    """Return the columns that every row has."""
     return {
         "equal_speeds": point.scene.species[0].speed is not None,
         "stepped": point.settings.get("engine") == "step",

@@ -1,4 +1,4 @@
-"""Under gravity."""
+"""Figures on buoyancy under gravity."""
 
 from gaspart.keys import count, names, positive
 

@@ -12,17 +12,19 @@ from gaspart.reproduction.table import Row, Table, each
 THEORY = "scaled-particle theory ([Helfand 1961])"
 
 AFLOAT, LYING = 3.0, 1.8
-"""Expected distances from floor and ceiling, in the source's lengths (a small disc is 1.6), above which its
-discs float and below which they lie there; between them layers of small discs count, unknown to theory."""
+"""Expected distances from floor and ceiling, in the source's unit of length (a small disc has 1.6). A disc of
+the source floats if its distance is above AFLOAT. It lies at the floor or ceiling below LYING. In between,
+layers of small discs matter, for which there is no theory."""
 
 _NEAREST = 4
-"""Discs through whose heights the line is drawn that gives the density of one in the middle."""
+"""Number of discs for the linear fit of the height against the density, around the middle of the container.
+"""
 
 
 def buoyancy(ds: xr.Dataset) -> list[Claim]:
     """Return the claims on Archimedes's principle, the displaced radius, and heights of discs.
 
-    The heights are of free discs, and of the source's discs.
+    Heights are claimed for free discs, and for the discs of the source.
     """
     fixed, free, source = (Table.from_prefixed(ds, kind) for kind in ("fixed", "free", "source"))
     largest = Table(ds, "height").displaced.max()
@@ -70,14 +72,15 @@ def _claims_on_fixed(discs: Table) -> list[Claim]:
 
 
 def _nearer(radius: float | np.ndarray) -> np.ndarray:
-    """Compute R or R + r, as 0 or 1, whichever is nearer."""
+    """Return 0 or 1: the index of R or R + r, whichever is nearer."""
     return np.where(radius < 0.5, 0.0, 1.0)
 
 
 def _free(disc: Row, largest: float) -> Claim:
     """Return the claim on the height of a free disc.
 
-    It floats where it displaces its mass, or lies on the floor if it always displaces less.
+    A disc floats at the height where it displaces its own mass. If the displaced mass is smaller at all
+    heights, the disc lies on the floor.
     """
     if disc.mass <= largest:
         return _floating(disc, "a free disc")
@@ -92,7 +95,7 @@ def _free(disc: Row, largest: float) -> Claim:
 
 
 def _floating(disc: Row, name: str) -> Claim:
-    """Return the claim on the mean height of a disc that floats."""
+    """Return the claim on the mean height of a floating disc."""
     return Claim(
         claim=f"mean height of {name} of mass {disc.mass:g}",
         measured=disc.height,
@@ -104,9 +107,9 @@ def _floating(disc: Row, name: str) -> Claim:
 
 
 def _source(discs: Table) -> list[Claim]:
-    """Return the claims on source C's discs of many densities.
+    """Return the claims on discs of many densities, as simulated by source C.
 
-    They state which discs float, at which height, and the density of the one in the middle.
+    The claims state which discs float, their heights, and the density of a disc that floats in the middle.
     """
     near = np.minimum(discs.expected - discs.lowest, discs.highest - discs.expected)
     middle = 0.5 * (discs.lowest[0] + discs.highest[0])
@@ -124,7 +127,7 @@ def _source(discs: Table) -> list[Claim]:
 
 
 def _lying(distance: Estimate, which: str) -> Claim:
-    """Return the claim on the disc farthest from floor or ceiling, among discs held there."""
+    """Return the claim on the disc farthest from floor or ceiling, among discs that lie there."""
     farthest = distance[np.argmax(distance.value)]
     return Claim.at_most(
         claim=f"largest mean distance of {len(distance)} of the source's {which}",
@@ -139,13 +142,13 @@ def _lying(distance: Estimate, which: str) -> Claim:
 def _neutral(discs: Table, middle: float) -> Claim:
     """Return the claim on the density at which a disc floats in the middle.
 
-    It follows from a line through the heights about the middle.
+    This density follows from a linear fit to the heights near the middle.
     """
     near = discs[np.argsort(abs(discs.height.value - middle))[:_NEAREST]]
     density, height = near.density, near.height - middle
     offset, slope = fit_polynomial(density, height).values
     neutral = -offset / slope
-    # The line is fitted again about that density, where the error of its height is the one that counts.
+    # The line is fitted again around that density, where the error of the height matters.
     there = fit_polynomial(density - neutral, height).estimate(0)
     return Claim(
         claim="density at which a disc floats in the middle over the source's estimate",

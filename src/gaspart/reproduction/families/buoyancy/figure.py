@@ -1,4 +1,4 @@
-"""Figure of buoyancy: what a large disc displaces, and where it floats."""
+"""Figure of buoyancy: displaced mass, and height, of a large disc."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from gaspart.theory.brownian import displaced_area
 
 
 def buoyancy(ds: xr.Dataset) -> Figure:
-    """Draw force against density, the displaced radius, and the heights of free discs."""
+    """Draw the force against density, the displaced radius, and the heights of free discs."""
     fixed, free, source = (Table.from_prefixed(ds, kind) for kind in ("fixed", "free", "source"))
     figure, axes = style.new((2.1, 2.1), (2.1,), *([(2.1,)] if source else []))
     top, middle, bottom = axes[:3]
@@ -28,7 +28,7 @@ def buoyancy(ds: xr.Dataset) -> Figure:
 def _draw_displacement(top: Axes, middle: Axes, discs: Table, ratio: float) -> None:
     """Draw the mass that fixed discs displace, and the displaced radius, with theory.
 
-    The radius follows from the force and from the small discs that are missing.
+    The radius is computed from the force, and also from the number of missing small discs.
     """
     packing = discs.packing_fraction.value
     eta = np.linspace(0.0, 1.1 * packing.max(), 200)
@@ -50,7 +50,7 @@ def _draw_displacement(top: Axes, middle: Axes, discs: Table, ratio: float) -> N
 
 
 def _heights(axis: Axes, discs: Table, fluid: Table) -> None:
-    """Draw free discs: mean heights and their fluctuations, with theory."""
+    """Draw mean heights and their fluctuations for free discs, with theory."""
     axis.plot(fluid.displaced, fluid.height, color=style.DATA, label=r"displaced mass $M$", zorder=2)
     for disc in discs:
         label = "standard deviation" if disc.mass == discs.mass[0] else None
@@ -64,9 +64,9 @@ def _heights(axis: Axes, discs: Table, fluid: Table) -> None:
 
 
 def _source(axis: Axes, discs: Table) -> None:
-    """Draw the mean heights of the source's discs of many densities, with theory.
+    """Draw the mean heights of discs of many densities, as in the source, with theory.
 
-    The axis is from the floor to the ceiling.
+    The axis extends from the floor to the ceiling.
     """
     density = discs.density / discs.source_density
     for end in (discs.lowest[0], discs.highest[0]):

@@ -1,8 +1,8 @@
-"""A large disc in a fluid of small ones under gravity: its force or its height.
+"""A large disc under gravity in a fluid of small discs: its force or its height.
 
-The force on a fixed disc is the missing term in the fluid's balance of momentum, and so is exact over any
-time, floor - ceiling - weight - gain of momentum. The large disc is the scene's first particle, and the small
-ones its one species. Stretches and errors are defined in `gaspart.reproduction.families.gravity.measure`.
+The force on a fixed disc is the missing term in the momentum balance of the fluid: floor - ceiling - weight -
+gain of momentum. It is exact over any time. The large disc is the scene's first particle. The small discs are
+the only species. Blocks and errors are defined in `gaspart.reproduction.families.gravity.measure`.
 """
 
 from __future__ import annotations
@@ -32,20 +32,24 @@ from gaspart.theory.tables import excess_chemical_potential, packing_fraction_at
 
 
 def buoyancy(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure fixed and free discs in one fluid, and the source's free discs.
+    """Measure fixed and free discs in a fluid, and the source's free discs.
 
-    The fixed discs are at several heights, the free ones of several masses.
+    Fixed discs differ in height, free discs in mass. The settings are:
 
-    The settings are `source`, the experiments of the source's fluid; `bins` of height; `blocks` of each
-    replica; `clear`, the small diameters next to floor and ceiling where layers are, not hydrostatics; `far`,
-    the small diameters across from the large disc's edge from which on the fluid is undisturbed; `near`, the
-    small diameters within which it is disturbed, and the small discs that are missing are counted;
-    `source_density`, at which a disc floats in the middle by the source's estimate.
+    source : experiments with the source's fluid
+    bins : number of bins of height
+    blocks : number of blocks of each replica
+    clear : distance from floor and ceiling, in small diameters, without hydrostatics due to layers of discs
+    far : horizontal distance from the large disc's edge to undisturbed fluid, in small diameters
+    near : distance from the large disc within which missing small discs are counted, in small diameters
+    source_density : density at which a disc floats in the middle, as estimated by the source
 
-    Dimensions fixed, free, source, and height of a theoretical curve: the mass displaced in the mean fluid of
-    the fixed points. Heights are those that `columns` defines; masses are in masses of a small disc.
-    `force_radius` is how much larger than the large disc, in small radii, is the disc of undisturbed fluid
-    whose weight is the force; `count_radius` is the same for as many discs as are missing.
+    The dimensions of the result are fixed, free, source, and height. Over height the theoretical curve
+    `displaced` is the displaced mass in the mean fluid of the fixed points. Heights are defined as in
+    `columns`; masses are in units of the mass of a small disc. The force equals the weight of a disc of
+    undisturbed fluid. `force_radius` is the radius of this disc minus the radius of the large disc, in units
+    of the small radius. `count_radius` is defined in the same way, from the number of missing discs instead
+    of the weight.
     """
     of_source = [point for point in points if point.experiment in settings["source"]]
     own = [point for point in points if point not in of_source]
@@ -69,7 +73,7 @@ def buoyancy(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _heights(column: Field) -> np.ndarray:
-    """Return the heights of the curve of the displaced mass."""
+    """Return the heights at which the displaced mass is drawn."""
     return np.linspace(0.0, column.height, 201)
 
 
@@ -79,7 +83,7 @@ def _mass(point: Point) -> float:
 
 
 def _of_blocks(function: Callable[..., Any], *samples: np.ndarray) -> Estimate:
-    """Compute a function of means over blocks, with its error from their scatter."""
+    """Compute a function of means over blocks, with its error from the scatter of blocks."""
     return Estimate(*jackknife(function, *samples), len(samples[0]) - 1)
 
 
@@ -88,7 +92,7 @@ def _grid(column: Field, settings: dict) -> Grid:
 
 
 def _far(column: Field, stretch: Stretch, radius: float, settings: dict) -> np.ndarray:
-    """Compute the density (B,) of small discs far from the large one, in bins of height.
+    """Compute the density (B,) of small discs far from the large disc, by height.
 
     `radius` is the radius of the large disc.
     """
@@ -103,9 +107,9 @@ def _far(column: Field, stretch: Stretch, radius: float, settings: dict) -> np.n
 def _fluid(
     column: Field, density: np.ndarray, temperature: float, settings: dict
 ) -> Callable[[np.ndarray], float | np.ndarray]:
-    """Return a function of height: the packing fraction by hydrostatics, without layers.
+    """Return the packing fraction by hydrostatics, without layers, as a function of height.
 
-    The number of discs is the actual one.
+    The fluid has the actual number of discs.
     """
     width = column.height / len(density)
     skip = int(np.ceil(settings["clear"] * column.diameter / width))
@@ -119,7 +123,7 @@ def _fluid(
 
 
 def _measure_fixed(point: Point, settings: dict) -> dict:
-    """Measure force and effective radius of a fixed disc, and the fluid at its height.
+    """Measure force and effective radius of a fixed disc, and the packing fraction at its height.
 
     `fluid` is the packing fraction of the undisturbed fluid at `_heights`.
     """
@@ -129,8 +133,8 @@ def _measure_fixed(point: Point, settings: dict) -> dict:
     force = np.array([s.floor - s.ceiling - column.weight - s.gain for s in blocks])
     displaced = force / (column.masses[-1] * column.strength)
     density = np.array([_far(column, stretch, radius, settings) for stretch in blocks])
-    # One smooth profile for all blocks, scaled to each one's number: missing discs are counted relative to
-    # it.
+    # One smooth profile serves for all blocks, scaled to the number of discs in each block: missing discs are
+    # counted relative to it.
     warm = float(np.mean([stretch.temperature for stretch in blocks]))
     fluid = _fluid(column, density.mean(axis=0), warm, settings)
     reach = radius + settings["near"] * column.diameter
@@ -138,7 +142,7 @@ def _measure_fixed(point: Point, settings: dict) -> dict:
     undisturbed = float((fluid(height + up) * across).sum() / volume)
     inside = np.array([_inside(column, stretch, height, reach) for stretch in blocks])
     missing = undisturbed * density.sum(axis=1) / density.mean(axis=0).sum() - inside
-    # The undisturbed density where the disc is: its mean over the disc's area.
+    # Undisturbed density at the disc's position, averaged over the area of the disc.
     [z] = _grid(column, settings).middles
     chord = np.sqrt(np.maximum(radius**2 - (z - height) ** 2, 0.0))
     there = density @ (chord / chord.sum())
@@ -161,7 +165,7 @@ def _measure_fixed(point: Point, settings: dict) -> dict:
 
 
 def _disc(radius: float, points: int = 400) -> tuple[np.ndarray, np.ndarray]:
-    """Compute strips of a disc: area and height above its centre, (points,) each."""
+    """Compute the areas of strips of a disc, and their heights above its centre, (points,)."""
     up = radius * ((np.arange(points) + 0.5) * 2.0 / points - 1.0)
     return 2.0 * np.sqrt(radius**2 - up**2) * 2.0 * radius / points, up
 
@@ -175,9 +179,9 @@ def _inside(column: Field, stretch: Stretch, height: float, radius: float) -> fl
 
 
 def _free(point: Point, settings: dict) -> dict:
-    """Measure the position of a free disc, and compute it from Boltzmann's factor.
+    """Measure the position of a free disc, and compute it from a Boltzmann factor.
 
-    The factor is of its weight and the displaced weight.
+    The energy in this factor contains the weight of the disc and the displaced weight.
     """
     column, blocks = field(point), stretches(point, settings["blocks"])
     radius, _ = _large(point, column)
@@ -188,8 +192,8 @@ def _free(point: Point, settings: dict) -> dict:
     )
     margin = radius - 0.5 * column.diameter
     z = np.linspace(margin, column.height - margin, 2001)
-    # The forces are integrated, not the work's differences taken: that of the fluid's pressure, by far the
-    # largest, is then exact, and only the edge's relies on scaled-particle theory.
+    # Forces are integrated, instead of differences of work. The largest term, from the pressure of the fluid,
+    # is then exact. Only the term from the edge relies on scaled-particle theory.
     eta = fluid(z)
     force = column.masses[-1] * eta * displaced_area(eta, ratio) - mass
     exponent = np.cumsum(force) * (z[1] - z[0]) * column.strength / warm

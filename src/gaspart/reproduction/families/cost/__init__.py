@@ -1,4 +1,4 @@
-"""Cost of features, gain by cores."""
+"""Figures on the cost of features, and the gain from several cores."""
 
 TITLE = "Cost of features, gain by cores"
 CHAPTER = "Speed and accuracy"

@@ -1,4 +1,4 @@
-"""Claims about the cost of features and the gain by several cores."""
+"""Claims about the cost of features, and the gain from several cores."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.table import Table, each
 
 LARGEST_RATIO = 1.25
-"""Largest time with a feature divided by the time without: 0.8 of the speed."""
-_REORDERED = 1e-3  # of all instructions: what the compiler may order otherwise
+"""Largest allowed time with a feature divided by the time without it; the speed is then 0.8."""
+_REORDERED = 1e-3  # fraction of all instructions, since the compiler may order some of them differently
 
 
 def price_of_features(ds: xr.Dataset) -> list[Claim]:
     """Return the claims on kernels without and with features.
 
-    Kernels without a feature are equal to those whose source never had it; with a feature they are not much
-    slower.
+    A compiled kernel without a feature equals a kernel whose source lacks the feature. A kernel with a
+    feature is not much slower.
     """
     kernels, timed = Table(ds, "kernel"), Table(ds, "point")
     plain, present = timed[timed.feature == "plain"], timed[timed.feature != "plain"]
@@ -59,9 +59,8 @@ def _absent(kernels: Table) -> list[Claim]:
 
 
 LARGE = 10**5
-"""Number of particles from which on threads must be worth their while, which the largest gas of each kind
-claims."""
-_SMALL = 10**4  # up to which two runs at once do not compete for the caches
+"""Number of particles above which threads must be faster; the largest gas of each kind claims this."""
+_SMALL = 10**4  # largest number of particles for which two simultaneous runs do not compete for the caches
 _IDLE = "the uncertainty has what other programs took of the cores, for which runs at once waited"
 
 
@@ -102,7 +101,7 @@ def cores(dataset: xr.Dataset) -> list[Claim]:
 
 
 def _bits(engine: str, runs: Table) -> Claim:
-    """Return one claim for all runs of an engine."""
+    """Return one claim on equal bits for all runs of an engine."""
     return Claim(
         claim=f"runs on several cores that differ from one core in any bit, {engine}, of {len(runs)}",
         measured=Estimate(float((runs.same == 0).sum())),

@@ -1,4 +1,4 @@
-"""Figures of the cost of features and the gain by several cores."""
+"""Figures of the cost of features, and the gain from several cores."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ WORK = {"pair_tests": "pair tests", "crossings": "crossings"}
 
 
 def price_of_features(ds: xr.Dataset) -> Figure:
-    """Draw relative time per event, and counted work per event, for each feature.
+    """Draw relative time and counted operations per event, for each feature.
 
-    Times are relative to the scene without the feature.
+    Times are divided by the times of the scene without the feature.
     """
     figure, (times, counts) = style.new((2.9,), (2.9,))
     timed = Table(ds, "point")
@@ -47,15 +47,15 @@ def price_of_features(ds: xr.Dataset) -> Figure:
 
 
 _PANELS = {"DSMC": "DSMC", "time-stepped": "time-stepped", "event-driven": "event-driven"}
-_MOST = 8  # cores up to which the model is drawn
+_MOST = 8  # largest number of cores for which the model is drawn
 _LABEL = "speed-up"
 
 
 def cores(dataset: xr.Dataset) -> Figure:
-    """Draw speed on several cores against the number of particles and of cores, with the model.
+    """Draw speed on several cores against the numbers of particles and cores, with the model.
 
-    The first panels are for two cores, by threads and by runs at once; the last one is against the number of
-    cores.
+    The first panels are for two cores: threads of one run, and simultaneous runs. In the last panel the axis
+    is the number of cores.
     """
     figure, axes = style.new((2.6,), (2.6,), (2.6,), (2.6,))
     runs, models = Table.from_prefixed(dataset, "run"), Table.from_prefixed(dataset, "model")
@@ -74,8 +74,8 @@ def cores(dataset: xr.Dataset) -> Figure:
 
 
 def _by_count(axis: Axes, runs: Table, models: Table, fractions: list[float]) -> None:
-    """Draw the runs of an engine, by the colours of their packing fractions."""
-    named: set[str] = set()  # each in the legend once
+    """Draw the runs of an engine against the number of particles, coloured by packing fraction."""
+    named: set[str] = set()  # each label occurs once in the legend
     for engine, fraction, copies, gas in runs.by("engine", "packing_fraction", "copies"):
         kind = fractions.index(fraction)
         label = ", ".join([*engine.split(", ")[1:], f"$\\eta={fraction:g}$"])
@@ -96,7 +96,7 @@ def _by_count(axis: Axes, runs: Table, models: Table, fractions: list[float]) ->
 def _by_cores(axis: Axes, runs: Table, models: Table, available: int) -> None:
     """Draw the gases that run on the most cores, and the model of threads.
 
-    Lines are dotted beyond the machine's cores.
+    Lines are dotted where they exceed the number of cores of the machine.
     """
     fine = np.linspace(1.0, _MOST, 100)
     axis.plot(fine, fine, "--", color=style.GREY, linewidth=0.6, label="ideal")
@@ -118,16 +118,16 @@ def _by_cores(axis: Axes, runs: Table, models: Table, available: int) -> None:
 
 
 def _once(label: str, named: set[str]) -> str:
-    """Return a label unless it was named before; then ""."""
+    """Return a label at its first use, then ""."""
     new = label not in named
     named.add(label)
     return label if new else ""
 
 
 def _model_speed(models: Table, run: Row, cores: float | np.ndarray, count: float | np.ndarray) -> np.ndarray:
-    """Compute the speed of a run's gas and engine by the model.
+    """Compute the model's speed for the gas and engine of a run.
 
-    The numbers of cores and particles are given.
+    The arguments are the numbers of cores and of particles.
     """
     same = (models.engine == run.engine) & (models.packing_fraction == run.packing_fraction)
     model = models[same][0]

@@ -1,16 +1,16 @@
-"""Measurements of the cost of features and the gain by several cores.
+"""Measurements of the cost of features, and of the gain from several cores.
 
-Relative cost of each feature of a scene, and of absent features.
+The first part measures the relative cost of each feature of a scene, and of absent features.
 
-Each job times a scene and the scene without the feature alternately, A B B A, so that disturbances of the
-machine affect both. Several jobs of one feature differ in their equilibration: their scatter is the
+Each job times the scene with and without the feature alternately, A B B A, so that disturbances of the
+machine affect both. Several jobs of one feature differ in their equilibration. Their scatter is the
 uncertainty.
 
-Gain by several cores: threads of one run, and equal runs at once.
+The second part measures the gain from several cores, by threads of one run and by equal simultaneous runs.
 
-Each job times them alternately with one run on one core, in wall-clock time. Equal runs at once wait for
-nothing but a core, so the time for which they wait is the time that other programs took. For p cores, p times
-this fraction is part of the uncertainty of each speed on p cores.
+Each job times these alternately with one run on one core, in wall-clock time. Simultaneous runs wait for
+nothing except a core. Their waiting time is therefore the time that other programs used. For p cores, p times
+the fraction of waiting time is part of the uncertainty of each speed.
 """
 
 from __future__ import annotations
@@ -38,20 +38,26 @@ from gaspart.scene.scene import Scene
 
 PLAIN = "plain"
 FEATURES = {"gravity": "gravity", "roughness": "spin"}
-"""Features of `scene.features` that are timed, and their names in the figure."""
+"""Features in `scene.features` that are timed, and their names in the figure."""
 WORK = ("pair_tests", "box_visits", "crossings")
 
 
 def price_of_features(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure costs per event (a collision or a hit at a wall), absolute and relative.
+    """Measure absolute and relative costs per event (collision or wall hit).
 
-    They are relative to the scene without the feature, timed in the same job.
+    Relative costs are divided by the costs of the scene without the feature, timed in the same job.
 
-    Over point (a feature with an engine) are engine, feature (which the other scene lacks), seconds per
-    event, `ratio` over the other one's in the same jobs with its error, which is the jobs' scatter, and the
-    degrees of freedom of that; counted `pair_tests`, `box_visits` and `crossings` per event. The plain scene
-    compared with itself has the ratio 1. Over kernel, if a point counts them: engine's name, `instructions`,
-    and `stripped`, the instructions of a kernel whose source lacks the features.
+    Variables over point (a feature with an engine):
+
+    engine : name of the engine
+    feature : feature that the other scene lacks
+    seconds : time per event
+    ratio : time divided by the time of the other scene in the same jobs, with error and degrees of freedom
+    pair_tests, box_visits, crossings : counts per event
+
+    The error of the ratio is the scatter of the jobs. A plain scene compared with itself has the ratio 1. If
+    a point counts instructions, there are variables over kernel: the name of the engine, `instructions`, and
+    `stripped`. The latter is the number of instructions of a kernel whose source lacks the features.
     """
     groups: dict[tuple, list[dict]] = {}
     for job in (_job(point) for point in points if point.job == "measure_cost"):
@@ -66,7 +72,7 @@ def price_of_features(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _row(jobs: list[dict]) -> dict:
-    """Return the row of several jobs of one feature; NaN errors for a single one."""
+    """Return the row of several jobs of a feature; errors of a single job are NaN."""
     return {
         "engine": jobs[0]["engine"],
         "feature": jobs[0]["feature"],
@@ -78,8 +84,8 @@ def _row(jobs: list[dict]) -> dict:
 def _job(point: Point) -> dict:
     """Return the costs per event of one job, and its log ratio of times.
 
-    The ratio is the mean over its repeats of ln of the time per event relative to the scene without the
-    feature, timed next to it.
+    The log ratio is ln of the time per event divided by the time without the feature, both timed in
+    succession. It is averaged over the repeats.
     """
     with xr.open_dataset(point.path) as run:
         costs = per_event(run)
@@ -107,19 +113,25 @@ def _feature(scene: Scene, extras: list[str]) -> str:
 
 
 ENGINES = {"event": "event-driven", "step": "time-stepped", "dsmc": "DSMC"}
-"""The names of engines in the figure."""
-_KNOWN = 0.15  # the relative uncertainty up to which speeds are fitted
+"""Names of engines in the figure."""
+_KNOWN = 0.15  # speeds are fitted only if their relative uncertainty is smaller
 
 
 def cores(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure speed-ups, and fit a model of the speed-ups by threads.
+    """Measure the speed-up by several cores, and fit a model of the speed-up by threads.
 
-    Over run: engine, packing_fraction, count of particles; copies, the number of runs at once, 1 for threads;
-    cores used; speed, the work in a time divided by the work of one run on one core, NaN where the machine
-    has too few; same, 1 if all bits equal the bits on one core. Over model, each gas and engine with threads:
-    engine, packing_fraction, and serial and overhead of `speed_up`. The attribute cores is the number of the
-    machine, for kernels; waiting is the fraction of their time for which runs at once waited for a core, NaN
-    if no such runs were timed.
+    Variables over run:
+
+    engine, packing_fraction, count : engine and gas, with `count` particles
+    copies : number of simultaneous runs; 1 for threads
+    cores : number of cores in use
+    speed : work per time, divided by the speed of one run on one core; NaN if the machine has too few cores
+    same : 1 if all bits equal the bits on one core
+
+    Variables over model, for each gas and engine with threads, are engine, packing_fraction, and `serial` and
+    `overhead` of `speed_up`. The attribute `cores` is the number of cores of the machine. The attribute
+    `waiting` is the fraction of time for which simultaneous runs waited for a core; NaN if no such runs were
+    timed.
     """
     jobs = [_cores_job(point) for point in points]
     waits = [job.pop("waiting") for job in jobs]
@@ -162,13 +174,14 @@ def _cores_job(point: Point) -> dict:
 
 
 def _model(gas: Table) -> dict:
-    """Fit the speed-ups of all counts and cores (but see `SLABS`).
+    """Fit the speed-ups for all numbers of particles and cores (except `SLABS`).
 
-    The model is 1 / speed - 1 / p = s (1 - 1 / p) + N_0 / N. Neither parameter is negative, and one that
-    would be has the uncertainty 0. NaN where fewer than two speeds are known.
+    The model is 1 / speed - 1 / p = s (1 - 1 / p) + N_0 / N for p cores and N particles. Both parameters s
+    and N_0 are bounded by 0. A parameter at this bound has the uncertainty 0. The result is NaN if fewer than
+    two speeds are known.
     """
     engine = gas.engine[0]
-    used = gas.speed.error < _KNOWN * gas.speed.value  # not where there is none, NaN
+    used = gas.speed.error < _KNOWN * gas.speed.value  # excluded if there is none: NaN
     if engine in SLABS:
         used &= (gas.count >= SLABS[engine]) & (gas.cores == 2)
     timed = gas[used]

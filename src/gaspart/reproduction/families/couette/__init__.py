@@ -1,4 +1,4 @@
-"""Shear between walls that slide past each other."""
+"""Figures on Couette flow: shear between sliding walls."""
 
 from gaspart.keys import count, names, positive, record
 

@@ -1,4 +1,4 @@
-"""Claims about gases between sliding walls."""
+"""Claims about Couette flow between sliding walls."""
 
 from __future__ import annotations
 
@@ -15,13 +15,16 @@ from gaspart.reproduction.table import Row, Table, each
 from gaspart.theory.shear import ELEMENTARY_SLIP, NORMAL_STRESSES, VELOCITY_SLIP
 
 DILUTE_SLIP = 0.03
-"""Packing fraction up to which a gas counts as dilute: its volume changes slip by less than this."""
+"""Largest packing fraction of a gas that counts as dilute. The finite volume of its particles changes the
+slip by less than this."""
 SLIP_FLOW, FREE = 0.08, 20.0
-"""Knudsen numbers up to which a gas has a middle that walls do not see, and from which on it flies freely."""
+"""Knudsen numbers. Below SLIP_FLOW the middle of a gas is not affected by the walls. Above FREE its particles
+fly freely."""
 FAST = 2.2
-"""Difference of the walls' speeds from which on a flow tests what is of second order in it."""
+"""Difference of the walls' speeds above which a flow tests effects of second order."""
 NEAR = 0.005
-"""Packing fractions that differ by less are compared: the ratio to Enskog's changes by less than 1 %."""
+"""Largest difference of packing fractions that are compared. The viscosity relative to Enskog theory then
+differs by less than 1 %."""
 SECOND = 4.0
 """Bound of terms of second order, relative to the square of stress over pressure.
 
@@ -39,7 +42,7 @@ RESPONSE: dict[str, Any] = {
 def couette(ds: xr.Dataset) -> list[Claim]:
     """Return the claims on viscosity, slip, free flight, heating and normal stresses.
 
-    The viscosity follows from the response.
+    Here viscosity is the response to shear.
     """
     gases = Table(ds, "point")
     gases = gases.assign(gas=[_name_gas(gas) for gas in gases])
@@ -66,12 +69,12 @@ def _name_gas(gas: Row) -> str:
 
 
 def _second(flows: Table) -> Estimate:
-    """Return 1 with the possible terms of second order in the stress, as 3 sigma."""
+    """Return 1; its 3-sigma uncertainty bounds terms of second order in the stress."""
     return Estimate(1.0, SECOND * flows.reduced_rate.value**2 / 3.0)
 
 
 def _dilute(dilute: Table) -> list[Claim]:
-    """Return the claims on viscosity and slip of dilute gases, from both engines."""
+    """Return the claims on viscosity and slip of dilute gases, for both engines."""
     return [
         *each(
             dilute,
@@ -97,7 +100,7 @@ def _dilute(dilute: Table) -> list[Claim]:
 
 
 def _dense(dense: Table) -> list[Claim]:
-    """Return the claims on the viscosity of dense gases, against Enskog."""
+    """Return the claims on the viscosity of dense gases, compared with Enskog theory."""
     return each(
         dense,
         "stress over gradient, over Enskog's viscosity, {gas}",
@@ -111,9 +114,9 @@ def _dense(dense: Table) -> list[Claim]:
 
 
 def _over_equilibrium(responses: Table, still: Table) -> dict[str, Estimate]:
-    """Compute viscosity divided by its value from fluctuations at the same density.
+    """Compute the viscosity divided by the equilibrium value at the same density.
 
-    Gases without such a value are left out.
+    The equilibrium value follows from fluctuations. Gases without such a value are left out.
     """
     ratios = {}
     for gas in responses:
@@ -126,8 +129,8 @@ def _over_equilibrium(responses: Table, still: Table) -> dict[str, Estimate]:
 def _equilibrium(dense: Table, still: Table) -> list[Claim]:
     """Return the claims on the viscosity of dense gases relative to equilibrium.
 
-    There is a claim for each gas, and one for all together; in equilibrium the viscosity follows from the
-    fluctuations of the stress.
+    There is a claim for each gas, and a claim for all gases together. In equilibrium the viscosity follows
+    from the fluctuations of the stress.
     """
     ratios = _over_equilibrium(dense, still)
     stated = {name: (ratio, 0.03) for name, ratio in ratios.items()}
@@ -160,7 +163,7 @@ def _uniform(sheared: Table, still: Table) -> list[Claim]:
 
 
 def _pressure(slow: Table) -> list[Claim]:
-    """Return the claims on the pressure on the walls against density and temperature in the middle."""
+    """Return the claims on wall pressure from density and temperature in the middle."""
     normal = NORMAL_STRESSES[0] * slow.reduced_rate.value**2
     return each(
         slow,
@@ -178,7 +181,7 @@ def _pressure(slow: Table) -> list[Claim]:
 def _free(narrow: Table) -> list[Claim]:
     """Return the claims on the stress of free flight.
 
-    The first correction is about minus the gap divided by the mean free path.
+    The first correction is approximately minus the gap divided by the mean free path.
     """
     return each(
         narrow,
@@ -194,7 +197,7 @@ def _free(narrow: Table) -> list[Claim]:
 
 
 def _heating(flow: Row) -> Claim:
-    """Return the claim on the parabola of the temperature."""
+    """Return the claim on the parabolic temperature profile."""
     return Claim(
         claim=f"-dT/du^2 over half of viscosity over conductivity, walls of speed {flow.speed:g}",
         measured=flow.heating / float(theory.viscous_heating(flow.packing_fraction, 3)),
@@ -207,9 +210,9 @@ def _heating(flow: Row) -> Claim:
 
 
 def _normal(flow: Row) -> list[Claim]:
-    """Return the claims on normal stresses, of second order in the rate.
+    """Return the claims on normal stresses, which are of second order in the shear rate.
 
-    They are on the walls, and in the middle along two axes.
+    They are measured on the walls, and along two axes in the middle.
     """
     square = flow.reduced_rate.value**2
     across, along, _ = NORMAL_STRESSES

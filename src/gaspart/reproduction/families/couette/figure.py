@@ -1,4 +1,4 @@
-"""Figure of gases between sliding walls."""
+"""Figure of Couette flow between sliding walls."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ DSMC, EVENT = "DSMC", "event-driven"
 
 
 def couette(ds: xr.Dataset) -> Figure:
-    """Draw profiles of velocity and temperature, the stress, and viscosity, slip and normal stresses.
+    """Draw profiles of velocity and temperature, stress, viscosity, slip and normal stresses.
 
     The stress is drawn against the Knudsen number.
     """
@@ -37,7 +37,7 @@ def couette(ds: xr.Dataset) -> Figure:
 
 
 def _velocity(axis: Axes, slow: Table) -> None:
-    """Draw the velocity across the gap: free flight, a dilute and a dense gas."""
+    """Draw the velocity across the gap for free flight, a dilute gas and a dense gas."""
     kinds = {
         "free flight": slow[slow.knudsen > FREE],
         "dilute": slow[(slow.knudsen < SLIP_FLOW) & (slow.packing_fraction < DILUTE_SLIP)],
@@ -76,7 +76,7 @@ def _stress(axis: Axes, dilute: Table) -> None:
         own = dilute[dilute.engine == engine]
         style.points(axis, own.knudsen, own.stress, kind=kind, hollow=kind == 1, label=engine)
     knudsen = np.geomspace(0.02, 0.5, 50)
-    density = 1.0 / (np.sqrt(2.0) * np.pi)  # of spheres of diameter 1 whose mean free path is 1
+    density = 1.0 / (np.sqrt(2.0) * np.pi)  # number density of spheres of diameter 1 with mean free path 1
     slip = theory.slip_flow_stress(1.0 / knudsen, density, 1.0) / theory.free_molecular_stress(density, 1.0)
     axis.plot(knudsen, slip, color=style.GREY, lw=0.8, label="viscous, with slip")
     axis.axhline(1.0, color=style.GREY, lw=0.8, ls=":", label="free flight")
@@ -85,7 +85,7 @@ def _stress(axis: Axes, dilute: Table) -> None:
 
 
 def _viscosity(axis: Axes, slow: Table, gases: Table) -> None:
-    """Draw the viscosity over Enskog's by density, from the response and from equilibrium."""
+    """Draw viscosity divided by Enskog theory against density, from response and from equilibrium."""
     for kind, engine in enumerate((DSMC, EVENT)):
         own = slow[slow.engine == engine]
         style.points(axis, own.packing_fraction, own.viscosity, kind=kind, label=f"response, {engine}")
@@ -100,7 +100,7 @@ def _viscosity(axis: Axes, slow: Table, gases: Table) -> None:
 
 
 def _slip(axis: Axes, slow: Table) -> None:
-    """Draw the slip in mean free paths by density."""
+    """Draw the slip length in mean free paths against density."""
     for kind, engine in enumerate((DSMC, EVENT)):
         own = slow[slow.engine == engine]
         style.points(axis, own.packing_fraction, own.slip, kind=kind, label=engine)
@@ -111,7 +111,7 @@ def _slip(axis: Axes, slow: Table) -> None:
 
 
 def _normal(axis: Axes, dilute: Table) -> None:
-    """Draw the normal stresses of dilute gases over their mean, against the squared reduced rate."""
+    """Draw the normal stresses of dilute gases, relative to their mean, against squared reduced rate."""
     square = dilute.reduced_rate.value**2
     fine = np.linspace(0.0, 1.1 * square[dilute.knudsen < SLIP_FLOW].max(), 2)
     names = {

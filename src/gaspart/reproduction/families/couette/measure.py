@@ -1,7 +1,7 @@
-"""The steady flow of a gas between two walls that slide past each other.
+"""Steady Couette flow of a gas between two sliding walls.
 
-The walls are the two faces of the first axis; the flow is along the second one. Positions count from the
-middle. Particles have the mass 1, and the walls one temperature.
+The walls are the two faces of the first axis. The flow is along the second axis. Positions are relative to
+the middle. Particles have mass 1, and both walls have the same temperature.
 """
 
 from __future__ import annotations
@@ -25,24 +25,24 @@ from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import table
 from gaspart.scene.faces import thermal_face
 from gaspart.scene.scene import Scene
-from gaspart.theory.dsmc import cell_factor, step_factor
+from gaspart.theory.discretisation import cell_factor, step_factor
 
-# A gas in uniform shear, without walls (`scene.faces.LeesEdwards`).
-#
-# The flow is along the first axis, its gradient along the second; particles have the mass 1. The gas heats.
+# Uniform shear flow of a gas without walls (`scene.faces.LeesEdwards`). The flow is along the first axis, its
+# gradient along the second. Particles have mass 1. The gas heats up.
 
 
-_AXES = {"y": 0, "x": 1, "z": 2}  # of the container, by name as of walls across x: x is that of the gradient
+# components of the container's tensor, named as for walls across x: x is along the gradient
+_AXES = {"y": 0, "x": 1, "z": 2}
 
 
 def uniform(point: Point, blocks: int) -> dict[str, Any]:
-    """Measure the numbers of a sheared gas, as in a flow between walls.
+    """Measure the numbers of a uniformly sheared gas.
 
-    viscosity : response divided by Enskog's viscosity at the temperature of the time. reduced_rate : stress
-        over pressure. normal_x, _y, _z : pressure along gradient, flow and vorticity over their mean, minus
-        1.
+    viscosity : response divided by the Enskog viscosity at the instantaneous temperature.
+    reduced_rate : stress divided by pressure.
+    normal_x, normal_y, normal_z : pressure along gradient, flow and vorticity over their mean, minus 1.
 
-    Errors are by leaving out each block of time, of which each run has `blocks`.
+    Errors are jackknife errors over blocks of time. Each run has `blocks` of them.
     """
     scene = point.scene
     series = [
@@ -54,7 +54,7 @@ def uniform(point: Point, blocks: int) -> dict[str, Any]:
 
 
 def _blocks(run: Run, blocks: int) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the pressure tensor in blocks of a run, and the stress by Enskog.
+    """Compute the pressure tensor in blocks of a run, and the stress by Enskog theory.
 
     The shapes are (K, d, d) and (K,).
     """
@@ -67,7 +67,7 @@ def _blocks(run: Run, blocks: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _numbers(pressures: np.ndarray, expected: float) -> np.ndarray:
-    """Compute the numbers of `uniform`, from averages over stretches."""
+    """Compute the numbers of `uniform` from block averages."""
     along = np.diag(pressures)
     mean, stress = along.mean(), -pressures[1, 0]
     return np.array([stress / expected, stress / mean, *(along[list(_AXES.values())] / mean - 1.0)])
@@ -80,16 +80,27 @@ NUMBERS = ("viscosity", "slip", "heating", "normal_x", "normal_y", "normal_z", "
 def couette(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure flows between sliding walls, and the viscosity from equilibrium.
 
-    The settings are `parts`, the experiments of each part; `blocks` of each run; `bins` across the gap;
-    `clear`. Dimensions are point and bin; `_error` and `_freedom`, the degrees of freedom of the error. part,
-    engine, packing_fraction (for flows the value in the middle), knudsen (mean free path over gap), speed
-    (difference between the walls); stress, divided by the stress of free flight. Of the middle, `clear` off
-    the walls: viscosity, stress over gradient, over Enskog's at its density and temperature (with the errors
-    of cells and steps of DSMC); slip, the velocity of the gas relative to the wall, extrapolated, over mean
-    free path and gradient there; heating, -dT/du^2; normal_x, _y, _z, the kinetic energy of each component
-    over their mean, minus 1; pressure on the walls divided by the pressure of the equation of state;
-    reduced_rate, stress over pressure. place, flow and temperature by bin. Of sheared gases what `uniform`
-    states. Of equilibrium points packing_fraction and `viscosity` by Green and Kubo.
+    The settings are `parts`, the experiments of each part; `blocks` of each run; `bins` across the gap; and
+    `clear`, the distance of the middle from the walls. The dimensions are point and bin. The suffix
+    `_freedom` marks the degrees of freedom of an error `_error`.
+
+    Variables of each flow:
+
+    part, engine : part of the figure, and engine
+    packing_fraction : packing fraction in the middle
+    knudsen : mean free path divided by the gap
+    speed : difference of the velocities of the walls
+    stress : stress divided by the stress of free flight
+    viscosity : stress over gradient in the middle, relative to Enskog theory there (with errors of DSMC)
+    slip : gas velocity relative to the wall, extrapolated from the middle, over mean free path and gradient
+    heating : -dT/du^2 in the middle
+    normal_x, normal_y, normal_z : kinetic energy of each component in the middle over their mean, minus 1
+    pressure : pressure on the walls divided by the pressure of the equation of state
+    reduced_rate : stress divided by pressure
+    place, flow, temperature : position, velocity and temperature, by bin
+
+    The errors of DSMC are due to its cells and steps. Uniformly sheared gases have the variables of
+    `uniform`. Equilibrium points have packing_fraction, and `viscosity` by Green and Kubo.
     """
     gases = [
         (part, point)
@@ -102,7 +113,7 @@ def couette(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _row(gas: tuple[str, Point], settings: dict) -> dict[str, Any]:
-    """Return the numbers of a point of this part."""
+    """Return the numbers of a point of this part of the figure."""
     part, point = gas
     row = {"part": part, "engine": point.engine.title}
     if part == "flows":
@@ -111,7 +122,7 @@ def _row(gas: tuple[str, Point], settings: dict) -> dict[str, Any]:
 
 
 def _equilibrium(point: Point) -> dict[str, Any]:
-    """Measure the viscosity divided by Enskog's, for an infinite gas."""
+    """Measure the viscosity of an infinite gas in equilibrium, divided by Enskog theory."""
     row = coefficient(point, "shear", theory.enskog_viscosity)
     return {"packing_fraction": row["packing_fraction"], "viscosity": row["value"] / row["finite"]}
 
@@ -120,13 +131,13 @@ def _equilibrium(point: Point) -> dict[str, Any]:
 class FlowBetweenPlates:
     """Flow between plates, and its bins.
 
-    gap : its size.
+    gap : distance between the plates that is accessible to centres.
     speed : difference of the velocities of the walls.
     diameter : diameter of the spheres.
-    dilute : True if they take no volume, as in DSMC.
-    coarse : viscosity by the engine's cells and steps divided by the exact one.
+    dilute : True if the spheres occupy no volume, as in DSMC.
+    coarse : viscosity with the engine's cells and steps, divided by the exact viscosity.
     position : (B,), positions of the bins.
-    middle : (B,), bins that are clear of the walls.
+    middle : (B,), True for bins away from the walls.
     """
 
     gap: Gap
@@ -142,7 +153,7 @@ class FlowBetweenPlates:
         """Return the flow of a point."""
         scene = point.scene
         gap, diameter, dilute = Gap.of(scene), 2.0 * scene.smallest_radius, point.engine.equation != "exact"
-        path = float(_path(scene.count / (gap.length * gap.area), diameter, dilute))
+        path = _path(scene.count / (gap.length * gap.area), diameter, dilute)
         position = gap.grid(settings["bins"]).middles[0] - 0.5 * gap.length
         clear = min(settings["clear"] * max(path, 0.0 if dilute else diameter), gap.length / 3.0)
         coarse = _coarseness(point, gap, path) if dilute else 1.0
@@ -150,7 +161,7 @@ class FlowBetweenPlates:
         return cls(gap, _speed(scene), diameter, dilute, coarse, position, middle)
 
     def packing_fraction(self, density: float) -> float:
-        """Return the packing fraction that theory uses at a number density."""
+        """Return the packing fraction for theory at a number density."""
         return 0.0 if self.dilute else float(theory.packing_fraction(density, 3, self.diameter))
 
 
@@ -161,16 +172,15 @@ def _speed(scene: Scene) -> float:
 
 
 def _path(density: float, diameter: float, dilute: bool) -> float:
-    """Compute the mean free path, of spheres that take no room if `dilute`."""
+    """Compute the mean free path; if `dilute`, the spheres occupy no volume."""
     eta = float(theory.packing_fraction(density, 3, diameter))
-    path = float(theory.mean_free_path(eta, 3, diameter))
-    return path * float(theory.contact_value(eta, 3)) if dilute else path
+    return float(theory.mean_free_path(eta, 3, diameter, contact=1.0 if dilute else None))
 
 
 def _coarseness(point: Point, gap: Gap, path: float) -> float:
-    """Compute the viscosity by cells and steps divided by the exact one.
+    """Compute the viscosity with cells and steps, divided by the exact viscosity.
 
-    Only widths across the gap matter.
+    Only the width of the cells across the gap matters.
     """
     engine = asdict(point.engine.for_scene(point.scene, point.schedule.sample_interval))
     width = gap.length / engine["cells_per_side"][0] / path
@@ -184,9 +194,9 @@ class Averages:
 
     stress, pressure : (K,), on the walls.
     density : (K, B), particles in bins, per volume.
-    flow : (K, B), their momentum, per volume.
-    squares : (K, B, d), squares of their velocities, per volume.
-    changes : (K, 2), changes of the momentum of all particles and of its first moment.
+    flow : (K, B), momentum along the flow, per volume.
+    squares : (K, B, d), sums of squared velocities, per volume.
+    changes : (K, 2), change of the total momentum, and of the first moment of the momentum.
     """
 
     stress: np.ndarray
@@ -198,7 +208,7 @@ class Averages:
 
     @property
     def steady(self) -> np.ndarray:
-        """(K,) the stress without what blocks store and give back; see `statistics.steady_mean`."""
+        """Steady stress (K,), without stored momentum; see `statistics.steady_mean`."""
         scale = np.abs(self.changes).max(axis=0)
         design = np.column_stack([np.ones(len(self.stress)), self.changes / scale])
         return self.stress - design[:, 1:] @ fit_linear(design, self.stress).values[1:]
@@ -266,7 +276,7 @@ def _flow(point: Point, settings: dict) -> dict[str, Any]:
 def _profile(
     density: np.ndarray, flow: np.ndarray, squares: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Compute velocity (B,), temperature (B,), and temperature of each component (B, d) of the gas."""
+    """Compute velocity (B,), temperature (B,) and temperature of each component (B, d)."""
     velocity = flow / density
     energies = squares / density[:, None]
     energies[:, 1] -= velocity**2
@@ -278,8 +288,8 @@ def _gap_numbers(
 ) -> np.ndarray:
     """Compute the stress and `NUMBERS`, from averages over a run.
 
-    Across the gap T + b u^2 is constant (`theory.viscous_heating`), and the viscosity grows like the root of
-    T: u = g x (1 + c x^2) with c = b g^2 / 6 T to first order in c, g the gradient in the middle.
+    Across the gap T + b u^2 is constant (`theory.viscous_heating`). The viscosity grows like sqrt(T).
+    Therefore u = g x (1 + c x^2) with c = b g^2 / 6 T, to first order in c; g is the gradient in the middle.
     """
     density, middle = averages[0], setting.middle
     velocity, temperature, energies = _profile(*averages)
@@ -293,7 +303,7 @@ def _gap_numbers(
     half, width = 0.5 * setting.gap.length, float(np.abs(x).max()) + 0.5 * (x[1] - x[0])
     heated = float(theory.viscous_heating(eta, 3)) * gradient**2
     bend = heated / (6.0 * within)
-    centre = gradient * (1.0 - 0.6 * bend * width**2)  # that of x^3 by least squares is 3/5 width^2
+    centre = gradient * (1.0 - 0.6 * bend * width**2)  # the slope of x^3 by least squares is 3/5 width^2
     edge, at_edge = centre * half * (1.0 + bend * half**2), centre * (1.0 + 3.0 * bend * half**2)
     cooler = within - heated * (half**2 - width**2 / 3.0)
     path = _path(mean * within / cooler, setting.diameter, setting.dilute)

@@ -1,4 +1,4 @@
-"""Direct simulation Monte Carlo (DSMC)."""
+"""Figures on direct simulation Monte Carlo (DSMC)."""
 
 from gaspart.keys import count, names, record
 

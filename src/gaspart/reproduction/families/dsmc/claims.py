@@ -1,4 +1,4 @@
-"""Claims about the DSMC engine: its discretisation errors, its dense gas, and its fluxes between plates."""
+"""Claims about DSMC: discretisation errors, dense gases, and fluxes between plates."""
 
 from __future__ import annotations
 
@@ -11,21 +11,22 @@ from gaspart import theory
 from gaspart.analysis.statistics import combine_estimates
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.table import Table, each
-from gaspart.theory.dsmc import CELL_COEFFICIENTS, STEP_COEFFICIENTS, cell_factor, step_factor
+from gaspart.theory.discretisation import CELL_COEFFICIENTS, STEP_COEFFICIENTS, cell_factor, step_factor
 
 CELLS = "[Alexander 1998]"
 STEPS = "[Hadjiconstantinou 2000]; [Garcia 2000]"
 POWER = 0.1
-"""Largest uncertainty with which a coefficient is tested, relative to the coefficient."""
+"""Largest relative uncertainty with which a coefficient is tested."""
 SEEN = 0.02
-"""Change of a transport coefficient from which on a point tests the coefficient of that change."""
+"""Smallest relative change of a transport coefficient with which a point tests the coefficient of the change.
+"""
 SONINE = {"viscosity": 1.0160, "conductivity": 1.0252, "diffusion": 1.01895}
 """Exact coefficients of dilute spheres divided by those in the first Sonine approximation."""
 WIDE = 1.5
-"""Mean free paths: cells in which the diffusion coefficient is tested."""
+"""Width of cells, in mean free paths, in which the diffusion coefficient is tested."""
 POINTLIKE = 0.003
-"""Packing fraction up to which the volume of the spheres does not matter for the flux between plates, by
-less than 4 of it."""
+"""Packing fraction below which the volume of the spheres is negligible for the flux between plates. The
+volume changes the flux by less than 4 times the packing fraction."""
 
 
 def dsmc_convergence(dataset: xr.Dataset) -> list[Claim]:
@@ -49,12 +50,12 @@ def dsmc_convergence(dataset: xr.Dataset) -> list[Claim]:
 
 
 def _predict(gases: Table, quantity: str) -> np.ndarray:
-    """Compute a transport coefficient over the exact one, by cells and steps, shape (points,)."""
+    """Compute a transport coefficient with cells and steps, divided by the exact one, (points,)."""
     return np.asarray(cell_factor(quantity, gases.width) * step_factor(quantity, gases.step))
 
 
 def _limit(quantity: str, gases: Table) -> Claim:
-    """Return the claim on the coefficient of narrow cells and short steps."""
+    """Return the claim on a transport coefficient with narrow cells and short steps."""
     fine = gases[_predict(gases, quantity) < 1.0 + SEEN]
     return Claim(
         claim=f"{quantity} over Chapman and Enskog's, with narrow cells and short steps",
@@ -68,7 +69,7 @@ def _limit(quantity: str, gases: Table) -> Claim:
 
 
 def _narrow_cells(gases: Table) -> Claim:
-    """Return the claim on the increase of the viscosity by cells, against the literature."""
+    """Return the claim on the increase of the viscosity by cells, compared with literature."""
     cells = CELL_COEFFICIENTS["viscosity"]
     return Claim(
         claim="coefficient of (width/l)^2 in the viscosity, narrow cells",
@@ -82,7 +83,7 @@ def _narrow_cells(gases: Table) -> Claim:
 
 
 def _of_steps(quantity: str, gases: Table, coefficient: float) -> Claim:
-    """Return the claim on the increase of a transport coefficient by steps."""
+    """Return the claim on the increase of a transport coefficient by time steps."""
     long = gases[step_factor(quantity, gases.step) - 1.0 > SEEN]
     added = getattr(long, quantity) / cell_factor(quantity, long.width) - 1.0
     strength = combine_estimates(added / (step_factor(quantity, long.step) - 1.0))
@@ -98,7 +99,7 @@ def _of_steps(quantity: str, gases: Table, coefficient: float) -> Claim:
 
 
 def _wide_cells(paths: Table) -> Claim:
-    """Return the claim that D does not depend on cells."""
+    """Return the claim that D does not depend on the width of the cells."""
     wide = paths[paths.width > WIDE]
     return Claim(
         claim=f"diffusion over Chapman and Enskog's, with cells wider than {WIDE:g} mean free paths",
@@ -112,9 +113,9 @@ def _wide_cells(paths: Table) -> Claim:
 
 
 def _dense(gases: Table) -> list[Claim]:
-    """Return the claims on the Enskog model, and on Enskog's theory against spheres.
+    """Return the claims on the dense-gas model, and on Enskog theory for spheres.
 
-    The model is compared with its own equation.
+    The model is compared with its own equation of state.
     """
     where = "in the Enskog model at packing fraction {packing_fraction:g}"
     common: dict[str, Any] = {

@@ -1,4 +1,4 @@
-"""Figure of the errors of the DSMC engine."""
+"""Figure of the discretisation errors of the DSMC engine."""
 
 from __future__ import annotations
 
@@ -10,18 +10,15 @@ from matplotlib.figure import Figure
 from gaspart import theory
 from gaspart.rendering import style
 from gaspart.reproduction.table import Table
-from gaspart.theory.dsmc import cell_factor, step_factor
+from gaspart.theory.discretisation import cell_factor, step_factor
 
 QUANTITIES = {"viscosity": "viscosity", "conductivity": "heat conductivity", "diffusion": "self-diffusion"}
 FINE = {"width": 0.3, "step": 0.3}
-"""Width of cells and length of steps up to which their effect is too small to hide the other one."""
+"""Width of cells and length of steps below which one effect is too small to hide the other."""
 
 
 def dsmc_convergence(dataset: xr.Dataset) -> Figure:
-    """Draw transport coefficients against cells and steps, the flux, and the dense gas.
-
-    The flux is between plates.
-    """
+    """Draw transport coefficients against cells and steps, flux between plates, and dense gas."""
     figure, axes = style.new((2.4,), (2.4,), (2.4,), (2.4,))
     cells, steps, plates, dense = axes
     gases = Table(dataset, "point")
@@ -36,9 +33,10 @@ def dsmc_convergence(dataset: xr.Dataset) -> Figure:
 
 
 def _coarse(axis: Axes, gases: Table, along: str, other: str) -> None:
-    """Draw each coefficient over its exact value where the `other` coarseness is fine.
+    """Draw transport coefficients over exact values, against cell width or time step.
 
-    The effect of the `other` coarseness is removed; theory's curve is drawn.
+    Points are drawn only if their `other` discretisation is fine. The effect of the `other` discretisation is
+    removed. The curve is theory.
     """
     factors = {"width": cell_factor, "step": step_factor}
     fine = gases[getattr(gases, other) < FINE[other]]
@@ -57,7 +55,7 @@ def _coarse(axis: Axes, gases: Table, along: str, other: str) -> None:
 
 
 def _plates(axis: Axes, gases: Table) -> None:
-    """Draw the flux, divided by free flight's, against the Knudsen number."""
+    """Draw the flux divided by the flux of free flight, against the Knudsen number."""
     for kind, (part, title) in enumerate({"event_plates": "event-driven", "plates": "DSMC"}.items()):
         own = gases[gases.part == part]
         style.points(axis, own.knudsen, own.flux, kind=kind, hollow=kind == 1, label=title)
@@ -69,7 +67,7 @@ def _plates(axis: Axes, gases: Table) -> None:
 
 
 def _dense(axis: Axes, model: Table, spheres: Table) -> None:
-    """Draw the Enskog model over Enskog's theory, and what spheres do."""
+    """Draw the dense-gas model and hard spheres, divided by Enskog theory."""
     eta = model.packing_fraction
     style.points(axis, eta - 0.004, model.excess, kind=0, label="$Z-1$, DSMC")
     style.points(axis, eta, model.rate, kind=1, label="collision rate, DSMC")
@@ -80,7 +78,7 @@ def _dense(axis: Axes, model: Table, spheres: Table) -> None:
     ratio = theory.erpenbeck_wood_ratio(curve)
     axis.plot(curve, ratio, color=style.GREY, lw=0.8, label="Erpenbeck & Wood")
     axis.axhline(1.0, color=style.GREY, lw=0.8, ls=":")
-    room = (0.95, 1.7)  # for the legend
+    room = (0.95, 1.7)  # an empty curve for the legend
     style.label_axes(
         axis, r"packing fraction $\eta$", "ratio to Enskog's theory", legend="upper left", ylim=room
     )

@@ -1,8 +1,9 @@
-"""Effects of cells, steps and models of the DSMC engine, compared with the event-driven engine.
+"""Errors of cells, steps and models of DSMC, relative to theory and the event-driven engine.
 
-Widths of cells are in mean free paths l of the dilute gas, 1 / (sqrt 2 pi n sigma^2), steps in l / c with c =
-sqrt(2 k_B T / m), in which the discretisation errors of the literature are stated. Transport coefficients are
-divided by Chapman and Enskog's, without the change that a finite number of particles makes.
+Units are those in which the literature states discretisation errors. Widths of cells are in mean free paths l
+of the dilute gas, 1 / (sqrt 2 pi n sigma^2). Steps are in l / c with c = sqrt(2 k_B T / m). Transport
+coefficients are divided by the Chapman-Enskog values. The effect of the finite number of particles is
+removed.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.expected.equilibrium import collision_rate, compressibility_factor
 from gaspart.analysis.motion import average_correlations
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import fit_linear, mean_of
@@ -27,26 +29,32 @@ from gaspart.reproduction.families.shared.runs import series_of
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, entries, table
 from gaspart.scene.gas import plain_gas
-from gaspart.theory.enskog import approach_factor
+from gaspart.theory import bulk
 from gaspart.theory.heat import free_molecular_flux
 from gaspart.trajectory.reading import open_trajectory
 
 SHORT, NARROW = 1.0, 0.6
-"""Length of steps and width of cells up to which the transfer at collisions is fitted."""
+"""Largest length of steps and width of cells at which the transfer at collisions is fitted."""
 NONE = 1e-12
-"""Packing fraction of a gas so dilute that only the Boltzmann equation matters."""
+"""Packing fraction of a gas so dilute that the Boltzmann equation is exact."""
 
 
 def dsmc_convergence(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure transport coefficients by cells and steps, the dense gas, and the flux between plates.
+    """Measure transport coefficients with cells and steps, the dense gas, and fluxes.
 
-    The settings are `parts`, the experiments of each part; `blocks`, the time blocks of each run between
-    plates. The dimension is point; `_error` and `_freedom`, the degrees of freedom of the error. part and
-    engine of each point; of dilute gases width and step, and viscosity, conductivity and diffusion, each over
-    its exact value, and `transfer`, the part of the viscosity that passes at collisions, over the exact
-    viscosity; of dense ones packing_fraction, `excess`, Z - 1, `rate`, the collision rate, and diffusion over
-    Enskog's; of plates knudsen, l over the gap of centres, and `flux` divided by the flux of free flight.
-    Without dimension: coefficient, width_slope and step_slope, see `_narrow`.
+    The settings are `parts`, the experiments of each part, and `blocks`, the time blocks of each run between
+    plates. The dimension is point. The suffix `_freedom` marks the degrees of freedom of an error `_error`.
+
+    Each point has part and engine. Further variables depend on the part:
+
+    width, step : resolution, of dilute gases
+    viscosity, conductivity, diffusion : coefficients divided by their exact values, of dilute gases
+    transfer : viscosity due to transfer at collisions, divided by the exact viscosity, of dilute gases
+    packing_fraction, excess, rate : packing fraction, Z - 1 and collision rate, of dense gases
+    diffusion : coefficient divided by Enskog theory, of dense gases
+    knudsen, flux : l divided by the gap of centres, and flux divided by the flux of free flight, of plates
+
+    Variables without dimension are coefficient, width_slope and step_slope; see `_narrow`.
     """
     measures = {
         "fluxes": _fluxes,
@@ -73,13 +81,11 @@ def dsmc_convergence(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _narrow(gases: Table) -> dict[str, Estimate]:
-    """Fit the transfer at collisions over width^2 with narrow cells and short steps.
+    """Fit the transfer at collisions, divided by width^2, for narrow cells and short steps.
 
-    The fit has slopes in both.
-
-    In a wider cell a particle is often still near the place of its last collision at the next one, and passes
-    back on what it was given; so it is after several collisions in a step. The transfer is less than its
-    limit by parts that are linear in width and step.
+    The fit is linear in width and step. In a wider cell, a particle is often still near its last collision at
+    the next one, and returns the momentum that it received. The same happens if there are several collisions
+    in a step. Therefore the transfer is less than its limit, by terms linear in width and step.
     """
     names = ("coefficient", "width_slope", "step_slope")
     fluxes = gases[gases.part == "fluxes"]
@@ -94,12 +100,11 @@ def _narrow(gases: Table) -> dict[str, Estimate]:
 def _dilute_path(point: Point) -> float:
     """Compute the mean free path l of the dilute gas."""
     gas = plain_gas(point.scene)
-    path = theory.mean_free_path(gas.packing_fraction, 3, gas.diameter)
-    return float(path * theory.contact_value(gas.packing_fraction, 3))
+    return float(theory.mean_free_path(gas.packing_fraction, 3, gas.diameter, contact=1.0))
 
 
 def _resolution(point: Point) -> dict[str, float]:
-    """Compute the width of the cells and length of a step."""
+    """Compute the width of the cells and the length of a step."""
     gas, path = plain_gas(point.scene), _dilute_path(point)
     engine = asdict(point.engine.for_scene(point.scene, point.schedule.sample_interval))
     sides = np.array(point.scene.container.lengths) / np.array(engine["cells_per_side"])
@@ -118,7 +123,10 @@ def _runs(point: Point) -> Iterator[Run]:
 
 
 def _fluxes(point: Point, settings: dict) -> dict[str, Any]:
-    """Measure viscosity and conductivity by Green and Kubo to the longest lag, for an infinite gas."""
+    """Measure viscosity and conductivity of an infinite gas by Green and Kubo.
+
+    The integrals extend to the longest lag.
+    """
     gas = plain_gas(point.scene)
     shear, heat = (
         theory.transport_finite_size_factor(gas.count, 3, name) for name in ("viscosity", "conductivity")
@@ -137,15 +145,14 @@ def _fluxes(point: Point, settings: dict) -> dict[str, Any]:
 
 
 def _running_diffusion(point: Point) -> np.ndarray:
-    """Compute D of each replica (R,) at the longest lag, relative to Chapman and Enskog's.
+    """Compute D of each replica (R,) at the longest lag, divided by the Chapman-Enskog value.
 
-    The latter is D of a dilute gas.
-
-    With N - 1 partners a particle keeps its velocity longer by as much as the mean square of velocities is
-    lower about the centre of mass: at a given density this D does not depend on N.
+    The Chapman-Enskog D holds for a dilute gas. A particle has only N - 1 partners, and therefore keeps its
+    velocity longer. In the frame of the centre of mass, the mean square velocity is lower by the same factor.
+    At a given density this D is therefore independent of N.
     """
     gas = plain_gas(point.scene)
-    dilute = theory.enskog_diffusion(**gas.parameters) * theory.contact_value(gas.packing_fraction, 3)
+    dilute = theory.enskog_diffusion(**gas.parameters, contact=1.0)
     return np.array([average_correlations(run.data).running[-1] for run in _runs(point)]) / float(dilute)
 
 
@@ -155,28 +162,28 @@ def _paths(point: Point, settings: dict) -> dict[str, Any]:
 
 
 def _dense(point: Point, settings: dict) -> dict[str, Any]:
-    """Measure Z, the collision rate and D of the Enskog model, relative to theory.
+    """Measure Z, collision rate and D of the dense-gas model, divided by theory.
 
-    The theory has Carnahan and Starling's contact value, which the model is given. It has N (N - 1) pairs
-    where the equation of state has N^2, and a fixed energy.
+    The theory is for the actual number of particles. Model and theory use the contact value of Carnahan and
+    Starling.
     """
     gas = plain_gas(point.scene)
-    eta, partners = gas.packing_fraction, 1.0 - 1.0 / gas.count
-    approach = approach_factor(3, gas.count)
-    excess = float(theory.carnahan_starling(eta)) - 1.0
-    contact = excess / (4.0 * eta)
-    rate = float(theory.collision_rate(eta, 3) / theory.contact_value(eta, 3)) * contact
-    series = [series_of(run) for run in _runs(point)]
+    excess, rate = [], []
+    for run in _runs(point):
+        series, theories = series_of(run), (compressibility_factor(run), collision_rate(run))
+        z, own = (expected[0] for expected in theories if expected)
+        excess.append((series.z.mean() - 1.0) / (z - 1.0))
+        rate.append(series.rate.mean() / own)
     return {
-        "packing_fraction": eta,
-        "excess": mean_of([(replica.z.mean() - 1.0) / (partners * excess) for replica in series]),
-        "rate": mean_of([replica.rate.mean() / (partners * approach * rate) for replica in series]),
-        "diffusion": mean_of(_running_diffusion(point) * contact),
+        "packing_fraction": gas.packing_fraction,
+        "excess": mean_of(excess),
+        "rate": mean_of(rate),
+        "diffusion": mean_of(_running_diffusion(point) * bulk.contact_value(gas, bulk.ENSKOG)),
     }
 
 
 def _event_paths(point: Point, settings: dict) -> dict[str, Any]:
-    """Return D of the event-driven engine in an infinite container, over Enskog's."""
+    """Return D of the event-driven engine in an infinite container, divided by Enskog theory."""
     row = spheres(point)
     enskog = float(theory.enskog_diffusion(row["packing_fraction"], 3))
     infinite = row["diffusion"] + Estimate(row["correction"], row["correction_uncertainty"])
@@ -188,7 +195,8 @@ def _plates(point: Point, settings: dict) -> dict[str, Any]:
     scene = point.scene
     gap, kind = Gap.of(scene), scene.kinds[0]
     density = scene.count / (gap.length * gap.area)
-    path = 1.0 / (math.sqrt(2.0) * math.pi * density * (2.0 * kind.radius) ** 2)
+    filled = theory.packing_fraction(density, 3, 2.0 * kind.radius)
+    path = float(theory.mean_free_path(filled, 3, 2.0 * kind.radius, contact=1.0))
     return {
         "knudsen": path / gap.length,
         "packing_fraction": scene.packing_fraction,

@@ -1,4 +1,4 @@
-"""Equation of state."""
+"""Figures on the equation of state."""
 
 from gaspart.keys import count, flag, list_of, names, positive, record
 

@@ -1,4 +1,4 @@
-"""Claims about the equation of state, several radii, and values of others."""
+"""Claims about the equation of state, several radii, and published values."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from gaspart.reproduction.families.shared import PARTICLES
 from gaspart.reproduction.table import Row, Table, each
 
 RELATIVE_ERROR = 1e-3
-"""The largest standard error of Z, relative to it, at which its comparison means anything."""
+"""Largest relative standard error of Z for which its comparison is conclusive."""
 WANTED = {2: 1e-3, 3: 1e-2, 4: 1e-1}
-"""Wanted relative accuracy of each virial coefficient; its standard error is to be half of it."""
+"""Required relative accuracy of each virial coefficient. Its standard error must be half of this."""
 REFERENCE: dict[int, dict[str, Any]] = {
     2: {
         "source": "virial series to B10 ([Clisby 2006]) and a linear tail",
@@ -33,17 +33,17 @@ EXACT = {
     3: "exact: [Boltzmann 1899]",
 }
 KOLAFA_RANGE = (0.19, 0.41)
-"""Packing fractions at which Carnahan and Starling's equation is 0.13 to 0.3 % low, which is resolved."""
+"""Packing fractions at which the Carnahan-Starling equation is 0.13 to 0.3 % too low, which is resolved."""
 
 
 def virial_discs(dataset: xr.Dataset) -> list[Claim]:
     """Return the claims on Z, B2, B3, B4, the collision rate, and correct error bars.
 
-    Z is claimed at every packing fraction.
+    There is a claim on Z at every packing fraction.
     """
     gases, fits = Table(dataset, "packing_fraction"), Table(dataset, "fit")
     dimension = gases.dimension
-    # Enskog's rate is as accurate as Z - 1: the same reference, the same uncertainty.
+    # Enskog's collision rate is as accurate as Z - 1: same reference, same uncertainty.
     enskog = Estimate(1.0, gases.reference.error / (gases.reference.value - 1.0))
     return [
         *each(
@@ -73,9 +73,9 @@ def virial_discs(dataset: xr.Dataset) -> list[Claim]:
 
 
 def virial_spheres(dataset: xr.Dataset) -> list[Claim]:
-    """Return the claims of `virial_discs`, and that two equations are distinguished.
+    """Return the claims of `virial_discs`, and the claim that two equations are distinguished.
 
-    They are Kolafa, Labík and Malijevský's and Carnahan and Starling's.
+    These are the equations of Kolafa, Labík and Malijevský and of Carnahan and Starling.
     """
     gases, (low, high) = Table(dataset, "packing_fraction"), KOLAFA_RANGE
     chosen = gases[(gases.packing_fraction >= low) & (gases.packing_fraction <= high)]
@@ -116,7 +116,7 @@ def _replicas(gases: Table) -> list[Claim]:
 def _distinguish(chosen: Table) -> Claim:
     """Return the claim on the mean of Z / Z_CS - 1.
 
-    It is the value of Kolafa, Labík and Malijevský's equation there, not 0.
+    The mean equals the value by Kolafa, Labík and Malijevský's equation, not 0.
     """
     eta = chosen.packing_fraction
     measured, stated = (z / theory.carnahan_starling(eta) - 1.0 for z in (chosen.Z, chosen.reference))
@@ -175,9 +175,9 @@ def radius_grid(dataset: xr.Dataset) -> list[Claim]:
 
 
 def _same_state(same: Table) -> Claim:
-    """Return the claim that values of Z at one packing fraction agree with their own mean.
+    """Return the claim that values of Z at equal packing fraction agree with their mean.
 
-    It uses no theory but the 1/N correction.
+    The only theory in this claim is the 1/N correction.
     """
     mean, radii, counts = combine(same.Z), same.radius, same.count
     return Claim.chi_square(
@@ -203,20 +203,20 @@ NAMES = {
     "conductivity": "conductivity of",
 }
 REQUIRED = {"Z": 1e-3, "Z_crystal": 1e-3, "diffusion": 0.015, "viscosity": 0.1, "conductivity": 0.1}
-"""Relative uncertainty of our values above which a claim is inconclusive.
+"""Largest relative uncertainty of our values for a conclusive claim.
 
-The uncertainty of the other values is up to 1e-5, 0.2 % and 3 to 11 %.
+The published values have uncertainties of up to 1e-5, 0.2 %, and 3 to 11 %.
 """
 SOURCES = {
     "Chudak": "runs by the program DynamO of an author of [Pieprzyk 2019]",
     "DynamO test": "[Bannerman 2011], expected by a test of its authors' program",
     "DynamO tutorial": "[Bannerman 2011], a run of its authors' tutorial",
 }
-"""Names of sources that are not the keys of references."""
+"""Names of sources that are not keys of references."""
 
 
 def literature(dataset: xr.Dataset) -> list[Claim]:
-    """Return the claims that each value agrees with others, and all together."""
+    """Return the claims that our values agree with published ones, each and all together."""
     values = Table(dataset, "value")
     named = values.assign(
         name=[NAMES[quantity] for quantity in values.quantity],
@@ -248,7 +248,7 @@ def _cite(source: str) -> str:
 
 
 def _together(values: Table, claim: str) -> list[Claim]:
-    """Return the claim that deviations scatter as the uncertainties of both state."""
+    """Return the claim that deviations scatter as both uncertainties predict."""
     if not values:
         return []
     return [

@@ -1,4 +1,4 @@
-"""Figures of the equation of state, several radii, and values of others."""
+"""Figures of the equation of state, several radii, and published values."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from gaspart.reproduction.families.equation_of_state.claims import EQUILIBRIUM
 from gaspart.reproduction.table import Table
 
 SERIES = (2, 3, 4, 6, 10)
-"""Partial sums are drawn up to these coefficients."""
+"""Orders of the drawn partial sums of the virial series."""
 REQUIRED = {2: 1e-3, 3: 1e-2, 4: 1e-1}
-"""Scale of the lowest panel: the required relative accuracy of each coefficient."""
+"""Required relative accuracy of each coefficient; it scales the lowest panel."""
 Lines = dict[str, tuple[np.ndarray, dict]]
-"""Z on the grid of packing fractions, and the style of the line, by name."""
+"""Curves by name: Z on the grid of packing fractions, and the style of the line."""
 
 
 def virial_discs(dataset: xr.Dataset) -> Figure:
@@ -40,7 +40,7 @@ def _draw(dataset: xr.Dataset, name: str, equations: dict, ceiling: float, perce
 
     name : name of the reference.
     ceiling : top of Z's axis.
-    percent : residuals' half height.
+    percent : half height of the panel of residuals, in per cent.
     """
     gases = Table(dataset, "packing_fraction")
     grid = np.linspace(1e-3, 1.04 * gases.packing_fraction.max(), 300)
@@ -58,7 +58,7 @@ def _draw(dataset: xr.Dataset, name: str, equations: dict, ceiling: float, perce
 
 
 def _equations(grid: np.ndarray, dimension: int, equations: dict) -> Lines:
-    """Return the curves of equations; Z is NaN beyond an equation's divergence."""
+    """Return the curves of equations of state; Z is NaN beyond a divergence."""
     limit = 0.999 / 2.0 ** (dimension - 1)
     waals = np.where(grid < limit, theory.van_der_waals(np.minimum(grid, limit), dimension), np.nan)
     lines = {"van der Waals": (waals, {"color": style.COLOURS[3], "linestyle": (0, (5, 1.5, 1, 1.5))})}
@@ -68,7 +68,7 @@ def _equations(grid: np.ndarray, dimension: int, equations: dict) -> Lines:
 
 
 def _shade(order: int) -> str:
-    """Return the grey of a partial sum: the more terms, the darker."""
+    """Return the grey level of a partial sum; more terms are darker."""
     return str(0.70 - 0.50 * SERIES.index(order) / (len(SERIES) - 1))
 
 
@@ -78,7 +78,7 @@ def _state(axis: Axes, gases: Table, grid: np.ndarray, lines: Lines, sums: dict,
     labelled = 0.0
     for order, curve in sums.items():
         axis.plot(grid, curve, color=_shade(order), linewidth=0.8, zorder=1)
-        if curve[-1] - labelled >= 0.06 * ceiling:  # or the labels of neighbours would overlap
+        if curve[-1] - labelled >= 0.06 * ceiling:  # otherwise the labels of neighbours would overlap
             labelled = curve[-1]
             _name(axis, order, (grid[-1], curve[-1]), (2, 0), va="center", annotation_clip=True)
     style.points(axis, gases.packing_fraction, gases.Z.value, color=style.DATA, label="measured")
@@ -116,9 +116,9 @@ def _residuals(
 
 
 def _coefficients(axis: Axes, fits: Table) -> None:
-    """Draw each fitted coefficient's deviation from the exact one, by fit.
+    """Draw the deviation of each fitted coefficient from the exact value, by fit.
 
-    The unit is the accuracy required.
+    The unit is the required accuracy.
     """
     style.band(axis, -1.0, 1.0)
     style.level(axis, 0.0)
@@ -129,7 +129,8 @@ def _coefficients(axis: Axes, fits: Table) -> None:
         label = f"$B_{order}$ / {100 * required:g} %"
         scaled = (fitted - exact) / (required * exact)
         style.points(axis, positions + 0.22 * (k - 1), scaled, kind=k, label=label)
-    # Fits that cut the series deviate widely: linear within the accuracy required, logarithmic beyond.
+    # Fits of the truncated series deviate strongly. The scale is linear within the required accuracy, and
+    # logarithmic beyond.
     axis.set_yscale("symlog", linthresh=1.0, linscale=1.0)
     axis.set(ylim=(-30.0, 30.0), xlim=(-0.6, max(positions.size, 1) - 0.4))
     axis.set_yticks([-10, -1, 0, 1, 10], ["$-10$", "$-1$", "0", "1", "10"])
@@ -148,7 +149,7 @@ RADIUS = "radius (container: side 16)"
 
 
 def radius_grid(dataset: xr.Dataset) -> Figure:
-    """Draw Z, its residuals, and the counted work, against the radius."""
+    """Draw Z, its residuals, and counted operations, against the radius."""
     figure, (upper, middle, lower) = style.new((2.2, 1.2), (2.8,))
     table = Table(dataset, "point").sorted_by("radius")
     event, step = (table[table.engine == name] for name in ("event", "step"))
@@ -181,13 +182,13 @@ def _draw_z_of_radii(axis: Axes, own: Table, kind: int, name: str) -> None:
         label = f"$\\eta={eta[0]:g}$, $N$ = {own.count.min():.0f} – {own.count.max():.0f}"
     style.points(axis, radius, own.Z, kind=kind, label=label)
     fine = np.linspace(radius[0], radius[-1], 200)
-    # In one container the packing fraction of a given number of particles grows as the radius cubed.
+    # At constant particle number and container, the packing fraction is proportional to the radius cubed.
     between = eta[0] * (fine / radius[0]) ** 3 if name == "count" else np.full(fine.size, eta[0])
     axis.plot(fine, theory.compressibility_factor(between, 3), color=style.COLOURS[kind])
 
 
 def _event_costs(axis: Axes, own: Table, kind: int) -> None:
-    """Draw counts as circles or squares; crossings hollow, with the line of kinetic theory."""
+    """Draw counts as circles or squares, crossings as hollow symbols, with kinetic theory."""
     style.points(axis, own.radius, own.pair_tests, kind=kind)
     style.points(axis, own.radius, own.crossings_counted, kind=kind, hollow=True)
     axis.plot(own.radius, own.crossings_expected, color=style.COLOURS[kind])
@@ -199,7 +200,7 @@ def _step_costs(axis: Axes, own: Table, kind: int) -> None:
 
 
 def _labels(axis: Axes, event: Table, step: Table) -> None:
-    """Write the counted quantity above each group of points."""
+    """Write the name of the counted quantity above each group of points."""
     highest = 1.2 * event.pair_tests.max()
     texts = {
         "event-driven: pair tests per collision": highest,
@@ -221,7 +222,7 @@ LABELS = {
 
 
 def literature(dataset: xr.Dataset) -> Figure:
-    """Draw ratios to the values of others, less 1: pressures, and transport coefficients."""
+    """Draw ratios to published values minus 1, for pressures and transport coefficients."""
     figure, (static, transport) = style.new((2.4,), (2.4,))
     values = Table(dataset, "value")
     for axis, is_static in ((static, True), (transport, False)):
@@ -231,7 +232,7 @@ def literature(dataset: xr.Dataset) -> Figure:
 
 
 def _ratios(axis: Axes, values: Table) -> None:
-    """Draw our values as points with their errors, others' as wide pale bars about 0."""
+    """Draw our values as points with errors, and published values as wide pale bars."""
     style.level(axis, 0.0)
     for kind, (name, label) in enumerate(LABELS.items()):
         part = values[values.quantity == name]

@@ -1,28 +1,30 @@
-r"""Measurements of the equation of state, several radii, and values of others.
+r"""Measurements of the equation of state, several radii, and published values.
 
-The equation of state and its virial coefficients, from periodic event-driven runs.
+The first part measures the equation of state and its virial coefficients, from periodic event-driven runs.
 
-Cost and Z at several radii, for one packing fraction and one number of particles.
+The second part measures cost and Z at several radii. Either the packing fraction or the number of particles
+is constant.
 
-Predicted counts (periodic container of side L, n boxes of width w = L/n a side, N particles):
+The following counts are predicted, for N particles in a periodic container of side L, with n boxes of width w
+= L/n per side:
 
-- crossings of the boundaries between boxes, per particle and time, from kinetic theory (exact):
-  :math:`d\, \langle |v_x| \rangle (n-1)/L = d \sqrt{2 k_B T / (\pi m)}\,(n-1)/(n w)`, since the periodic face
-  of the container, one of the n boundaries of an axis, is counted apart;
-- the time-stepped engine's pair tests per particle and step, each pair in neighbouring boxes once: half
-  of the other particles in the 3^d boxes around a particle, which hold the fraction f of the volume:
-  :math:`\tfrac12 [f N + (S - 1) - f S]`, S = S(0) the structure factor at zero wave number,
-  :math:`1/S = d(\eta Z)/d\eta`: :math:`\rho \int (g - 1) = S - 1` is the hole that a particle makes around
-  itself, and -f S what the others make up for because their number is fixed. Holds if correlations end
-  within w;
-- per collision, everything depends on the packing fraction and the boxes per particle alone: a larger
-  radius in the same container is the same gas magnified. There remain terms of order 1/N, and of order
-  1/n at the periodic faces.
+- crossings of the boundaries between boxes, per particle and time. Kinetic theory predicts exactly
+  :math:`d\, \langle |v_x| \rangle (n-1)/L = d \sqrt{2 k_B T / (\pi m)}\,(n-1)/(n w)`. The factor
+  n - 1 occurs because the periodic face, one of the n boundaries of an axis, is counted separately.
+- pair tests of the time-stepped engine, per particle and step. Each pair in neighbouring boxes is tested
+  once. The number is half the number of other particles in the 3^d boxes around a particle. Let f be the
+  fraction of the volume in these boxes, and S = S(0) the structure factor at zero wave number,
+  :math:`1/S = d(\eta Z)/d\eta`. The prediction is :math:`\tfrac12 [f N + (S - 1) - f S]`. The integral
+  :math:`\rho \int (g - 1) = S - 1` represents the hole around a particle. The term -f S compensates for it,
+  because the number of particles is fixed. The prediction holds if the range of correlations is below w.
+- counts per collision. They depend only on the packing fraction and the boxes per particle, because a larger
+  radius is a change of the unit of length. There are small corrections of order 1/N, and of order 1/n at the
+  periodic faces.
 
-Our values of spheres and discs, with values measured by programs of others.
+The third part compares our values for spheres and discs with published values of other programs.
 
-They are in units of the diameter, the mass and k_B T, and of the infinite system where the law of finite
-numbers is known to the accuracy of both, else of as many particles in the same container.
+Units are the diameter, the mass and k_B T. Values are for the infinite system if the effect of finite size is
+known accurately enough. Otherwise both are for the same particle number in the same container.
 """
 
 from __future__ import annotations
@@ -60,20 +62,26 @@ ONE = {"units": "1"}
 
 
 def equation_of_state(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure Z against packing fraction of one dimension, and fit B2, B3, B4.
+    """Measure Z against packing fraction for one dimension, and fit B2, B3, B4.
 
-    The reference is added.
+    Reference values are added. The setting is `fits`, a list of mappings with the keys `free`, the highest
+    free coefficient, `up_to`, the largest packing fraction in the fit, and `held` (see `fit_coefficients`).
+    The first of them is claimed.
 
-    The setting is `fits`, a list of mappings {free: highest coefficient left free, up_to: largest packing
-    fraction used, held: bool} (see `fit_coefficients`), the first of them being the one that is claimed.
+    Variables over `packing_fraction` (ascending):
 
-    Returns over `packing_fraction` (ascending): Z with its error, corrected to the infinite system by adding
-    -finite_size, which is of first order in 1/N; poisson_error, (Z-1)/sqrt(collisions); reference with its
-    error; collision_rate with its error, over Enskog's for N particles; replica_chi_square, of replicas about
-    their mean, and replica_degrees_of_freedom; correlation, the autocorrelation time in samples; flat, 1 if
-    all block errors reached a plateau; collisions, the measured ones; count. Over `fit` and `order`:
-    coefficient with its error (in powers of the packing fraction; NaN where it was not free), and held_error;
-    over `order`: exact with its error; over `fit`: free, up_to, held, fit_chi_square, fit_degrees_of_freedom.
+    Z : compressibility factor with its error, for the infinite system; -finite_size, of order 1/N, is added
+    poisson_error : (Z-1)/sqrt(collisions)
+    reference : reference value of Z, with its error
+    collision_rate : collision rate with its error, divided by Enskog's rate for N particles
+    replica_chi_square, replica_degrees_of_freedom : chi-square of replicas about their mean
+    correlation : autocorrelation time in samples
+    flat : 1 if all block errors reached a plateau
+    collisions, count : number of measured collisions, and of particles
+
+    The variable `coefficient`, over `fit` and `order`, is the fitted coefficient with its error, in powers of
+    the packing fraction; NaN for coefficients that were not free. It also has held_error. Over `order` is
+    `exact` with its error. Over `fit` are free, up_to, held, fit_chi_square and fit_degrees_of_freedom.
     """
     points = sorted(points, key=lambda point: point.scene.packing_fraction)
     gases = table("packing_fraction", points, _gas, units={}).set_coords("packing_fraction")
@@ -110,13 +118,13 @@ def _gas(point: Point) -> dict:
 
 
 def fit_table(dataset: xr.Dataset, choices: list[dict]) -> xr.Dataset:
-    """Apply `fit_coefficients` with every choice; leave out choices with too few points."""
+    """Apply `fit_coefficients` with each choice that has enough points."""
     gases, dimension = Table(dataset, "packing_fraction"), dataset.attrs["dimension"]
     used = [gases[gases.packing_fraction <= choice["up_to"] * (1.0 + 1e-9)] for choice in choices]
     pairs = [
         (choice, part)
         for choice, part in zip(choices, used, strict=True)
-        if len(part) >= choice["free"]  # one point more than the free coefficients B2 ... B_free
+        if len(part) >= choice["free"]  # one point more than the number of free coefficients B2 ... B_free
     ]
     highest = max((choice["free"] for choice, _ in pairs), default=4)
     exact, exact_error = theory.virial_coefficients(dimension, highest)
@@ -149,13 +157,14 @@ def _no_fits(highest: int) -> xr.Dataset:
 def fit_coefficients(
     eta: np.ndarray, z: Estimate, dimension: int, free: int, held: bool
 ) -> tuple[Fit, np.ndarray]:
-    """Fit (Z-1)/eta = b_2 + b_3 eta + ... by weights, with b_2 ... b_free free.
+    """Fit (Z-1)/eta = b_2 + b_3 eta + ... with weights; b_2 ... b_free are free.
 
-    If `held`, the higher coefficients, to B10, are held at their literature values and the terms beyond at
-    `theory.linear_tail`; otherwise they are taken as zero (the series is cut), which shows what they matter.
+    If `held`, the higher coefficients up to B10 have their literature values, and the remaining terms are
+    `theory.linear_tail`. Otherwise the higher coefficients are zero: the truncated series shows the effect of
+    these terms.
 
-    Returns the Fit (values b_2 ... b_free) and held_error (free - 1,): the standard errors that the
-    uncertainty of what is held brings with it, which the fit's own errors do not contain.
+    Returns the Fit (values b_2 ... b_free), and held_error (free - 1,). The latter are standard errors due to
+    the uncertainty of the held coefficients. The errors of the fit do not include them.
     """
     powers, y = tuple(range(free - 1)), (z - 1.0) / eta
     if not held:
@@ -164,7 +173,8 @@ def fit_coefficients(
     tail = theory.linear_tail(eta, dimension) / eta
     higher = {order - 2: coefficients[order - 1] for order in range(free + 1, theory.HIGHEST_ORDER + 1)}
     fit = fit_polynomial(eta, y - tail, powers=powers, fixed=higher)
-    # The values are linear in what is held, so each held term's uncertainty moves them by its own fit.
+    # The values are linear in the held terms. A separate fit gives the effect of each held term's
+    # uncertainty.
     terms = [uncertainties[power + 1] * eta**power for power in higher]
     terms.append(linear_tail_uncertainty(eta, dimension) / eta)
     moved = [fit_polynomial(eta, term, y.error, powers=powers).values for term in terms]
@@ -172,15 +182,21 @@ def fit_coefficients(
 
 
 def radius_grid(points: list[Point], settings: dict) -> xr.Dataset:
-    """Return Z and the counted work of periodic points, of both engines.
+    """Measure Z and counted operations of periodic points, of both engines.
 
-    An experiment whose points have one packing fraction is the series "packing fraction", else "count".
+    If the points of an experiment have equal packing fractions, they are the series "packing fraction", else
+    "count".
 
-    Returns over `point`: series, engine ("event" or "step"), radius, count, packing_fraction, boxes_per_side.
-    Event-driven points: Z, Z_error (corrected to the infinite system), finite_size, reference and its error;
-    crossings, per particle and time over the kinetic theory's, and its error; pair_tests, box_visits and
-    crossings_counted, per collision; crossings_expected, the same from kinetic theory and Enskog's rate.
-    Time-stepped points: pair_tests and box_visits per particle and step, pair_tests_expected. NaN elsewhere.
+    Variables over `point`, NaN if they do not apply:
+
+    series, engine : series, and "event" or "step"
+    radius, count, packing_fraction, boxes_per_side : properties of the gas and of the partition
+    Z, Z_error, finite_size : of event-driven points, corrected to the infinite system
+    reference : of event-driven points, reference value of Z with its error
+    crossings : of event-driven points, crossings per particle and time divided by kinetic theory, with error
+    pair_tests, box_visits, crossings_counted : of event-driven points, counts per collision
+    crossings_expected : of event-driven points, crossings per collision by kinetic theory and Enskog's rate
+    pair_tests, box_visits, pair_tests_expected : of time-stepped points, counts per particle and step
     """
     experiments = {point.experiment for point in points}
     fixed = {
@@ -234,7 +250,7 @@ def _row(point: Point) -> dict[str, Any]:
 
 
 def _crossings(replicas: list[Series], scene: Scene, per_side: int) -> Estimate:
-    """Compute crossings per particle and time over the kinetic theory's."""
+    """Compute the crossings per particle and time, divided by kinetic theory."""
     between = scene.dimension * (per_side - 1) / scene.container.lengths[0] * math.sqrt(2.0 / math.pi)
     between *= scene.count
     ratios = [
@@ -244,10 +260,10 @@ def _crossings(replicas: list[Series], scene: Scene, per_side: int) -> Estimate:
 
 
 def crossings_per_collision(packing_fraction: float, width: float, per_side: int, dimension: int) -> float:
-    """Compute the crossed boundaries between boxes for each collision.
+    """Compute the number of crossed boundaries between boxes for each collision.
 
-    The width of a box is in diameters. It is 2 d sqrt(2 / pi) (n - 1) / (n w nu), nu Enskog's rate of one
-    particle with k_B T = m = sigma = 1.
+    The width w of a box is in diameters. The number is 2 d sqrt(2 / pi) (n - 1) / (n w nu). Here nu is
+    Enskog's collision rate of a particle with k_B T = m = sigma = 1.
     """
     rate = float(theory.collision_rate(packing_fraction, dimension))
     return 2.0 * dimension * math.sqrt(2.0 / math.pi) * (per_side - 1) / (per_side * width * rate)
@@ -264,23 +280,24 @@ def expected_pair_tests(count: int, per_side: int, packing_fraction: float, dime
 
 
 CONTAINERS = {2: "29 x 30", 3: "cube"}
-"""Containers of our points, as `theory.literature` names them."""
+"""Containers of our points, with their names in `theory.literature`."""
 SAME = 1e-8
-"""Largest difference of two packing fractions that are the same in nine digits."""
+"""Largest difference between two packing fractions that count as equal, to nine digits."""
 STRETCH = 0.3, 1.0
-"""Times between which others have taken the slope of Einstein's expressions, the mean of the integrals."""
+"""Times between which the published slopes of Einstein's expressions were measured; here, the mean of the
+integrals."""
 FLUXES = {"viscosity": "shear", "conductivity": "heat"}
 
 
 def literature(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure each value that others have measured too.
+    """Measure each quantity for which there are published values.
 
-    The settings are `judged`, experiments whose values have claims of their own; other values are judged by
-    their figures. Over `value` are quantity (see `theory.literature`), packing_fraction, count, judged; ours
-    and theirs with their errors; source of theirs. Z of both holds for the infinite system, to first order in
-    1/N; theirs is the mean of all runs at the packing fraction, weighted by their errors. Of the other
-    quantities both hold for `count` particles; D holds for particles whose total momentum is zero, and
-    viscosity and conductivity are means of the integral over `STRETCH`.
+    The settings are `judged`, experiments whose values have claims here. Claims on other values belong to
+    their figures. Variables over `value` are quantity (see `theory.literature`), packing_fraction, count and
+    judged; `ours` and `theirs` with their errors; and the source of `theirs`. Both values of Z are for the
+    infinite system, to first order in 1/N. `theirs` is the mean of all runs at the packing fraction, weighted
+    by their errors. Other quantities are for `count` particles. D is for particles with zero total momentum.
+    Viscosity and conductivity are means of the integral over `STRETCH`.
     """
     values = [(point, row) for point in points for row in _values(point)]
     rows = [row | {"judged": int(point.experiment in settings["judged"])} for point, row in values]
@@ -288,7 +305,7 @@ def literature(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _values(point: Point) -> Iterator[dict[str, Any]]:
-    """Yield the values of a point that others have measured, if any."""
+    """Yield the values of a point that have published counterparts."""
     gas = plain_gas(point.scene)
     if gas.dimension == 3 and not {"displacements", "stress"} & set(point.settings):
         yield from _of_infinite_system(point, gas)
@@ -314,7 +331,7 @@ def _literature_row(gas: Gas, quantity: str, ours: Estimate, theirs: Estimate, s
 
 
 def _literature_values(gas: Gas, quantity: str) -> np.recarray:
-    """Return the values of others at this packing fraction in such a container."""
+    """Return the published values at this packing fraction in such a container."""
     rows = theory.literature(quantity, gas.dimension)
     same = np.abs(rows.packing_fraction - gas.packing_fraction) < SAME
     return rows[same & (rows.container == CONTAINERS[gas.dimension])]
@@ -323,9 +340,9 @@ def _literature_values(gas: Gas, quantity: str) -> np.recarray:
 def _of_infinite_system(point: Point, gas: Gas) -> Iterator[dict[str, Any]]:
     """Yield Z of a fluid or a crystal of spheres.
 
-    Our Z is canonical (see `analysis.series.compressibility`), the other Z is at a fixed energy and momentum,
-    by which a crystal is not shifted to first order; the next order in V / V_c - 1 of ours is not known, and
-    part of its error.
+    Our Z is canonical (see `analysis.series.compressibility`). The published Z is for fixed energy and
+    momentum, which does not shift Z of a crystal to first order. The next order of our Z in V / V_c - 1 is
+    unknown, and is part of its error.
     """
     eta = gas.packing_fraction
     fluid = eta <= theory.HIGHEST_PACKING_FRACTION[3]
@@ -346,7 +363,7 @@ def _of_infinite_system(point: Point, gas: Gas) -> Iterator[dict[str, Any]]:
 
 
 def _of_as_many(point: Point, gas: Gas) -> dict[str, Estimate]:
-    """Compute the quantities of a point of finite numbers, by name."""
+    """Compute the quantities of a point for a finite particle number, by name."""
     if gas.dimension == 2:
         return {"pressure": gas.packing_fraction * 4.0 / np.pi * pressure(point).z}
     if point.settings.get("stress"):
@@ -355,7 +372,7 @@ def _of_as_many(point: Point, gas: Gas) -> dict[str, Estimate]:
 
 
 def _coefficient(point: Point, flux: str) -> Estimate:
-    """Measure a transport coefficient by the mean of Green and Kubo's integral in `STRETCH`."""
+    """Measure a transport coefficient by the mean of the Green-Kubo integral in `STRETCH`."""
     samples: list[float] = []
     for path in point.replica_paths:
         with open_trajectory(path) as trajectory:

@@ -1,4 +1,4 @@
-"""Thin films."""
+"""Figures on thin films."""
 
 from gaspart.keys import POSITIVE, count, list_of, positive
 

@@ -1,4 +1,4 @@
-"""Claims about a fluid between two walls."""
+"""Claims about a dense fluid between two walls."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ CONTACT = "contact theorem (exact: momentum balance at a hard wall)"
 
 
 def thin_film(dataset: xr.Dataset) -> list[Claim]:
-    """Return the claims on the contact theorem, the bulk, and the oscillation of the pressure.
+    """Return the claims on the contact theorem, the bulk, and the oscillating pressure.
 
-    The bulk is far from the walls; the pressure oscillates with the width.
+    The fluid far from the walls is the bulk. The pressure oscillates with the distance between the walls.
     """
     slits = Table(dataset, "width")
     claims = [*_contact(slits), _bulk(slits[-1]), _potential(slits[-1])]
@@ -26,9 +26,9 @@ def thin_film(dataset: xr.Dataset) -> list[Claim]:
 
 
 def contact_ratio(slits: Table) -> Estimate:
-    """Compute k_B T times the density at the wall over the pressure, for each slit.
+    """Compute k_B T times the density at the wall, divided by the pressure, for each slit.
 
-    The error of the extrapolation to the wall counts.
+    The error includes the error of the extrapolation to the wall.
     """
     density = slits.contact + Estimate(0.0, slits.truncation)
     return density / slits.pressure
@@ -56,7 +56,7 @@ def _contact(slits: Table) -> list[Claim]:
 
 
 def _of_density(function: Callable[[float], float], density: Estimate) -> Estimate:
-    """Compute a function of the density, at one that was measured."""
+    """Compute a function of a measured density, with its error."""
     step = 1e-4
     here, above = function(density.value), function(density.value + step)
     return Estimate(here, (above - here) / step * density.error, density.freedom)
@@ -67,7 +67,7 @@ def _eta(density: float) -> float:
 
 
 def _bulk(widest: Row) -> Claim:
-    """Return the claim that the wall's pressure is the bulk's at the density in the middle."""
+    """Return the claim that the wall pressure is the bulk pressure at the middle's density."""
     bulk = _of_density(lambda x: x * float(theory.compressibility_factor(_eta(x), 3)), widest.middle)
     return Claim(
         claim=f"pressure on the walls over the bulk's at the density in the middle, width {widest.width:g}",

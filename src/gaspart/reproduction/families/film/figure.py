@@ -1,4 +1,4 @@
-"""A dense fluid between two hard walls."""
+"""Figure of a dense fluid between two hard walls."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from gaspart.reproduction.table import Row, Table
 
 
 def thin_film(dataset: xr.Dataset) -> Figure:
-    """Draw density above a wall, the contact theorem at every width, and pressure against width."""
+    """Draw density above a wall, contact theorem at every width, and pressure against width."""
     figure, (profile, contact, pressure) = style.new((2.8,), (1.3, 2.1))
     slits = Table(dataset, "width")
     _profile(profile, slits[-1])
@@ -59,7 +59,7 @@ def _solvation(axis: Axes, slits: Table) -> None:
 def _positions(slits: Table) -> np.ndarray:
     """Return the positions (width,) on the axis.
 
-    The widest slit is drawn at its end, and labelled with its width.
+    The widest slit is drawn at the end of the axis, and labelled with its width.
     """
     end = min(slits.width[-1], slits.theory_width.max() + 0.3)
     return np.append(slits.width[:-1], end)

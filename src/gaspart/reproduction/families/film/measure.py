@@ -22,17 +22,19 @@ from gaspart.scene.gas import plain_gas
 from gaspart.state.random import stream
 
 NEAR = 0.2
-"""Depth, in diameters, of the layer from which the density at contact is extrapolated, by a cubic."""
+"""Thickness of the layer, in diameters, from which the density at contact is extrapolated by a cubic."""
 _BINS, _BLOCKS = 20, 16
 
 
 @dataclass(frozen=True)
 class Slit:
-    """Run between walls at z = 0 and H, reduced by the diameter and k_B T.
+    """Run between walls at z = 0 and H, in units of diameter and k_B T.
 
-    pressure : (samples,), from the momentum given to both walls in each interval. heights : (samples, N),
-        heights of centres above the contact plane of the nearer wall. width : H. area : area of one wall.
-        positions, sides : (samples, N, 3) and (3,).
+    pressure : (samples,), from the momentum transferred to both walls in each interval.
+    heights : (samples, N), heights of centres above the contact plane of the nearer wall.
+    width : distance H between the walls.
+    area : area of one wall.
+    positions, sides : positions (samples, N, 3), and lengths (3,) of the container.
     """
 
     pressure: np.ndarray
@@ -46,18 +48,25 @@ class Slit:
 def thin_film(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure profiles and pressures of slits of several widths at one chemical potential.
 
-    The numbers of spheres are chosen so.
+    The numbers of spheres are chosen for equal chemical potentials. The settings are:
 
-    The settings are bulk_packing_fraction of the fluid with which all slits are (nearly) in equilibrium;
-    insertions, the number of Widom's trial insertions for each width; theory_widths [first, last, number] of
-    the curve.
+    bulk_packing_fraction : packing fraction of the bulk fluid that is (nearly) in equilibrium with all slits
+    insertions : number of Widom's trial insertions for each width
+    theory_widths : [first, last, number] of the widths of the theoretical curve
 
-    Returns over `width` (surface to surface, in diameters): pressure, contact (rho(0), k_B T = 1), each with
-    _error; truncation, the cubic's error for the density functional's contact value; chemical_potential with
-    _error; at_bulk, the pressure at exactly the bulk's chemical potential, to first order, with _error;
-    functional_pressure; count. Over `bin`: place, density, density_error of the widest slit, and functional,
-    at these places. Of the widest slit: middle, the density in the middle two diameters, with _error. Over
-    `theory_width`: curve. Attributes: bulk_density, bulk_pressure, bulk_chemical_potential; period,
+    Variables over `width`, the distance between the surfaces of the walls in diameters:
+
+    pressure, contact : pressure, and density rho(0) at contact (k_B T = 1), each with _error
+    truncation : error of the cubic, for the contact value of the density functional
+    chemical_potential : chemical potential with _error
+    at_bulk : pressure at exactly the chemical potential of the bulk, to first order, with _error
+    functional_pressure : pressure by the density functional
+    count : number of spheres
+
+    The dimension `bin` is for the widest slit. Its variables are the place, the density with density_error,
+    and `functional`, the density by the density functional. The variable `middle` is the density of the
+    widest slit, averaged over two diameters around its middle, with _error. Over `theory_width` is the
+    theoretical curve. Attributes are bulk_density, bulk_pressure, bulk_chemical_potential, and the period and
     period_error of the damped oscillation.
     """
     points = sorted(points, key=lambda point: point.extents[2][2])
@@ -87,7 +96,7 @@ def thin_film(points: list[Point], settings: dict) -> xr.Dataset:
 def _row(
     point: Point, slits: list[Slit], insertions: int, distance: np.ndarray, functional: np.ndarray
 ) -> dict[str, Any]:
-    """Return pressure, density at contact and chemical potential: means over the replicas.
+    """Return pressure, contact density and chemical potential, averaged over replicas.
 
     `functional` (B,) is the density by the functional at `distance`.
     """
@@ -123,7 +132,7 @@ def _at_the_bulks_potential(dataset: xr.Dataset) -> xr.Dataset:
 def _responses(bulk: float, widths: np.ndarray) -> np.ndarray:
     """Compute dP/dmu of slits of fixed widths, by the density functional.
 
-    The value of a bulk, rho (Gibbs and Duhem), holds for the widest only.
+    The bulk value rho (Gibbs-Duhem) holds for the widest slit only.
     """
     densities = bulk * np.array([0.99, 1.01])
     eta = theory.packing_fraction(densities, 3)
@@ -133,9 +142,9 @@ def _responses(bulk: float, widths: np.ndarray) -> np.ndarray:
 
 
 def _truncation(distance: np.ndarray, density: np.ndarray) -> float:
-    """Compute the relative error of the extrapolation of a profile (B,) by a cubic.
+    """Compute the relative error of extrapolating a profile (B,) by a cubic.
 
-    The profile follows from the density functional.
+    The profile is computed by the density functional.
     """
     near = distance <= NEAR
     cubic = fit_polynomial(distance[near], density[near], powers=range(4)).values[0]
@@ -155,16 +164,16 @@ def slit_of(run: Run) -> Slit:
 
 
 def _densities(slit: Slit, grid: Grid) -> np.ndarray:
-    """Compute the density (blocks, bins) in bins of height above both walls, in blocks of frames."""
+    """Compute the density (blocks, bins) by height above both walls, in blocks of frames."""
     block = np.arange(len(slit.heights)) * _BLOCKS // len(slit.heights)
     counts = grid.sums(grid.cells(slit.heights[..., None]), blocks=block)
     return counts / (np.bincount(block)[:, None] * 2.0 * slit.area * grid.volume)
 
 
 def _contact(slit: Slit) -> Estimate:
-    """Compute the density extrapolated to the contact plane; the error is the scatter of blocks.
+    """Compute the density extrapolated to the contact plane, with its error.
 
-    Blocks consist of frames.
+    The error is computed from the scatter of blocks of frames.
     """
     grid = Grid.line(0.0, NEAR, _BINS)
     (middles,) = grid.middles
@@ -175,8 +184,8 @@ def _contact(slit: Slit) -> Estimate:
 def _widom(slit: Slit, insertions: int, seed: int | tuple[int, ...]) -> Estimate:
     """Estimate mu / k_B T = ln[(N + 1) / (V p)] by Widom's insertion.
 
-    p is the probability that a further sphere fits (Widom, J. Chem. Phys. 39, 2808 (1963)), V is the volume
-    accessible to centres; lengths in diameters, no thermal wavelength.
+    p is the probability that a further sphere fits (Widom, J. Chem. Phys. 39, 2808 (1963)). V is the volume
+    accessible to centres. Lengths are in diameters. The thermal wavelength is left out.
     """
     from scipy.spatial import cKDTree
 
@@ -199,9 +208,9 @@ def _widom(slit: Slit, insertions: int, seed: int | tuple[int, ...]) -> Estimate
 
 
 def _profile(slits: list[Slit], distance: np.ndarray, functional: np.ndarray) -> xr.Dataset:
-    """Compute the density above the nearer wall of the widest slit, to its middle.
+    """Compute the density above the nearer wall of the widest slit, up to its middle.
 
-    The mean around the middle is a number.
+    The mean density around the middle is returned too, as a number.
     """
     top = 0.5 * (slits[0].width - 1.0)
     grid = Grid.line(0.0, top, 4 * _BINS * round(slits[0].width / 4.0))
@@ -218,7 +227,7 @@ def _profile(slits: list[Slit], distance: np.ndarray, functional: np.ndarray) ->
 def _period(width: np.ndarray, excess: Estimate) -> Estimate:
     """Fit the period of a damped oscillation of the pressure against the width.
 
-    The oscillation is in the excess of the pressure over the bulk's; NaN through fewer than six widths.
+    `excess` is the pressure minus the bulk pressure. The result is NaN for fewer than six widths.
     """
     if len(width) < 6:
         return Estimate(math.nan, math.nan)

@@ -1,4 +1,4 @@
-"""Freezing and melting."""
+"""Figures on freezing and melting."""
 
 from gaspart.keys import POSITIVE, count, list_of, positive
 

@@ -1,7 +1,7 @@
 """Claims about freezing.
 
-A run that has not come to equilibrium is no evidence: its drift is part of its uncertainty, so that its
-claims are inconclusive, not confirmed.
+A run that is not in equilibrium is no evidence. Its drift is part of its uncertainty, so that its claims are
+inconclusive, not confirmed.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.table import Row, Table, each
 
 TOLERANCE = 0.02
-"""Relative half-width of the band around a coexistence pressure."""
+"""Relative half-width of the interval around a coexistence pressure."""
 EQUILIBRIUM_LIMIT = 3.0
-"""Deviations between starts and halves, in standard errors, above which a run counts as not in
-equilibrium."""
+"""Largest deviation between starts or halves, in standard errors, of a run in equilibrium."""
 COMPARED = 6
-"""Deviations at a packing fraction, of which the largest is taken: of pressure and order, between the starts
-and between the halves of each run."""
+"""Number of deviations at a packing fraction, of which the largest is used. They compare pressure and order,
+between the starts and between the halves of each run."""
 REQUIRED = {True: 2e-4, False: 4e-4}
-"""Relative uncertainty of the pressure of 870 discs, below NEAR and above: what four processor-minutes reach.
-The published ones are 4e-6 to 2e-5; the memory of the order is six times as long at 0.70 as at 0.68."""
+"""Required relative uncertainty of the pressure of 870 discs, below NEAR and above it. It is reached in four
+minutes of CPU time. Published values have 4e-6 to 2e-5. The correlation time of the order at 0.70 is six
+times that at 0.68."""
 NEAR = 0.69
 DISCS_SOURCE = "[Bernard 2011], [Engel 2013]"
 SPHERES_SOURCE = "[Fernandez 2012]"
@@ -36,7 +36,7 @@ SPHERES_SOURCE = "[Fernandez 2012]"
 def freezing_discs(dataset: xr.Dataset) -> list[Claim]:
     """Return the claims on plateau pressures, melting and freezing, branches, equilibrium.
 
-    The plateaus of both starts and their difference are claimed.
+    The claims concern the plateaus of both starts, and their difference.
     """
     starts, states = Table(dataset, "start"), Table(dataset, "packing_fraction")
     expected = theory.COEXISTENCE_PRESSURE[2]
@@ -66,7 +66,7 @@ def freezing_spheres(dataset: xr.Dataset) -> list[Claim]:
 
 
 def _runs(side: Row) -> Table:
-    """Return the packing fractions at which there is a run of this start."""
+    """Return the packing fractions of the runs with this start."""
     states = Table(side.dataset, "packing_fraction")
     return states[np.isfinite(states.order.value)]
 
@@ -98,9 +98,9 @@ def _same_plateau(plateau: Estimate, expected: float) -> Claim:
 
 
 def _extreme(order: Estimate, melted: bool) -> Estimate:
-    """Return the order furthest from equilibrium.
+    """Return the order that is furthest from equilibrium.
 
-    It is the most ordered one where all is melted, else the least ordered one.
+    This is the largest order if all should be melted, else the smallest order.
     """
     return order[int((np.argmax if melted else np.argmin)(order.value))]
 
@@ -142,9 +142,9 @@ def _with_drift(measured: Estimate, drift: Estimate) -> Estimate:
 
 
 def _liquid_of_discs(states: Table) -> list[Claim]:
-    """Return the claims on pressures of as many discs as published, in the same container.
+    """Return the claims on pressures of liquid discs, for the published particle number.
 
-    The virial series is too inaccurate.
+    The container is the published one, too. The virial series is too inaccurate here.
     """
     claims = []
     published = theory.literature("pressure", 2)
@@ -170,9 +170,9 @@ def _liquid_of_discs(states: Table) -> list[Claim]:
 
 
 def _crystal_of_discs(states: Table) -> list[Claim]:
-    """Return the claims on the pressure of the crystal, for the literature's number of discs.
+    """Return the claims on the pressure of crystals of discs, for the published particle number.
 
-    The uncertainty of the literature is the required one.
+    The required uncertainty is the uncertainty of the literature.
     """
     eta, expected, allowance = theory.CRYSTAL_OF_1024_DISCS
     same = states[(np.abs(states.packing_fraction - eta) < 1e-4) & (states.count == 1024)]
@@ -191,10 +191,10 @@ def _crystal_of_discs(states: Table) -> list[Claim]:
 
 
 def _equilibrium(states: Table) -> Claim:
-    """Return the claim on the number of differences in equilibrium, exact by binomial chance.
+    """Return the claim on the number of differences that agree with equilibrium.
 
-    A fluid that is compressed further than where the ordered phase melts freezes with defects, which do not
-    heal in any such run.
+    The probability is an exact binomial one. A fluid that is compressed beyond the melting point of the
+    ordered phase freezes with defects. They do not heal in any such run.
     """
     melting = theory.coexistence_packing_fractions(2)[1]
     differences = states[states.packing_fraction <= melting].disagreement
@@ -217,7 +217,7 @@ def _equilibrium(states: Table) -> Claim:
 def _branch(state: Row) -> Claim:
     """Return the claim on Z on the branch of a run.
 
-    A superheated crystal may be melting, and has no verdict.
+    A superheated crystal may melt during the run, and has no verdict.
     """
     eta, reference, solid = state.packing_fraction, state.reference, bool(state.crystalline)
     has_reference = not solid and math.isfinite(reference)

@@ -1,4 +1,4 @@
-"""Freezing: pressure and order of both starts, structure, and coexisting crystal and fluid."""
+"""Figures of freezing: pressure and order of both starts, structure, coexistence."""
 
 from __future__ import annotations
 
@@ -19,9 +19,10 @@ PUBLISHED = (
     (65536, "Engel 2013", "square", "--"),
     (1048576, "Engel 2013", "square", "-"),
 )
-"""Number, source, container and line of what others have measured."""
+"""Published values: number of discs, source, container and line style."""
 EQUILIBRATED = 3.0
-"""Points whose starts or halves differ by more standard errors are drawn hollow: not in equilibrium."""
+"""Largest deviation between starts or halves, in standard errors, of points in equilibrium; other points are
+drawn hollow."""
 
 
 def freezing_discs(dataset: xr.Dataset) -> Figure:
@@ -61,7 +62,7 @@ def freezing_spheres(dataset: xr.Dataset) -> Figure:
 
 
 def _starts(dataset: xr.Dataset) -> dict[str, Table]:
-    """Return the packing fractions at which there is a run of each start."""
+    """Return the packing fractions of the runs of each start."""
     starts = {}
     for side in Table(dataset, "start"):
         states = Table(side.dataset, "packing_fraction")
@@ -70,7 +71,7 @@ def _starts(dataset: xr.Dataset) -> dict[str, Table]:
 
 
 def _points(axis: Axes, states: Table, y: Estimate, kind: int, label: str | None = None) -> None:
-    """Draw filled symbols in equilibrium, hollow ones not."""
+    """Draw filled symbols in equilibrium, and hollow symbols out of equilibrium."""
     equilibrated = states.disagreement <= EQUILIBRATED
     for chosen, hollow in ((equilibrated, False), (~equilibrated, True)):
         if chosen.any():
@@ -105,7 +106,7 @@ def _loop(axis: Axes, states: Table, starts: dict[str, Table]) -> None:
 
 
 def _draw_published(axis: Axes) -> None:
-    """Draw the published pressures of more discs, and of as many as are compared."""
+    """Draw the published pressures, for the compared number of discs and for larger ones."""
     published = theory.literature("pressure", 2)
     for count, source, container, dashes in PUBLISHED:
         same = (
@@ -124,7 +125,7 @@ def _order(axis: Axes, starts: dict[str, Table], dimension: int) -> None:
 
 
 def _snapshot(axis: Axes, picture: Row, label: str) -> None:
-    """Draw discs coloured by the orientation of their bonds, which has a period of 60 degrees."""
+    """Draw discs coloured by the orientation of their bonds, with a period of 60 degrees."""
     from matplotlib.collections import EllipseCollection
 
     x, y = picture.x, picture.y
@@ -165,7 +166,7 @@ def _branches(axis: Axes, eta: np.ndarray, starts: dict[str, Table]) -> None:
 
 
 def _coexistence(axis: Axes, slab: Row) -> None:
-    """Draw the pressure of crystal coexisting with fluid, at the mean of their densities."""
+    """Draw the pressure of coexisting crystal and fluid, at their mean density."""
     pressure = Estimate([slab.slab_pressure], [slab.slab_error])
     style.points(axis, [slab.slab_packing_fraction], pressure, kind=6, label="coexistence")
     style.label_axes(axis, y="pressure $P\\sigma^3/k_\\mathrm{B}T$", legend="upper left")

@@ -1,4 +1,4 @@
-"""Freezing: pressure and order of both starts, the plateau of discs, and coexisting crystal and fluid."""
+"""Freezing: pressure and order of both starts, plateau of discs, coexisting crystal and fluid."""
 
 from __future__ import annotations
 
@@ -21,32 +21,36 @@ from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
 
 STARTS = {"lattice": "crystal", "compressed": "fluid"}
-"""Start of a run, by its arrangement: a perfect lattice, or a disordered fluid."""
+"""Start of a run by its arrangement: a perfect lattice is a crystal, a compressed gas is a fluid."""
 CRYSTAL_ORDER = 0.3
-"""Global Q_6 above which a run of spheres is taken for a crystal: 0.45 and more near melting, 0.03 in the
-fluid."""
+"""Smallest global Q_6 of a crystal of spheres. Q_6 is 0.45 and more near melting, and 0.03 in the fluid."""
 COMPARED = 870
-"""Number of discs whose pressure is published; such points are compared, and not drawn."""
+"""Number of discs with published pressures. Such points are compared, and not drawn."""
 LOCAL_CRYSTAL = 0.32
-"""Averaged local q_6 half-way between the crystal's 0.48 and the fluid's 0.16."""
+"""Smallest averaged local q_6 of a crystal, half-way between 0.48 (crystal) and 0.16 (fluid)."""
 
 
 Order = Callable[[np.ndarray, Sequence[float]], float]
-"""Function that returns one number of a frame, from positions and the lengths of the container."""
+"""Function that computes an order parameter of a frame, from positions and the container's lengths."""
 
 
 def freezing_discs(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure P and psi_6 of discs against packing fraction from both starts, plateaus, structure.
+    """Measure P and psi_6 of discs against packing fraction from both starts, and structure.
 
-    The settings are `shown`, packing fractions whose structure is kept; `furthest` and `bins` of g(r), in
-    diameters; `highest` wave number of S(k), times the diameter.
+    The settings are `shown`, packing fractions whose structure is stored; `furthest` and `bins` of g(r), in
+    diameters; and `highest`, the largest wave number of S(k) times the diameter.
 
-    Returns over `start` and `packing_fraction`: see `_states`, the order being |mean psi_6|. Over `start` and
-    `compared_packing_fraction`: compared_pressure, its _error, _drift and _drift_error, of the points of
-    COMPARED discs, if there are any. Over `start`: plateau, plateau_error, and plateau_low, plateau_high, the
-    packing fractions at its ends (see `plateau`). Over `shown` (of the last start): g(distance), S(wave_x,
-    wave_y), and of the last frame x, y and angle, the argument of psi_6, over `particle`; positions in units
-    of the diameter.
+    Variables over `start` and `packing_fraction` are defined in `_states`; the order is |mean psi_6|. Further
+    variables:
+
+    compared_pressure : pressure of COMPARED discs, with _error, _drift and _drift_error
+    plateau : plateau pressure with plateau_error, over `start` (see `plateau`)
+    plateau_low, plateau_high : packing fractions at the ends of the plateau, over `start`
+    g, S : g(distance) and S(wave_x, wave_y) of the last start, over `shown`
+    x, y, angle : position in diameters, and argument of psi_6, in the last frame, over `shown` and `particle`
+
+    The dimensions of `compared_pressure` are `start` and `compared_packing_fraction`. It is absent if there
+    are no points of COMPARED discs.
     """
     compared = [point for point in points if point.scene.count == COMPARED]
     points = [point for point in points if point not in compared]
@@ -62,21 +66,26 @@ def freezing_discs(points: list[Point], settings: dict) -> xr.Dataset:
 def freezing_spheres(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure Z and Q_6 of spheres against packing fraction from both starts, and coexistence.
 
-    There are no settings. Returns over `start` and `packing_fraction`: see `_states`, the order being the
-    global Q_6; crystalline, 1 if it stayed above CRYSTAL_ORDER; Z and Z_error of the infinite system (first
-    order in 1/N subtracted), finite_size, reference (of the run's branch; NaN beyond its range). Of the slab:
-    slab_pressure, slab_error, slab_drift, slab_drift_error; over `half` and `position` its profiles of local
-    order (slab_order) and number density (slab_density); over `half` crystal_fraction.
+    There are no settings. Variables over `start` and `packing_fraction` are defined in `_states`; the order
+    is the global Q_6. Further variables:
+
+    crystalline : 1 if the order stayed above CRYSTAL_ORDER
+    Z, Z_error : compressibility factor of the infinite system (the first order in 1/N is subtracted)
+    finite_size : subtracted correction
+    reference : Z of the equation for the branch of the run; NaN beyond its range
+    slab_pressure, slab_error, slab_drift, slab_drift_error : pressure of coexisting phases
+    slab_order, slab_density : profiles of local order and number density, over `half` and `position`
+    crystal_fraction : fraction of crystal, over `half`
     """
     slabs = [point for point in points if point.settings.get("arrangement") == "slab"]
     bulk = [point for point in points if point not in slabs]
     dataset = _states(bulk, _sphere)
-    dataset["crystalline"] = (dataset["crystalline"] == 1).astype(int)  # 0 where there is no run
+    dataset["crystalline"] = (dataset["crystalline"] == 1).astype(int)  # 0 if there is no run
     return dataset.merge(_slab(slabs), join="outer", compat="no_conflicts", combine_attrs="no_conflicts")
 
 
 def _of_start(points: list[Point], start: str) -> dict[float, Point]:
-    """Compute points of one start by packing fraction, ascending."""
+    """Return the points of one start by packing fraction, ascending."""
     by_fraction = {
         round(point.scene.packing_fraction, 9): point
         for point in points
@@ -93,7 +102,7 @@ def _disc(point: Point) -> dict[str, Any]:
 def _sphere(point: Point) -> dict[str, Any]:
     """Return the columns of a point of spheres.
 
-    They are Z of the infinite system on the branch of the point, and Z of the reference.
+    They include Z of the infinite system on the branch of the point, and the reference for Z.
     """
     row = _state(point, structure.global_steinhardt)
     eta, solid = row["packing_fraction"], row["order"][0] > CRYSTAL_ORDER
@@ -115,7 +124,7 @@ def _sphere(point: Point) -> dict[str, Any]:
 
 
 def _state(point: Point, order: Order) -> dict[str, Any]:
-    """Return the pressure and order of a point, and how far its halves differ."""
+    """Return pressure and order of a point, and the difference between its halves."""
     scene = point.scene
     density = scene.number_density * (2.0 * scene.largest_radius) ** scene.dimension
     pressures, orders = [], []
@@ -136,9 +145,9 @@ def _state(point: Point, order: Order) -> dict[str, Any]:
 
 
 def _mean_and_drift(replicas: list[np.ndarray]) -> tuple[Estimate, Estimate]:
-    """Return the mean of series, and their second half minus the first.
+    """Return the mean of each series, and second half minus first half.
 
-    In equilibrium there is no such drift.
+    In equilibrium this difference is zero on average.
     """
     means = [correlated_mean(series).estimate for series in replicas]
     drifts = []
@@ -149,14 +158,17 @@ def _mean_and_drift(replicas: list[np.ndarray]) -> tuple[Estimate, Estimate]:
 
 
 def _states(points: list[Point], row: Callable[[Point], dict[str, Any]]) -> xr.Dataset:
-    """Return the columns of all starts and packing fractions, replicas averaged.
+    """Return the columns of all starts and packing fractions, averaged over replicas.
 
-    They are NaN where there is no run.
+    Entries without a run are NaN.
 
-    Returns over `start` and `packing_fraction`: pressure (k_B T / sigma^d), order, their _error, _drift and
-    _drift_error; over `packing_fraction`: count, density (1 / sigma^d) and disagreement: the largest of the
-    deviations, in standard errors, between the two starts and between the halves of each run, of pressure and
-    order. More than 3 shows that the runs are not in equilibrium.
+    pressure, order : pressure in k_B T / sigma^d and order, with _error, _drift and _drift_error
+    count : number of particles, over `packing_fraction`
+    density : number density in 1 / sigma^d, over `packing_fraction`
+    disagreement : largest deviation between the starts or between halves of a run, in standard errors
+
+    Pressure and order are over `start` and `packing_fraction`. The deviations are those in pressure and
+    order. A disagreement above 3 shows that the runs are not in equilibrium.
     """
     chosen = [point for start in STARTS.values() for point in _of_start(points, start).values()]
     dataset = table("point", chosen, row).set_index(point=["start", "packing_fraction"]).unstack("point")
@@ -179,7 +191,7 @@ def _disagreement(dataset: xr.Dataset) -> xr.DataArray:
 
 
 def _compare(points: list[Point]) -> xr.Dataset:
-    """Return the pressures of points that are compared with published ones."""
+    """Return the pressures of the points that are compared with published values."""
     names = [f"pressure{name}" for name in ("", "_error", "_drift", "_drift_error")]
     new = {name: f"compared_{name}" for name in (*names, "packing_fraction")}
     return _states(points, _disc)[names].rename(new)
@@ -188,8 +200,8 @@ def _compare(points: list[Point]) -> xr.Dataset:
 def _plateau(side: Row) -> dict[str, Any]:
     """Compute the plateau of one start.
 
-    A point's uncertainty holds half of its drift and of the difference of the starts, `unlike`: a run out of
-    equilibrium is uncertain.
+    The uncertainty of a point includes half of its drift, and half of the difference between the starts,
+    `unlike`. A run out of equilibrium is therefore uncertain.
     """
     states = Table(side.dataset, "packing_fraction")
     states = states[np.isfinite(states.pressure.value)]
@@ -205,10 +217,11 @@ def _plateau(side: Row) -> dict[str, Any]:
 
 
 def _pictures(chosen: dict[float, Point], settings: dict) -> xr.Dataset:
-    """Return structure at some packing fractions; lengths in diameters."""
+    """Return the structure at some packing fractions; lengths are in diameters."""
     fractions = [x for x in chosen if any(abs(x - y) < 1e-6 for y in settings["shown"])]
     rows = [_picture(chosen[x], settings) for x in fractions]
-    # Wave vectors are those of each container, which shrinks with the packing fraction: kept by number.
+    # The wave vectors depend on the container, which shrinks with the packing fraction. They are stored by
+    # index.
     most_x, most_y = (min(row[name].size for row in rows) // 2 for name in ("wave_x", "wave_y"))
     for row in rows:
         row["wave_x"], row["wave_y"] = _middle(row["wave_x"], most_x), _middle(row["wave_y"], most_y)
@@ -226,7 +239,7 @@ def _pictures(chosen: dict[float, Point], settings: dict) -> xr.Dataset:
 
 def _picture(point: Point, settings: dict) -> dict[str, Any]:
     """Return the last frame, g(r) and S(k) of the first replica."""
-    replicas = runs(point)  # the file is open while this lives
+    replicas = runs(point)  # the file is open during this block
     run = next(replicas)
     diameter = 2.0 * run.scene.largest_radius
     lengths = np.array(run.scene.container.lengths) / diameter
@@ -246,18 +259,18 @@ def _picture(point: Point, settings: dict) -> dict[str, Any]:
 
 
 def _middle(values: np.ndarray, *most: int) -> np.ndarray:
-    """Compute the middle element along each axis, and as many on both sides of it."""
+    """Return the middle elements along each axis, equally many on both sides."""
     sizes = zip(values.shape, most, strict=True)
     return values[tuple(slice(size // 2 - n, size // 2 + n + 1) for size, n in sizes)]
 
 
 def _slab(points: list[Point]) -> xr.Dataset:
-    """Measure pressure and profiles of containers with crystal and fluid, replicas averaged."""
+    """Measure pressure and profiles of containers with crystal and fluid, averaged over replicas."""
     (point,) = points
     scene = point.scene
     lengths, diameter = scene.container.lengths, 2.0 * scene.largest_radius
     axis = int(np.argmax(lengths))
-    # A bin for each cell of the crystal, so that its layers fall into bins evenly.
+    # A bin for each cell of the crystal, so that each bin has the same number of layers.
     cell = (4.0 / theory.COEXISTENCE_DENSITY[3][1]) ** (1.0 / 3.0) * diameter
     grid = Grid.line(0.0, lengths[axis], round(lengths[axis] / cell))
     pressures, profiles = [], []
@@ -267,7 +280,7 @@ def _slab(points: list[Point]) -> xr.Dataset:
     order, density, fraction = (np.mean(parts, axis=0) for parts in zip(*profiles, strict=True))
     mean, drift = _mean_and_drift(pressures)
     error = mean.error
-    if len(pressures) > 2:  # slow interfaces: the scatter of replicas shows what blocks of one run cannot
+    if len(pressures) > 2:  # interfaces move slowly: replicas show a scatter that blocks of one run do not
         error = max(error, mean_of([correlated_mean(series).estimate.value for series in pressures]).error)
     both = "half", "position"
     return xr.Dataset(
@@ -288,9 +301,9 @@ def _slab(points: list[Point]) -> xr.Dataset:
 
 
 def _profiles(run: Run, grid: Grid, axis: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Compute the local order and the reduced density (2, bins) of both halves of a run.
+    """Compute local order and reduced density (2, bins) of both halves of a run.
 
-    The profiles are along an axis; the fraction of crystalline spheres (2,) is returned too.
+    The profiles are along an axis. The fraction of crystalline spheres (2,) is returned too.
     """
     scene, frames = run.scene, run.data["coordinates"].values[1:]
     local = np.array([structure.local_steinhardt(frame, scene.container.lengths) for frame in frames])

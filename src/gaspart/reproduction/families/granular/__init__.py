@@ -1,4 +1,4 @@
-"""Granular gases."""
+"""Figures on granular gases."""
 
 from gaspart.keys import count, names, positive
 

@@ -21,14 +21,15 @@ VAN_NOIJE = "[Haff 1983]; [van Noije 1998], to first order in a2"
 DIFFERENCE = 1.5
 """Error of T_tr - T_rot divided by the error of T_rot.
 
-2 T_tr + T_rot is conserved, so both have one fluctuation.
+2 T_tr + T_rot is conserved, so both temperatures have the same fluctuation.
 """
 
 
 def equipartition(dataset: xr.Dataset) -> list[Claim]:
-    """Return the claims on equal energies per degree of freedom, and on a steady ratio.
+    """Return the claims on equipartition, and on a steady ratio of temperatures.
 
-    Energies become equal at the known rate; the ratio is steady where contacts dissipate.
+    Energies per degree of freedom become equal, at the known rate. The ratio is steady if collisions
+    dissipate energy.
     """
     still = Table(dataset, "equilibrium")
     return [
@@ -48,7 +49,7 @@ def equipartition(dataset: xr.Dataset) -> list[Claim]:
 
 
 def _steady(gas: Row) -> Claim:
-    """Return the claim on the ratio of the temperatures of discs that cool."""
+    """Return the claim on the ratio of the temperatures of cooling discs."""
     q, tangential = gas.cooling_inertia, gas.tangential
     matches = [line for line in theory.rough_cooling() if np.allclose(line[:3], (q, tangential, 1.0))]
     ratio, error = matches[0][3:] if matches else (theory.rough_ratio(q, tangential), 0.0)
@@ -67,13 +68,14 @@ def _steady(gas: Row) -> Claim:
 
 
 def _decay(gas: Row) -> list[Claim]:
-    """Return the claims on the initial rate from spins 0, and on the whole curve."""
+    """Return the claims on the initial decay rate without spins, and on the complete curve."""
     q = gas.inertia
     expected = 3.0 * q / (1.0 + q) ** 2
     frames = Table(gas.dataset, "frame")
-    frames = frames[np.isfinite(frames.collisions)]  # without those that only other points have
+    frames = frames[np.isfinite(frames.collisions)]  # without variables that only other points have
     beyond = np.asarray(theory.rough_start_excess(q, frames.collisions))
-    most = np.abs(np.nan_to_num(beyond)).argmax()  # where Maxwellian velocities err most
+    # where the assumption of Maxwellian velocities is least accurate
+    most = np.abs(np.nan_to_num(beyond)).argmax()
     at, is_computed = frames[most], np.isfinite(beyond[most])
     s, rotation = at.collisions, at.rotation
     excess = at.translation.value - rotation.value - np.exp(-expected * s)
@@ -101,9 +103,9 @@ def _decay(gas: Row) -> list[Claim]:
 
 
 def _at_walls(gas: Row) -> list[Claim]:
-    """Return the claims on energy exchanged at rough walls only.
+    """Return the claims on energy exchanged only at rough walls.
 
-    They are on the fraction of a hit, and on equal energies in the end.
+    They concern the fraction exchanged per hit, and equipartition at the end.
     """
     which = f"{PARTICLES[gas.wall_dimension]} between rough walls, q = {gas.wall_inertia:g}"
     return [
@@ -129,7 +131,7 @@ def _at_walls(gas: Row) -> list[Claim]:
 
 
 def cooling(dataset: xr.Dataset) -> list[Claim]:
-    """Return the claims on Haff's law, its rate and exponent; clusters that end it."""
+    """Return the claims on Haff's law, its rate and exponent, and on clusters that end it."""
     claims = []
     for gas in Table(dataset, "gas"):
         dimension, e = gas.dimension, gas.restitution
@@ -159,13 +161,13 @@ def cooling(dataset: xr.Dataset) -> list[Claim]:
 
 
 def elastic_variance(gases: Table) -> float:
-    """Compute the variance of the number in a cell of the elastic gas in equilibrium."""
+    """Compute the variance of the particle number in a cell of an elastic gas in equilibrium."""
     elastic = gases[gases.cluster_restitution == 1.0]
     return float(np.nanmean(elastic.variance.value[:, 1:]))
 
 
 def _clusters(gases: Table) -> list[Claim]:
-    """Return the claims on the final gas: neither homogeneous nor as cold as Haff's law.
+    """Return the claims on the final gas, which is inhomogeneous and hotter than Haff's law.
 
     The elastic gas is unchanged.
     """
@@ -193,7 +195,7 @@ def _clusters(gases: Table) -> list[Claim]:
 
 
 def _claim_growth(subject: str, ratio: Estimate, least: float, **others: Any) -> Claim:
-    """Return the claim that a ratio is `least` or more, by its logarithm.
+    """Return the claim that the logarithm of a ratio is at least ln(`least`).
 
     The logarithm is 0 for an unchanged gas.
     """
@@ -202,7 +204,7 @@ def _claim_growth(subject: str, ratio: Estimate, least: float, **others: Any) ->
         claim=f"ln of {subject}",
         measured=Estimate(np.log(ratio.value), ratio.error / ratio.value),
         bound=bound,
-        required=bound / 3.0,  # distinguishes an unchanged gas by 3 sigma
+        required=bound / 3.0,  # distinguishes an unchanged gas with 3 sigma
         **others,
     )
 
@@ -220,7 +222,7 @@ HEATED = (
 def driven_gas(ds: xr.Dataset) -> list[Claim]:
     """Return the claims on the steady temperature and the deviation from Maxwell velocities.
 
-    At this temperature contacts lose the energy that kicks give.
+    At this temperature, collisions dissipate the energy that the random kicks supply.
     """
     gases = Table(ds, "gas")
     claims = [claim for gas in gases for claim in _of_gas(gas)]
@@ -265,7 +267,7 @@ def _of_gas(gas: Row) -> list[Claim]:
 def _claim_cumulants(gases: Table, dimension: int) -> Claim:
     """Return the claim on the cumulants of all gases of a dimension, by least squares.
 
-    A single gas does not decide.
+    A single gas is not conclusive.
     """
     heated, cooling = (
         theory.finite_size_cumulant(of(gases.restitution, dimension), gases.count, dimension)

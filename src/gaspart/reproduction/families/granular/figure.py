@@ -17,7 +17,7 @@ from gaspart.reproduction.table import Table
 def equipartition(dataset: xr.Dataset) -> Figure:
     """Draw temperatures against collisions, differences from theory, and steady ratios.
 
-    The same temperatures are drawn for particles that meet rough walls only.
+    The temperatures of particles that only hit rough walls are drawn too.
     """
     figure, (upper, middle, lower, walls) = style.new((2.3, 1.2), (2.0,), (2.0,))
     _temperatures(upper, Table(dataset, "start"))
@@ -42,7 +42,7 @@ def _temperatures(axis: Axes, gases: Table) -> None:
 def _differences(axis: Axes, gases: Table) -> None:
     """Draw 100 (T_tr - T_rot - exp(-3 q s / (1 + q)^2)).
 
-    It is in per cent of the initial temperature.
+    The result is in per cent of the initial temperature.
     """
     style.level(axis, 0.0)
     for kind, gas in enumerate(gases):
@@ -54,7 +54,7 @@ def _differences(axis: Axes, gases: Table) -> None:
 
 
 def _ratios(axis: Axes, cooling: Table, equilibrium: Table) -> None:
-    """Draw T_rot / T_tr against the tangential restitution: theories, cooling discs, elastic discs."""
+    """Draw T_rot / T_tr against tangential restitution: theory, cooling discs, elastic discs."""
     curve = np.linspace(-0.99, 1.0, 200)
     for kind, (q, still) in enumerate(equilibrium.by("equilibrium_inertia")):
         theoretical = [theory.rough_ratio(q, tangential) for tangential in curve]
@@ -72,9 +72,9 @@ def _ratios(axis: Axes, cooling: Table, equilibrium: Table) -> None:
 
 
 def _at_walls(axis: Axes, gases: Table) -> None:
-    """Draw T along the walls and T_rot against time, relative to the former at the start.
+    """Draw T along the walls and T_rot against time, with theory.
 
-    Theory's curves are drawn too.
+    Both are divided by the initial T along the walls.
     """
     fine = np.linspace(0.0, np.nanmax(gases.wall_time), 200)
     for kind, gas in enumerate(gases):
@@ -90,7 +90,7 @@ def _at_walls(axis: Axes, gases: Table) -> None:
 
 
 def cooling(dataset: xr.Dataset) -> Figure:
-    """Draw Haff's law, its rate, the departure of a large gas, and the final state."""
+    """Draw Haff's law, its rate, deviations of a large gas, and the final state."""
     figure, axes = style.new((2.6,), (2.4,), (2.4,), (2.8,))
     gases, clusters = Table(dataset, "gas"), Table(dataset, "clusters")
     _haff(axes[0], gases)
@@ -105,9 +105,9 @@ def cooling(dataset: xr.Dataset) -> Figure:
 
 
 def _haff(axis: Axes, gases: Table) -> None:
-    """Draw T over Haff's T_0 / (1 + t / t_H)^2.
+    """Draw T divided by Haff's law T_0 / (1 + t / t_H)^2.
 
-    The axis is 1 + t / t_H.
+    The horizontal axis is 1 + t / t_H.
     """
     style.level(axis, 1.0)
     for dimension in (2, 3):
@@ -123,9 +123,9 @@ def _haff(axis: Axes, gases: Table) -> None:
 
 
 def _rates(axis: Axes, gases: Table) -> None:
-    """Draw -d ln T / ds over (1 - e^2)/d.
+    """Draw -d ln T / ds divided by (1 - e^2)/d.
 
-    It is 1 for Maxwell's distribution, 1 + a2/4 for the cooling gas.
+    It is 1 for Maxwell's distribution, and 1 + a2/4 for the cooling gas.
     """
     style.level(axis, 1.0)
     curve = np.linspace(0.55, 1.0, 100)
@@ -139,9 +139,9 @@ def _rates(axis: Axes, gases: Table) -> None:
 
 
 def _leaving(axis: Axes, gases: Table) -> None:
-    """Draw T over Haff's, and the relative variance of the number in a cell.
+    """Draw T divided by Haff's law, and the variance of the particle number in a cell.
 
-    They are against (1 - e^2) s; the variance is relative to the elastic gas.
+    The horizontal axis is (1 - e^2) s. The variance is divided by the variance of the elastic gas.
     """
     style.level(axis, 1.0)
     inelastic = gases[gases.cluster_restitution < 1.0].sorted_by("cluster_restitution")[::-1]
@@ -159,7 +159,7 @@ def _leaving(axis: Axes, gases: Table) -> None:
 
 
 def _picture(axis: Axes, particles: Table) -> None:
-    """Draw the discs of one run at its end, to scale."""
+    """Draw the discs at the end of a run, to scale."""
     from matplotlib.collections import EllipseCollection
 
     side, diameter = particles.side, 2.0 * particles.radius
@@ -175,7 +175,7 @@ def _picture(axis: Axes, particles: Table) -> None:
 
 
 def driven_gas(ds: xr.Dataset) -> Figure:
-    """Draw steady temperature over the energy balance's, and fourth cumulant, against restitution."""
+    """Draw the steady temperature divided by theory, and the fourth cumulant."""
     figure, (upper, lower) = style.new((2.5,), (2.5,))
     table = Table(ds, "gas")
     curve = np.linspace(0.95 * table.restitution.min(), 1.0, 200)

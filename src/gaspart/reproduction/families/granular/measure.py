@@ -1,12 +1,12 @@
 """Measurements of rough, inelastic and driven gases.
 
-Rough and inelastic gases: how rotation and translation share energy, Haff's cooling, clusters.
+The first part is on rough and inelastic gases: energy of rotation and translation, Haff's cooling, clusters.
 
-Time is measured in collisions per particle, s = 2 N_coll / N. Temperatures are per degree of freedom, T_tr =
-m <v^2> / d about the centre of mass (N - 1 particles count), T_rot = I <w^2>, in units of T_tr at the start
-of the run.
+Time is measured in collisions per particle, s = 2 N_coll / N. Temperatures are energies per degree of
+freedom: T_tr = m <v^2> / d in the frame of the centre of mass (for N - 1 particles), and T_rot = I <w^2>.
+Their unit is T_tr at the start of the run.
 
-The steady state of inelastic gases that random kicks heat.
+The second part is on the steady state of inelastic gases that random kicks heat.
 """
 
 from __future__ import annotations
@@ -44,10 +44,13 @@ class Temperatures:
 
 
 def temperatures(run: Run, first: int) -> Temperatures:
-    """Return the temperatures in all frames of a run of like particles from number `first` on."""
+    """Return the temperatures in all frames of a run, for particles from number `first` on.
+
+    These particles are identical.
+    """
     count, dimension, mass = run.count, run.dimension, run.scene.species[0].mass
     translation, rotation = run.temperatures, np.zeros(len(run.time))
-    if run.scene.rough:  # of smooth particles the file may lack all but one
+    if run.scene.rough:  # for smooth particles the file may contain only one frame of spins
         total = mass * (run.velocities**2).sum(axis=(1, 2))
         rotation = (2.0 * run.data["kinetic_energy"].values - total) / ({2: 1, 3: 3}[dimension] * count)
     return Temperatures(
@@ -60,20 +63,20 @@ def temperatures(run: Run, first: int) -> Temperatures:
 
 
 def read(point: Point) -> list[Temperatures]:
-    """Return the temperatures in all replicas of a point, without their equilibration."""
+    """Return the temperatures in all replicas of a point, after equilibration."""
     first = point.schedule.equilibration_frames
     return [temperatures(run, first) for run in runs(point, first=0)]
 
 
 def law(point: Point) -> Restitution:
-    """Return the law of the contacts of a point's scene."""
+    """Return the collision law of a point's scene."""
     return point.scene.restitution or Restitution()
 
 
 def inertia(point: Point) -> float:
     """Return q = I / (m R^2) of a point's only species.
 
-    The default is that for a uniform disc or sphere.
+    The default is the value of a uniform disc or sphere.
     """
     kind = point.scene.species[0]
     if kind.moment_of_inertia is None:
@@ -82,26 +85,30 @@ def inertia(point: Point) -> float:
 
 
 RELAXED = 3.0
-"""Collisions per particle after which an inelastic gas has relaxed from Maxwell's distribution to its own."""
+"""Collisions per particle after which an inelastic gas has its own velocity distribution, instead of
+Maxwell's."""
 
 MIXING, MIXED = 0.5, 1.6
-"""Times t sqrt(k_B T / m) / h between rough walls at a distance h, up to which energy passes into spins at a
-rate that depends on the moment of inertia, and from which on the difference is below 1 %."""
+"""Reduced times t sqrt(k_B T / m) / h between rough walls at a distance h. Up to MIXING, energy passes into
+spins at a rate that depends on the moment of inertia. From MIXED on, the difference of temperatures is below
+1 %."""
 
 
 def equipartition(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure the approach of rough discs to equal energies, the equality, and its loss by dissipation.
+    """Measure equipartition of rough discs, and its violation by dissipation.
 
-    Points whose container has walls are particles that meet only these. Of the others the points whose
-    tangential restitution is below 1 are cooling, and the rest in equilibrium if they have an equilibration;
-    without, they start without spins. The setting is `steady_from`, see `_cooling`.
+    In points whose container has walls, particles hit only these. The other points belong to three groups.
+    Points with a tangential restitution below 1 are `cooling`. Of the rest, points with an equilibration are
+    in `equilibrium`; points without it are a `start` without spins. The setting is `steady_from`; see
+    `_cooling`.
 
-    Returns, over `start` and `frame`: collisions, translation, rotation, with errors; over `start`: inertia q
-    = I / (m R^2), rate and its error, of T_tr - T_rot's decay per collision of a particle at the start. Over
-    `equilibrium`: equilibrium_inertia, equilibrium_ratio T_rot / T_tr and its error. Over `cooling` and
-    `step`: cooling_collisions, cooling_ratio; over `cooling`: tangential, cooling_inertia, steady_ratio and
-    its error. Over `walls` and `moment`: wall_time, wall_translation, wall_rotation, with errors; over
-    `walls`: wall_dimension, wall_inertia, exchange and wall_ratio (see `_walls`) and their errors.
+    collisions, translation, rotation : collisions per particle; temperatures with errors (`start`, `frame`)
+    inertia, rate : q = I / (m R^2); initial decay rate of T_tr - T_rot per collision, with error (`start`)
+    equilibrium_inertia, equilibrium_ratio : q and T_rot / T_tr with error, over `equilibrium`
+    cooling_collisions, cooling_ratio : collisions per particle; T_rot / T_tr (`cooling`, `step`)
+    tangential, cooling_inertia, steady_ratio : restitution; q; steady ratio with error (`cooling`)
+    wall_time, wall_translation, wall_rotation : time and temperatures with errors, over `walls` and `moment`
+    wall_dimension, wall_inertia, exchange, wall_ratio : see `_walls`; the last two with errors, over `walls`
     """
     between = [point for point in points if not point.scene.is_periodic]
     points = [point for point in points if point not in between]
@@ -133,9 +140,10 @@ def _start(point: Point) -> dict[str, Any]:
 
 
 def _initial_decay(collisions: np.ndarray, translation: np.ndarray, rotation: np.ndarray) -> float:
-    """Fit the initial decay of ln (T_tr - T_rot) with s, by a parabola.
+    """Fit the initial decay of ln (T_tr - T_rot) by a parabola in s.
 
-    The parabola is in s, from 0 down to a fifth of the difference, whose noise is much the same at all s.
+    The fit ends when the difference is a fifth of its initial value. The noise of the difference is nearly
+    the same at all s.
     """
     difference = translation - rotation
     used = (difference > 0.2) & (collisions > 0.0)
@@ -144,15 +152,15 @@ def _initial_decay(collisions: np.ndarray, translation: np.ndarray, rotation: np
 
 
 def _equilibrium(point: Point) -> dict[str, Any]:
-    """Measure T_rot / T_tr of the mean energies in a run of conserved energy.
+    """Measure T_rot / T_tr from the mean energies in a run of conserved energy.
 
-    Errors are by blocks: frames may be correlated.
+    Errors are computed from blocks, because frames may be correlated.
     """
     replicas = read(point)
     mean = average([correlated_mean(run.rotation).estimate for run in replicas])
     translation = float(np.mean([run.translation.mean() for run in replicas]))
     ratio = mean.value / translation
-    # The energy is conserved, 2 (N-1) T_tr + N T_rot: what one has more the other has less.
+    # The energy 2 (N-1) T_tr + N T_rot is conserved: if one temperature is higher, the other is lower.
     error = mean.error / mean.value * ratio * (1.0 + 0.5 * ratio)
     return {
         "equilibrium_inertia": inertia(point),
@@ -161,14 +169,15 @@ def _equilibrium(point: Point) -> dict[str, Any]:
 
 
 def _cooling(point: Point, steady_from: float) -> dict[str, Any]:
-    """Measure the ratio of the mean temperatures of all replicas, frame by frame, and its mean.
+    """Measure the ratio of the mean temperatures in each frame, and the average ratio.
 
-    The mean is over the frames later than `steady_from` collisions per particle.
+    The temperatures are means over replicas. The average is over frames later than `steady_from` collisions
+    per particle.
     """
     replicas = read(point)
     collisions = np.mean([run.collisions for run in replicas], axis=0)
     late = collisions > steady_from
-    # Later frames are colder: each counts by its own temperature.
+    # Later frames are colder: each frame is normalised by its own temperature.
     weights = 1.0 / np.mean([run.translation for run in replicas], axis=0)[late]
     samples = np.stack([[run.rotation[late] * weights, run.translation[late] * weights] for run in replicas])
     steady = bootstrap(lambda chosen: np.divide(*chosen.mean(axis=(0, 2))), samples, repeats=200)
@@ -183,11 +192,12 @@ def _cooling(point: Point, steady_from: float) -> dict[str, Any]:
 
 
 def _walls(point: Point) -> dict[str, Any]:
-    """Measure temperatures of particles between two rough walls, over T_par at the start.
+    """Measure temperatures between two rough walls, relative to T_par at the start.
 
-    T_par = m <v^2> of each direction along the walls, and T_rot = I <w^2> of each spin that a hit changes,
-    which are as many. `exchange` is T_rot over theory's, by least squares until MIXING; `wall_ratio` is T_rot
-    / T_par after MIXED, over theory's. wall_time is t sqrt(k_B T / m) / h.
+    T_par = m <v^2> for each direction along the walls. T_rot = I <w^2> for each spin component that a hit
+    changes. There are as many such components as directions. `exchange` is the ratio of T_rot to theory, from
+    a least-squares fit until MIXING. `wall_ratio` is T_rot / T_par after MIXED, divided by theory.
+    `wall_time` is t sqrt(k_B T / m) / h.
     """
     scene = point.scene
     kind, along = scene.species[0], np.array(scene.container.periodic)
@@ -222,16 +232,22 @@ def _walls(point: Point) -> dict[str, Any]:
 
 
 def cooling(points: list[Point], settings: dict) -> xr.Dataset:
-    """Return Haff's law in dilute inelastic gases, and how a dense and large one leaves it.
+    """Measure Haff's law in dilute inelastic gases, and its violation in a dense large gas.
 
-    settings: `clustering`, the experiments of the latter; `cells_per_side`, into which its container is cut.
+    The settings are `clustering`, the experiments of the dense gas, and `cells_per_side`, the number of cells
+    along each side of its container.
 
-    Returns, over `gas` and `frame`: collisions, time (over Haff's t_H), temperature and its error; over
-    `gas`: dimension, restitution, rate and its error (-d ln T / ds, per replica between `RELAXED` and the
-    end), exponent and its error (of T against 1 + t / t_H). Over `clusters` and `step`: cluster_collisions;
-    cluster_excess, T over exp(-rate s) of theory, and its error; variance, of the number of particles in a
-    cell over its mean, and its error; over `clusters`: cluster_restitution. Over `particle`: x, y, at the end
-    of one run of the least restitution; attrs side, radius.
+    collisions, time, temperature : per particle; in Haff's t_H; with error (`gas`, `frame`)
+    dimension, restitution : properties of a gas, over `gas`
+    rate : -d ln T / ds per replica, between `RELAXED` and the end, with error, over `gas`
+    exponent : exponent of T against 1 + t / t_H, with error, over `gas`
+    cluster_collisions : collisions per particle, over `clusters` and `step`
+    cluster_excess : T divided by exp(-rate s) of theory, with error, over `clusters` and `step`
+    variance : variance of the particle number in a cell over its mean, with error (`clusters`, `step`)
+    cluster_restitution : restitution, over `clusters`
+    x, y : positions at the end of one run with the smallest restitution, over `particle`
+
+    Attributes are side and radius.
     """
     apart = [point for point in points if point.experiment in settings["clustering"]]
     dilute = [point for point in points if point not in apart]
@@ -276,7 +292,7 @@ def _clusters(point: Point, cells: int) -> dict[str, Any]:
     collisions = np.mean([run.collisions for run in replicas], axis=0)
     restitution = law(point).normal
     rate = theory.cooling_rate(restitution, scene.dimension)
-    # Of logarithms: after so many collisions replicas differ by factors.
+    # Logarithms are averaged: after so many collisions, replicas differ by large factors.
     excess, relative = means_of([np.log(run.translation) + rate * run.collisions for run in replicas])
     return {
         "cluster_restitution": restitution,
@@ -287,13 +303,13 @@ def _clusters(point: Point, cells: int) -> dict[str, Any]:
 
 
 def _number_variance(run: Run, cells: int) -> np.ndarray:
-    """Compute the variance (T,) of the number of particles in a cell, over its mean.
+    """Compute the variance (T,) of the particle number in a cell, divided by its mean.
 
     It is 1 for independent particles.
     """
     lengths = run.scene.container.lengths
     grid = Grid((0.0,) * len(lengths), lengths, (cells,) * len(lengths))
-    # Single precision may put a particle that is about to leave on the boundary itself.
+    # In single precision, a particle close to the upper boundary may lie on the boundary itself.
     where = grid.cells(run.positions, inside=True)
     counts = grid.sums(where, blocks=np.arange(len(where))).reshape(len(where), grid.size)
     return counts.var(axis=1) / counts.mean(axis=1)
@@ -312,12 +328,13 @@ def _picture(point: Point) -> xr.Dataset:
 def means(run: Run) -> dict[str, float]:
     """Compute averages of a run.
 
-    temperature : m <v^2> / d about the centre of mass, mean over the frames.
-    cumulant : d <v^4> / ((d + 2) <v^2>^2) - 1 of all velocities in these.
-    given, lost : energies per particle and time, of kicks and in contacts.
+    temperature : m <v^2> / d in the frame of the centre of mass, averaged over the frames.
+    cumulant : d <v^4> / ((d + 2) <v^2>^2) - 1 of all velocities in these frames.
+    given, lost : power per particle that kicks supply, and that collisions dissipate.
     """
     squares, dimension = (run.peculiar**2).sum(axis=2), run.dimension
-    second = squares.mean(axis=1)  # by frame, so that a temperature that fluctuates adds no cumulant
+    # computed in each frame, so that fluctuations of the temperature do not contribute
+    second = squares.mean(axis=1)
     fourth = (squares**2).mean(axis=1)
     return {
         "temperature": run.temperature,
@@ -328,10 +345,10 @@ def means(run: Run) -> dict[str, float]:
 
 
 def driven_gas(points: list[Point], settings: dict) -> xr.Dataset:
-    """Return the steady temperature and the fourth cumulant of driven gases.
+    """Measure the steady temperature and the fourth cumulant of driven gases.
 
-    Returns over `gas`: dimension, restitution, packing_fraction, count, power; temperature, cumulant, given
-    and lost (see `means`), with their errors from replicas.
+    Variables over `gas` are dimension, restitution, packing_fraction, count and power. The variables
+    temperature, cumulant, given and lost (see `means`) have errors from replicas.
     """
     units = {"temperature": "energy", **dict.fromkeys(("power", "given", "lost"), "energy / time")}
     return table("gas", points, _steady_state, units=units)

@@ -1,4 +1,4 @@
-"""Under gravity."""
+"""Figures on gases under gravity."""
 
 from gaspart.keys import POSITIVE, TEXT, count, describe, list_of, positive, record
 
@@ -7,7 +7,7 @@ CHAPTER = "Gravity, heat and walls"
 
 
 def _columns(**meanings: str) -> dict:
-    """Return the setting that names the experiment of each column."""
+    """Return the setting `columns`, which names the experiment of each column."""
     return record(
         {name: describe(TEXT, meaning, default=None) for name, meaning in meanings.items()},
         "the experiment of each column that the figure distinguishes",

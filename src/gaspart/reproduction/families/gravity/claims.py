@@ -14,11 +14,11 @@ REFERENCE = "virial series to B10 with a linear tail ([Clisby 2006])"
 EXCHANGE = "exchange of two discs of one size costs (M - m) g dz (exact at any density)"
 C = "notebooks of [source C]'s code (tms-ninja/billiards)"
 IDEAL = 0.01
-"""Packing fraction up to which a column counts as an ideal gas."""
+"""Largest packing fraction of a column that counts as an ideal gas."""
 
 
 def barometric(ds: xr.Dataset) -> list[Claim]:
-    """Return the claims on the barometric formula, the equation of state, and one temperature.
+    """Return the claims on the barometric formula, equation of state, and uniform temperature.
 
     The equation of state follows from the weight of the column.
     """
@@ -26,9 +26,10 @@ def barometric(ds: xr.Dataset) -> list[Claim]:
 
 
 def separation(ds: xr.Dataset) -> list[Claim]:
-    """Return the claims on scale heights of species, and on their ratio.
+    """Return the claims on scale heights of species, and on their density ratio.
 
-    Each species has its own scale height in a dilute gas; the ratio is exponential at any density.
+    In a dilute gas each species has its own scale height. The ratio of densities is exponential at any
+    density.
     """
     return [claim for column in Table(ds, "point") for claim in _of_two_kinds(column)]
 
@@ -38,7 +39,8 @@ def _of_one_kind(row: Row) -> list[Claim]:
         return _source_column(row)
     at = _at(row)
     if row.column == "later":
-        # Heat takes as long to cross it as a stretch lasts: only what is local is independent in each.
+        # Heat crosses the column in about the duration of a block: only local quantities are independent in
+        # each block.
         return [_balance(row, at), *_pressures(row, at)]
     discs = Table(row.dataset, "species")[0]
     return [
@@ -79,9 +81,9 @@ def _of_two_kinds(row: Row) -> list[Claim]:
 
 
 def _source_column(row: Row) -> list[Claim]:
-    """Return the claims on source C's column at its sample.
+    """Return the claims on source C's column at the time of its sample.
 
-    It is in the same state, and not yet in equilibrium.
+    Our column is in the same state. It is not yet in equilibrium.
     """
     return [
         _collisions(row),
@@ -112,7 +114,7 @@ def _source_column(row: Row) -> list[Claim]:
 def _source_mixture(row: Row) -> list[Claim]:
     """Return the claims on source C's mixture at the end of its run.
 
-    It is as far separated as the source's, and not in equilibrium.
+    Our mixture is separated to the same degree. It is not in equilibrium.
     """
     reported = Estimate(row.source_shares, row.share.error)
     return [
@@ -137,9 +139,9 @@ def _source_mixture(row: Row) -> list[Claim]:
 
 
 def _collisions(row: Row) -> Claim:
-    """Return the claim on the collisions of the source's own run until its end.
+    """Return the claim on the number of collisions of the source's run until its end.
 
-    There is one run, whose collisions are counted.
+    The number comes from a single run.
     """
     reported, count = row.source_collisions, row.collisions
     return Claim.within(
@@ -175,7 +177,7 @@ def _at(row: Row) -> str:
 
 
 def _slope(species: Row, name: str, at: str, required: float) -> Claim:
-    """Return the claim on the slope of the chemical potential of one species."""
+    """Return the claim on the slope of the chemical potential of a species."""
     return Claim(
         claim=f"slope of the chemical potential of the {name} over -m g / kT, {at}",
         measured=species.slope_ratio,
@@ -187,7 +189,7 @@ def _slope(species: Row, name: str, at: str, required: float) -> Claim:
 
 
 def _mean_height(species: Row, name: str, at: str) -> Claim:
-    """Return the claim on the mean height of one species."""
+    """Return the claim on the mean height of a species."""
     return Claim(
         claim=f"mean height of the {name} over the ideal gas's, {at}",
         measured=species.mean_height_ratio,
@@ -227,7 +229,7 @@ def _balance(row: Row, at: str) -> Claim:
 
 
 def heat_capacity(ds: xr.Dataset) -> list[Claim]:
-    """Return the claims on the heat capacity from neighbouring energies and from fluctuations."""
+    """Return the claims on the heat capacity from energy differences and from fluctuations."""
     return [claim for pair in Table(ds, "pair") for claim in _capacities(pair)]
 
 
@@ -236,7 +238,7 @@ def _capacities(pair: Row) -> list[Claim]:
     kind, at = "test" if x else "identity", f"gravity {pair.gravity:g}"
     ideal = f"d/2 + 1 - x^2 e^x/(e^x - 1)^2 = {float(ideal_heat_capacity(x, 2)):.4f}"
     finite = f"{ideal}, here for {pair.count} particles at the runs' energies"
-    rounding = Estimate(0.0, 1e-9)  # without gravity both are exact but for it
+    rounding = Estimate(0.0, 1e-9)  # without gravity both are exact except for this correction
     runs = Table(pair.dataset, "run").assign(number=[1, 2])
     return [
         Claim(

@@ -15,11 +15,11 @@ from gaspart.theory.gravity import ideal_heat_capacity, ideal_profile
 from gaspart.theory.state import compressibility_factor
 
 KNOWN = 0.1
-"""Relative errors up to which a bin of height is drawn: bins with larger ones hold hardly any particles."""
+"""Largest relative error of a bin of height that is drawn; other bins contain hardly any particles."""
 
 
 def barometric(ds: xr.Dataset) -> Figure:
-    """Draw density and temperature against height, the equation of state, and the source's column.
+    """Draw density and temperature against height, equation of state, and the source's column.
 
     The equation of state follows from the weight.
     """
@@ -54,7 +54,7 @@ def barometric(ds: xr.Dataset) -> Figure:
 
 
 def _source_columns(top: Axes, bottom: Axes, columns: list[Row]) -> None:
-    """Draw the density and temperature of the source's column, in the source's sample and later."""
+    """Draw density and temperature of the source's column, in the source's sample and later."""
     for kind, row in enumerate(columns, start=2):
         name = {"later": "later", "source": "source's sample"}[row.column]
         _density(top, row, kind, None if kind > 2 else "hydrostatics", name)
@@ -93,7 +93,7 @@ def separation(ds: xr.Dataset) -> Figure:
 
 
 def _exchange(top: Axes, bottom: Axes, columns: list[Row]) -> None:
-    """Draw the ratio of both densities against height, with the exact slope, and the residuals."""
+    """Draw the density ratio against height, with the exact slope, and residuals."""
     style.band(bottom, -3.0, 3.0)
     style.level(bottom, 0.0)
     for kind, row in enumerate(columns, start=2):
@@ -110,9 +110,9 @@ def _exchange(top: Axes, bottom: Axes, columns: list[Row]) -> None:
 
 
 def _shares(axis: Axes, row: Row) -> None:
-    """Draw fractions of the light discs in the source's mixture.
+    """Draw fractions of light discs in the source's mixture.
 
-    They are those in its run, in ours, and in equilibrium.
+    The fractions are from the source's run, from ours, and from equilibrium theory.
     """
     reported = np.array(row.source_shares)
     edges = np.linspace(0.0, row.top, len(reported) + 1)
@@ -125,15 +125,15 @@ def _shares(axis: Axes, row: Row) -> None:
 
 
 def _select_columns(ds: xr.Dataset, *names: str) -> list[Row]:
-    """Return the columns of these names, in this order; those that there are."""
+    """Return the columns with these names that exist, in this order."""
     columns = {row.column: row for row in Table(ds, "point")}
     return [columns[name] for name in names if name in columns]
 
 
 def _density(axis: Axes, row: Row, kind: int, theory: str | None, label: str) -> None:
-    """Draw density over its mean against height, with theory.
+    """Draw density divided by its mean against height, with theory.
 
-    If there are several species, species number `kind` is drawn.
+    If there are several species, the species of index `kind` is drawn.
     """
     species = kind if len(row.density) > 1 else 0
     density, mean = row.density[species], row.mean_density
@@ -150,7 +150,7 @@ def _enough_particles(density: Estimate) -> np.ndarray:
 
 
 def _temperature(axis: Axes, row: Row, kind: int) -> None:
-    """Draw the temperature at each height relative to the whole, where particles suffice."""
+    """Draw the temperature by height, relative to the entire column, in bins with enough particles."""
     seen = _enough_particles(row.density[0])
     _percent(axis, row.height[seen], row.temperature_ratio[seen], kind)
 
@@ -181,20 +181,20 @@ def heat_capacity(ds: xr.Dataset) -> Figure:
 
 
 def _expected_density(row: Row, kind: int) -> np.ndarray:
-    """Return the expected density (B,): an ideal gas's in a dilute column, else hydrostatics."""
+    """Return the expected density (B,): ideal gas in a dilute column, else hydrostatics."""
     dilute = row.packing_fraction.value.max() < IDEAL
     return _ideal(row, kind) if dilute else np.asarray(row.hydrostatic[kind])
 
 
 def _ideal(row: Row, kind: int) -> np.ndarray:
-    """Compute the density (B,) of an ideal gas of as many particles at the column's temperature."""
+    """Compute the density (B,) of an ideal gas with the column's particle number and temperature."""
     weight = row.mass[kind] * row.strength / row.temperature.value
     number = row.density.value[kind].mean() * row.top
     return np.asarray(number * ideal_profile(row.height, row.top, weight))
 
 
 def _percent(axis: Axes, x: np.ndarray, ratio: Estimate, kind: int) -> None:
-    """Draw the distance of a ratio from 1 in per cent, with its zero line."""
+    """Draw the deviation of a ratio from 1 in per cent, with a line at zero."""
     style.level(axis, 0.0)
     style.points(axis, x, 100.0 * (ratio - 1.0), kind=kind, hollow=True, markersize=2.5)
     axis.set_ylim(-4.5, 4.5)

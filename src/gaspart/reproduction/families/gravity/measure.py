@@ -1,8 +1,7 @@
 """Gases under gravity: profiles of one and of two kinds of discs, and the heat capacity.
 
-Every run is cut into blocks of time, `blocks` of a replica; the blocks of all replicas are taken as
-independent, and errors are the jackknife's over them. The temperature is always defined by the kinetic
-energy.
+Each replica is cut into `blocks` blocks of time. The blocks of all replicas are assumed independent. Errors
+are jackknife errors over the blocks. The temperature is always defined by the kinetic energy.
 """
 
 from __future__ import annotations
@@ -39,29 +38,30 @@ from gaspart.theory.state import compressibility_factor
 from gaspart.theory.tables import excess_chemical_potential
 from gaspart.trajectory.reading import open_trajectory
 
-# Results of source C's own runs under gravity, next to the numbers in its notebooks.
-#
-# The sample of such a point begins where the collisions of the source end.
+# Results of source C's own runs under gravity, for comparison with the numbers in its notebooks. The sample
+# of such a point begins at the number of collisions at which the source stops.
 
 
 _FALL = 0.3
-"""Part of the time before the sample in which the oscillation is large, and not yet harmonic."""
+"""Fraction of the time before the sample. Before this time, the oscillation is large, and not yet harmonic.
+"""
 
 
 def collisions(point: Point) -> float:
-    """Compute collisions and hits of walls before the sample, which the source counts alike."""
+    """Count collisions and wall hits before the sample.
+
+    The source counts both together.
+    """
     with open_trajectory(point.replica_path(0)) as trajectory:
         frame = trajectory.isel(frame=point.schedule.equilibration_frames)
         return float(frame["collisions"] + frame["wall_hits"].sum())
 
 
 def ringing(point: Point) -> dict[str, Estimate]:
-    """Fit the amplitude of the oscillation of the kinetic energy at the start of the sample.
+    """Fit the relative amplitude of the kinetic energy's oscillation at the start of the sample.
 
-    It is relative to the mean.
-
-    The fit is mean + e^{-t / decay} (a cos w t + b sin w t) to all frames after the fall, with t from the
-    start of the sample. The error is from the scatter of the frames.
+    The fit is mean + e^{-t / decay} (a cos w t + b sin w t) to all frames after the fall. The time t starts
+    at the sample. The amplitude is divided by the mean. The error follows from the scatter of the frames.
     """
     begin = point.schedule.equilibration
     with open_trajectory(point.replica_path(0)) as trajectory:
@@ -85,8 +85,8 @@ def ringing(point: Point) -> dict[str, Estimate]:
 def layer_fractions(point: Point, layers: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Compute the fraction of the first species in equal layers of the container, (layers,).
 
-    Its error is the binomial one of a single frame: the frames of one sample are close to each other, and so
-    are their compositions of a layer. The source has one frame.
+    The error is the binomial error of a single frame. Frames of one sample are close in time, so that the
+    composition of a layer is nearly the same in all. The source has one frame.
     """
     column, [sample] = field(point), stretches(point, 1)
     grid = Grid.line(-0.5 * column.diameter, column.height + 0.5 * column.diameter, layers)
@@ -106,14 +106,13 @@ INNER = {
     "range_ratio": ("range",),
     "share": ("layer",),
 }
-"""The further dimensions of the arrays of `profiles`."""
+"""Dimensions, in addition to point, of the arrays of `profiles`."""
 
 
 def barometric(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure density, temperature and pressure against height of one kind of discs.
+    """Measure density, temperature and pressure against height for one kind of discs.
 
-    See `profiles`. The settings also have `source_collisions` and `source_temperature`, of the source's
-    sample.
+    See `profiles`. Further settings are `source_collisions` and `source_temperature` of the source's sample.
     """
     dataset = profiles(points, settings, ringing)
     return dataset.assign_attrs(
@@ -124,8 +123,8 @@ def barometric(points: list[Point], settings: dict) -> xr.Dataset:
 def separation(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure profiles of heavy and light discs of one size, and the slope of their ratio.
 
-    See `profiles`. The settings also have `source_collisions` before the source's sample, and `source_shares`
-    in it, of the light discs in equal layers of the container.
+    See `profiles`. Further settings are `source_collisions`, the number before the source's sample, and
+    `source_shares`, the fractions of light discs in equal layers of the container.
     """
     shares = settings["source_shares"]
     dataset = profiles(points, settings, lambda point: layer_fractions(point, len(shares)))
@@ -135,16 +134,24 @@ def separation(points: list[Point], settings: dict) -> xr.Dataset:
 def profiles(points: list[Point], settings: dict, of_source: Callable[[Point], dict]) -> xr.Dataset:
     """Measure columns of discs of one size under gravity, point by point.
 
-    The settings are `bins` of height; `blocks`, the time blocks of each replica; `clear`, the diameters next
-    to floor and ceiling that are left out of every comparison (layers there are real, and not hydrostatics);
-    `ranges`, pairs of packing fractions between which the equation of state is averaged; `columns`, the
-    experiment of each column by name. `of_source` returns further numbers of the column "source".
+    The settings are:
 
-    Dimensions point, species, bin, range, layer (of the source's shares). `pressure_ratio` is the pressure
-    that carries the weight above, over rho T Z(eta) of the reference; `slope_ratio` is the slope of ln eta_i
-    + mu_excess against height over -m_i g / T; `exchange_ratio` is the slope of ln (eta_1 / eta_0) over -(m_1
-    - m_0) g / T, which for particles of one size is exact at any density: given their places, which of them
-    is heavy has no other energy.
+    bins : number of bins of height
+    blocks : number of time blocks of each replica
+    clear : distance from floor and ceiling, in diameters, that is left out of comparisons because of layers
+    ranges : pairs of packing fractions between which the equation of state is averaged
+    columns : experiment of each column, by name
+
+    `of_source` returns further numbers of the column "source".
+
+    The dimensions are point, species, bin, range, and layer (for the source's shares). Variables include:
+
+    pressure_ratio : pressure that supports the weight above, divided by rho T Z(eta) of the reference
+    slope_ratio : slope of ln eta_i + mu_excess against height, divided by -m_i g / T
+    exchange_ratio : slope of ln (eta_1 / eta_0), divided by -(m_1 - m_0) g / T
+
+    The exchange ratio of particles of one size is exact at any density. For given positions, the energy of
+    interaction does not depend on which particles are heavy.
     """
     names = {experiment: name for name, experiment in settings["columns"].items()}
 
@@ -161,15 +168,13 @@ def profiles(points: list[Point], settings: dict, of_source: Callable[[Point], d
 
 @dataclass(frozen=True)
 class Bins:
-    """Bins of height of one column, and quantities that follow from averages in them.
+    """Bins of height of one column, and quantities computed from averages in the bins.
 
-    column : the column and its particles.
-    masses : (S,), masses of its species.
-    height, width : (B,) heights of the middles, width of each.
-    used : (B,), bins that are clear of floor and ceiling.
+    column : the column and its particles. masses : (S,), masses of the species. height, width : (B,), heights
+    of the middles of bins, and width of a bin. used : (B,), True for bins away from floor and ceiling.
 
-    Arguments of the methods are averages over time: density (S, B); energy (B,), density times temperature;
-    pressure (B,); temperature, of the entire column.
+    Arguments of the methods are averages over time: density (S, B), energy (B,), which is density times
+    temperature, pressure (B,), and the temperature of the entire column.
     """
 
     column: Field
@@ -180,7 +185,7 @@ class Bins:
 
     @classmethod
     def of(cls, column: Field, number: int, clear: float) -> Bins:
-        """Return `number` bins; those within `clear` diameters of floor and ceiling are not used."""
+        """Return `number` bins; bins within `clear` diameters of floor or ceiling are not used."""
         grid = Grid.line(0.0, column.height, number)
         height, width = grid.middles[0], grid.volume
         margin = clear * column.diameter + 0.5 * width
@@ -189,15 +194,15 @@ class Bins:
         return cls(column, np.array(masses), height, width, used)
 
     def packing_fraction(self, density: np.ndarray) -> np.ndarray:
-        """Compute the packing fraction (B,) of all species."""
+        """Compute the total packing fraction (B,) of all species."""
         return density.sum(axis=0) * particle_volume(2, self.column.diameter)
 
     def pressure_ratio(self, density: np.ndarray, pressure: np.ndarray, energy: np.ndarray) -> np.ndarray:
-        """Compute pressure (B,) over the reference at this density and temperature."""
+        """Compute pressure (B,) divided by the reference at this density and temperature."""
         return pressure / (energy * compressibility_factor(self.packing_fraction(density), 2))
 
     def slope_ratio(self, density: np.ndarray, temperature: float) -> np.ndarray:
-        """Compute slopes of ln eta_i + mu_excess(eta) over -m_i g / T, shape (S,)."""
+        """Compute slopes of ln eta_i + mu_excess(eta), divided by -m_i g / T, shape (S,)."""
         volume = particle_volume(2, self.column.diameter)
         excess = excess_chemical_potential(self.packing_fraction(density), 2)
         with np.errstate(divide="ignore"):
@@ -205,7 +210,7 @@ class Bins:
         return -np.array(slopes) * temperature / (self.masses * self.column.strength)
 
     def log_ratio(self, density: np.ndarray) -> np.ndarray:
-        """Compute ln of the last over the first species' density, shape (B,)."""
+        """Compute ln of the last species' density divided by the first species' density, (B,)."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.log(density[-1] / density[0])
 
@@ -217,21 +222,24 @@ class Bins:
         return -slope * temperature / ((self.masses[-1] - self.masses[0]) * self.column.strength)
 
     def temperature_gradient(self, energy: np.ndarray, density: np.ndarray) -> float:
-        """Compute dT/dz over the mean weight of a particle.
+        """Compute dT/dz divided by the mean weight of a particle.
 
-        It is d ln T / dz in scale heights.
+        It equals d ln T / dz in units of the inverse scale height.
         """
         total = density.sum(axis=0)
         return self._slope(energy / total, total) / (self.column.weight / len(self.column.masses))
 
     def mean_height_ratio(self, height: np.ndarray, temperature: float) -> np.ndarray:
-        """Compute mean heights (S,) relative to ideal gases."""
+        """Compute mean heights (S,) divided by those in ideal gases."""
         return height / ideal_mean_height(
             self.column.height, self.masses * self.column.strength / temperature
         )
 
     def exchange_line(self, value: np.ndarray, error: np.ndarray, temperature: float) -> np.ndarray:
-        """Compute `log_ratio` (B,) for the exact slope, through its weighted mean over used bins."""
+        """Compute a line for `log_ratio` (B,) with the exact slope.
+
+        The line passes through the weighted mean over the used bins.
+        """
         line = -(self.masses[-1] - self.masses[0]) * self.column.strength / temperature * self.height
         usable = self.used & np.isfinite(error) & (error > 0.0)
         if self.masses.size < 2 or not usable.any():
@@ -239,9 +247,9 @@ class Bins:
         return line + np.average((value - line)[usable], weights=1.0 / error[usable] ** 2)
 
     def hydrostatics(self, density: np.ndarray, temperature: float) -> np.ndarray:
-        """Compute hydrostatic densities (S, B) with the actual numbers in the used bins.
+        """Compute hydrostatic densities (S, B) with the actual numbers of particles in used bins.
 
-        The numbers are of particles of each kind.
+        There is a number for each species.
         """
         first, last = np.flatnonzero(self.used)[[0, -1]]
         z = np.linspace(first, last + 1, 8 * (last - first + 1) + 1) * self.width
@@ -253,7 +261,7 @@ class Bins:
         return densities
 
     def _slope(self, y: np.ndarray, weight: np.ndarray) -> float:
-        """Fit the slope of the line through the used bins that have particles.
+        """Fit the slope of a line to the used bins that have particles.
 
         Variances are proportional to 1 / weight.
         """
@@ -268,7 +276,7 @@ def _column(point: Point, settings: dict) -> dict[str, Any]:
     parts = [profile(column, stretch, settings["bins"]) for stretch in blocks]
     density = np.array([part.density for part in parts])
     pressure = np.array([part.pressure for part in parts])
-    # A block without particles in a bin has no temperature there, and weight 0.
+    # A block without particles in a bin has no temperature in this bin, and weight 0.
     energy = np.array([np.nan_to_num(part.temperature) * part.density.sum(axis=0) for part in parts])
     warm = np.array([stretch.temperature for stretch in blocks])
     own = [column.species == n for n in range(bins.masses.size)]
@@ -314,17 +322,16 @@ def _column(point: Point, settings: dict) -> dict[str, Any]:
 
 
 def heat_capacity(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure the heat capacity of a dilute gas in a box, in two ways.
+    """Measure the heat capacity of a dilute gas under gravity in a box, in two ways.
 
-    The box has a finite height.
+    The box has a finite height H. The heat capacity is a function of x = m g H / (k_B T).
 
-    It is against x = m g H / (k_B T).
+    Points come in pairs: one scene at two energies. The first method is C = dE/dT. The second method uses the
+    fluctuations of the kinetic energy in each run at constant energy, `lebowitz_percus_verlet`. Variables
+    `..._expected` are exact values for an ideal gas with the same particle number and energy. The setting is
+    `blocks` of each replica.
 
-    Points come in pairs of one scene at two energies. From them, C = dE/dT; and from the fluctuations of the
-    kinetic energy in each run, at constant energy, `lebowitz_percus_verlet`. Both are exact for an ideal gas
-    of as many particles and the same energy, `..._expected`. The setting is `blocks` of each replica.
-
-    Dimensions pair, run (of a pair). Raises ValueError for points that are not such pairs.
+    The dimensions are pair and run (of a pair). Raises ValueError for points that are not such pairs.
     """
     if len(points) % 2:
         raise ValueError(f"points: {len(points)} (must be pairs)")
@@ -355,7 +362,7 @@ def _pair(ends: tuple[dict, dict]) -> dict[str, Any]:
 
 
 def _energies(point: Point, blocks: int) -> dict[str, Any]:
-    """Measure temperature and fluctuations of one point of a single replica, and expect them."""
+    """Measure temperature and fluctuations of a point with one replica, with expected values."""
     column, scene = field(point), point.scene
     if point.replicas != 1 or column.across:
         raise ValueError(f"{point.path}: must be one run between walls, whose energy is known")
@@ -366,7 +373,7 @@ def _energies(point: Point, blocks: int) -> dict[str, Any]:
     [kinetic] = [run.data["kinetic_energy"].values[1:] for run in runs(point)]
     parts = kinetic[: len(kinetic) // blocks * blocks].reshape(blocks, -1) / count
 
-    shift = parts.mean()  # the squares of the deviations lose no digits where the energy hardly changes
+    shift = parts.mean()  # squares of deviations lose no digits when the energy hardly changes
     fluctuation = jackknife(
         lambda mean, square: lebowitz_percus_verlet(
             count * (mean + shift), count**2 * (square - mean**2), count, 2

@@ -1,4 +1,4 @@
-"""Heat between walls."""
+"""Figures on heat conduction between walls."""
 
 from gaspart.keys import count, positive
 

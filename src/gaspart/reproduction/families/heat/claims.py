@@ -1,4 +1,4 @@
-"""Claims about heat between walls."""
+"""Claims about heat conduction between walls."""
 
 from __future__ import annotations
 
@@ -14,13 +14,14 @@ from gaspart.theory.heat import ELEMENTARY_JUMP, METAL_BEND, METAL_BEND_ERROR, M
 FREE = 100.0
 """Knudsen number above which collisions between particles are negligible."""
 CHANNELS = 0.1
-"""The most that the channels of a grid may add to the flux among scatterers at random places. Electrons
-that fly from wall to wall add w/a (sqrt(1 + (L/w)^2) - L/w) = 0.008 of the flux of free flight, 0.06 of it
-(gap L = 40, channels of width w = 1.18 at each a = 2.22); the rest is for flights that end on the way."""
+"""Upper bound of the relative increase of the flux by channels of a grid, compared with randomly placed
+scatterers. Electrons that fly from wall to wall add w/a (sqrt(1 + (L/w)^2) - L/w) = 0.008 of the flux of free
+flight. This is 0.06 of the flux (gap L = 40, channels of width w = 1.18 with period a = 2.22). The rest of
+the bound is for flights that end in the gap."""
 
 
 def heat_conduction_gas(ds: xr.Dataset) -> list[Claim]:
-    """Return the claims on a steady flux, its limits, the profile, and the source's rule."""
+    """Return the claims on steady flux, limits, profile, and the source's rule."""
     claims = []
     for row in Table(ds, "point"):
         at = _at(row)
@@ -38,9 +39,9 @@ def _at(row: Row) -> str:
 
 
 def _steady(row: Row, at: str) -> list[Claim]:
-    """Return the claims that the heat from the hot wall goes into the cold one.
+    """Return the claims that the heat from the hot wall enters the cold wall.
 
-    It does so early and late.
+    There is a claim early in the run, and one late.
     """
     conserved = Claim.at_most(
         claim=f"|heat from the walls - energy of the particles| over the transferred heat, {at}",
@@ -63,7 +64,8 @@ def _steady(row: Row, at: str) -> list[Claim]:
         )
         for kind, text, name, required, fails_if in (
             (
-                "identity",  # both are counted where particles meet walls: they differ by what the gas stores
+                # both fluxes are counted at wall hits: they differ by the energy that the gas stores
+                "identity",
                 "flux into the cold over flux out of the hot wall",
                 "wall_ratio",
                 0.02,
@@ -131,7 +133,7 @@ def _fluid(row: Row, at: str) -> list[Claim]:
 def heat_conduction_metal(ds: xr.Dataset) -> list[Claim]:
     """Return the claims on equipartition, Dulong and Petit's law, and effects of a grid.
 
-    Equipartition is among electrons and modes.
+    Equipartition is between electrons and vibrational modes.
     """
     points = Table(ds, "point")
     law = f"N_e d/2 + N_s = {points.expected[0]:g} (classical statistical mechanics, exact)"
@@ -181,10 +183,11 @@ def _local(row: Row) -> Claim:
 
 
 def _linear(row: Row) -> list[Claim]:
-    """Return the claims on the bend of the temperature against position.
+    """Return the claims on the curvature of the temperature profile.
 
-    In a gas T^(3/2) would be linear. There is no claim on a grid: where channels let electrons fly far, their
-    temperature is not a local one; nor on walls and gaps for which theory has not been computed.
+    In a gas T^(3/2) would be linear. There is no claim on a grid: electrons fly far in channels, so that
+    their temperature is not local. There is no claim on walls and gaps for which theory has not been
+    computed.
     """
     if row.hot != 2.0 * row.cold or abs(row.gap_over_path / METAL_GAP - 1.0) > 0.1:
         return []

@@ -15,15 +15,15 @@ from gaspart.reproduction.table import Row, Table
 from gaspart.theory.heat import conducting_slab
 
 FREE_MOLECULAR = 100.0
-"""Knudsen number above which points are drawn at a separate place, as infinity."""
+"""Knudsen number above which points are drawn separately, at infinity."""
 NOISY = 0.03
-"""Relative error from which on a density profile is not drawn."""
+"""Relative error above which a density profile is not drawn."""
 
 
 def heat_conduction_gas(ds: xr.Dataset) -> Figure:
-    """Draw flux against density and Knudsen number, the approach, and profiles.
+    """Draw flux against density and Knudsen number, the approach to a steady state, profiles.
 
-    The flux is also drawn relative to free flight; the profiles are of temperature and of density.
+    The flux is also drawn relative to free flight. The profiles are of temperature and of density.
     """
     figure, axes = style.new((2.5,), (2.3,), (1.8,), (2.7, 1.3, 2.6))
     flux, share, start, warm, off, dense = axes
@@ -46,7 +46,7 @@ def heat_conduction_gas(ds: xr.Dataset) -> Figure:
 
 
 def _fluxes(axis: Axes, gases: Table) -> None:
-    """Draw the flux against density, with both limits."""
+    """Draw the flux against density, with its two limits."""
     first, number = gases[0], np.geomspace(5e-4, 0.08, 100)
     free, fourier = number / first.number * first.full, first.fourier
     axis.plot(number, 1e3 * free, color=style.GREY, label="free flight")
@@ -69,12 +69,12 @@ def _fluxes(axis: Axes, gases: Table) -> None:
 
 @cache
 def _conducted_flux(length: float, number: float, hot: float, cold: float) -> float:
-    """Compute the flux of `conducting_slab`, which takes a second."""
+    """Compute the flux of `conducting_slab`; each value takes a second."""
     return conducting_slab(length, number, hot, cold).flux
 
 
 def _shares(axis: Axes, gases: Table) -> None:
-    """Draw flux, relative to free flight, against the Knudsen number; the thinnest gases at infinity."""
+    """Draw flux over free flight, against Knudsen number; the thinnest gases are at infinity."""
     end = 20.0
     for level in (1.0, 2.0 / 3.0, 0.5):
         style.level(axis, level)
@@ -94,7 +94,7 @@ def _shares(axis: Axes, gases: Table) -> None:
 
 
 def _approach(axis: Axes, gas: Row) -> None:
-    """Draw the difference of temperature between the halves of one gas, from the start on."""
+    """Draw the temperature difference between the halves of a gas against time."""
     look: dict[str, Any] = {"hollow": True, "markersize": 2.5, "label": rf"$l/L = {gas.knudsen:.2g}$"}
     style.points(axis, gas.approach_time, gas.approach, **look)
     theory: dict[str, Any] = {"color": style.DATA, "zorder": 4, "label": "heat equation"}
@@ -104,7 +104,7 @@ def _approach(axis: Axes, gas: Row) -> None:
 
 
 def _profiles(warm: Axes, off: Axes, dense: Axes, gas: Row, kind: int) -> None:
-    """Draw the temperature of one gas, its deviation from theory, and its density."""
+    """Draw the temperature of a gas, its deviation from theory, and its density."""
     position = gas.position / gas.length
     small: dict[str, Any] = {"kind": kind, "hollow": True, "markersize": 2.5}
     style.points(warm, position, gas.temperature, label=rf"$l/L = {gas.knudsen:.2g}$", **small)
@@ -123,7 +123,7 @@ def _profiles(warm: Axes, off: Axes, dense: Axes, gas: Row, kind: int) -> None:
 def heat_conduction_metal(ds: xr.Dataset) -> Figure:
     """Draw temperatures of electrons and modes between two walls, and energy.
 
-    The electrons are among scatterers at random positions; the energy is against temperature.
+    The electrons move between scatterers at random positions. The energy is drawn against temperature.
     """
     figure, (top, bottom, off) = style.new((3.0,), (2.2, 1.2))
     points = Table(ds, "point")

@@ -1,7 +1,7 @@
-"""Gap between two thermal walls: size, averages over blocks of time, approach to a steady state.
+"""Gap between two thermal walls: geometry, block averages, approach to a steady state.
 
-The averages are of its particles and walls. The walls are the two faces of the first axis. Positions count
-from the hot one on, where centres can be.
+The averages are of particles in the gap, and of its walls. The walls are the two faces of the first axis.
+Positions are measured between particle centres and the lowest position at the hot wall.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ from gaspart.theory.heat import TEMPERATURE_JUMP, Slab, steady_part
 class Gap:
     """Gap between the walls.
 
-    length : length in which centres can be.
+    length : length that is accessible to centres.
     area : area of a wall.
-    hot, cold : temperatures of the walls; the hot one is x_low.
+    hot, cold : temperatures of the walls; the hot wall is x_low.
     dimension : dimension.
     """
 
@@ -56,14 +56,12 @@ class Gap:
 class Averages:
     """Averages over K time blocks.
 
-    heat_in, heat_out : (K,), heat fluxes out of the hot and into the cold wall.
+    heat_in, heat_out : (K,), heat flux out of the hot wall, and heat flux into the cold wall.
     density : (K, B), particles in bins, per volume.
-    energy : (K, B), their energy per volume, as a temperature.
-    imbalance : largest difference between the energy given by the walls and the energy gained by the
-        particles, over the heat conducted.
-    stored : (R, K/R + 1, 2), the particles' energy, and its first moment about the middle, at the ends of the
-        blocks of each replica.
-    heat : heat conducted in all.
+    energy : (K, B), energy of the particles per volume, as a temperature.
+    imbalance : largest difference between supplied energy and gained energy, over the conducted heat.
+    stored : (R, K/R + 1, 2), particles' energy and its first moment about the middle, at ends of blocks.
+    heat : total conducted heat.
     """
 
     heat_in: np.ndarray
@@ -75,18 +73,18 @@ class Averages:
     heat: float
 
     def flux(self, blocks: slice = slice(None)) -> Estimate:
-        """Compute the steady flux, from the mean of both walls in some of the blocks.
+        """Compute the steady flux from the mean of both walls, in the chosen blocks.
 
-        Changes and motions of the energy of the particles, which are bounded, are removed.
+        Changes and displacements of the particles' energy are bounded. Their contributions are removed.
         """
         changes = np.diff(self.stored, axis=1).reshape(-1, 2)[blocks]
         return steady_mean(0.5 * (self.heat_in + self.heat_out)[blocks], *changes.T)
 
     def wall_ratio(self) -> Estimate:
-        """Compute the heat into the cold wall over the heat out of the hot wall.
+        """Compute the heat into the cold wall divided by the heat out of the hot wall.
 
-        They differ by the energy that the particles have gained (exact), in a steady state the difference of
-        independent energies at both ends of a replica.
+        Both differ exactly by the energy that the particles gained. In a steady state, this is the difference
+        of independent energies at both ends of a replica.
         """
         replicas, ends, _ = self.stored.shape
         spread = self.stored[:, :, 0].std(axis=1, ddof=1)
@@ -97,9 +95,9 @@ class Averages:
 def averages(point: Point, gap: Gap, blocks: int, bins: int) -> Averages:
     """Average over the measured part of all replicas of particles of mass 1.
 
-    Each replica is cut into `blocks`.
+    Each replica is cut into `blocks` blocks.
 
-    Raises ValueError for too few frames.
+    Raises ValueError if there are too few frames.
     """
     radius = point.scene.smallest_radius
     heats, densities, energies, missing, stored, conducted = [], [], [], [], [], 0.0
@@ -122,13 +120,12 @@ def averages(point: Point, gap: Gap, blocks: int, bins: int) -> Averages:
     return Averages(-into_hot, into_cold, *profiles, float(max(missing)), np.array(stored), float(conducted))
 
 
-# Approach of a gas between a hot and a cold wall to its steady state.
-#
-# It starts at one temperature.
+# Approach to the steady state of a gas between a hot and a cold wall. Initially the gas has a single
+# temperature.
 
 
 FRAMES = 40
-"""First frames of a run that show the approach."""
+"""Number of frames at the start of a run that show the approach."""
 HEAT_CAPACITY = 2.5
 """Heat capacity of a particle at constant pressure, in a dilute gas of spheres."""
 
@@ -136,18 +133,19 @@ HEAT_CAPACITY = 2.5
 NO_APPROACH = dict.fromkeys(
     ("approach_time", "approach", "approach_error", "expected_approach"), np.full(FRAMES, np.nan)
 )
-"""Result of `approach` for gases that it does not describe."""
+"""Result of `approach` for gases for which it is not defined."""
 
 
 def approach(point: Point, slab: Slab) -> dict[str, np.ndarray]:
-    """Measure the difference of temperature between the halves of a gas, in its first frames.
+    """Measure the temperature difference between the halves of a gas, in its first frames.
 
-    It is the temperature of the particles nearer to the hot wall minus the temperature of the others, in a
-    gas of spheres of mass 1 whose steady state is `slab`.
+    The result is the temperature of the particles nearer to the hot wall, minus the temperature of the
+    others. The gas consists of spheres of mass 1. Its steady state is `slab`.
 
-    Returns approach_time, approach, approach_error and expected_approach, (FRAMES,) each, with NaN beyond the
-    end of a short run: the mean over replicas; its standard error for Maxwellian velocities, the squares of
-    whose components have the relative variance 2; and the value of the heat equation.
+    Returns approach_time, approach, approach_error and expected_approach, with shape (FRAMES,) each, and NaN
+    beyond the end of a short run. `approach` is the mean over replicas. Its standard error is computed for
+    Maxwellian velocities; squares of their components have the relative variance 2. `expected_approach` is
+    the value by the heat equation.
     """
     scene = point.scene
     middle = scene.smallest_radius + 0.5 * slab.position[-1]
@@ -175,10 +173,10 @@ def approach(point: Point, slab: Slab) -> dict[str, np.ndarray]:
 
 
 def expected_approach(time: np.ndarray, slab: Slab, density: float, diameter: float) -> np.ndarray:
-    """Compute the difference of the halves' temperatures by the heat equation.
+    """Compute the temperature difference between the halves by the heat equation.
 
-    The conductivity is that at the mean density and temperature. The difference ends at its value in the
-    steady `slab`; jumps at the walls lengthen the gap.
+    The conductivity is taken at the mean density and temperature. The difference converges to its value in
+    the steady `slab`. Temperature jumps at the walls increase the effective gap.
     """
     hot = slab.position < 0.5 * slab.position[-1]
     steady = _average(slab, hot) - _average(slab, ~hot)
@@ -190,6 +188,6 @@ def expected_approach(time: np.ndarray, slab: Slab, density: float, diameter: fl
 
 
 def _average(slab: Slab, side: np.ndarray) -> float:
-    """Compute the mean temperature of the particles of one half."""
+    """Compute the mean temperature of the particles in one half."""
     position, number = slab.position[side], slab.density[side]
     return float(np.trapezoid(number * slab.temperature[side], position) / np.trapezoid(number, position))

@@ -1,7 +1,7 @@
-"""Heat between two walls, through gases and metals: fluxes, profiles, and specific heat.
+"""Heat conduction between two walls in gases and metals: fluxes, profiles, specific heat.
 
-Positions are defined by `gap`. Runs are cut into blocks of time, whose averages are taken as independent;
-errors are the jackknife's.
+Positions are defined by `gap`. Runs are cut into blocks of time. The averages of blocks are assumed
+independent. Errors are jackknife errors.
 """
 
 from __future__ import annotations
@@ -26,26 +26,33 @@ from gaspart.theory.geometry import packing_fraction
 from gaspart.theory.heat import Slab, conducting_slab, dilute_fourier_flux, free_molecular_flux
 
 FLUID = 0.1
-"""Knudsen number up to which a gas is compared with Fourier's law."""
+"""Largest Knudsen number of a gas that is compared with Fourier's law."""
 _PROFILES = ("position", "used", "density", "temperature", "slab_density", "slab_temperature")
 INNER = dict.fromkeys(_PROFILES, ("bin",)) | {name.removesuffix("_error"): ("frame",) for name in NO_APPROACH}
-"""The further dimension of the arrays of `heat_conduction_gas`."""
+"""Dimensions, in addition to point, of the arrays of `heat_conduction_gas`."""
 
 
 def heat_conduction_gas(points: list[Point], settings: dict) -> xr.Dataset:
-    """Return the heat flux through gases of one kind of particles, and their profiles.
+    """Measure the heat flux through gases of one kind of particles, and their profiles.
 
-    settings: `bins` across the gap; `blocks` of each replica; `clear`, the mean free paths next to the walls
-    that are left out where profiles are compared with Fourier's law.
+    The settings are `bins` across the gap, `blocks` of each replica, and `clear`. `clear` is a distance from
+    the walls, in mean free paths; this region is left out of comparisons with Fourier's law.
 
-    Dimensions point, bin; `_error` and `_freedom`, the degrees of freedom of the error. `flux` is the steady
-    flux through both walls, `wall_ratio` cold over hot, `half_ratio` the second over the first half of the
-    run; `free` and `fourier` theory's fluxes for particles that collide with nothing but walls, and for a gas
-    so dilute that only its conductivity counts. Where the Knudsen number is below FLUID, three dimensions,
-    walls of full accommodation: `slab_flux` of Fourier's law with jumps, its profiles, `profile_ratio` the
-    mean of T over it, and `jump`, the temperature jumps in units of the mean free path times the slope:
-    T^(3/2), a straight line away from the walls, continued to both of them. Of these gases, over `frame`, how
-    they come to the steady state (see `approach`): approach_time, approach, and expected_approach.
+    The dimensions are point and bin. The suffix `_freedom` marks the degrees of freedom of an error `_error`.
+
+    flux : steady flux through both walls
+    wall_ratio : flux into the cold wall divided by the flux out of the hot wall
+    half_ratio : flux in the second half of the run divided by the flux in the first half
+    free : theoretical flux of particles that collide only with walls
+    fourier : theoretical flux of a gas so dilute that only its conductivity matters
+
+    Further variables are for gases in three dimensions between walls of full accommodation, at Knudsen
+    numbers below FLUID.
+
+    slab_flux : flux by Fourier's law with temperature jumps, with its profiles
+    profile_ratio : mean of T divided by this theory
+    jump : mean temperature jump over mean free path times slope, by linear extrapolation of T^(3/2)
+    approach_time, approach, expected_approach : approach to the steady state over `frame`; see `approach`
     """
     return table("point", points, _gas, settings, inner=INNER)
 
@@ -92,7 +99,7 @@ def _gas(point: Point, settings: dict) -> dict[str, Any]:
 
 
 def _against(slab: Slab, gap: Gap, means: Averages, used: np.ndarray, diameter: float) -> dict[str, Any]:
-    """Compare with Fourier's law with jumps, in the bins that are `used`."""
+    """Compare with Fourier's law with jumps, in the `used` bins."""
     position, freedom = gap.grid(used.size).middles[0], len(means.heat_in) - 1
     temperature = np.interp(position, slab.position, slab.temperature)
 
@@ -112,9 +119,9 @@ def _against(slab: Slab, gap: Gap, means: Averages, used: np.ndarray, diameter: 
 
 
 def _jump(gap: Gap, position: np.ndarray, energy: np.ndarray, density: np.ndarray, diameter: float) -> float:
-    """Compute the mean over the walls of |T_gas - T_wall| / (l dT/dx).
+    """Compute the mean over both walls of |T_gas - T_wall| / (l dT/dx).
 
-    The bins (B,) are away from the walls.
+    The temperature of the gas is extrapolated from bins (B,) away from the walls.
     """
     slope, start = np.polyfit(position, (energy / density) ** 1.5, 1)
     power = start + slope * np.array([0.0, gap.length])
@@ -127,22 +134,29 @@ def _jump(gap: Gap, position: np.ndarray, energy: np.ndarray, density: np.ndarra
 def heat_conduction_metal(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure electrons among fixed vibrating scatterers between two walls.
 
-    Electrons are all particles that move. Profiles are measured between walls of two temperatures, the
-    specific heat between walls of one.
+    Electrons are all moving particles. Profiles are measured between walls of different temperatures. The
+    specific heat is measured between walls of equal temperature.
 
-    The settings are `bins` across the gap; `blocks` of a run. Several replicas, which differ in the places of
-    their scatterers if these are random, are one block each: their scatter is the uncertainty. `expected` is
-    the heat capacity N_e d/2 + N_s, `electrons_part` the part of the electrons.
+    The settings are `bins` across the gap, and `blocks` of a run. If there are several replicas, each is one
+    block, and their scatter is the uncertainty. They differ in the positions of their scatterers, if these
+    are random.
 
-    Dimensions point, bin: electrons, the temperature of the electrons; modes, the mean energy of a mode; and
-    `share`, the mean over the bins of modes over electrons; `bend`, the second-order coefficient of the
-    electrons' temperature against position; hot, cold, flux, position. Over point too: energy_ratio, E / T
-    over the expected heat capacity, log_fluctuation, the logarithm of var E / T^2 over it (both with T of the
-    walls, and NaN between different ones; the variance about the known mean, which has no bias where samples
-    are correlated, and whose logarithm is closer to Gaussian), mode_ratio, the mean energy of all modes over
-    T. `slope` is dE/dT over the expected, from a line through the points in equilibrium, of which there must
-    be two. `regular` are points whose scatterers are given one by one, on a grid, instead of placed at
-    random.
+    The dimensions are point and bin.
+
+    electrons : temperature of the electrons, over point and bin
+    modes : mean energy of a vibrational mode, over point and bin
+    share : `modes` divided by `electrons`, averaged over bins
+    bend : second-order coefficient of the electrons' temperature against position
+    hot, cold, flux, position : temperatures of the walls, heat flux, and positions
+    expected : heat capacity N_e d/2 + N_s, with the part `electrons_part` of the electrons
+    energy_ratio : E / T divided by `expected`, with T of the walls; NaN for different walls
+    log_fluctuation : ln of var E / T^2 divided by `expected`; NaN for different walls
+    mode_ratio : mean energy of all modes divided by T
+    slope : dE/dT divided by `expected`, from a line through the points in equilibrium, at least two
+    regular : True if scatterers are listed one by one, on a grid, instead of placed at random
+
+    The variance of E is computed about the known mean. It then has no bias for correlated samples. Its
+    logarithm is closer to a Gaussian number.
     """
     ds = table("point", points, _metal, settings, inner=("bin",))
     metals = Table(ds, "point")
@@ -211,17 +225,17 @@ def _metal(point: Point, settings: dict) -> dict[str, Any]:
 def _path(scene: Scene, gap: Gap, fixed: np.ndarray) -> float:
     """Compute the mean free path of electrons among discs.
 
-    It is pi times the free area over the discs' perimeter (exact).
+    It is exactly pi times the free area, divided by the total perimeter of the discs.
     """
     contact = per_particle(scene, "radius")[fixed] + scene.smallest_radius
     return float((gap.length * gap.area - np.pi * np.sum(contact**2)) / (2.0 * np.sum(contact)))
 
 
 def _bend(kinetic: np.ndarray, number: np.ndarray) -> float:
-    """Fit the second-order coefficient of the temperature against position over the gap.
+    """Fit the second-order coefficient of the temperature against position in the gap.
 
-    The sums are in bins, without the outermost, where electrons come from a wall directly; NaN for fewer than
-    five bins.
+    `kinetic` and `number` are sums in bins. The outermost bins are left out, because electrons come directly
+    from the walls there. The result is NaN for fewer than five bins.
     """
     if number.size < 5:
         return np.nan

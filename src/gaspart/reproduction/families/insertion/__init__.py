@@ -1,4 +1,4 @@
-"""Random insertion."""
+"""Figures on random insertion and dense packings."""
 
 from gaspart.keys import count, list_of, names, positive
 

@@ -13,9 +13,9 @@ from gaspart.theory.packing import insertion_saturation_uncertainty
 
 NO_PROGRAM = "the wall excess was fitted to insertions by a program that is not in this repository"
 SOURCE_FRACTION = 0.52
-"""Packing fraction that source A's program reached (section 3.2), stated to the percent.
+"""Packing fraction that source A's program reached (section 3.2), rounded to per cent.
 
-180 spheres are 0.5226.
+180 spheres have 0.5226.
 """
 SOURCE_ROUNDING = 0.01 / np.sqrt(12.0)
 NAMES = {
@@ -26,9 +26,9 @@ NAMES = {
 
 
 def fill_failures(dataset: xr.Dataset) -> list[Claim]:
-    """Return the claims on saturations, source A's 52 %, approach, and failures.
+    """Return the claims on saturation, source A's 52 %, approach, and failures.
 
-    They are on the approach to saturation, and on failures at low density.
+    The approach is the approach to saturation. Failures are claimed at low density.
     """
     return [claim for fill in Table(dataset, "container") for claim in _of_container(fill)]
 
@@ -41,7 +41,7 @@ def _of_container(fill: Row) -> list[Claim]:
             claims.append(_source(fill))
     if np.isfinite(fill.approach.value):
         claims.append(_approach(fill))
-    # Of a fill that continues to saturation, the first few particles carry little information.
+    # In a fill that continues to saturation, the first few particles carry little information.
     if np.isfinite(fill.dilute_failures.value) and not saturates:
         claims.append(_dilute(fill))
     return claims
@@ -82,9 +82,9 @@ def _approach(fill: Row) -> Claim:
 
 
 def _source(fill: Row) -> Claim:
-    """Return the claim on source A's one fill compared with many of ours.
+    """Return the claim on source A's single fill, compared with many of our fills.
 
-    It is a draw from their distribution, if its attempts sufficed.
+    It is a sample of the distribution of our fills, if its number of attempts was sufficient.
     """
     return Claim(
         claim=f"packing fraction at which insertion ends, {_particles(fill)}, whole spheres counted: "
@@ -113,9 +113,9 @@ def _dilute(fill: Row) -> Claim:
 
 
 def densest_fill(dataset: xr.Dataset) -> list[Claim]:
-    """Return the claims on grown and inserted packings of spheres.
+    """Return the claims on compressed and on inserted packings of spheres.
 
-    Grown until they jam, spheres are denser than 0.60 and have six contacts each; inserted, they end below
+    Spheres that grow until they jam are denser than 0.60, with six contacts each. Insertion ends below
     saturation.
     """
     claims = []

@@ -1,4 +1,4 @@
-"""Figures of random insertion and the densest packings."""
+"""Figures of random insertion and dense packings."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ SERIES = {
     (3, "wall"): "spheres completely inside",
     (2, "periodic"): "discs, periodic",
 }
-"""Labels of the series by dimension and rule, in the order of the legend."""
+"""Labels of the series, by dimension and rule, in the order of the legend."""
 SOURCE = 0.52
-"""The packing fraction that source A's program reached."""
+"""Packing fraction that source A's program reached."""
 
 
 def fill_failures(dataset: xr.Dataset) -> Figure:
     """Draw failures per particle, and packing fraction against attempts^(-1/d).
 
-    Failures are drawn to saturation and at low density.
+    Failures are drawn up to saturation, and at low density.
     """
     figure, (upper, middle, lower) = style.new((3.4,), (1.6,), (2.2,))
     containers = Table(dataset, "container")
@@ -73,7 +73,7 @@ def _limits(axis: Axes) -> None:
 
 
 def _low_density(axis: Axes) -> None:
-    """Draw the first particles of a large container, and the expansion that is exact there."""
+    """Draw the first particles of a large container, with the exact low-density expansion."""
     eta = np.linspace(0.0, 0.06, 60)
     for dimension in (2, 3):
         axis.plot(eta, theory.failures_per_particle(eta, dimension), color="black", linewidth=0.8, zorder=4)
@@ -96,7 +96,7 @@ def _saturation(axis: Axes, fill: Row, kind: int) -> None:
 
 
 DOTS = 300
-"""Pixels per inch of the pictures, equal to those in a saved figure."""
+"""Resolution of the pictures in pixels per inch, the same as in a saved figure."""
 NAMES = {
     "centres_to_walls": "inserted,\ncentres up to the walls",
     "wall": "inserted,\ncompletely inside",
@@ -106,7 +106,7 @@ NAMES = {
 
 
 def densest_fill(ds: xr.Dataset) -> Figure:
-    """Draw the source's fill (first packing) and the compressed one (last), with densities."""
+    """Draw the source's fill (first packing) and the compressed packing (last), with densities."""
     figure, axes = style.new((3.4,), (3.4,))
     packings = Table(ds, "packing")
     for letter, axis, packing in zip("ab", axes, (packings[0], packings[-1]), strict=True):

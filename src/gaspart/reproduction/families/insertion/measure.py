@@ -2,11 +2,12 @@ r"""Measurements of random insertion and the densest packings.
 
 Random sequential insertion: failed attempts per particle, and saturation.
 
-With k particles in the container an attempt succeeds with the probability that a random point is free, the
-available fraction; failures before the next success are geometric. Time is counted in attempts per volume
-of a particle, :math:`t = T v / V` for T attempts. Late insertion fills single small holes, whose sizes are
-uniform down to zero, so :math:`\eta_s - \eta(t) \propto t^{-1/d}` (Feder 1980, Swendsen 1981):
-a straight line in :math:`t^{-1/d}` leads to the saturation :math:`\eta_s`, although no run ever reaches it.
+With k particles in the container, an attempt succeeds with a probability called the available fraction. It is
+the probability that a random point is free. The number of failures before the next success has a geometric
+distribution. Time is the number of attempts T, as :math:`t = T v / V` with the volume v of a particle and V
+of the container. Late particles fill single small holes. The sizes of these holes are uniformly distributed
+down to zero, so :math:`\eta_s - \eta(t) \propto t^{-1/d}` (Feder 1980, Swendsen 1981). A straight line in
+:math:`t^{-1/d}` is therefore extrapolated to the saturation :math:`\eta_s`, although no run ever reaches it.
 
 The densest random packings: packing fractions, and contacts per particle.
 """
@@ -26,18 +27,19 @@ from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import table
 
 SAMPLES = 24
-"""Times, equally spaced in ln t, at which a window's line is fitted."""
+"""Number of times, equally spaced in ln t, at which the line of a window is fitted."""
 TIMES = 60
-"""Times, equally spaced in ln t, at which the growing packing fraction is kept for the figure."""
+"""Number of times, equally spaced in ln t, at which the packing fraction is stored for the figure."""
 
 
 @dataclass(frozen=True)
 class Fill:
     """All replicas of one container.
 
-    failures : (replica, particle), failures before each particle, -1 for a particle that was never placed.
-    attempts : (replica,), all attempts.
-    particle : packing fraction of one particle.
+    failures : (replica, particle), number of failures before each particle; -1 for a particle that was never
+    placed.
+    attempts : (replica,), total number of attempts.
+    particle : packing fraction of a single particle.
     dimension : dimension.
     """
 
@@ -48,16 +50,16 @@ class Fill:
 
     @property
     def placed(self) -> np.ndarray:
-        """(replica,) particles placed."""
+        """Number of placed particles, (replica,)."""
         return (self.failures >= 0).sum(axis=1)
 
     @property
     def last_time(self) -> float:
-        """The time t that every replica reached."""
+        """Last time t that every replica reached."""
         return float(self.attempts.min()) * self.particle
 
     def packing_fraction(self, times: np.ndarray) -> np.ndarray:
-        """Compute (replica, times): packing fraction at the times t."""
+        """Compute the packing fraction (replica, times) at given times t."""
         attempts = times / self.particle
         placed_at = [np.cumsum(series[series >= 0] + 1) for series in self.failures]
         return self.particle * np.array(
@@ -65,31 +67,41 @@ class Fill:
         )
 
     def trials(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return failures and successes (replica, particle) at each number of particles; zero beyond."""
+        """Return failures and successes (replica, particle) at each particle number; 0 beyond the last."""
         successes = (self.failures >= 0).astype(int)
         failures = np.where(self.failures >= 0, self.failures, 0)
         for k, placed in enumerate(self.placed):
-            if placed < failures.shape[1]:  # the attempts after the last success belong to the state after it
+            # attempts after the last success belong to the state after this success
+            if placed < failures.shape[1]:
                 failures[k, placed] = self.attempts[k] - failures[k].sum() - placed
         return failures, successes
 
 
 def fill_failures(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure failures per particle against packing fraction, and saturation, of every container.
+    """Measure failures per particle against packing fraction, and saturation, of each container.
 
-    The settings are `bins`, number of packing-fraction bins up to the densest fill; `windows`, list of the
-    ratios of the last time to the first one of the fitted window (the first is the one claimed); `saturated`,
-    the experiments that are filled to saturation; `dilute`, the packing fraction up to which failures are
-    compared with the low-density expansion.
+    The settings are:
 
-    Returns over `container` (the experiment's name): dimension, side_over_diameter, rule, replicas, placed
-    (mean); final and final_spread, mean and standard deviation of the packing fraction of a single fill at
-    its end; last_time, in t; failures_per_particle with its error at packing_fraction, each (container, bin),
-    NaN without attempts; filled (container, sample), mean packing fraction at `time` (container, sample);
-    saturation with its error (container, window) and the degrees of freedom of that (container), NaN for
-    others than `saturated` ones, and slope of its line in t^(-1/d); approach and its error: exponent p of
-    eta_s - eta ~ t^-p with the literature's eta_s (saturated periodic containers only); dilute_failures with
-    error, failures over the expected ones at low density (periodic containers only). Attribute dilute_up_to.
+    bins : number of bins of packing fraction, up to the densest fill
+    windows : list of ratios of last to first time of the fitted window; the first window is claimed
+    saturated : experiments that are filled to saturation
+    dilute : largest packing fraction at which failures are compared with the low-density expansion
+
+    Variables over `container` (the name of the experiment):
+
+    dimension, side_over_diameter, rule, replicas : properties of the container
+    placed : mean number of placed particles
+    final, final_spread : mean and standard deviation of the final packing fraction of a single fill
+    last_time : last time, in t
+    failures_per_particle : with error, at `packing_fraction` (container, bin); NaN without attempts
+    filled : mean packing fraction at `time`, over (container, sample)
+    saturation, slope : fitted saturation with error; slope of the line in t^(-1/d) (container, window)
+    approach : exponent p of eta_s - eta ~ t^-p with error; eta_s is from literature
+    dilute_failures : failures divided by the expected failures at low density, with error
+
+    Saturation and slope are NaN except for `saturated` containers. The degrees of freedom of the saturation
+    are over container. The approach is only for `saturated` periodic containers, and `dilute_failures` only
+    for periodic containers. The attribute is dilute_up_to.
     """
     inner = {
         **dict.fromkeys(("packing_fraction", "failures_per_particle"), ("bin",)),
@@ -149,11 +161,11 @@ def _rule(point: Point) -> str:
 
 
 def failures_by_density(fill: Fill, bins: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Compute mean packing fraction, failures per particle placed, and their error.
+    """Compute mean packing fraction, failures per placed particle, and their error, (bins,).
 
-    Each is (bins,). The bins are of equal width from 0 to the densest fill. NaN where less than half of the
-    replicas placed a particle: the others are a biased sample. The error is the jackknife over the replicas,
-    but no less than the geometric distribution's own scatter.
+    The bins are of equal width, from 0 to the densest fill. Results are NaN if less than half of the replicas
+    placed a particle in the bin, because the others are a biased sample. The error is a jackknife error over
+    the replicas. It is at least the scatter of the geometric distribution.
     """
     failures, successes = fill.trials()
     states = np.arange(failures.shape[1])
@@ -177,9 +189,9 @@ def failures_by_density(fill: Fill, bins: int) -> tuple[np.ndarray, np.ndarray, 
 def _ratio_error(numerator: np.ndarray, denominator: np.ndarray) -> float:
     """Compute the standard error of sum(numerator) / sum(denominator) over replicas.
 
-    It is 0 if undetermined.
+    It is 0 if it cannot be determined.
     """
-    if np.any(denominator == denominator.sum()):  # all successes in one replica: nothing to omit
+    if np.any(denominator == denominator.sum()):  # all successes are in one replica, which cannot be left out
         return 0.0
     return float(jackknife(lambda lost, won: lost / won, numerator, denominator)[1])
 
@@ -187,10 +199,10 @@ def _ratio_error(numerator: np.ndarray, denominator: np.ndarray) -> float:
 def saturation(fill: Fill, window: float) -> tuple[float, float, float]:
     """Fit the packing fraction at t = infinity, its error from the replicas, and the slope.
 
-    There are at least two replicas.
+    At least two replicas are required.
 
-    A straight line of eta against t^(-1/d), by least squares to SAMPLES times equally spaced in ln t between
-    last_time / window and last_time, for each replica.
+    For each replica, a straight line of eta against t^(-1/d) is fitted by least squares. The fit uses SAMPLES
+    times, equally spaced in ln t between last_time / window and last_time.
     """
     times = np.geomspace(fill.last_time / window, fill.last_time, SAMPLES)
     x = times ** (-1.0 / fill.dimension)
@@ -200,9 +212,9 @@ def saturation(fill: Fill, window: float) -> tuple[float, float, float]:
 
 
 def approach_exponent(fill: Fill, window: float) -> tuple[float, float]:
-    """Fit p of eta_s - eta ~ t^-p and its standard error (jackknife over replicas).
+    """Fit p in eta_s - eta ~ t^-p, and its standard error (jackknife over replicas).
 
-    eta_s is the literature's.
+    eta_s is the value of the literature.
     """
     times = np.geomspace(fill.last_time / window, fill.last_time, SAMPLES)
     gap = theory.RSA_SATURATION[fill.dimension] - fill.packing_fraction(times)
@@ -217,10 +229,10 @@ def approach_exponent(fill: Fill, window: float) -> tuple[float, float]:
 
 
 def dilute_failures(fill: Fill, up_to: float) -> tuple[float, float]:
-    """Compute failures below the packing fraction `up_to`, relative to the expected ones.
+    """Compute failures below the packing fraction `up_to`, divided by the expected failures.
 
-    Expected are, for each particle k, the `theory.failures_per_particle` at k particles. The error is the
-    geometric distribution's, sqrt(sum of f (1 + f)) over the sum of f.
+    For each particle k, `theory.failures_per_particle` at k particles is expected. The error follows from the
+    geometric distribution: sqrt(sum of f (1 + f)) divided by the sum of f.
     """
     failures, _ = fill.trials()
     states = np.arange(failures.shape[1])
@@ -235,19 +247,22 @@ def dilute_failures(fill: Fill, up_to: float) -> tuple[float, float]:
 
 
 TOUCH = 1e-4
-"""Gap, in diameters, up to which two particles of a jammed packing count as touching: contacts that carry the
-reduced pressure of 10^6 have gaps of some 10^-6, and few other neighbours are as near."""
+"""Largest gap, in diameters, between two particles of a jammed packing that count as touching. Contacts at
+the reduced pressure 10^6 have gaps of about 10^-6. Few other neighbours are as near as 10^-4."""
 BACKBONE = 4
-"""Contacts that hold a sphere in place; one with fewer rattles in its cage."""
+"""Minimum number of contacts of a sphere that is held in place; other spheres rattle in their cages."""
 
 
 def densest_fill(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure packing fractions with standard errors over replicas, and contacts.
 
-    Contacts are per sphere where the spheres were grown; the first replica of each packing is returned for
-    the picture. Returns a dataset with packing_fraction, error, contacts, contacts_error (packing,), contacts
-    of spheres that do not rattle, NaN for insertions; rule (packing,); position (packing, particle, axis),
-    radius (packing,), length (packing, axis). freedom are the degrees of freedom of the errors.
+    The result also has the first replica of each packing, for the picture.
+
+    packing_fraction, error : packing fraction with its error, over (packing,)
+    contacts, contacts_error : contacts per sphere that does not rattle (packing,); NaN for inserted spheres
+    rule : rule of the packing, over (packing,)
+    position, radius, length : (packing, particle, axis); (packing,); of the container, (packing, axis)
+    freedom : degrees of freedom of the errors
     """
     inner = {"position": ("particle", "axis"), "length": ("axis",)}
     units = dict.fromkeys(("position", "radius", "length"), "length")
@@ -278,15 +293,16 @@ def _packing(point: Point) -> dict[str, Any]:
 
 
 def _mean(values: np.ndarray) -> tuple[float, float]:
-    """Compute the mean and its standard error."""
+    """Compute the mean of values, and its standard error."""
     error = values.std(ddof=1) / np.sqrt(len(values)) if len(values) > 1 else np.nan
     return float(values.mean()), float(error)
 
 
 def contacts(positions: np.ndarray, radius: float, lengths: np.ndarray) -> float:
-    """Count contacts per sphere of a periodic packing (N, 3), among spheres that do not rattle.
+    """Count contacts per sphere in a periodic packing (N, 3), for spheres that do not rattle.
 
-    Each of these has at least four contacts with others of them. An isostatic packing has 6, less 6/N.
+    Each of these spheres has at least four contacts with other such spheres. An isostatic packing has 6 - 6/N
+    contacts per sphere.
     """
     tree = cKDTree(positions % lengths, boxsize=lengths)
     pairs = tree.query_pairs(2.0 * radius * (1.0 + TOUCH), output_type="ndarray")

@@ -1,4 +1,4 @@
-"""Mixtures and polydisperse gases."""
+"""Figures on mixtures and polydisperse gases."""
 
 TITLE = "Mixtures"
 CHAPTER = "Equation of state and structure"

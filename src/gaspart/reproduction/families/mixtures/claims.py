@@ -12,17 +12,17 @@ from gaspart.reproduction.families.shared import PARTICLES
 from gaspart.reproduction.table import Row, Table, each
 
 REQUIRED = 1e-3
-"""The largest uncertainty of Z, relative to it, at which its comparison means anything."""
+"""Largest relative uncertainty of Z for which its comparison is conclusive."""
 CONTACT = 5e-3
-"""Required uncertainty of a contact value of one pair of species."""
+"""Required uncertainty of the contact value of a pair of species."""
 THEORIES_AGREE = 0.1
-"""Packing fraction up to which the theories of mixtures hardly differ: all have the exact second virial
+"""Packing fraction below which theories of mixtures hardly differ: all have the exact second virial
 coefficient."""
 NEARLY_EQUAL = {"size_ratio": 0.9, "polydispersity": 0.1}
-"""Limits of nearly equal sizes: "santos" and "linear", exact for equal ones, hardly differ."""
+"""Limits of nearly equal sizes. There "santos" and "linear", exact for equal sizes, hardly differ."""
 BETWEEN = "distance of the interpolations of [Santos 1999] and [Santos 2002], both exact for equal sizes"
 _UNSURE = 0.5
-"""Relative uncertainty of the correction of first order in 1/N, which holds for equal particles.
+"""Relative uncertainty of the correction of first order in 1/N, which is derived for equal particles.
 
 To first order in the packing fraction it is exact for any sizes.
 """
@@ -37,9 +37,9 @@ _NAMES = {
 
 
 def mixture_state(dataset: xr.Dataset) -> list[Claim]:
-    """Return the claims on Z, its deviations from approximate theories, and collisions of pairs.
+    """Return the claims on Z, deviations from approximate theories, and collisions of pairs.
 
-    Z is compared where theory is sharp.
+    Z is claimed only if theory is accurate.
     """
     gases, claims = Table(dataset, "point"), []
     for gas in gases:
@@ -56,7 +56,7 @@ def mixture_state(dataset: xr.Dataset) -> list[Claim]:
 
 
 def _where(gas: Row) -> str:
-    """Describe the point."""
+    """Return a description of the point for the text of a claim."""
     if np.isfinite(gas.size_ratio):
         sizes = f"size ratio {gas.size_ratio:g}, {gas.small_fraction:.0%} small"
     else:
@@ -77,9 +77,9 @@ def _sharp(gas: Row) -> bool:
 
 
 def _compressibility(gas: Row) -> Claim:
-    """Return the claim on Z, for spheres as deviation from Boublik's equation.
+    """Return the claim on Z; for spheres, on its deviation from Boublik's equation.
 
-    This equation must be excluded unless they are dilute.
+    Unless the spheres are dilute, the claim must exclude Boublik's equation.
     """
     allowance = math.hypot(gas.reference_error, gas.santos - gas.linear, gas.correction * _UNSURE)
     over, subject, required, alternative = gas.santos, "Z over that of [Santos 2002]", REQUIRED, None
@@ -101,7 +101,7 @@ def _compressibility(gas: Row) -> Claim:
 def _contacts(gas: Row) -> list[Claim]:
     pairs = Table(gas.dataset, "pair")
     expected = pairs.contact_santos
-    # of a finite number as of Z - 1, whose part it is
+    # a part of Z - 1, due to the finite number of particles
     unsure = abs(gas.correction) / (gas.santos - 1.0) * expected
     return each(
         pairs,
@@ -134,8 +134,8 @@ def deviations(gases: Table, theory: str) -> Estimate:
 def _better(spheres: Table) -> Claim:
     """Return the claim of the abstract of [Santos 1999].
 
-    It states that their extension of Carnahan and Starling's equation agrees better with simulations than
-    Boublik's.
+    The abstract states that their extension of Carnahan and Starling's equation agrees better with
+    simulations than Boublik's equation.
     """
     mine, its = deviations(spheres, "starling"), deviations(spheres, "boublik")
     squares = [np.sum(deviation.value**2) for deviation in (mine, its)]
@@ -155,7 +155,7 @@ def _better(spheres: Table) -> Claim:
 
 
 def _report_theories(gases: Table) -> list[Claim]:
-    """Return the claims on the largest deviation of each theory."""
+    """Return the claims, without verdict, on the largest deviation of each theory."""
     claims = []
     for dimension, names in ((3, tuple(_NAMES)), (2, ("santos",))):
         part = gases[gases.dimension == dimension]

@@ -18,17 +18,17 @@ from gaspart.reproduction.table import Table
 from gaspart.scene.sizes import relative_radii
 
 BASE = {3: "boublik", 2: "santos"}
-"""The theory from which deviations are drawn."""
+"""Theory from which deviations are drawn, by dimension."""
 _OVER = {3: r"$Z/Z_\mathrm{BMCSL}-1$ (%)", 2: r"$Z/Z_\mathrm{SYH}-1$ (%)"}
 _SHORT = {3: "BMCSL", 2: "SYH"}
-_MANY = 500  # sizes of a polydisperse gas whose theory is drawn
+_MANY = 500  # number of sizes of a polydisperse gas for which theory is drawn
 _RATIOS = np.linspace(0.28, 1.0, 60)
 
 
 def mixture_state(dataset: xr.Dataset) -> Figure:
-    """Draw deviations of Z from theory, contact values and rates.
+    """Draw deviations of Z from theory, contact values and collision rates.
 
-    The deviations are against size ratio, density and polydispersity.
+    The deviations are drawn against size ratio, density and polydispersity.
     """
     figure, axes = style.new(*[(2.1,)] * 6)
     ratio, density, discs, many, contact, rate = axes
@@ -47,7 +47,7 @@ def mixture_state(dataset: xr.Dataset) -> Figure:
 
 
 def _densest_grid(gases: Table, dimension: int) -> Table:
-    """Return the points of a dimension at the packing fraction that most of them have."""
+    """Return the points of a dimension at the most frequent packing fraction."""
     part = gases[gases.dimension == dimension]
     if not part:
         return part
@@ -56,9 +56,9 @@ def _densest_grid(gases: Table, dimension: int) -> Table:
 
 
 def _theories(axis: Axes, x: np.ndarray, spheres: Sequence[tuple], kind: int, named: bool = True) -> None:
-    """Draw other theories of gases of spheres, relative to BMCSL, in per cent.
+    """Draw other theories for mixtures of spheres, relative to BMCSL, in per cent.
 
-    Spheres are given by (packing fraction, diameters, numbers) for each x.
+    For each x, `spheres` has packing fraction, diameters and numbers.
     """
 
     def z(name: str) -> np.ndarray:
@@ -90,7 +90,7 @@ def _by_ratio(axis: Axes, two: Table, dimension: int) -> None:
 
 
 def _by_density(axis: Axes, two: Table) -> None:
-    """Draw deviations against the packing fraction, of one size ratio and composition."""
+    """Draw deviations against packing fraction, for one size ratio and composition."""
     chosen = two[np.isclose(two.size_ratio, 0.5) & np.isclose(two.small_fraction, 0.5)]
     for kind, dimension in enumerate((3, 2)):
         gases = chosen[chosen.dimension == dimension].sorted_by("packing_fraction")
@@ -123,9 +123,9 @@ def _by_polydispersity(axis: Axes, many: Table) -> None:
 
 
 def _pairs(axis: Axes, two: Table, name: str, predicted: Callable[..., np.ndarray]) -> None:
-    """Draw a property of each pair of species against the size ratio.
+    """Draw a property of each pair of species against size ratio.
 
-    The gases are spheres, half of them small.
+    The gases consist of spheres; half of them are small.
     """
     gases = _densest_grid(two, 3)
     gases = gases[np.isclose(gases.small_fraction, 0.5)]

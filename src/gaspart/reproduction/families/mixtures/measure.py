@@ -1,7 +1,7 @@
 """Z, contact values and collision rates of mixtures and polydisperse gases.
 
-A point is a periodic gas of two sizes whose collisions were counted by pairs of species, or a polydisperse
-one.
+A point is a periodic gas, either polydisperse or of two sizes. For two sizes, collisions are counted by pairs
+of species.
 """
 
 from __future__ import annotations
@@ -31,19 +31,25 @@ _PAIRS = {"large-large": (0, 0), "large-small": (0, 1), "small-small": (1, 1)}
 
 
 def mixture_state(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure Z, contact values and collision rates, and add those by theory.
+    """Measure Z, contact values and collision rates, with values by theory.
 
-    The dimension is point: dimension, packing_fraction, count; size_ratio and small_fraction of two sizes,
-    polydispersity and `distribution` of many, NaN or empty otherwise. Z with `_error` and `_freedom`, for the
-    infinite gas: the measured one without the correction of first order in 1/N, valid for equal particles of
-    the same packing fraction, which is `correction`; `reference_error`, the uncertainty of the equation of
-    equal particles; boublik, linear and santos, Z by these theories (see `gaspart.theory.mixtures`), and
-    `starling`, by the linear one with Carnahan and Starling's equation of equal spheres; NaN without a value.
-    Of two sizes `virial`, the sum of |dr . dp| over what the numbers of collisions of each pair predict for
-    Maxwellian velocities, minus 1, with `_error` and `_freedom`; over pair ("large-large", "large-small",
-    "small-small") contact and rate, the latter for collisions of a particle of the first kind with all of the
-    second, in sqrt(k_B T / m) over the larger diameter, with `_error`, and each by the theories, such as
-    contact_boublik.
+    The dimension is point.
+
+    dimension, packing_fraction, count : properties of the gas
+    size_ratio, small_fraction : of gases of two sizes, else NaN
+    polydispersity, distribution : of polydisperse gases, else NaN or ""
+    Z : compressibility factor of the infinite gas, with `_error` and `_freedom`
+    correction : subtracted correction of first order in 1/N, for equal particles of this packing fraction
+    reference_error : uncertainty of the equation of state of equal particles
+    boublik, linear, santos : Z by these theories (see `gaspart.theory.mixtures`); NaN without a value
+    starling : Z by the linear theory with Carnahan and Starling's equation of equal spheres
+    virial : of two sizes, sum of |dr . dp| over its prediction, minus 1, with `_error` and `_freedom`
+    contact, rate : contact value and collision rate, with `_error`, and by theory, such as contact_boublik
+
+    The dimension of contact and rate is pair ("large-large", "large-small", "small-small"). The prediction
+    for `virial` uses the numbers of collisions of each pair, and Maxwellian velocities. The rate counts
+    collisions of a particle of the first kind with all particles of the second kind. Its unit is sqrt(k_B T /
+    m) divided by the larger diameter.
     """
     units = {"rate": "sqrt(k_B T / m) / diameter"}
     return table("point", points, _row, inner=("pair",), units=units).assign_coords(pair=list(_PAIRS))
@@ -82,7 +88,10 @@ def _of_any(run: Run) -> dict[str, Estimate]:
 
 
 def _of_two_sizes(run: Run) -> dict[str, Estimate]:
-    """Measure Z, and quantities from collisions of each pair of species; rates per time."""
+    """Measure Z, and quantities from collisions of each pair of species.
+
+    Rates are per time.
+    """
     return {
         **_of_any(run),
         "virial": _virial(run),
@@ -92,7 +101,7 @@ def _of_two_sizes(run: Run) -> dict[str, Estimate]:
 
 
 def theories(gas: Mixture) -> dict[str, Any]:
-    """Compute Z by each theory, for two sizes also contact value and rate of each pair."""
+    """Compute Z by each theory; for two sizes also contact value and rate of each pair."""
     predictions: dict[str, Any] = {}
     eta, d, diameters, _ = gas.sizes
     for name, dimensions in theory.MIXTURE_THEORIES.items():
@@ -115,14 +124,14 @@ def theories(gas: Mixture) -> dict[str, Any]:
 
 
 def _unit_of_rate(gas: Mixture) -> float:
-    """Compute sqrt(k_B T / m) over the larger diameter."""
+    """Compute sqrt(k_B T / m) divided by the larger diameter."""
     return math.sqrt(gas.temperature / gas.masses[0]) / gas.diameters[0]
 
 
 def _virial(run: Run) -> Estimate:
-    """Compare |dr . dp| of collisions with sigma sqrt(2 pi mu k_B T).
+    """Compute |dr . dp| of collisions, divided by sigma sqrt(2 pi mu k_B T), minus 1.
 
-    This is the mean of two particles of reduced mass mu that collide.
+    The denominator is the mean for colliding particles with reduced mass mu.
     """
     weights = []
     for i, j in pairs_of(run.scene):

@@ -1,4 +1,4 @@
-"""Displacement and velocity autocorrelation."""
+"""Figures on displacement and velocity autocorrelation."""
 
 from gaspart.keys import POSITIVE, list_of, positive
 

@@ -12,21 +12,22 @@ from gaspart.reproduction.families.shared import ENSKOG_LIMIT, MODE_COUPLING, PA
 from gaspart.reproduction.table import Row, Table, each
 
 DILUTE_BAND = 0.007
-"""Most that D differs from Enskog's there, as a part of it: by Erpenbeck and Wood's fit 0.6 % at 0.02."""
+"""Largest relative difference of D from Enskog theory in dilute gases. By Erpenbeck and Wood's fit it is 0.6
+% at 0.02."""
 ERPENBECK_WOOD = "[Erpenbeck 1991]"
 REQUIRED = 0.015
-"""Relative uncertainty of D above which the claim is inconclusive."""
+"""Largest relative uncertainty of D for a conclusive claim."""
 REQUIRED_SHORT = 0.001
-"""Required uncertainty of the msd at short times.
+"""Required uncertainty of the mean-squared displacement (msd) at short times.
 
-An exponential with the rate of Enskog's D would be 0.001 to 0.002 off.
+An exponential with the rate of Enskog's D would deviate by 0.001 to 0.002.
 """
 
 
 def msd_spheres(ds: xr.Dataset) -> list[Claim]:
-    """Return the claims on D, against Enskog in dilute gases, against simulations in dense ones.
+    """Return the claims on D, compared with Enskog theory and with published simulations.
 
-    The simulations are from the literature.
+    Dilute gases are compared with Enskog theory, dense gases with simulations from the literature.
     """
     points = Table(ds, "point")
     largest = points[points.largest]
@@ -55,9 +56,9 @@ def infinite(points: Table) -> Estimate:
 
 
 def _dilute_limit(dilute: Table) -> Claim:
-    """Return the claim on D over Enskog's at the lowest packing fractions, a weighted mean.
+    """Return the claim on D divided by Enskog's D at the lowest packing fractions.
 
-    The weights are by the errors.
+    It is a mean with weights by the errors.
     """
     return Claim.within(
         claim=f"D over Enskog's in the dilute limit (packing fraction {ENSKOG_LIMIT:g} and below)",
@@ -85,7 +86,7 @@ def _size_slope(points: Table) -> Claim:
 
 
 def msd_discs(ds: xr.Dataset) -> list[Claim]:
-    """Return the claims on the slope of D(t) against ln t; no D, since none exists."""
+    """Return the claims on the slope of D(t) against ln t; discs have no finite D."""
     points = Table(ds, "point")
     long = points[np.isfinite(points.logarithmic_slope.value)]
     return [
@@ -106,7 +107,7 @@ def msd_discs(ds: xr.Dataset) -> list[Claim]:
 def _short_times(points: Table) -> list[Claim]:
     """Return the claims from finely sampled runs.
 
-    They are on the ballistic start, and on Einstein's D(t) against Green and Kubo's.
+    They are on the ballistic start, and on D(t) by Einstein compared with Green and Kubo.
     """
     claims = []
     for run in points[np.isfinite(points.integral_difference.value)]:
@@ -136,10 +137,7 @@ def _short_times(points: Table) -> list[Claim]:
 
 
 def velocity_autocorrelation(ds: xr.Dataset) -> list[Claim]:
-    """Return the claims on the exact initial decay, and on the long-time tail.
-
-    The amplitude of the tail is claimed.
-    """
+    """Return the claims on the exact initial decay, and on the amplitude of the long-time tail."""
     return [claim for gas in Table(ds, "point") for claim in _of_gas(gas)]
 
 

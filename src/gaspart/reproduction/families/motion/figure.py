@@ -33,7 +33,7 @@ def msd_spheres(ds: xr.Dataset) -> Figure:
 
 
 def msd_discs(ds: xr.Dataset) -> Figure:
-    """Draw the msd; D(t), which does not converge; its slope against ln t, by packing fraction."""
+    """Draw the msd of discs, D(t), which does not converge, and its slope against ln t."""
     figure, axes = style.new((2.6,), (2.2,), (2.2,))
     points = Table(ds, "point")
     _displacement(axes[0], points)
@@ -45,19 +45,19 @@ def msd_discs(ds: xr.Dataset) -> Figure:
 
 
 def _fractions(points: Table) -> np.ndarray:
-    """Return the packing fractions with finely sampled runs, whose curves are drawn from the start."""
+    """Return the packing fractions with finely sampled runs; their curves start at short times."""
     fine = points[np.isfinite(points.integral_difference.value)]
     return np.unique(fine.packing_fraction.round(6))
 
 
 def _spread(first: int, last: int) -> np.ndarray:
-    """Compute indices from first to last - 1, about eight in each decade."""
+    """Compute indices from `first` to `last` - 1, about eight per decade."""
     number = int(np.ceil(8.0 * np.log10(last / first))) + 1
     return np.unique(np.geomspace(first, max(last - 1, first), number).round().astype(int))
 
 
 def _pieces(points: Table, eta: float) -> Iterator[tuple[Row, np.ndarray]]:
-    """Yield (run, lags) of one packing fraction: the finely sampled run, then the long ones."""
+    """Yield (run, lags) of a packing fraction: first the finely sampled run, then the long runs."""
     runs = list(points[np.isclose(points.packing_fraction, eta, atol=1e-5)].sorted_by("interval"))
     ends, begin = [run.time[1] for run in runs[1:]] + [np.inf], 0.0
     for run, end in zip(runs, ends, strict=True):
@@ -68,7 +68,7 @@ def _pieces(points: Table, eta: float) -> Iterator[tuple[Row, np.ndarray]]:
 
 
 def _displacement(axis: Axes, points: Table) -> None:
-    """Draw the msd against time, both in reduced units, with Enskog's curves and the ballistic limit."""
+    """Draw the msd against time in reduced units, with Enskog theory and the ballistic limit."""
     longest, dimension = 0.0, points.dimension
     for kind, eta in enumerate(_fractions(points)):
         for number, (run, lags) in enumerate(_pieces(points, eta)):
@@ -88,9 +88,9 @@ def _displacement(axis: Axes, points: Table) -> None:
 
 
 def _running(axis: Axes, points: Table) -> None:
-    """Draw D(t), half the msd's slope over d, relative to Enskog's D.
+    """Draw D(t) divided by Enskog's D, where D(t) is the slope of the msd over 2d.
 
-    Displacements are points, velocities are lines.
+    Points are from displacements, lines from velocities.
     """
     fractions, dimension = np.unique(points.packing_fraction.round(6)), points.dimension
     axis.set_xscale("log")
@@ -108,7 +108,7 @@ def _running(axis: Axes, points: Table) -> None:
                 _draw_prediction(axis, run, eta, kind)
     x = np.geomspace(*axis.get_xlim(), 200)
     enskog, rate = _enskog(fractions[0], dimension)
-    decay = 1.0 / (enskog * rate)  # per collision: the same at every packing fraction
+    decay = 1.0 / (enskog * rate)  # per collision, it is the same at every packing fraction
     axis.plot(x, -np.expm1(-decay * x), color=style.DATA, lw=0.8, label="Enskog", zorder=1)
     axis.plot([], [], color=style.GREY, lw=0.8, label="Green-Kubo")
     if dimension == 2:
@@ -119,12 +119,15 @@ def _running(axis: Axes, points: Table) -> None:
 
 
 def _enskog(eta: float, dimension: int) -> tuple[float, float]:
-    """Compute D and the collision rate."""
+    """Compute D and the collision rate by Enskog theory."""
     return float(theory.enskog_diffusion(eta, dimension)), float(theory.collision_rate(eta, dimension))
 
 
 def _draw_prediction(axis: Axes, run: Row, eta: float, kind: int) -> None:
-    """Draw the logarithm's predicted slope over the fitted interval, through D(t) in its middle."""
+    """Draw a line with the predicted slope through the middle of D(t) in the fitted interval.
+
+    The slope is predicted for logarithmic growth.
+    """
     enskog, rate = _enskog(eta, 2)
     ends, finite = np.array([run.fit_from, run.fit_to]), np.isfinite(run.time)
     middle = np.sqrt(ends.prod())
@@ -134,7 +137,7 @@ def _draw_prediction(axis: Axes, run: Row, eta: float, kind: int) -> None:
 
 
 def _density(axis: Axes, largest: Table) -> None:
-    """Draw D over Enskog's against packing fraction, measured and corrected for the container."""
+    """Draw D divided by Enskog's D against packing fraction, measured and for infinite size."""
     eta = largest.packing_fraction
     enskog = theory.enskog_diffusion(eta, 3)
     curve = np.linspace(0.0, 1.08 * eta.max(), 200)
@@ -149,7 +152,7 @@ def _density(axis: Axes, largest: Table) -> None:
 
 
 def _size(axis: Axes, sizes: Table) -> None:
-    """Draw D_L against 1/L at one packing fraction: the fitted line, and the predicted slope.
+    """Draw D_L against 1/L at one packing fraction, with fitted line and predicted slope.
 
     The prediction is by hydrodynamics.
     """
@@ -181,9 +184,9 @@ def _size(axis: Axes, sizes: Table) -> None:
 
 
 def _slopes(axis: Axes, long: Table) -> None:
-    """Draw the slope of D(t) against ln t over the packing fraction, and mode coupling's predictions.
+    """Draw the slope of D(t) against ln t, by packing fraction, with mode-coupling theory.
 
-    They are for an infinite system, and for the modes that fit into the container.
+    There are predictions for an infinite system, and for the modes that fit into the container.
     """
     eta = long.packing_fraction
     curve = np.linspace(0.5 * eta.min(), 1.1 * eta.max(), 100)
@@ -201,9 +204,9 @@ S = r"collisions per particle $s=\nu t$"
 
 
 def velocity_autocorrelation(ds: xr.Dataset) -> Figure:
-    """Draw C against collisions per particle, its start, and C - 1/N over the modes.
+    """Draw C against collisions per particle, its start, and C - 1/N divided by the modes.
 
-    The first panel is log-log.
+    The first panel has logarithmic axes.
     """
     figure, (upper, middle, lower) = style.new((2.6,), (2.0,), (2.2,))
     gases = Table(ds, "point")
@@ -220,13 +223,13 @@ def _name(gas: Row) -> str:
 
 
 def _lags(gas: Row) -> Table:
-    """Return the lags after 0 that a gas has."""
+    """Return the lags of a gas, without lag 0."""
     lags = Table(gas.dataset, "lag")
     return lags[np.isfinite(lags.correlation.value)][1:]
 
 
 def _tails(axis: Axes, gases: Table) -> None:
-    """Draw measured C, the initial exponentials exp(-2 s / d), and mode coupling's tails."""
+    """Draw measured C, initial exponentials exp(-2 s / d), and mode-coupling tails."""
     s = np.linspace(0.5, 9.0, 100)
     for dimension, line in ((2, "--"), (3, ":")):
         label = rf"$\mathrm{{e}}^{{-2s/{dimension}}}$"
@@ -259,9 +262,9 @@ def _starts(axis: Axes, gases: Table) -> None:
 
 
 def _ratios(axis: Axes, gases: Table) -> None:
-    """Draw C - 1/N over the sum of the container's modes, with its fit.
+    """Draw C - 1/N divided by the sum of the container's modes, with its fit.
 
-    The time when sound has crossed it is marked.
+    A mark shows the time when sound has crossed the container.
     """
     style.level(axis, 1.0)
     for kind, gas in enumerate(gases):

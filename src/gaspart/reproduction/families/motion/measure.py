@@ -1,24 +1,28 @@
 """Measurements of displacement and velocity autocorrelation.
 
-Mean-squared displacement: from ballistic to diffusive, and the diffusion coefficient where there is one.
+The first part measures the mean-squared displacement (msd), from ballistic to diffusive motion, and the
+diffusion coefficient where it exists.
 
-Everything is in reduced units, in which the particles' diameter, mass and temperature are 1. The temperature
-2 E' / (d (N - 1)) is each replica's own, E' the energy about the centre of mass, whose drift is taken out of
-displacements and velocities. One species. Errors are standard errors of the mean over replicas.
+Units are reduced: the particles' diameter, mass and temperature are 1. The temperature is 2 E' / (d (N - 1)),
+computed for each replica. Here E' is the energy in the frame of the centre of mass. The drift of the centre
+of mass is removed from displacements and velocities. There is one species. Errors are standard errors of the
+mean over replicas.
 
-Velocity autocorrelation: its exponential start, and its long-time tail, a power of time.
+The second part measures the velocity autocorrelation: its exponential start, and its long-time tail, a power
+of time.
 
-Everything is in reduced units: the particles' diameter, mass and temperature are 1; s is time in Enskog's
-collisions of a particle. The runs' total momentum is subtracted, leaving velocities u relative to the centre
-of mass; where momentum is free (canonical) the centre's own velocity, which does not decay, is added:
+Units are reduced as above. The time s is the number of collisions of a particle by Enskog theory. The total
+momentum is subtracted; u are velocities relative to the centre of mass. If the momentum is free (canonical
+ensemble), the constant velocity of the centre of mass is added:
 
     C(t) = 1/N + <u(0).u(t)> / (d k_B T),    k_B T = m <u^2> / d * N / (N-1) .
 
-That is exact. C(t) of an infinite fluid differs from it once momentum has come round the container, sound
-first, so that the tail is compared with the modes of the container (`theory.velocity_autocorrelation_modes`).
-These decay with the transport coefficients of long waves; at a time t the waves that matter are some sqrt((D
-+ nu) t) long, and the next terms of their decay rates, of order k^4, are of the order of 1/t of the first. So
-the ratio to the modes is fitted by A + B/s, and A compared with 1.
+This is exact. C(t) of an infinite fluid differs from it after momentum has crossed the periodic container;
+sound crosses it first. Therefore the tail is compared with the modes of the container
+(`theory.velocity_autocorrelation_modes`). These decay with the transport coefficients of long waves. At a
+time t, waves of length sqrt((D + nu) t) dominate. The next terms of their decay rates, of order k^4, are
+smaller by a factor of order 1/t. Therefore the ratio to the modes is fitted by A + B/s, and A is compared
+with 1.
 """
 
 from __future__ import annotations
@@ -43,15 +47,16 @@ from gaspart.reproduction.table import Table, entries, table
 from gaspart.scene.gas import plain_gas
 
 SETTLE_SHEAR_TIMES = 3.0
-"""D is the slope of the msd from `LINEAR_FROM` collisions per particle, or this many decay times of the
-container's slowest shear mode, whichever is later, to twice that time."""
+"""Number of decay times of the container's slowest shear mode. D is the slope of the msd from a time t to 2t.
+The time t is `LINEAR_FROM` collisions per particle, or this number of decay times, whichever is later."""
 SHORT_INTERVAL = 0.5
-"""A run sampled at least this often (collisions per particle) is there for short times: its velocity
-autocorrelation is integrated (Simpson's rule, good to 1e-4 at this spacing), and no D is taken from it."""
+"""Largest sampling interval, in collisions per particle, of a run for short times. Its velocity
+autocorrelation is integrated by Simpson's rule, which is accurate to 1e-4 at this interval. No D is computed
+from such a run."""
 GREEN_KUBO_FROM, GREEN_KUBO_TO = 8.0, 16.0
-"""Collisions per particle between which the integral is compared with the slope of the msd."""
+"""Collisions per particle between which the integral of C is compared with the slope of the msd."""
 LOGARITHM_FROM = 30.0
-"""Collisions per particle after which hydrodynamic modes describe discs' velocity autocorrelation."""
+"""Collisions per particle after which hydrodynamic modes describe the velocity autocorrelation of discs."""
 ABSENT = Estimate(math.nan, math.nan, math.nan)
 """Value of a number that a point does not measure."""
 ABOUT = {"reduced_time": "diameter sqrt(mass / temperature)"}
@@ -70,11 +75,10 @@ UNITS = {
 
 
 def replicas(point: Point, longest: float) -> list[Curves]:
-    """Return the curves of each replica, to the lag `longest` or to their last lag.
+    """Return the curves of each replica, up to the lag `longest`, or to their last lag.
 
-    `longest` is in reduced time.
-
-    Raises SceneError for a point without displacements or lags, or a single replica.
+    `longest` is in reduced time. Raises SceneError for a point without displacements or lags, or with a
+    single replica.
     """
     where = f"experiments.{point.experiment}"
     if not point.settings.get("displacements", False):
@@ -82,7 +86,7 @@ def replicas(point: Point, longest: float) -> list[Curves]:
     if point.replicas < 2:
         raise SceneError(f"{where}.replicas", point.replicas, "must be at least 2")
     curves = [reduced_curves(point, path, longest) for path in point.replica_paths]
-    # Temperatures differ a little, so the last lag may.
+    # Temperatures of replicas differ slightly; so may the last lag.
     shortest = min(len(curve.time) for curve in curves)
     return [Curves(*(array[:shortest] for array in vars(curve).values())) for curve in curves]
 
@@ -90,12 +94,11 @@ def replicas(point: Point, longest: float) -> list[Curves]:
 def msd_spheres(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure mean-squared displacement and diffusion of spheres.
 
-    The numbers of a point are in `spheres`.
-
-    Dimensions point and lag (NaN beyond a point's own lags). `largest` marks the long run with the most
-    particles at its packing fraction. `in_series` marks one of three or more sizes at one packing fraction;
-    through these goes the line size_intercept + size_slope / L, or with Yeh and Hummer's slope one from
-    `size_limit`. Raises SceneError for a run too short for its straight stretch.
+    The numbers of a point are defined in `spheres`. The dimensions are point and lag, with NaN beyond the
+    last lag of a point. `largest` marks the long run with the most particles at its packing fraction.
+    `in_series` marks runs of three or more sizes at one packing fraction. A line size_intercept + size_slope
+    / L is fitted through these. A second line has the slope by Yeh and Hummer, and starts at `size_limit`.
+    Raises SceneError for a run too short for the linear part of the msd.
     """
     dataset = table("point", points, spheres, inner=("lag",), units=UNITS).assign_attrs(dimension=3, **ABOUT)
     runs = Table(dataset, "point")
@@ -107,7 +110,7 @@ def msd_spheres(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def size_series(dataset: xr.Dataset) -> xr.Dataset:
-    """Add the lines of D against 1/L through the points `in_series`, if there are any.
+    """Add lines of D against 1/L through the points `in_series`, if there are any.
 
     See `msd_spheres`.
     """
@@ -123,12 +126,15 @@ def size_series(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def msd_discs(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure the displacement of discs and the growth of its slope with ln t; see `_discs`."""
+    """Measure the displacement of discs, and the growth of its slope with ln t.
+
+    See `_discs`.
+    """
     return table("point", points, _discs, inner=("lag",), units=UNITS).assign_attrs(dimension=2, **ABOUT)
 
 
 def _state(point: Point) -> dict[str, Any]:
-    """Return theory's predictions for a scene, such as collision rate and decay time of shear modes."""
+    """Return predictions for a scene, such as collision rate and decay time of shear modes."""
     gas, lengths = plain_gas(point.scene), point.scene.container.lengths
     eta, dimension = gas.packing_fraction, gas.dimension
     density = theory.number_density(eta, dimension)
@@ -168,16 +174,16 @@ def _common(point: Point, state: dict, curves: list[Curves]) -> dict[str, Any]:
 
 
 def spheres(point: Point) -> dict[str, Any]:
-    """Measure D, D of the infinite system, and the curves.
+    """Measure D, D of the infinite system, and the curves of spheres.
 
-    Of N particles whose total momentum is zero, D is (N - 1) / N of its value without this condition (exact
-    for a dilute gas, where the others carry -1 / (N - 1) of a particle's momentum each): all curves are
-    multiplied by N / (N - 1). The rest of the finite size is hydrodynamic: Yeh and Hummer's correction with
-    the measured viscosity (`theory.viscosity_ratio`), to which rho D is added, because a particle leaves a
-    vortex by its own diffusion too: each mode decays with nu + D, as in the long-time tail (Ernst, Hauge and
-    van Leeuwen 1970); half of it in a dilute gas. Its uncertainty is the uncertainty of the viscosity, and (2
-    pi mean free path / side)^2 of it, the next order of hydrodynamics in the slowest mode, but not more than
-    all of it.
+    If the total momentum of N particles is zero, D is smaller by the factor (N - 1) / N. This is exact for a
+    dilute gas, in which each other particle carries -1 / (N - 1) of a particle's momentum. Therefore all
+    curves are multiplied by N / (N - 1). The remaining effect of the finite size is hydrodynamic. It is
+    corrected by Yeh and Hummer, with the measured viscosity (`theory.viscosity_ratio`) plus rho D. The term
+    rho D is added because a particle also leaves a vortex by its own diffusion. Each mode decays with nu + D,
+    as in the long-time tail (Ernst, Hauge and van Leeuwen 1970). In a dilute gas this halves the correction.
+    The uncertainty of the correction has two parts: the uncertainty of the viscosity, and a relative part (2
+    pi mean free path / side)^2, at most 1. The latter is the next order of hydrodynamics in the slowest mode.
     """
     state = _state(point)
     start = max(LINEAR_FROM / state["collision_rate"], SETTLE_SHEAR_TIMES * state["shear_time"])
@@ -214,14 +220,15 @@ def spheres(point: Point) -> dict[str, Any]:
 
 
 def _discs(point: Point) -> dict[str, Any]:
-    """Measure the slope of D(t), the msd's derivative over 2d, against ln t, and the curves.
+    """Measure D(t) of discs, its slope against ln t, and the curves.
 
-    `slope_expected` is the slope of the hydrodynamic modes of the container, fitted in the same way.
+    D(t) is the derivative of the msd divided by 2d. `slope_expected` is the slope for the hydrodynamic modes
+    of the container, fitted in the same way.
 
-    Until sound has crossed the container a particle is not affected by its size, but is affected at once by
-    the fact that the total momentum is zero: without this condition all would share a velocity of mean square
-    d / N. So 1 / N is added to the correlation, t / N to D(t) and d t^2 / N to the msd, exact until then; the
-    curves end there.
+    Until sound has crossed the container, a particle is not affected by the container's size. It is affected
+    at once by the condition of zero total momentum: without this condition all particles would share a
+    velocity of mean square d / N. Therefore 1 / N is added to the correlation, t / N to D(t), and d t^2 / N
+    to the msd. This is exact until sound has crossed; the curves end there.
     """
     state = _state(point)
     start = LOGARITHM_FROM / state["collision_rate"]
@@ -251,11 +258,11 @@ def _discs(point: Point) -> dict[str, Any]:
 
 
 def _green_kubo(curves: list[Curves], rate: float, dimension: int) -> dict[str, Estimate]:
-    """Compute the integral of the velocity autocorrelation, and how far it is from the msd's slope.
+    """Compare the integral of the velocity autocorrelation with the slope of the msd.
 
-    `integral_difference`: (slope of the twice integrated correlation) / (slope of the msd over 2d) - 1, both
-    by a line from GREEN_KUBO_FROM to GREEN_KUBO_TO collisions per particle; the first from velocities alone,
-    the second from displacements alone.
+    `integral_difference` is (slope of the twice integrated correlation) / (slope of the msd over 2d) - 1.
+    Both slopes are from linear fits between GREEN_KUBO_FROM and GREEN_KUBO_TO collisions per particle. The
+    first uses only velocities, the second only displacements.
     """
     integrals = [cumulative_simpson(curve.correlation, x=curve.time, initial=0.0) for curve in curves]
     differences = []
@@ -277,15 +284,21 @@ def _mean(samples: Sequence[Any]) -> Estimate:
 
 
 def velocity_autocorrelation(points: list[Point], settings: dict) -> xr.Dataset:
-    """Return C(t) of every point, the rate of its start and the amplitude of its tail.
+    """Measure C(t) of every point, its initial decay rate, and the amplitude of its tail.
 
-    settings: `start_to`, collisions of a particle up to which -ln C is fitted by a line and a parabola, where
-    it is sampled that often; `tail`, from and to which the tail is fitted of all other points.
+    The setting `start_to` is a number of collisions of a particle. Up to it, -ln C is fitted by a line and a
+    parabola, if the sampling is fine enough. The setting `tail` is the interval for fits of the tail, for all
+    other points.
 
-    Returns over `point` and `lag` (NaN beyond a point's own): collisions s, time, correlation and its error;
-    over `point`: dimension, packing_fraction, count, sound (s at which it has crossed the container),
-    start_rate and its error (over the collision rate), tail_from, tail_to, tail_ratio and tail_correction, A
-    and B of C - 1/N over the sum of the container's modes, and A's error; NaN where a point has none.
+    collisions, time, correlation : s; time; C with its error (`point`, `lag`); NaN beyond the last lag
+    dimension, packing_fraction, count : properties of the gas, over `point`
+    sound : s at which sound has crossed the container
+    start_rate : initial decay rate divided by the collision rate, with error
+    tail_from, tail_to : interval of the fit of the tail
+    tail_ratio, tail_correction : A and B of the fit, with the error of A
+
+    The quantity that is fitted is C - 1/N, divided by the sum of the container's modes. Variables are NaN
+    where a point does not have them.
     """
     return table("point", points, _row, settings, inner=("lag",), units={"time": "sigma sqrt(m / k_B T)"})
 
@@ -319,8 +332,8 @@ def _row(point: Point, settings: dict) -> dict:
     )
     if early.sum() >= 4:
         row["start_rate"] = mean_of([_initial_rate(collisions[early], values[early]) for values in samples])
-    elif late.sum() >= 4:  # what is sampled finely is too short for the tail
-        share = 1.0 / count  # known exactly, and not part of the tail
+    elif late.sum() >= 4:  # finely sampled runs are too short for the tail
+        share = 1.0 / count  # exactly known, and not part of the tail
         modes = theory.velocity_autocorrelation_modes(time[late], eta, dimension, count) - share
         fits = np.array([_tail(collisions[late], values[late] - share, modes) for values in samples])
         row |= {"tail_from": start, "tail_to": stop, "tail_ratio": mean_of(fits[:, 0])}
@@ -337,5 +350,5 @@ def _tail(collisions: np.ndarray, values: np.ndarray, modes: np.ndarray) -> np.n
 
 
 def _initial_rate(collisions: np.ndarray, values: np.ndarray) -> float:
-    """Compute -d ln C / ds at s = 0, of a parabola through 0."""
+    """Compute -d ln C / ds at s = 0, from a parabola through the origin."""
     return float(fit_polynomial(collisions, -np.log(values), powers=(1, 2)).values[0])

@@ -66,18 +66,18 @@ KINDS: dict[str, dict[str, Kind]] = {
         "claims": list_of(_CLAIM, "what is expected of the measurement", 0, default=[]),
     }
 }
-"""The settings of each kind of figure, to which a config gives a name of its own."""
+"""Settings of each kind of figure whose name the config chooses."""
 
 
 def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) -> None:
-    """Raise SceneError where settings do not belong together, or the points cannot be drawn."""
+    """Raise SceneError if settings contradict each other, or the points cannot be drawn."""
     from gaspart.reproduction.families.own import rules
 
     rules.validate(figure, settings, points)
 
 
 def caption(settings: Mapping[str, Any]) -> str:
-    """Return the caption of a figure in the config, with a title if it has none."""
+    """Return the caption of a figure from the config; add a title if it is missing."""
     text = str(settings.get("caption", "")).strip()
     if text.startswith("**"):
         return text

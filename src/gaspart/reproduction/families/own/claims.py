@@ -1,4 +1,4 @@
-"""Claims of a config about an observable."""
+"""Claims about an observable that a config states."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ APPROXIMATE = "the uncertainty of this theory is not known: a tolerance would de
 
 
 def observable(dataset: xr.Dataset, stated: list[dict]) -> list[Claim]:
-    """Return the claims of the config, `stated`, about an observable.
+    """Return the claims about an observable from the config's list `stated`.
 
-    There is one for each point, or each series.
+    There is a claim for each point or for each series.
     """
     points = Table(dataset, "point")
     return [claim for statement in stated for claim in _claims(points, statement)]
@@ -35,17 +35,17 @@ def _claims(points: Table, stated: dict) -> list[Claim]:
 
 
 def _axis(points: Table | Row) -> str:
-    """Return the key of the grid whose values are the column `against`."""
+    """Return the key of the grid whose values are in the column `against`."""
     return str(points.dataset.attrs["against"])
 
 
 def _text(subject: str, point: Row) -> str:
-    """Return the subject of a claim: the observable, the point and its series."""
+    """Return the subject of a claim: observable, point and series."""
     return f"{subject} at {_axis(point)} {point.against:g}" + (f", {point.series}" if point.series else "")
 
 
 def _claim(point: Row, stated: dict) -> Claim | None:
-    """Return one claim about a point; None without a theory for it."""
+    """Return the claim about a point; None if there is no theory for it."""
     that = stated["that"]
     common: dict[str, Any] = {"measured": point.value, "fails_if": stated["fails_if"]}
     if stated.get("required") is not None:
@@ -63,7 +63,7 @@ def _claim(point: Row, stated: dict) -> Claim | None:
 def _theory(point: Row, stated: dict, common: dict[str, Any]) -> Claim | None:
     """Return the claim of agreement with theory.
 
-    If the uncertainty of theory is unknown, it is a fraction of the theoretical value.
+    If theory has no uncertainty, a fraction of the theoretical value is used.
     """
     theory = point.theory
     if math.isnan(theory.value):
@@ -82,7 +82,7 @@ def _theory(point: Row, stated: dict, common: dict[str, Any]) -> Claim | None:
 def _exponent(points: Table, stated: dict) -> Claim:
     """Return the claim on the exponent of a power law through the points of a series.
 
-    Without a fit the exponent is not a number.
+    Without a fit the exponent is NaN.
     """
     x, y, series = points.against, points.value, points.series[0]
     measured = Estimate(math.nan, math.nan)

@@ -1,4 +1,4 @@
-"""Figure of an observable against what varies in a grid."""
+"""Figure of an observable against a parameter that varies in a grid."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from gaspart.rendering import style
 from gaspart.reproduction.table import Table
 
 _THEORY: dict[str, Any] = {"marker": "_", "markersize": 12, "linestyle": ":", "linewidth": 0.8, "zorder": 2}
-"""Theory is known at the points only, which thin lines connect."""
+"""Style of theory, which is known only at the points; thin lines connect these."""
 _FEW = 3
-"""Number of points of a theoretical curve below which they are marked instead of connected."""
+"""Minimum number of points of a theoretical curve that are connected; fewer points are marked instead."""
 
 
 def observable(dataset: xr.Dataset) -> Figure:
-    """Draw the observable of each series of points, with theory; for curves, a curve per point."""
+    """Draw the observable of each series with theory, or a curve for each point."""
     points, settings = Table(dataset, "point"), json.loads(dataset.attrs["settings"])
     theory = settings.get("theory", True) and bool(np.isfinite(points.theory.value).any())
     figure, (axis,) = style.new((2.8,))
@@ -38,7 +38,7 @@ def observable(dataset: xr.Dataset) -> Figure:
 
 
 def _numbers(axis: Axes, points: Table, theory: bool) -> None:
-    """Draw one series of points for each text of `series`, and theory's values at these points."""
+    """Draw a series of points for each text of `series`, with theory at these points."""
     for kind, (series, part) in enumerate(points.by("series")):
         style.points(axis, part.against, part.value, kind=kind, label=series or "measured")
         if theory:
@@ -49,12 +49,12 @@ def _numbers(axis: Axes, points: Table, theory: bool) -> None:
 
 
 def _curves(axis: Axes, points: Table, theory: bool) -> None:
-    """Draw one curve for each point, with a band of one standard error, and theory's curve.
+    """Draw a curve for each point, with a band of one standard error, and theory.
 
     The theory of a curve has the colour of the curve.
     """
     look: dict[str, Any] = {"linestyle": "--", "zorder": 4}
-    if (~np.isnan(points.theory.value)).sum(axis=1).max() < _FEW:  # as at contact
+    if (~np.isnan(points.theory.value)).sum(axis=1).max() < _FEW:  # like a contact value
         look = {"marker": "x", "linestyle": "none", "zorder": 4}
     for kind, point in enumerate(points):
         x, y, colour = point.along_places, point.value, _colour(kind)

@@ -1,4 +1,4 @@
-"""An observable at each point of some experiments, as the config names it."""
+"""Measurement of an observable at each point of some experiments, as named in a config."""
 
 from __future__ import annotations
 
@@ -22,15 +22,24 @@ _PARTS = {"value": "", "value_error": "_error", "theory": "_theory", "theory_err
 
 
 def observable(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure an observable of each point, the mean of its replicas.
+    """Measure an observable of each point, averaged over its replicas.
 
-    The settings are `observable`; `against`, the key of the points on the horizontal axis; `place`, for a
-    curve, the position at which its value is taken; see `families.own`. The dimension is point, in the order
-    of series and against. There are `against`; `series`, the other varying settings, as text; value, theory
-    (NaN without theory), each with its `_error`, in the units of the observable, and value_freedom, the
-    degrees of freedom of the error. An observable with a number for each of some names, such as faces, has a
-    series for each. For a curve, all these variables also have the dimension `along`, and `along_places`
-    contains the positions. Raises SceneError for what can not be measured.
+    The settings are:
+
+    observable : name of the observable
+    against : key of the points on the horizontal axis
+    place : for a curve, the position at which its value is taken; see `families.own`
+
+    The dimension is point, ordered by `series` and `against`.
+
+    against : value of the key
+    series : other varying settings, as text
+    value, theory : value and theory (or NaN), each with its `_error`, in the units of the observable
+    value_freedom : degrees of freedom of the error
+
+    Some observables have several named values, such as one for each face; then each name is a series. For a
+    curve, all these variables also have the dimension `along`, and `along_places` contains the positions.
+    Raises SceneError for an observable that cannot be measured.
     """
     name = settings["observable"]
     rows, source = [], ""
@@ -59,9 +68,9 @@ def observable(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _by_name(replicas: list[Observable]) -> dict[str, list[Observable]]:
-    """Split an observable with a number for each of some names into its numbers.
+    """Split an observable with named values, such as faces, into its values.
 
-    Another observable is returned itself.
+    Another observable is returned unchanged.
     """
     first = replicas[0].estimate
     if not first.dims or first[first.dims[0]].dtype.kind not in "UO":
@@ -71,9 +80,9 @@ def _by_name(replicas: list[Observable]) -> dict[str, list[Observable]]:
 
 
 def _other(point: Point, points: list[Point], against: str) -> str:
-    """Return the distinction of a point from others at the same value of `against`.
+    """Return a text that distinguishes a point from others at the same value of `against`.
 
-    The text contains the experiment, if there are several, and the other values of its grid.
+    The text contains the other values of its grid, and the experiment if there are several.
     """
     several = len({other.experiment for other in points}) > 1
     varied = [part for part in point.name.split(",") if not part.startswith(f"{against}=")]
@@ -102,8 +111,9 @@ def measure_point(
 ) -> tuple[dict[str, list[Observable]], float, dict[str, SceneError]]:
     """Measure observables of all replicas of a point.
 
-    Returns the observables by name, the mean duration of a replica, and errors by name of what cannot be
-    measured. Frames count after the equilibration, or, with `part`, after the first quarter of each run.
+    Returns the observables by name, the mean duration of a replica, and error messages by name of observables
+    that cannot be measured. Frames after the equilibration are used. With `part`, the first quarter of each
+    run is left out instead.
     """
     start = None if part else point.schedule.equilibration
     results: dict[str, list[Observable]] = {name: [] for name in names}
@@ -125,11 +135,11 @@ def measure_point(
 
 
 def mean_of(replicas: list[Observable], part: str) -> np.ndarray | None:
-    """Average independent runs, or compute another part of the mean.
+    """Average independent runs, or compute another property of the mean.
 
-    The part is its standard uncertainty (_error), theory (_theory) or the uncertainty of theory
-    (_theory_error), None without a theory. Runs that end when they are accurate may have curves of different
-    lengths. Then only the common part is used.
+    The property `part` is the standard uncertainty (_error), theory (_theory), or the uncertainty of theory
+    (_theory_error). Without a theory, None is returned. Runs that stop at a required accuracy may have curves
+    of different lengths. Then only the common range is used.
     """
     quantity = replicas[0].attrs["quantity"]
     if part.startswith("_theory") and any(replica.theory is None for replica in replicas):

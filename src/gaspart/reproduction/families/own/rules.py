@@ -1,4 +1,4 @@
-"""Rules for a figure that a config defines, which are checked before any job."""
+"""Rules for figures that a config defines, checked before any job."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ NEEDED = {
     "value": ("value", "tolerance", "source"),
     "exponent": ("value", "tolerance", "source"),
 }
-"""Keys that a claim of each kind must state."""
+"""Required keys of a claim of each kind."""
 _LEAST = 3
-"""Points through which a power law is fitted."""
+"""Minimum number of points for the fit of a power law."""
 _UNUSED = {
     "theory": ("value", "source"),
     "at_least": ("tolerance",),
@@ -63,7 +63,7 @@ def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) 
 
 
 def _check_between(where: str, claim: Mapping[str, Any], at: Sequence[float]) -> None:
-    """Refuse a claim about no point, and an exponent of fewer than three points.
+    """Raise SceneError for a claim about no point, or an exponent of fewer than three points.
 
     `at` are the values of the points.
     """
@@ -80,7 +80,7 @@ def _check_between(where: str, claim: Mapping[str, Any], at: Sequence[float]) ->
 def _require_measurable(where: str, name: str, point: Point) -> None:
     """Raise SceneError for an observable that cannot be measured at a point.
 
-    The scene does not have it, or the trajectories do not store what it needs.
+    The reason is that the scene does not have it, or that the trajectories do not store the necessary data.
     """
     stated = {"pairs": "pairs", "stress": "fluxes"}
     try:

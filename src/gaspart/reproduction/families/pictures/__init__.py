@@ -1,4 +1,4 @@
-"""Pictures."""
+"""Figures that are rendered pictures of scenes."""
 
 TITLE = "Pictures"
 CHAPTER = "Pictures and checks"

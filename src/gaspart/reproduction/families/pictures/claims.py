@@ -1,4 +1,4 @@
-"""Claims about the scenes that are drawn."""
+"""Claims about rendered scenes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ from gaspart.scene.limits import ball_volume
 def gas_render(dataset: xr.Dataset) -> list[Claim]:
     """Return the claims on the gas: number, density, overlaps, and mean speed.
 
-    All are present, as dilute as the source states, without overlaps after a step, with Maxwell's mean speed.
+    All particles are present. The density is as low as the source states. There are no overlaps after a step.
+    The mean speed is Maxwell's.
     """
     spheres = Table(dataset, "particle")
     expected = 2.0 * spheres.resolved**2 / spheres.count
@@ -52,7 +53,7 @@ def gas_render(dataset: xr.Dataset) -> list[Claim]:
 
 
 def brownian_render(dataset: xr.Dataset) -> list[Claim]:
-    """Return the claims that all spheres are present, and that none overlaps another."""
+    """Return the claims that all spheres are present, and that none overlap."""
     spheres = Table(dataset, "particle")
     return [
         _number(spheres),

@@ -13,11 +13,11 @@ from gaspart.rendering.pictures import picture
 from gaspart.reproduction.table import Table
 
 DOTS = 300
-"""Pixels per inch of the pictures, equal to those in a saved figure."""
+"""Resolution of the pictures in pixels per inch, the same as in a saved figure."""
 HEIGHT = 0.75
-"""Height of a picture, over its width."""
+"""Height of a picture divided by its width."""
 HIGHEST = 4.2
-"""Largest height of a picture, in inches."""
+"""Maximum height of a picture, in inches."""
 
 
 def gas_render(dataset: xr.Dataset) -> Figure:
@@ -44,7 +44,7 @@ def brownian_render(dataset: xr.Dataset) -> Figure:
 def _draw_picture(spheres: Table, colour: str, bar: float = 0.0) -> tuple[Figure, Axes]:
     """Return a figure filled by a picture of the spheres.
 
-    `bar` is the height in inches of the space below.
+    `bar` is the height, in inches, of the empty space below the picture.
     """
     particles = DrawnParticles(
         positions=spheres.position,

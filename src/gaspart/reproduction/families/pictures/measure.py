@@ -1,4 +1,4 @@
-"""Scenes as they are to be drawn, and what can be counted in them."""
+"""Scenes to be rendered, and counts of their particles and overlaps."""
 
 from __future__ import annotations
 
@@ -14,28 +14,31 @@ from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import entries
 
 ROUNDING = 1e-5
-"""Depth, in diameters, up to which an overlap is put down to the single precision of frames."""
+"""Largest overlap, in diameters, that is attributed to the single precision of frames."""
 
 
 def gas_render(points: list[Point], settings: dict) -> xr.Dataset:
     """Return the last frame of the first replica, and counts over all replicas.
 
-    The counts are in the last frames; see `_scene`.
+    The counts are from the last frames; see `_scene`.
     """
     return _scene(points[0])
 
 
 def brownian_render(points: list[Point], settings: dict) -> xr.Dataset:
-    """Return the last frame of the large sphere in its gas, and counts; see `_scene`."""
+    """Return the last frame of the large sphere in its gas, and counts.
+
+    See `_scene`.
+    """
     return _scene(points[0])
 
 
 def _scene(point: Point) -> xr.Dataset:
     """Return the particles of one frame, and counts over replicas.
 
-    `overlaps`: pairs that overlap by more than rounding. `resolved`: with the time-stepped engine, the
-    collisions of the step before each frame, overlaps that it found and put right; with the other none.
-    `mean_speed` of the last species, with the standard error over particles.
+    `overlaps` is the number of pairs that overlap by more than rounding. `resolved` is the number of overlaps
+    that the time-stepped engine detected and removed in the step before each frame; it is 0 for other
+    engines. `mean_speed` is the mean speed of the last species, with the standard error over particles.
     """
     scene, lengths = point.scene, np.array(point.scene.container.lengths)
     frames, overlaps, collisions = [], 0, 0.0
@@ -70,7 +73,7 @@ def overlapping(
 ) -> int:
     """Count the pairs of particles (N, d) that overlap by more than rounding.
 
-    The few particles that are larger than twice the median radius are compared with all others.
+    Particles larger than twice the median radius are few. They are compared with all others.
     """
     box = np.where(periodic, lengths, 0.0)
 

@@ -1,4 +1,4 @@
-"""Pressure on walls and pistons."""
+"""Figures on pressure on walls and pistons."""
 
 from gaspart.keys import list_of, positive
 

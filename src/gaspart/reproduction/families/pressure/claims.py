@@ -14,7 +14,7 @@ from gaspart.reproduction.families.shared import PARTICLES
 from gaspart.reproduction.table import Row, Table, each
 
 RELATIVE_ERROR = 1e-3
-"""The largest standard error of a pressure, relative to it, at which a mean of comparisons means anything."""
+"""Largest relative standard error of a pressure for which a mean of comparisons is conclusive."""
 THEORY: dict[str, Any] = {
     "source": "bulk equation of state; surfaces, edges and corners of the container to fifth order in the "
     "density, by cluster integrals (gaspart.theory.film); canonical ensemble to first order in 1/N",
@@ -22,14 +22,14 @@ THEORY: dict[str, Any] = {
     "fails_if": "wall collisions are missed or counted twice, or the wrong area, volume or density is taken",
 }
 LESS_CERTAIN = "surfaces and edges are less certain than the measurement, by an estimate of what is left out"
-"""Why there is no verdict where theory's uncertainty, which is an estimate, exceeds the measurement's."""
+"""Reason for no verdict if the estimated uncertainty of theory exceeds the measurement's."""
 
 
 def wall_pressure(dataset: xr.Dataset) -> list[Claim]:
-    """Return the claims on the pressure on walls, with the container's surface terms.
+    """Return the claims on the wall pressure, with surface terms of the container.
 
-    It is the bulk's with these terms, and proportional to T; without them the deviation is far larger than
-    the error.
+    It equals the bulk pressure with these terms, and is proportional to T. Without these terms the deviation
+    is far larger than the error.
     """
     table = Table(dataset, "point")
     table = table.assign(particles=[PARTICLES[dimension] for dimension in table.dimension])
@@ -116,9 +116,9 @@ ENSEMBLE = "the ensemble of constant pressure and enthalpy ([Andersen 1980])"
 
 
 def exponents(path: Row) -> np.ndarray:
-    """Compute 1 + 2/d times the logarithm of the temperature ratio over theory's.
+    """Compute 1 + 2/d times ln of the temperature ratio, divided by theory.
 
-    The shape is (path_replica, frame). The heat of viscosity is subtracted first.
+    The shape is (path_replica, frame). Viscous heating is subtracted first.
     """
     dimension, first = path.dimension, path.packing_fraction
     eta = np.minimum(first / path.volume, theory.HIGHEST_PACKING_FRACTION[dimension])
@@ -129,7 +129,7 @@ def exponents(path: Row) -> np.ndarray:
 
 
 def piston(ds: xr.Dataset) -> list[Claim]:
-    """Return the claims on adiabatic exponents, states at constant pressure, and free expansions."""
+    """Return the claims on adiabatic exponents, states at constant pressure, free expansions."""
     paths, states, gases = (Table.from_prefixed(ds, kind) for kind in ("path", "state", "expansion"))
     return [
         *(claim for path in paths for claim in _of_path(path)),
@@ -244,8 +244,8 @@ _DILUTE, _NARROW = 0.1, 0.15
 def estimators(dataset: xr.Dataset) -> list[Claim]:
     """Return the claims that counts and impulses agree, and that their mixture is better.
 
-    The mixture has the smaller variance, by far in a dilute gas. Pressures with known means have a smaller
-    variance too.
+    The mixture has the smaller variance, much smaller in a dilute gas. The pressure estimator with known
+    means has a smaller variance, too.
     """
     cases = Table(dataset, "case")
     narrow = cases[cases.width < _NARROW]

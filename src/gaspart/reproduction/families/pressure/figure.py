@@ -28,9 +28,9 @@ def wall_pressure(dataset: xr.Dataset) -> Figure:
 
 
 def _temperatures(axis: Axes, table: Table) -> None:
-    """Draw P / (n k T) against T where one density has several temperatures.
+    """Draw P / (n k T) against T, at the densities that have several temperatures.
 
-    Lines are theory, ideal gas.
+    Lines are theory and the ideal gas.
     """
     series = [(n, part) for n, part in table.by(table.density.round(9)) if np.ptp(part.temperature) > 1.0]
     for kind, (n, part) in enumerate(series):
@@ -47,9 +47,9 @@ def _temperatures(axis: Axes, table: Table) -> None:
 
 
 def _densities(axis: Axes, table: Table) -> None:
-    """Draw P / (n k T) by the force over the whole wall, and corrected.
+    """Draw P / (n k T) from the force on the full wall area, and corrected.
 
-    The correction is to the infinite fluid; the former is hollow, the latter filled.
+    The correction is to the infinite fluid. Raw values are hollow, corrected values filled.
     """
     for kind, (dimension, part) in enumerate(table.by("dimension")):
         eta, name = part.packing_fraction, PARTICLES[dimension]
@@ -86,12 +86,12 @@ def _excess(table: Table) -> Estimate:
 
 
 _DOUBLED = 2.0
-"""Volume after free expansion divided by the volume before."""
+"""Volume after free expansion divided by the initial volume."""
 _EXPONENTS = {2: "2", 3: "5/3"}
 
 
 def piston(ds: xr.Dataset) -> Figure:
-    """Draw temperature along adiabats, factors at constant pressure, and variances of the volume."""
+    """Draw temperature along adiabats, factors at constant pressure, and volume variances."""
     figure, (upper, middle, lower) = style.new((2.6,), (1.9, 1.9))
     paths, states, gases = (Table.from_prefixed(ds, kind) for kind in ("path", "state", "expansion"))
     for path in paths:
@@ -137,9 +137,9 @@ def _draw_states(middle: Axes, lower: Axes, states: Table, dimension: int) -> No
 
 
 def estimators(dataset: xr.Dataset) -> Figure:
-    """Draw the relative run length that other estimators need, against the packing fraction.
+    """Draw the relative run length that other estimators need, against packing fraction.
 
-    They are counts in all bins and at walls, and impulses of walls alone.
+    These estimators are counts in all bins, counts at walls, and impulses of walls alone.
     """
     figure, axes = style.new((2.0, 2.0), (2.0,))
     everywhere, at_walls, pressure = axes

@@ -1,15 +1,17 @@
 """Measurements of pressure on walls, gases behind a piston, and estimators.
 
-Pressure from the momentum transferred to the walls of the container.
+The first part measures the pressure from the momentum transferred to the walls of the container.
 
-Everything is in reduced units: the particles' diameter, mass and temperature are 1. Along a periodic axis the
-total momentum is conserved: the temperature is defined by the motion about it.
+Units are reduced: the particles' diameter, mass and temperature are 1. Along a periodic axis the total
+momentum is conserved. The temperature is then defined by velocities relative to the centre of mass.
 
-Gases behind a piston: along an adiabat, at constant pressure, and without one.
+The second part is on gases behind a piston: along an adiabat, at constant pressure, and in free expansion
+without a piston.
 
-Density between two walls by counts and impulses, and the pressure on the walls.
+The third part measures the density between two walls by counts and by impulses, and the pressure on the
+walls.
 
-The mixture of both estimators is measured too; all are from the same runs.
+It also measures the mixture of both estimators. All estimates are from the same runs.
 """
 
 from __future__ import annotations
@@ -44,14 +46,18 @@ UNITS |= dict.fromkeys(("pressure", "whole_pressure", "bulk_pressure", "expected
 def wall_pressure(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure the pressure on the walls of containers, with theory for each.
 
-    The containers have walls on some or all axes.
+    The containers have walls on some or all axes. Variables over `point`:
 
-    Returns over `point`: pressure with its error, the mean force on a wall over the area that centres can
-    touch; whole_pressure, the same force over the full area of the wall; bulk_pressure, of an infinite fluid
-    with as many particles per volume of the container; expected with its error, theory for this container;
-    density, particles per volume of the container, and packing_fraction; temperature of the scene; hits;
-    count, dimension, axes with walls, length along them. Raises SceneError for containers without walls, or
-    with walled sides of several lengths.
+    pressure : mean force on a wall divided by the area that centres can reach, with error
+    whole_pressure : the same force divided by the full area of the wall
+    bulk_pressure : theoretical pressure of an infinite fluid of this `density`
+    expected : theoretical pressure of this container, with error
+    density : particle number per volume of the container
+    packing_fraction, temperature, dimension : of the scene
+    hits, count : number of wall hits, and of particles
+    axes, length : number of axes with walls, and length along them
+
+    Raises SceneError for containers without walls, or whose axes with walls have different lengths.
     """
     return table("point", points, _row, units=UNITS)
 
@@ -89,32 +95,37 @@ def _row(point: Point) -> dict:
 
 
 def _replica(run: Run) -> tuple[np.ndarray, float, int]:
-    """Return the mean pressure (samples,), the temperature and the number of hits of a replica.
-
-    The pressure is on the walls.
-    """
+    """Return the mean wall pressure (samples,), temperature and number of hits of a replica."""
     walled = np.repeat(~run.periodic, 2)
     hits = run.increments("wall_hits")[:, : 2 * run.dimension].sum()
     return face_pressures(run)[:, walled].mean(axis=1), run.temperature, hits
 
 
 def piston(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure three kinds of points, of particles of mass 1, whose first axis has walls.
+    """Measure three kinds of points with walls on the first axis.
 
-    With a piston and without an equilibration, over (path, path_replica, frame) are volume and temperature
-    divided by their first values; heating, see `_heating`; over `path` dimension and the first
-    packing_fraction.
+    Particles have mass 1.
 
-    With a piston and an equilibration, over (state, state_replica) are density, the packing fraction in the
-    middle half of the volume; factor, the external pressure over this density and the temperature;
-    fluctuation, the number of particles times the variance of the volume over the square of the volume at
-    this density; energy, twice the kinetic energy of the piston over the temperature; over `state` dimension
-    and count.
+    The first kind are points with a piston and without equilibration. Variables over (path, path_replica,
+    frame) are volume and temperature divided by their first values, and heating (see `_heating`). Variables
+    over `path` are dimension and the first packing_fraction.
 
-    Without a piston, over (expansion, expansion_replica) are heat, the final kinetic energy over the first;
-    speed, the final mean speed over its equilibrium value at the first temperature; share, the fraction of
-    the particles in the half of the container that was empty; over `expansion` dimension. Final values are
-    means over the second half of the frames.
+    The second kind are points with a piston and with equilibration. Variables over (state, state_replica):
+
+    density : packing fraction in the middle half of the volume
+    factor : external pressure divided by this density and the temperature
+    fluctuation : particle number times variance of the volume, over the squared volume at this density
+    energy : twice the kinetic energy of the piston, divided by the temperature
+
+    Variables over `state` are dimension and count.
+
+    The third kind are points without a piston. Variables over (expansion, expansion_replica):
+
+    heat : final kinetic energy divided by the initial energy
+    speed : final mean speed divided by its equilibrium value at the initial temperature
+    share : fraction of particles in the half of the container that was empty
+
+    The variable over `expansion` is dimension. Final values are means over the second half of the frames.
     """
     kinds: dict[str, tuple] = {
         "path": (_path, "packing_fraction"),
@@ -136,7 +147,7 @@ def _kind(point: Point) -> str:
 
 
 def _piston_row(point: Point, read: Callable[[Run], dict], facts: tuple[str, ...]) -> dict:
-    """Return the results of `read` for each replica, and facts of the scene."""
+    """Return the results of `read` for each replica, and properties of the scene."""
     replicas = [read(run) for run in runs(point)]
     row = {name: np.stack([replica[name] for replica in replicas]) for name in replicas[0]}
     return row | {name: getattr(point.scene, name) for name in facts}
@@ -144,7 +155,8 @@ def _piston_row(point: Point, read: Callable[[Run], dict], facts: tuple[str, ...
 
 def _path(run: Run) -> dict[str, np.ndarray]:
     length, energy = _length(run), run.data["kinetic_energy"].values
-    rate = run.data["piston_velocity"].values / length  # its square counts: on either side
+    # the square is used: the deviation may have either sign
+    rate = run.data["piston_velocity"].values / length
     heating = _heating(run.scene, run.time, length, energy, rate)
     return {"volume": length / length[0], "temperature": energy / energy[0], "heating": heating}
 
@@ -152,11 +164,11 @@ def _path(run: Run) -> dict[str, np.ndarray]:
 def _heating(
     scene: Scene, time: np.ndarray, length: np.ndarray, energy: np.ndarray, rate: np.ndarray
 ) -> np.ndarray:
-    """Compute the increase (frame,) of the logarithm of the temperature by viscosity.
+    """Compute the increase (frame,) of ln T by viscous heating.
 
-    The gas between the wall and the piston flows with a velocity proportional to the distance from the wall;
-    its longitudinal viscosity (Enskog's) times the square of the `rate` of strain is heat. An adiabat keeps
-    the ratio of two temperatures, so that the parts add up.
+    The gas between wall and piston flows with a velocity proportional to the distance from the wall. The heat
+    is the longitudinal viscosity (Enskog) times the square of the `rate` of strain. Along an adiabat the
+    ratio of two temperatures is constant, so that the increments add up.
     """
     dimension, diameter = scene.dimension, 2.0 * scene.largest_radius
     share = length / scene.container.lengths[0]
@@ -167,7 +179,7 @@ def _heating(
 
 
 def _length(run: Run) -> np.ndarray:
-    """Compute the distance of the piston from the wall opposite, shape (frame,)."""
+    """Compute the distance of the piston from the opposite wall, shape (frame,)."""
     ((number, _),) = run.scene.pistons
     position = run.data["piston_position"].values
     return position if number % 2 else run.scene.container.lengths[number // 2] - position
@@ -180,7 +192,8 @@ def _state(run: Run) -> dict[str, np.ndarray]:
     positions = run.data["coordinates"].values[:, :, 0] / length[:, None]
     temperature = 2.0 * run.data["kinetic_energy"].values.mean() / (scene.dimension * scene.count)
     middle = ((positions > 0.25) & (positions < 0.75)).sum() / (0.5 * area * length.sum())
-    bulk = scene.count / (middle * area)  # the length without what the walls deplete, which does not vary
+    # length without the layer that walls deplete; this layer does not change
+    bulk = scene.count / (middle * area)
     return {
         "density": middle * scene.packing_fraction * scene.container.volume / scene.count,
         "factor": face.pressure / (middle * temperature),
@@ -204,21 +217,24 @@ def _expansion(run: Run) -> dict[str, np.ndarray]:
 
 _BLOCKS = 32
 _FILLED = 0.2
-"""Fraction of the mean density below which bins, which walls close in part, are left out."""
+"""Minimum density of a bin, divided by the mean density; bins below it are partly inaccessible, and left out.
+"""
 
 
 def estimators(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure variances of densities along the last axis, for gases between walls across it.
 
-    The setting is `widths`.
+    The setting is `widths` of bins. Variables over `case`, which is a point with a width of bins:
 
-    Returns over `case`, each point with each width of bins: packing_fraction; width, in diameters; mixture
-    and impulses, the variance of counts divided by their variance, the median of all bins; at_walls, the
-    first in the two bins at the walls, each the mean over replicas, by blocks of time; mean_square, of the
-    difference of counts and impulses over its error, divided by its value for Student's distribution;
-    additions, of the tally for each pair of particles that the engine has tested; pressure, the squared error
-    of the pressure on a wall by its impulses divided by the squared error with known means, and
-    pressures_apart, the difference of both over the latter.
+    packing_fraction, width : packing fraction, and width in diameters
+    mixture, impulses : variance of counts divided by the variance of these estimators, median of all bins
+    at_walls : `mixture` in the two bins at the walls
+    mean_square : mean square of (counts - impulses) / error, over the value for Student's distribution
+    additions : additions to the tally per tested pair of particles
+    pressure : squared error of the wall pressure by impulses, divided by the squared error with known means
+    pressures_apart : difference of both pressures divided by the latter
+
+    Ratios of variances are means over replicas, each computed from blocks of time.
     """
     cases = [(point, width) for point in points for width in settings["widths"]]
     return table("case", cases, _estimators_row)
@@ -233,7 +249,7 @@ def _estimators_row(case: tuple[Point, float]) -> dict[str, Any]:
 
 
 def _compare(run: Run, width: float) -> dict[str, float]:
-    """Compare the estimators of one run, in bins of this width."""
+    """Compare the estimators of one run, in bins of the given width."""
     counted, impulses = blocks_of(run, width)
     filled = np.flatnonzero(counted.mean(axis=0) > _FILLED * counted.mean())
     counted, impulses = counted[:, filled], impulses[:, filled]
@@ -252,9 +268,9 @@ def _compare(run: Run, width: float) -> dict[str, float]:
 
 
 def pressures_of(run: Run) -> dict[str, float]:
-    """Compare the pressures of one run on both walls, by two estimators; return the means.
+    """Compare two estimators of the pressure of a run, on both walls; return the means.
 
-    With the known means both walls have the same pressure but for rounding.
+    With known means both walls have the same pressure, except for rounding.
     """
     start = float(run.time[0])
     both = (components(data, "pressure", start) for data in (run.data.assign_attrs(tallies="[]"), run.data))
@@ -267,9 +283,9 @@ def pressures_of(run: Run) -> dict[str, float]:
 
 
 def blocks_of(run: Run, width: float) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the mean numbers of particles (blocks, bins), by counts and by impulses.
+    """Compute the mean particle numbers (blocks, bins), by counts and by impulses.
 
-    Raises SceneError for a width that the bins of the run do not divide.
+    Raises SceneError if the width is no multiple of the bins of the run.
     """
     axis, has = run.dimension - 1, read_impulses(run.data)
     length = float(run.scene.container.lengths[axis])

@@ -1,4 +1,4 @@
-"""Gain from space partitioning."""
+"""Figures on the gain from space partitioning."""
 
 from gaspart.keys import COUNT, count, list_of, positive, record
 

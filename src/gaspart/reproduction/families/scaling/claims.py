@@ -1,7 +1,7 @@
-"""Claims about scaling.
+"""Claims about scaling with the number of particles and boxes.
 
-Work is counted, so it is judged strictly. Times belong to a machine and a program: what the sources report
-of theirs is a reproduction, in which disagreement is a result and not a fault.
+Counted operations are compared strictly. Times depend on machine and program. Therefore a time that a source
+reports is a reproduction; disagreement is a result, not a fault.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from gaspart.reproduction.table import Row, Table, each
 
 
 def remarks(ds: xr.Dataset) -> list[Claim]:
-    """Return the claims on the source's remarks on the cost of a step.
+    """Return the claims on source A's remarks on the cost of a step.
 
-    They are on work and time.
+    They concern counted work and time.
     """
     near = Table(ds, "near")
     visits = near.near_box_visits / near.near_expected_visits
@@ -33,7 +33,7 @@ def remarks(ds: xr.Dataset) -> list[Claim]:
             measured=Estimate(visits[np.abs(visits - 1.0).argmax()], visits.std(ddof=1)),
             expected=1.0,
             half_width=0.03,
-            source="Steiner's formula, gaspart.theory.dsmc, without the walls' 1 %",
+            source="Steiner's formula, gaspart.theory.partition, without the walls' 1 %",
             fails_if="boxes within reach are left out, or others are searched",
         ),
         Claim(
@@ -87,11 +87,11 @@ def remarks(ds: xr.Dataset) -> list[Claim]:
 # Claims about the ideal number of boxes.
 
 
-_INTERVAL = 2.0 * 1.96  # a 95 % interval in standard errors
+_INTERVAL = 2.0 * 1.96  # a 95 % interval, in standard errors
 
 
 def ideal_boxes(ds: xr.Dataset) -> list[Claim]:
-    """Return the claims on the source's numbers of boxes per particle, and how much they matter."""
+    """Return the claims on the source's numbers of boxes per particle, and on their effect."""
     gases, sources = Table(ds, "gas"), Table(ds, "source")
     return [
         Claim.at_most(
@@ -107,7 +107,7 @@ def ideal_boxes(ds: xr.Dataset) -> list[Claim]:
             measured=_work_over_time(gases),
             expected=0.0,
             half_width=0.3,
-            source="(3^d c_test / 2 c_box)^(1/2), gaspart.theory.dsmc",
+            source="(3^d c_test / 2 c_box)^(1/2), gaspart.theory.partition",
             fails_if="something other than pair tests and boxes determines the optimum",
         ),
         *_exponents(Table(ds, "series")),
@@ -121,7 +121,7 @@ def ideal_boxes(ds: xr.Dataset) -> list[Claim]:
 
 
 def _work_over_time(gases: Table) -> Estimate:
-    """Compute the mean and scatter of ln(model / ideal) of the gases with a minimum."""
+    """Compute mean and scatter of ln(model / ideal), for gases whose minimum was found."""
     ratio = np.log(gases.model / gases.ideal)
     ratio = ratio[gases.ideal_interior.astype(bool) & np.isfinite(ratio)]
     if ratio.size < 2:
@@ -162,9 +162,9 @@ def _plateaus(plateaus: Table) -> list[Claim]:
 
 
 def _source_numbers(source: Row, origin: str) -> list[Claim]:
-    """Return the claims on the source's number for one gas: ideality, and slowdown.
+    """Return the claims on the source's number for a gas: is it ideal, and its slowdown.
 
-    If no minimum lies between the timed partitions, its interval is infinite and the claim inconclusive.
+    If no minimum lies between the timed partitions, its interval is infinite, and the claim is inconclusive.
     """
     number, gas = source.source_number, f"N = {source.source_count}, r = {source.source_radius:g}"
     interval = source.source_ideal_high - source.source_ideal_low
@@ -196,7 +196,7 @@ def _source_numbers(source: Row, origin: str) -> list[Claim]:
 YEAR = 365.25 * 86400.0
 _OTHER_CAUSE = "something other than the pair tests takes the time"
 _LAWS = {"pairs": (2.0, "4.2: all pairs"), "direct": (1.0, "4.3: a queue"), "boxes": (0.0, "4.4: sectors")}
-"""Exponent of an event's cost in N, and the section of source C that states it, by search."""
+"""Exponent of an event's cost in N by search method, and the section of source C that states it."""
 
 
 def _all_pairs(subject: str, excess: float) -> Claim:
@@ -213,9 +213,9 @@ def _all_pairs(subject: str, excess: float) -> Claim:
 
 
 def naive_scaling(ds: xr.Dataset) -> list[Claim]:
-    """Return the claims on quadratic cost, exact in pair tests, approximate in time.
+    """Return the claims on quadratic cost: exact for pair tests, approximate for time.
 
-    Caches limit the agreement of the time.
+    Caches limit the agreement of times.
     """
     gases = Table(ds, "count")
     return [
@@ -247,7 +247,7 @@ def box_count(ds: xr.Dataset) -> list[Claim]:
         )
         for name, (ratio, bound) in over.items()
     ]
-    # The minimum is flat: what matters is what the source's number costs, not where exactly the least is.
+    # The minimum is flat: the cost at the source's number matters, not the exact position of the minimum.
     number = Claim.at_most(
         claim=f"time with {scan.source_boxes_per_particle:g} boxes per particle over the least of all",
         kind="reproduction",
@@ -263,8 +263,11 @@ def box_count(ds: xr.Dataset) -> list[Claim]:
 
 
 def _counts(scan: Table) -> list[Claim]:
-    """Pair tests (where there is about one a particle) and box visits (everywhere) are those expected."""
-    source = "uniform density, gaspart.theory.dsmc"
+    """Return the claims on expected numbers of pair tests and box visits.
+
+    Pair tests are compared where there is about one box per particle, box visits everywhere.
+    """
+    source = "uniform density, gaspart.theory.partition"
     nearest = scan[int(np.abs(scan.expected_tests - 1.0).argmin())]
     visits = scan.box_visits / scan.expected_visits
     return [
@@ -288,7 +291,7 @@ def _counts(scan: Table) -> list[Claim]:
 
 
 def _round_widths(powers: Table) -> list[Claim]:
-    """Return the claims on the source's explanation of its plateaus, tested."""
+    """Return the claims that test the source's explanation of its plateaus."""
     return each(
         powers.assign(width=powers.container_side[0] / powers.round_per_side),
         "ln of time saved by boxes of width {width:g} for being a power of two",
@@ -301,7 +304,7 @@ def _round_widths(powers: Table) -> list[Claim]:
 
 
 def _sectors(searches: Estimate, exponent: Estimate) -> list[Claim]:
-    """Return the claims on the costs of sectors in the event-driven engine."""
+    """Return the claims on the cost of sectors in the event-driven engine."""
     return [
         Claim.within(
             claim="neighbourhoods searched at a crossing",
@@ -323,7 +326,7 @@ def _sectors(searches: Estimate, exponent: Estimate) -> list[Claim]:
 
 
 def linear_scaling(ds: xr.Dataset) -> list[Claim]:
-    """Return the claims on linear counted work, regimes of time, and years of the naive method.
+    """Return the claims on linear work, regimes of time, and years of the naive method.
 
     The source states three regimes.
     """
@@ -361,9 +364,9 @@ def linear_scaling(ds: xr.Dataset) -> list[Claim]:
 
 
 def _log10(ratio: Estimate) -> Estimate:
-    """Compute the decimal logarithm; not a number for a negative time.
+    """Compute the decimal logarithm; NaN for a negative time.
 
-    Noise can make a time negative in a short run at the same time as others.
+    Noise can make the time of a short run negative.
     """
     if not ratio.value > 0.0:
         return Estimate(math.nan, math.nan)
@@ -373,7 +376,7 @@ def _log10(ratio: Estimate) -> Estimate:
 def _regime(part: Row, number: int) -> Claim:
     """Return the claim on one of the source's figures 8 to 10.
 
-    They are linear, but for the superlinear 9.
+    Figures 8 and 10 are linear; figure 9 is superlinear.
     """
     claim = f"exponent of the time per step in N, N = {part.part_low} to {part.part_high}"
     source = f"{SOURCE_A}, figure {number}"
@@ -401,10 +404,7 @@ def _regime(part: Row, number: int) -> Claim:
 
 
 def event_scaling(ds: xr.Dataset) -> list[Claim]:
-    """Return the claims on the growth of the cost of an event, by search.
-
-    The growth is with N.
-    """
+    """Return the claims on the cost of an event against N, by search method."""
     methods = Table(ds, "method")
     claims = [_all_pairs("all pairs, every event", methods.pairs_excess)]
     for method in methods:
@@ -425,9 +425,9 @@ def event_scaling(ds: xr.Dataset) -> list[Claim]:
 
 
 def _event_time(where: str, exponent: Estimate, law: dict[str, Any]) -> Claim:
-    """Return the claim on the exponent of the time; constant work may still take longer.
+    """Return the claim on the exponent of the time per event.
 
-    The gas may be larger.
+    In larger gases, constant work may take longer.
     """
     claim = f"exponent of the time {where}"
     if law["expected"] > 0.0:

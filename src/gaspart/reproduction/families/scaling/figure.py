@@ -1,4 +1,4 @@
-"""Figures of what space partitioning gains. Source A: Frederickx and Meerts 2010."""
+"""Figures of the gain from space partitioning; source A is Frederickx and Meerts 2010."""
 
 from typing import Any
 
@@ -12,11 +12,11 @@ from gaspart.reproduction.table import Table
 
 _NS, _US, _MS = 1e9, 1e6, 1e3
 _SOURCE = style.COLOURS[4]
-_SCAN = 27  # source A's program scans its one box once for each of the boxes around it
+_SCAN = 27  # source A's program scans its single box once for each of the surrounding boxes
 
 
 def naive_scaling(ds: xr.Dataset) -> Figure:
-    """Time of a step against N, and per pair test."""
+    """Draw the time of a step against N, and the time per pair test."""
     figure, (top, bottom) = style.new((2.4, 1.3))
     gases = Table(ds, "count")
     count, test = gases.count, gases.test_seconds.value
@@ -38,7 +38,10 @@ def naive_scaling(ds: xr.Dataset) -> Figure:
 
 
 def box_count(ds: xr.Dataset) -> Figure:
-    """Time and work against the number of boxes; round widths; the event-driven engine's sectors."""
+    """Draw time and work against the number of boxes, round widths, and sectors.
+
+    The sectors belong to the event-driven engine.
+    """
     figure, axes = style.new((2.3, 2.3), (1.9,), (2.5,))
     scan, near = Table(ds, "scan"), Table(ds, "near")
     _scan_time(axes[0], scan, near)
@@ -121,7 +124,7 @@ def _sectors(axis: Axes, scan: Table) -> None:
 
 
 def ideal_boxes(ds: xr.Dataset) -> Figure:
-    """Draw the ideal number of boxes against N; and the time around its minimum."""
+    """Draw the ideal number of boxes against N, and the time around its minimum."""
     figure, (top, bottom) = style.new((2.8,), (2.8,))
     gases = Table(ds, "gas")
     line = np.geomspace(0.7 * gases.count.min(), 1.5 * gases.count.max(), 50)
@@ -148,14 +151,15 @@ def ideal_boxes(ds: xr.Dataset) -> Figure:
 
 
 def _thousands(number: float) -> str:
-    """Return a whole number with thin spaces, for mathematical text."""
+    """Return an integer with thin spaces, as mathematical text."""
     return f"{int(number):,}".replace(",", r"\,")
 
 
 def _ideal(axis: Axes, gases: Table, kind: int, label: str) -> None:
     """Draw ideal numbers with 95 % intervals.
 
-    Hollow: without an interval; with an arrow where the time still falls at the finest partition timed.
+    Symbols without an interval are hollow. An arrow marks gases whose time still falls at the finest timed
+    partition.
     """
     count, interior = gases.count, gases.ideal_interior.astype(bool)
     ideal, low, high = gases.ideal * count, gases.ideal_low * count, gases.ideal_high * count
@@ -169,9 +173,9 @@ def _ideal(axis: Axes, gases: Table, kind: int, label: str) -> None:
 
 
 def linear_scaling(ds: xr.Dataset) -> Figure:
-    """Draw time of a step by method, and time and work per particle.
+    """Draw the time of a step by method, and time and work per particle.
 
-    Methods are one box, the cheapest partition and a neighbour list.
+    The methods are one box, the cheapest partition, and a neighbour list.
     """
     figure, (top, middle, bottom) = style.new((3.0,), (1.9, 1.7))
     gases, naive, lists = Table(ds, "gas"), Table(ds, "naive"), Table(ds, "listed")
@@ -192,7 +196,7 @@ def linear_scaling(ds: xr.Dataset) -> Figure:
     least = gases.seconds.value.min()
     top.plot(guide, guide * least, color=style.GREY, lw=0.8, zorder=1, label="linear")
     top.set(xscale="log", yscale="log")
-    top.set_xlim(right=50.0 * naive.extrapolated_count)  # room for the times at the ends of the lines
+    top.set_xlim(right=50.0 * naive.extrapolated_count)  # space for the times at the ends of the lines
     number = "number of particles $N$"
     style.label_axes(top, number, "time per step (s)", "upper left")
     middle.set(xscale="log", yscale="log", ylabel="time per particle (ns)", ylim=(1.0, None))
@@ -204,7 +208,7 @@ def linear_scaling(ds: xr.Dataset) -> Figure:
 
 
 def _extrapolate(axis: Axes, naive: Table) -> None:
-    """Draw the time of one box with many more particles; nothing if noise makes it negative."""
+    """Draw the extrapolated time of one box for many particles; nothing if it is negative."""
     far, carried = float(naive.extrapolated_count), naive.extrapolated_seconds.value
     line = np.array([naive.naive_count.min(), far])
     lines = (_SCAN, _SOURCE, "one box, 27 scans (F & M)"), (1.0, style.COLOURS[1], None)
@@ -224,7 +228,7 @@ def _duration(seconds: float) -> str:
 
 
 def event_scaling(ds: xr.Dataset) -> Figure:
-    """Pair tests and time of an event against N, by each search."""
+    """Draw pair tests and time per event against N, by search method."""
     figure, (top, bottom) = style.new((2.6,), (2.6,))
     names = {"pairs": "all pairs", "direct": "queue, all particles", "boxes": "queue and sectors"}
     powers = {"pairs": 2.0, "direct": 1.0, "boxes": 0.0}
@@ -246,5 +250,5 @@ def event_scaling(ds: xr.Dataset) -> Figure:
 
 
 def _guide(axis: Axes, count: np.ndarray, values: np.ndarray, power: float, kind: int) -> None:
-    """Draw the power law that the search should follow, through the last point."""
+    """Draw the expected power law of a search method through the last point."""
     axis.plot(count, values[-1] * (count / count[-1]) ** power, color=style.COLOURS[kind], lw=0.8, zorder=1)

@@ -1,7 +1,7 @@
-"""Gain of space partitioning: cost of a step or event against particles and boxes.
+"""Gain from space partitioning: cost of a step or event against particles and boxes.
 
-Every point is a `measure_cost` job: one gas, timed with one or several partitions. Work, time and ideal
-numbers, and the origin of their errors, are defined in `families.shared.timings`.
+Every point is a `measure_cost` job: a gas that is timed with one or several partitions. Work, time, ideal
+numbers, and their errors are defined in `families.shared.timings`.
 """
 
 from __future__ import annotations
@@ -30,25 +30,30 @@ from gaspart.reproduction.families.shared.timings import (
 )
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, entries, table
-from gaspart.theory import dsmc as theory
-from gaspart.theory.dsmc import boxes_in_reach, share_of_contacts_in_a_box
+from gaspart.theory import partition as theory
+from gaspart.theory.partition import boxes_in_reach, share_of_contacts_in_a_box
 
-# Source A's remarks on the cost of a step, tested by alternate timings.
-#
-# Jobs time a gas with and without something.
+# Tests of source A's remarks on the cost of a step, by alternate timings. Jobs time a gas with and without a
+# modification.
 
 
 def near_boxes(runs: list[xr.Dataset]) -> xr.Dataset:
-    """Compare the search of boxes within reach of a contact with that over all neighbours.
+    """Compare the search of boxes within contact range with a search of all neighbours.
 
-    `runs` are jobs of one gas, each with the same partitions. Over ``near`` (the partitions):
-    ``near_boxes_per_side``; with only the boxes within reach the ``near_seconds`` per particle and step, with
-    the error from the scatter of the jobs, and ``near_box_visits``; ``near_expected_visits``, the visits in a
-    uniform gas far from walls. Scalars: ``near_least``, the least time of all partitions over the least with
-    all neighbouring boxes, with error and ``_freedom``; ``near_missed``, the largest difference of the
-    contacts found; ``own_first``, the share of searches that could end in the own box if that is searched
-    first and the boxes are the widest: there must be a contact (counted) and its partner in the box
-    (`share_of_contacts_in_a_box`); with error.
+    `runs` are jobs of one gas, each with the same partitions. Variables over ``near`` (the partitions):
+
+    near_boxes_per_side : number of boxes
+    near_seconds : time per particle and step with boxes within range only; error from the scatter of jobs
+    near_box_visits, near_expected_visits : counted visits; visits in a uniform gas far from walls
+
+    Scalars:
+
+    near_least : least time over the least time with all neighbouring boxes, with error and ``_freedom``
+    near_missed : largest difference between the numbers of contacts
+    own_first : fraction of searches that could end in the particle's own box, with error
+
+    A search could end there if the own box is searched first and boxes have their largest width. In addition
+    there must be a contact (counted), and its partner must be in the box (`share_of_contacts_in_a_box`).
     """
     first, partitions = runs[0], runs[0].sizes["partition"] // 2
     width = first.side / first.boxes_per_side.values[:partitions]
@@ -77,11 +82,9 @@ def near_boxes(runs: list[xr.Dataset]) -> xr.Dataset:
 def huge_sphere(runs: list[xr.Dataset]) -> dict[str, Any]:
     """Compute the cost of a sphere that is too large for the boxes.
 
-    It follows from jobs without and with the sphere.
-
-    ``huge_ratio`` is the time of a step with it over the time without, with error and ``_freedom`` from the
-    scatter of the jobs; ``huge_tests`` is the number of further pairs tested per particle and step, with
-    error.
+    It follows from jobs with and without the sphere. ``huge_ratio`` is the time of a step with the sphere,
+    divided by the time without it. It has an error and ``_freedom`` from the scatter of the jobs.
+    ``huge_tests`` is the number of additional pair tests per particle and step, with error.
     """
     ratio = ratio_of_jobs([-log_ratios(run, run.steps.values)[0] for run in runs])
     tests = [np.diff(run.pair_tests.values / run.steps.values)[0] / run.attrs["count"] for run in runs]
@@ -92,20 +95,21 @@ def huge_sphere(runs: list[xr.Dataset]) -> dict[str, Any]:
 
 
 def ideal_boxes(points: list[Point], settings: dict) -> xr.Dataset:
-    """Return the ideal number of boxes of many gases.
+    """Measure the ideal number of boxes of many gases.
 
-    settings: ``rule``, source A's boxes per particle; ``source_numbers``, those that it found for the largest
-    gas of its figures 5, 6 and 7 (each with ``count``, ``radius``, ``boxes_per_particle``);
-    ``source_plateaus``, the ranges of N in which it found one number of boxes (``radius``, ``counts``,
-    ``boxes_per_side``).
+    The settings are:
 
-    Over (``gas``, ``partition``): costs as in `per_particle`, NaN beyond a gas's own partitions. Over
-    ``gas``: ``count``, ``radius``, ``most`` (boxes per particle of a diameter's width, the limit), the
-    results of `ideal`, and ``penalty``, the time at the rule's number over the least, with error. Over
-    ``source``: ``source_number``, and what was found there: ``source_ideal`` with interval,
-    ``source_penalty`` at that number, with error. Over ``plateau``: see `_plateau`. Over ``series`` (gases of
-    one ``series_radius``): ``exponent`` of the ideal number of boxes in N, where it was found between the
-    partitions timed, with error from the scatter.
+    rule : source A's number of boxes per particle
+    source_numbers : ``count``, ``radius``, ``boxes_per_particle`` for the largest gas of A's figures 5 to 7
+    source_plateaus : A's ranges of N of constant number of boxes (``radius``, ``counts``, ``boxes_per_side``)
+
+    Over (``gas``, ``partition``) are the costs of `per_particle`, with NaN beyond the partitions of a gas.
+    Over ``gas``: ``count``, ``radius``, ``most`` (the maximum number of boxes per particle, whose width is a
+    diameter), the results of `ideal`, and ``penalty``, the time at the rule's number divided by the least
+    time, with error. Over ``source``: ``source_number``, the ideal number ``source_ideal`` with interval, and
+    ``source_penalty`` at the source's number, with error. Over ``plateau``: see `_plateau`. Over ``series``
+    (gases of equal ``series_radius``): ``exponent`` of the ideal number of boxes in N, with error from the
+    scatter. Only ideal numbers between the timed partitions are used.
     """
     runs = sorted(
         (xr.load_dataset(point.path) for point in points), key=lambda run: (-run.radius, run.attrs["count"])
@@ -129,9 +133,9 @@ def ideal_boxes(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _series(radius: float, gases: Table) -> dict[str, Any]:
-    """Fit the exponent of the ideal number of boxes of the gases of one radius.
+    """Fit the exponent of the ideal number of boxes for the gases of one radius.
 
-    Only gases with a minimum count.
+    Only gases whose minimum was found are used.
     """
     own = gases[gases.radius == radius]
     boxes = np.where(own.ideal_interior == 1, own.ideal * own.count, np.nan)
@@ -139,9 +143,9 @@ def _series(radius: float, gases: Table) -> dict[str, Any]:
 
 
 def _gas(timed: tuple[xr.Dataset, xr.Dataset], rule: float) -> dict[str, Any]:
-    """Measure the ideal number of boxes of one gas, and the cost of the rule's.
+    """Measure the ideal number of boxes of a gas, and the cost of the rule's number.
 
-    They serve `ideal_boxes`.
+    The result is part of `ideal_boxes`.
     """
     run, costs = timed
     return {
@@ -154,7 +158,7 @@ def _gas(timed: tuple[xr.Dataset, xr.Dataset], rule: float) -> dict[str, Any]:
 
 
 def _source(entry: dict, costs: list[xr.Dataset], gases: Table) -> dict[str, Any]:
-    """Return the results for the gas of one of source A's numbers, for `ideal_boxes`."""
+    """Return the results of `ideal_boxes` for a gas for which source A states a number."""
     same = (gases.count == entry["count"]) & (gases.radius == entry["radius"])
     at = int(np.flatnonzero(same)[0])
     gas = gases[at]
@@ -174,9 +178,9 @@ def _source(entry: dict, costs: list[xr.Dataset], gases: Table) -> dict[str, Any
 def _plateau(entry: dict, runs: list[xr.Dataset], costs: list[xr.Dataset]) -> dict[str, Any]:
     """Return the cost of one of source A's constant numbers of boxes, for `ideal_boxes`.
 
-    It has ``plateau_radius``, ``plateau_low`` and ``_high`` N, ``plateau_boxes``; of the gases between these
-    the worst, its ``plateau_count``, and ``plateau_penalty``, the time with this number of boxes over the
-    least, with error.
+    The results are ``plateau_radius``; the range ``plateau_low`` to ``plateau_high`` of N; ``plateau_boxes``;
+    and for the worst gas in the range, its ``plateau_count``, and ``plateau_penalty``, the time with this
+    number of boxes divided by the least time, with error.
     """
     low, high = entry["counts"]
     boxes = entry["boxes_per_side"] ** 3
@@ -199,10 +203,11 @@ def _plateau(entry: dict, runs: list[xr.Dataset], costs: list[xr.Dataset]) -> di
 def naive_scaling(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure the cost of a step with one box against the number of particles N.
 
-    Over ``count``: ``pair_tests`` per step, ``seconds`` per step with ``seconds_error``. Scalars:
-    ``exponent`` of the time in N with ``exponent_error`` from the scatter; ``tests_excess``, the largest
-    relative difference of the pair tests from N(N-1)/2; ``test_seconds``, the cost of a pair test, from time
-    = a N + b tests.
+    Over ``count``: ``pair_tests`` per step, and ``seconds`` per step with ``seconds_error``. Scalars:
+
+    exponent : exponent of the time in N, with ``exponent_error`` from the scatter
+    tests_excess : largest relative difference of the pair tests from N(N-1)/2
+    test_seconds : time b of a pair test, from a fit of time = a N + b tests
     """
     dataset = one_box([xr.load_dataset(point.path) for point in points])
     gases = Table(dataset, "count")
@@ -218,22 +223,29 @@ def naive_scaling(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def box_count(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure cost against the number of boxes of one gas, time-stepped and event-driven.
+    """Measure the cost of one gas against the number of boxes, time-stepped and event-driven.
 
-    The settings are ``round_per_side``, the boxes per side that source A found quicker for their round width;
-    ``source_boxes_per_particle``, the ideal number in its figure 6.
+    The setting ``round_per_side`` has the numbers of boxes per side that source A found faster, because their
+    width is round. The setting ``source_boxes_per_particle`` is the ideal number in source A's figure 6.
 
-    Over ``scan`` (the scan that has one box): costs as in `per_particle`; ``expected_tests`` with
-    ``tests_spread`` and ``expected_visits``; the boxes that a particle would search, with each pair tested
-    once, if it left out those that it does not touch (``touched``: within a radius) or those that can hold no
-    partner (``in_reach``: within a diameter). Over (``container``, ``fine``): ``fine_seconds`` ... of the two
-    other scans, in containers whose sides (``container_side``) do and do not give round widths. Over
-    ``power``: ``advantage``, see `_advantages`. Over ``sector``: ``sector_seconds`` ... as in `per_event`.
-    Scalars: as in `ideal`; ``source_penalty``, the time at the source's number over the least, with error; of
-    the sectors, how many neighbourhoods are searched at an event (``event_searches``) and at a crossing
-    (``crossing_searches``), from pair tests = discs in a neighbourhood x (a + b crossings), and
-    ``crossing_exponent``, of the crossings per event in the number of planes between sectors; with errors.
-    Points that are timed alternately `without` something are in `remarks`.
+    Over ``scan`` (the scan that includes one box): costs as in `per_particle`; ``expected_tests`` with
+    ``tests_spread``; ``expected_visits``; ``touched`` and ``in_reach``. The last two are numbers of boxes
+    that a particle would search if each pair were tested once, and some boxes were left out. For ``touched``,
+    boxes beyond a radius are left out. For ``in_reach``, boxes beyond a diameter are left out; they cannot
+    contain a partner.
+
+    Over (``container``, ``fine``): ``fine_seconds`` and so on of two other scans. Their containers have the
+    sides ``container_side``. One container has round widths of boxes, the other does not. Over ``power``:
+    ``advantage``; see `_advantages`. Over ``sector``: ``sector_seconds`` and so on, as in `per_event`.
+
+    Scalars are the results of `ideal`, and with errors:
+
+    source_penalty : time at the source's number divided by the least time
+    event_searches, crossing_searches : searched neighbourhoods of sectors, a at an event and b at a crossing
+    crossing_exponent : exponent of the crossings per event in the number of planes between sectors
+
+    The numbers a and b follow from pair tests = discs in a neighbourhood x (a + b crossings). Points that are
+    timed alternately with and `without` a modification are in `remarks`.
     """
     near = [xr.load_dataset(point.path) for point in points if point.settings.get("near_boxes")]
     huge = [xr.load_dataset(point.path) for point in points if "scene" in point.settings]
@@ -273,7 +285,7 @@ def box_count(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _crossings(events: xr.Dataset, run: xr.Dataset) -> dict[str, Any]:
-    """Fit the costs of crossings between sectors, for `box_count`."""
+    """Fit the cost of crossings between sectors, for `box_count`."""
     scan = Table(events, "partition")
     gas = run.dimension, run.side, run.radius
     others = (run.attrs["count"] - 1.0) * theory.neighbour_share(scan.boxes_per_side, *gas)
@@ -289,15 +301,24 @@ def _crossings(events: xr.Dataset, run: xr.Dataset) -> dict[str, Any]:
 def linear_scaling(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure the cost of a step with the cheapest partition of each gas, against N.
 
-    The settings are ``source_figures``, radius and range of counts of source A's figures 8, 9 and 10;
-    ``naive_count``, to which the naive method is extrapolated; ``source_years``, A's estimate for it. Over
-    ``gas`` (points with several partitions): ``count``, ``radius``, costs of the cheapest partition as in
-    `per_particle`, and ``work``, pair tests and box visits together. Over ``naive`` (points with one box):
-    ``naive_count``, ``naive_seconds`` per step, with error. Over ``part`` (A's figures): ``part_low``,
-    ``part_high``, ``part_radius``, and ``exponent`` of the time per step in N, with error. Over ``listed``
-    (points without partition): see `list_costs`. Scalars: ``work_exponent`` of the work per step over all
-    gases, with error; ``extrapolated_count``, ``extrapolated_seconds`` of one naive step there (with error),
-    ``extrapolated_ratio``, its time over the partitioned step's (with error); ``source_years``.
+    The settings are:
+
+    source_figures : radius and range of counts of source A's figures 8, 9 and 10
+    naive_count : number of particles to which the naive method is extrapolated
+    source_years : source A's estimate for this number
+
+    Over ``gas`` (points with several partitions): ``count``, ``radius``, costs of the cheapest partition as
+    in `per_particle`, and ``work``, the sum of pair tests and box visits. Over ``naive`` (points with one
+    box): ``naive_count``, and ``naive_seconds`` per step, with error. Over ``part`` (figures of source A):
+    ``part_low``, ``part_high``, ``part_radius``, and ``exponent`` of the time per step in N, with error. Over
+    ``listed`` (points without partition): see `list_costs`.
+
+    Scalars, with errors:
+
+    work_exponent : exponent of the work per step, over all gases
+    extrapolated_count, extrapolated_seconds : number of particles, and time of a naive step
+    extrapolated_ratio : time of a naive step divided by the time of a step with a partition
+    source_years : source A's estimate
     """
     runs = sorted(
         (xr.load_dataset(point.path) for point in points), key=lambda run: (run.attrs["count"], run.radius)
@@ -334,7 +355,7 @@ def linear_scaling(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _regime(part: dict, gases: Table) -> dict[str, Any]:
-    """Return the exponent of the time per step in one of source A's figures, for `linear_scaling`."""
+    """Return the exponent of the time per step in one of source A's figures."""
     low, high = part["counts"]
     own = gases[(gases.radius == part["radius"]) & (low <= gases.count) & (gases.count <= high)]
     exponent = trend(own.count, own.count * own.seconds.value)
@@ -342,13 +363,14 @@ def _regime(part: dict, gases: Table) -> dict[str, Any]:
 
 
 def event_scaling(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure the cost of an event, by each method of searching, against N.
+    """Measure the cost of an event by each search method, against N.
 
-    The setting is ``fit_from``, for each search the least N in the fits. Over ``run``: ``search``,
-    ``dimension``, ``count``, and costs as in `per_event`. Over ``method`` (a ``method_search`` in a
-    ``method_dimension``): the exponents of time (``exponent``) and of pair tests (``work_exponent``) per
-    event in N, with errors from the scatter. Scalar ``pairs_excess``: the largest relative difference of the
-    pair tests of search "pairs" from N(N-1)/2 for every event and one for the look that finds none left.
+    The setting ``fit_from`` is, for each search method, the smallest N in the fits. Over ``run``: ``search``,
+    ``dimension``, ``count``, and costs as in `per_event`. Over ``method`` (``method_search`` in
+    ``method_dimension``): the exponents in N of time (``exponent``) and of pair tests (``work_exponent``) per
+    event, with errors from the scatter. The scalar ``pairs_excess`` is for the search method "pairs". It is
+    the largest relative difference of the pair tests from N(N-1)/2 for every event, plus one final search
+    that finds no further event.
     """
     runs = sorted(
         (xr.load_dataset(point.path) for point in points),
@@ -374,7 +396,7 @@ def event_scaling(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _exponents(method: tuple[str, int], gases: Table, fit_from: dict[str, int]) -> dict[str, Any]:
-    """Fit the exponents of one search in one dimension, for `event_scaling`."""
+    """Fit the exponents of a search method in one dimension, for `event_scaling`."""
     search, dimension = method
     same = (gases.search == search) & (gases.dimension == dimension)
     own = gases[same & (gases.count >= fit_from[search])]
@@ -406,13 +428,13 @@ def _expected_counts(run: xr.Dataset) -> dict:
 
 
 def _advantages(fine: xr.Dataset, round_per_side: list[int]) -> list[Estimate]:
-    """Compute the advantage (ln of time) of partitions over others within an eighth of them.
+    """Compute the advantage of partitions with round widths, as ln of a ratio of times.
 
-    It is in the container of the lower side (round widths), less the same in the other container.
-
-    Both scans have the same work, so what does not depend on round numbers cancels. The uncertainty is the
-    scatter of those other partitions: their times differ by up to one per cent from process to process, which
-    repeats in one process do not show.
+    Each partition is compared with others whose number of boxes differs by less than an eighth. The advantage
+    is computed in the container with the shorter side (round widths). The same number in the other container
+    is subtracted. Both scans have the same work, so effects independent of round widths cancel. The
+    uncertainty is the scatter of the other partitions. Their times differ by up to one per cent between
+    processes, which repeats in one process do not show.
     """
     n = fine.fine_boxes_per_side.values[0]
     difference = np.log(fine.fine_seconds.values[1]) - np.log(fine.fine_seconds.values[0])

@@ -1,4 +1,4 @@
-"""The scatter of all claims."""
+"""Figure on the scatter of all claims."""
 
 from gaspart.keys import TEXT, list_of
 

@@ -1,4 +1,4 @@
-"""Claims about all claims."""
+"""Claims about the statistics of all claims."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from gaspart.reproduction.table import Table
 
 NORMAL = "a standard Gaussian distribution, if all claims are true and all uncertainties correct"
 MEAN_ERROR = 0.1
-"""Uncertainty required of the mean deviation: a mean of 0.3 is noticed, as many small errors of one sign make
-it, which adds 9 % to the mean square."""
+"""Required uncertainty of the mean deviation. A mean of 0.3 is then detected; it adds 9 % to the mean square.
+Many small errors of equal sign cause such a mean."""
 
 
 def claims_scatter(ds: xr.Dataset) -> list[Claim]:
     """Return the claims that all scattered deviations are standard Gaussian numbers.
 
-    They are deviations of values without an allowance, of either sign.
+    They are signed deviations of values without an allowance.
     """
     claims, classes = Table(ds, "claim"), Table(ds, "class")
     deviations = claims.deviation[claims.scattered]
@@ -53,11 +53,11 @@ def claims_scatter(ds: xr.Dataset) -> list[Claim]:
 
 
 def mean_deviation(figures: Table) -> Estimate:
-    """Compute the mean of all scattered deviations, each of the same weight.
+    """Compute the mean of all scattered deviations, with equal weights.
 
-    Values of one figure come from the same runs, and may deviate together; values of different figures do
-    not. So the error is the jackknife's over figures, each left out once, which allows for any correlations
-    within them. NaN for fewer than two figures.
+    Values of one figure come from the same runs, and may deviate together. Values of different figures are
+    independent. Therefore the error is the jackknife error over figures, which allows for any correlations
+    within a figure. The result is NaN for fewer than two figures.
     """
     stating = figures[figures.number > 0]
     if len(stating) < 2:

@@ -14,7 +14,7 @@ from gaspart.reproduction.families.scatter.claims import mean_deviation
 from gaspart.reproduction.table import Table
 
 FURTHEST = 5.0
-"""Deviations beyond are drawn at the edge."""
+"""Deviations beyond this value are drawn at the edge."""
 
 
 def claims_scatter(ds: xr.Dataset) -> Figure:
@@ -47,9 +47,9 @@ def _distribution(axis: Axes, alone: np.ndarray, mean: Estimate) -> None:
 
 
 def _figures(axis: Axes, claims: Table, figures: Table) -> None:
-    """Draw a row for each figure: its deviations, and the probability of a smaller chi-square.
+    """Draw a row for each figure: deviations, and probability of a smaller chi-square.
 
-    Deviations with an allowance are hollow.
+    Deviations of claims with an allowance are hollow.
     """
     axis.axvspan(-3.0, 3.0, color=style.GREY, alpha=0.18, linewidth=0, zorder=0)
     for position, figure in enumerate(figures):

@@ -1,4 +1,4 @@
-"""Scatter of the deviations of all claims, from the other figures' tables instead of simulations."""
+"""Scatter of the deviations of all claims, read from the tables of the other figures."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from gaspart.analysis.flow import Grid
 from gaspart.reproduction.claims import read
 
 BINS = 10
-"""Classes of equal probability, in which true claims are equally frequent."""
+"""Number of classes of equal probability; true claims are equally frequent in all classes."""
 
 
 def claims_scatter(tables: Sequence[str | Path], settings: dict) -> xr.Dataset:
@@ -21,11 +21,14 @@ def claims_scatter(tables: Sequence[str | Path], settings: dict) -> xr.Dataset:
 
     `tables` are paths of claims tables, one for each figure. There are no settings.
 
-    Over `claim`: deviation in standard deviations; figure, the number of its figure; scattered, True if the
-    deviation is a standard Gaussian number if the claim is true: without an allowance for the uncertainty of
-    the theory, which makes deviations smaller. Over `name`, the figures: number of scattered claims, their
-    chi_square, and the signed total of their deviations. Over `class`: counts of the scattered claims in
-    classes of equal probability.
+    deviation : deviation in standard deviations, over `claim`
+    figure : index of the figure, over `claim`
+    scattered : True if the deviation of a true claim is a standard Gaussian number, over `claim`
+    number : number of scattered claims, over `name`, the figures
+    chi_square, total : chi-square, and signed sum of the deviations of scattered claims, over `name`
+    counts : scattered claims in classes of equal probability, over `class`
+
+    An allowance for the uncertainty of the theory makes deviations smaller. Such claims are not scattered.
     """
     by_figure = {Path(path).stem: [row for row in read(path) if _is_deviation(row)] for path in tables}
     rows = [
@@ -56,6 +59,6 @@ def claims_scatter(tables: Sequence[str | Path], settings: dict) -> xr.Dataset:
 
 
 def _is_deviation(row: dict) -> bool:
-    """Return True if a row states a value, and deviates from it by a finite number."""
+    """Return True if a row states a value, and its deviation is finite."""
     is_value = row["form"] == "value" and row["kind"] == "test" and row["verdict"] != "no verdict"
     return bool(is_value and np.isfinite(row["deviation_sigma"]) and row["uncertainty"] > 0.0)

@@ -1,7 +1,7 @@
 """Column of gas under gravity: heights, energies and forces, averaged over blocks.
 
-Gravity points down the last axis of a container of two dimensions. Heights are of particles' centres above
-the lowest position that the centre of the smallest particle can reach.
+The container has two dimensions. Gravity points down the last axis. Height 0 is the lowest position that the
+centre of the smallest particle can reach. The height of a particle is the height of its centre.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from gaspart.scene.species import Particle, Species
 
 @dataclass(frozen=True)
 class Field:
-    """Gravity, container and particles of a point's scene, in its units.
+    """Gravity, container and particles of a scene, in the scene's units.
 
-    strength : gravity, positive downwards.
-    width, height : of the region that the centres of the smallest particles can reach (the width of a
-        periodic axis is its length).
+    strength : gravitational acceleration, positive downwards.
+    width, height : size of the region that centres of the smallest particles can reach (on a periodic axis,
+        the length of the container).
     diameter : diameter of the smallest particles.
-    masses : (N,), infinite for fixed particles.
-    species : (N,), numbered as in the scene, single particles after them.
+    masses : (N,), masses; infinite for fixed particles.
+    species : (N,), index of the species in the scene; single particles have the following indices.
     across : True if the other axis is periodic, so that momentum along it is conserved.
     """
 
@@ -40,12 +40,12 @@ class Field:
 
     @property
     def weight(self) -> float:
-        """The temperature of all particles that move."""
+        """Total weight of all moving particles."""
         return float(self.strength * self.masses[np.isfinite(self.masses)].sum())
 
 
 def field(point: Point) -> Field:
-    """Return the field and the container of a point."""
+    """Return gravity, container and particles of a point's scene."""
     scene = point.scene
     radius = scene.smallest_radius
     lower, upper = scene.reach(radius)
@@ -66,13 +66,13 @@ def field(point: Point) -> Field:
 
 @dataclass(frozen=True)
 class Stretch:
-    """Consecutive frames of one run; T frames, N particles.
+    """Block of T consecutive frames of one run with N particles.
 
-    positions : (T, N, 2), the second one is the height.
+    positions : (T, N, 2), positions; the second coordinate is the height.
     energies : (T, N), kinetic temperatures, without the motion of the centre of mass along a periodic axis.
-    floor, ceiling : mean forces on them.
-    gain : mean rate at which the particles' upward momentum grew.
-    temperature : twice the mean kinetic energy per degree of freedom (one is lost with a conserved momentum).
+    floor, ceiling : mean forces on floor and ceiling.
+    gain : mean rate of increase of the particles' upward momentum.
+    temperature : twice the mean kinetic energy per degree of freedom (a conserved momentum removes one).
     """
 
     positions: np.ndarray
@@ -84,15 +84,15 @@ class Stretch:
 
     @property
     def heights(self) -> np.ndarray:
-        """(T, N)."""
+        """Heights of particles, (T, N)."""
         return self.positions[..., 1]
 
 
 def stretches(point: Point, number: int) -> list[Stretch]:
     """Cut the measured part of every replica into `number` blocks of equal length.
 
-    A remainder is omitted. Neighbours share a frame at which momenta are read, and no other. Raises
-    ValueError for too few frames.
+    A remainder is left out. Adjacent blocks share only the frame at which momenta are read. Raises ValueError
+    for too few frames.
     """
     column, result = field(point), []
     for run in runs(point):
@@ -117,8 +117,8 @@ def stretches(point: Point, number: int) -> list[Stretch]:
 class Profile:
     """Averages in B bins of height.
 
-    density : (S, B), of each species.
-    temperature : (B,), NaN in empty bins.
+    density : (S, B), number density of each species.
+    temperature : (B,), temperature; NaN in empty bins.
     pressure : (B,), force per length that supports the gas above: the force on the ceiling plus the weight.
     """
 
@@ -130,8 +130,8 @@ class Profile:
 def profile(column: Field, stretch: Stretch, bins: int) -> Profile:
     """Average a block without fixed particles over each of `bins` equal bins of height.
 
-    In a steady state the momentum below any height is constant, so the pressure at z is (F_ceiling + sum of m
-    g over particles above z) / width (exact; no equation of state is used).
+    In a steady state the momentum below any height is constant. Therefore the pressure at z is (F_ceiling +
+    sum of m g over particles above z) / width. This is exact, and uses no equation of state.
     """
     frames, count = stretch.heights.shape
     grid = Grid.line(0.0, column.height, bins)
@@ -140,11 +140,11 @@ def profile(column: Field, stretch: Stretch, bins: int) -> Profile:
         grid.sums(cells[:, column.species == kind]) for kind in range(int(column.species.max()) + 1)
     ])  # fmt: skip
     total = counts.sum(axis=0)
-    # In a bin's average over z, a particle within it counts for the part of the bin that lies below it.
+    # In an average over z of a bin, a particle in the bin contributes the fraction of the bin below it.
     below = np.clip(stretch.heights * (bins / column.height) - cells, 0.0, 1.0)
     mass, within = grid.sums(cells, column.masses), grid.sums(cells, column.masses * below)
     above = np.cumsum(mass[::-1])[::-1] - mass + within
-    lost = 2.0 * count / (2.0 * count - column.across)  # the momentum that is conserved
+    lost = 2.0 * count / (2.0 * count - column.across)  # the conserved momentum
     with np.errstate(invalid="ignore"):
         energies = lost * grid.sums(cells, stretch.energies)
         temperature = np.where(total > 0, energies / np.maximum(total, 1), np.nan)

@@ -1,4 +1,4 @@
-"""The measured part of the replicas of a point, and their time correlations."""
+"""Measured part of the replicas of a point, and their time correlations."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ from gaspart.trajectory.reading import open_trajectory
 
 
 def runs(point: Point, first: int | None = None) -> Iterator[Run]:
-    """Yield the frames of each replica after its equilibration or from frame `first` on.
+    """Yield the frames of each replica, after its equilibration or from frame `first` on.
 
-    Each run is open until the next one is requested. Raises OSError for a file that cannot be read and
-    ValueError for one of another point.
+    Each run is open until the next run is requested. Raises OSError for a file that cannot be read, and
+    ValueError for the file of another point.
     """
     scene, schedule = point.scene, point.schedule
     before = schedule.equilibration_frames
@@ -37,17 +37,15 @@ def runs(point: Point, first: int | None = None) -> Iterator[Run]:
             yield Run(scene, trajectory["time"].values[kept], trajectory.isel(frame=kept), centred)
 
 
-# The time correlations that a point's runs have accumulated, in reduced units.
+# Time correlations that a point's runs have accumulated, in reduced units.
 
 
 def reduced_curves(point: Point, path: str, longest: float) -> Curves:
-    """Return the curves of one replica, to the lag `longest` or to its last one.
+    """Return the curves of one replica, up to the lag `longest`, or to its last lag.
 
-    `longest` is in reduced time.
-
-    Units are the particles' diameter, mass and temperature. The temperature 2 E' / (d (N - 1)) is computed
-    for each replica, where E' is the energy relative to the centre of mass. One species. Raises SceneError
-    for a point without `lags`.
+    `longest` is in reduced time. The units are the particles' diameter, mass and temperature. The temperature
+    2 E' / (d (N - 1)) is computed for each replica, where E' is the energy relative to the centre of mass.
+    The scene has one species. Raises SceneError for a point without `lags`.
     """
     if "lags" not in point.settings:
         raise SceneError(f"experiments.{point.experiment}.lags", None, "is required")
@@ -73,11 +71,11 @@ class Series:
     """Values of the measured part of a run in each interval between its frames.
 
     z : (samples,), compressibility factor of each interval.
-    rate : (samples,), collisions of one particle per time, times sigma sqrt(m / kT) (dimensionless), with kT
-        = 2 E_cm / (d N).
+    rate : (samples,), collisions of a particle per time, times sigma sqrt(m / kT) (dimensionless), with kT =
+        2 E_cm / (d N).
     interval : time between frames.
     counters : (samples,) each, the counts of every interval, by name.
-    speed : sqrt(<v^2> / d) in the container's frame.
+    speed : sqrt(<v^2> / d) in the frame of the container.
     """
 
     z: np.ndarray
@@ -91,9 +89,10 @@ class Series:
 class Pressure:
     """Z of all replicas of a point, with tests of blocks and replicas.
 
-    chi_square : of the replicas about their mean, by their own errors, with replicas - 1 degrees of freedom.
-    flat : True if all block errors had reached a plateau.
-    correlation : longest integrated autocorrelation time, in intervals (1/2: independent).
+    chi_square : chi-square of the replicas about their mean, with their own errors; it has (replicas - 1)
+    degrees of freedom.
+    flat : True if all block errors reached a plateau.
+    correlation : longest integrated autocorrelation time, in intervals (1/2 for independent samples).
     collision_rate : see `Series.rate`.
     counters : sums over the replicas.
     """
@@ -133,7 +132,7 @@ def pressure(point: Point) -> Pressure:
 
 
 def combine(replicas: list[Series]) -> Pressure:
-    """Average over replicas of equal length; errors of correlated series are added in quadrature."""
+    """Average over replicas of equal length; add errors of correlated series in quadrature."""
     means = [correlated_mean(series.z) for series in replicas]
     z = average([mean.estimate for mean in means])
     deviations = [(mean.estimate - z.value).deviation for mean in means]

@@ -1,8 +1,8 @@
 """Costs per particle and per event, and their minimum, from repeated timings of `measure_cost`.
 
-*Work* is counted and is equal on every machine: pairs tested, boxes searched, and boxes emptied. The
+*Work* is counted, and is equal on every machine: tested pairs, visited boxes, and emptied boxes. The
 time-stepped engine sorts all particles in every step, so all its boxes are emptied once per step. *Time* is
-CPU time: the median of the repeats, with that median's standard error.
+CPU time: the median of the repeats, with the standard error of the median.
 """
 
 from __future__ import annotations
@@ -18,19 +18,21 @@ from numpy.typing import ArrayLike
 from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction.table import Table
-from gaspart.theory.dsmc import ideal_boxes_per_particle
+from gaspart.theory.partition import ideal_boxes_per_particle
 
 NEAR = 3.0
-"""A minimum is fitted to the partitions that cost at most this many times the cheapest."""
+"""A minimum is fitted to partitions whose cost is at most this multiple of the smallest cost."""
 SYSTEMATIC = 0.02
-"""Relative error that is added to the error of a time in a fit: caches and clocks disturb entire runs."""
+"""Relative error that is added to the error of a time in a fit, because caches and clock rates affect entire
+runs."""
 
 
 def median(seconds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Compute the median over the last axis, and its standard error.
 
-    The error of a median is sqrt(pi/2) standard errors of the mean. The spread is 1.4826 times the median
-    deviation. So one disturbed repeat in five changes neither of them.
+    The standard error is sqrt(pi/2) times the standard error of a mean. The standard deviation is estimated
+    as 1.4826 times the median deviation. Therefore a disturbance in one of five repeats changes neither
+    result.
     """
     middle = np.median(seconds, axis=-1)
     spread = 1.4826 * np.median(np.abs(seconds - middle[..., None]), axis=-1)
@@ -38,10 +40,10 @@ def median(seconds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def per_particle(run: xr.Dataset) -> xr.Dataset:
-    """Return the costs per particle and step, over the partitions of one time-stepped gas.
+    """Return the costs per particle and step, over the partitions of a time-stepped gas.
 
-    ``boxes_per_side``, ``boxes_per_particle``; ``seconds`` with ``seconds_error``; ``pair_tests``,
-    ``box_visits`` and ``boxes_emptied``.
+    The variables are ``boxes_per_side``, ``boxes_per_particle``, ``seconds`` with ``seconds_error``,
+    ``pair_tests``, ``box_visits`` and ``boxes_emptied``.
     """
     particle_steps = run.attrs["count"] * run.steps.values
     seconds, error = median(run.seconds.values)
@@ -59,12 +61,10 @@ def per_particle(run: xr.Dataset) -> xr.Dataset:
 
 
 def per_event(run: xr.Dataset) -> xr.Dataset:
-    """Compute costs per event (a collision, or a hit at a wall) over partitions.
+    """Compute the costs per event (collision or wall hit), over the partitions.
 
-    The gas is event-driven.
-
-    ``boxes_per_side``, ``boxes_per_particle``, ``events``; ``seconds`` with ``seconds_error``;
-    ``pair_tests``, ``box_visits``, ``crossings`` of box boundaries.
+    The gas is event-driven. The variables are ``boxes_per_side``, ``boxes_per_particle``, ``events``,
+    ``seconds`` with ``seconds_error``, ``pair_tests``, ``box_visits``, and ``crossings`` of box boundaries.
     """
     events = (run.collisions + run.wall_hits).values
     seconds, error = median(run.seconds.values)
@@ -90,9 +90,9 @@ def _dataset(columns: dict, **units: str) -> xr.Dataset:
 def weights(seconds: Estimate, *work: float | np.ndarray) -> statistics.Fit:
     """Fit the cost of each kind of work: seconds = sum of weight x work.
 
-    The fit is a relative least-squares fit; the arrays of seconds and of each kind of work have the shape
-    (points,). The covariance is scaled up by the scatter if that is larger than the errors (and `SYSTEMATIC`)
-    explain.
+    The fit is a least-squares fit of relative deviations. The arrays of seconds and of each kind of work have
+    the shape (points,). If the scatter is larger than the errors (and `SYSTEMATIC`) explain, the covariance
+    is scaled up.
     """
     times, errors = seconds.value, _spread(seconds)
     fit = statistics.fit_linear(np.stack(np.broadcast_arrays(*work), axis=1), times, errors)
@@ -107,16 +107,16 @@ def _spread(seconds: Estimate) -> np.ndarray:
 
 
 def ideal(costs: xr.Dataset, dimension: int) -> dict[str, Any]:
-    """Compute the ideal number of boxes per particle of one gas, from its `per_particle` costs.
+    """Compute the ideal number of boxes per particle of a gas, from `per_particle` costs.
 
     Each number has its 95 % interval.
 
-    From times: the minimum of a + b / boxes + c boxes (``ideal``, ``ideal_low``, ``ideal_high``,
-    ``ideal_interior``), and the range ``flat_low`` to ``flat_high`` of boxes that cost at most 5 % more. From
-    work, seconds = a + b tests + c boxes, all per particle, is fitted to the same partitions; the minimum is
-    at sqrt(3^d b / 2 c) (``model``, ``model_low``, ``model_high``; NaN if a weight is not positive), with
-    ``particle_seconds`` a (moving, sorting, and looking into boxes, whose number hardly changes),
-    ``test_seconds`` b, ``box_seconds`` c, and their ``_error``.
+    The first method uses times. ``ideal`` is the minimum of a + b / boxes + c boxes, with ``ideal_low``,
+    ``ideal_high`` and ``ideal_interior``. Between ``flat_low`` and ``flat_high`` the cost is at most 5 %
+    higher. The second method uses work. For the same partitions, seconds = a + b tests + c boxes is fitted,
+    all per particle. The minimum ``model`` is at sqrt(3^d b / 2 c), with ``model_low`` and ``model_high``;
+    NaN if a weight is not positive. The weights with their ``_error`` are ``particle_seconds`` a (moving,
+    sorting, and box visits, whose number hardly changes), ``test_seconds`` b, and ``box_seconds`` c.
     """
     scan = Table(costs, "partition")
     best = statistics.optimum(scan.boxes_per_particle, scan.seconds.value, within=NEAR)
@@ -126,7 +126,7 @@ def ideal(costs: xr.Dataset, dimension: int) -> dict[str, Any]:
     model = spread = math.nan
     if test > 0.0 and box > 0.0:
         model = float(ideal_boxes_per_particle(test, box, dimension))
-        gradient = np.array([0.0, 0.5 / test, -0.5 / box])  # of ln model
+        gradient = np.array([0.0, 0.5 / test, -0.5 / box])  # 95 % interval of ln model
         spread = 1.96 * math.sqrt(gradient @ fit.covariance @ gradient)
     return {
         "ideal": best.location,
@@ -148,12 +148,13 @@ def ideal(costs: xr.Dataset, dimension: int) -> dict[str, Any]:
 
 
 def penalty(costs: xr.Dataset, boxes_per_particle: float) -> tuple[float, float]:
-    """Compute the time at a number of boxes per particle over the least time.
+    """Compute the time at a number of boxes per particle divided by the least time.
 
-    The standard error is also returned; NaN beyond the partitions timed.
+    The standard error is also returned. Results are NaN beyond the timed partitions.
 
-    Both are computed by a + b / boxes + c boxes, fitted to the times near the minimum, so that a single
-    disturbed timing has little effect. No coefficient is negative, since no work costs less than nothing.
+    Both times are computed from a + b / boxes + c boxes, fitted to the times near the minimum. A single
+    disturbed timing then has little effect. The coefficients are not negative, because no work has a negative
+    cost.
     """
     from scipy.optimize import nnls
 
@@ -169,29 +170,30 @@ def penalty(costs: xr.Dataset, boxes_per_particle: float) -> tuple[float, float]
     fit, curve = weights(near.seconds, *at[:, costly].T), curve[:, costly]
     requested, least = curve[0], curve[np.argmin(curve @ fit.values)]
     ratio = requested @ fit.values / (least @ fit.values)
-    gradient = requested / (requested @ fit.values) - least / (least @ fit.values)  # of ln ratio
+    # 95 % interval of ln ratio
+    gradient = requested / (requested @ fit.values) - least / (least @ fit.values)
     return ratio, ratio * math.sqrt(gradient @ fit.covariance @ gradient)
 
 
 def _near(seconds: np.ndarray) -> np.ndarray:
-    """Select the partitions to fit: within `NEAR` times the least time, or the four cheapest."""
+    """Select partitions for the fit: up to `NEAR` times the least time, or the four cheapest."""
     return seconds <= max(NEAR * seconds.min(), np.sort(seconds)[min(3, len(seconds) - 1)])
 
 
 def log_ratios(run: xr.Dataset, work: np.ndarray) -> np.ndarray:
-    """Compute ln of the time per unit of work (partitions,) relative to its rival.
+    """Compute ln of the time per unit of work (partitions,) relative to a rival.
 
-    The compared engines are timed in turns and lack the keys `without` (the second half); the median is over
-    repeats.
+    The first half of the runs has the settings `without`; the second half, the rivals, lacks them. Both are
+    timed alternately. The result is the median over repeats.
     """
     own, beside = np.split(np.log(run.seconds.values / work[:, None]), 2)
     return np.median(own - beside, axis=1)
 
 
 def ratio_of_jobs(logs: Sequence[float] | np.ndarray) -> Estimate:
-    """Compute a ratio from its logarithms in several jobs, with their scatter as the uncertainty.
+    """Average the logarithms of a ratio over several jobs; return the ratio with its error.
 
-    NaN for one job.
+    The uncertainty is the scatter of the jobs. It is NaN for a single job.
     """
     mean = statistics.mean_of(logs) if len(logs) > 1 else Estimate(float(logs[0]), math.nan, math.nan)
     ratio = math.exp(mean.value)
@@ -201,7 +203,7 @@ def ratio_of_jobs(logs: Sequence[float] | np.ndarray) -> Estimate:
 def trend(count: np.ndarray, values: np.ndarray) -> tuple[float, float]:
     """Fit the exponent of a power law, and its error from the scatter.
 
-    NaN if fewer than three points can be used.
+    The result is NaN if fewer than three points can be used.
     """
     usable = np.isfinite(values)
     if usable.sum() < 3:
@@ -211,7 +213,7 @@ def trend(count: np.ndarray, values: np.ndarray) -> tuple[float, float]:
 
 
 def one_box(runs: list[xr.Dataset]) -> xr.Dataset:
-    """Return the pair tests and the time of one step with one box, over ``count``."""
+    """Return pair tests and time of one step with one box, over ``count``."""
     runs = sorted(runs, key=lambda run: run.attrs["count"])
     steps = np.array([int(run.steps[0]) for run in runs])
     times = np.array([median(run.seconds.values[0]) for run in runs]).reshape(-1, 2) / steps[:, None]
@@ -229,9 +231,9 @@ def one_box(runs: list[xr.Dataset]) -> xr.Dataset:
 def list_costs(runs: list[xr.Dataset], gases: xr.Dataset) -> xr.Dataset:
     """Return the costs per particle of neighbour lists, over ``listed``.
 
-    The results are ``list_seconds`` ... as in `per_particle`; ``list_count``, ``list_radius``; and
-    ``list_share``, the time divided by the time of the gas of the same count and radius among `gases` (NaN
-    without such a gas), with error.
+    The variables are ``list_seconds`` and so on, as in `per_particle`; ``list_count``, ``list_radius``; and
+    ``list_share``. ``list_share`` is the time divided by the time of the gas in `gases` with equal count and
+    radius, with error. It is NaN without such a gas.
     """
     costs = xr.concat(
         [per_particle(run).isel(partition=0) for run in runs], "listed", join="outer", compat="equals"
@@ -254,32 +256,34 @@ def list_costs(runs: list[xr.Dataset], gases: xr.Dataset) -> xr.Dataset:
 
 
 def extrapolate(naive: xr.Dataset, count: float) -> Estimate:
-    """Time of one naive step with `count` particles, from time = a N + b tests."""
+    """Compute the time of a naive step with `count` particles.
+
+    The time is fitted by a N + b tests.
+    """
     gases = Table(naive, "count")
     fit = weights(gases.seconds, gases.count.astype(float), gases.pair_tests)
     work = np.array([count, 0.5 * count * (count - 1.0)])
     return Estimate(work @ fit.values, math.sqrt(work @ fit.covariance @ work))
 
 
-# The speed on several cores by Amdahl's law, with threads that take time to begin.
+# Speed on several cores by Amdahl's law, with a constant time to start threads.
 
 
 SLABS = {"DSMC, Enskog": 8**3 * 64}
-"""The engine of which threads share collisions by slabs of cells, and the number of particles from which on
-two threads have one each at a time (docs/dsmc.md). Fewer do not share them, and more threads share them
-unevenly, which Amdahl's law does not know."""
+"""Engines whose threads share collisions by slabs of cells, with the smallest number of particles for this.
+From this number on, each of two threads has a slab at any time (docs/dsmc.md). With fewer particles,
+collisions are not shared. More threads share them unevenly, which Amdahl's law does not describe."""
 
 
 def speed_up(cores: ArrayLike, count: ArrayLike, serial: float, overhead: float) -> np.ndarray:
     """Compute the speed-up of p cores for N particles by Amdahl's law.
 
-    It is 1 / (s + (1 - s) / p + N_0 / N).
+    The speed-up is 1 / (s + (1 - s) / p + N_0 / N).
 
-    The law is from (AFIPS Conf. Proc. 30, 483 (1967)).
+    Source: AFIPS Conf. Proc. 30, 483 (1967).
 
-    serial : fraction s of the work that one core does alone.
-    overhead : N_0, number of particles whose work on one core takes the time in which threads are begun and
-        awaited.
+    serial : fraction s of the work that runs on one core.
+    overhead : number of particles N_0 whose work on one core takes as long as starting and joining threads.
     """
     shared, waited = (1.0 - serial) / np.asarray(cores), overhead / np.asarray(count)
     return np.asarray(1.0 / (serial + shared + waited))

@@ -1,4 +1,4 @@
-"""Speed distributions."""
+"""Figures on speed distributions."""
 
 from gaspart.keys import POSITIVE, count, list_of, positive
 

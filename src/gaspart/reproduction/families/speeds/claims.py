@@ -14,13 +14,14 @@ BOLTZMANN = "homogeneous Boltzmann equation from equal speeds (gaspart.theory.bo
 MONTE_CARLO = "statistical error of the Monte Carlo solution"
 MAXWELL = "Maxwell's distribution (exact)"
 KOLMOGOROV_LIMIT, KOLMOGOROV_SCATTER = 1.818, 0.26
-"""sqrt(n) times the Kolmogorov distance is above 1.818 with probability 0.0027, and scatters by 0.26."""
+"""Statistics of sqrt(n) times the Kolmogorov distance: it exceeds 1.818 with probability 0.0027, and has a
+standard deviation of 0.26."""
 
 
 def speed_relaxation(dataset: xr.Dataset) -> list[Claim]:
     """Return the claims on kurtosis, never-hit fraction and collisions, for each engine.
 
-    They are at each time of source A's figure 11.
+    There is a claim at each time of source A's figure 11.
     """
     claims = []
     for gas in Table(dataset, "engine"):
@@ -51,7 +52,10 @@ def speed_relaxation(dataset: xr.Dataset) -> list[Claim]:
 
 
 def _at_time(frame: Row, by: str, relaxation: Relaxation) -> list[Claim]:
-    """Return the claims at a time; the scatter of the runs includes the collisions'."""
+    """Return the claims at a time.
+
+    The scatter of the runs includes the scatter of the number of collisions.
+    """
     collisions = frame.collisions.value
     when = f"at t = {frame.time:g} ({by})"
     return [
@@ -101,7 +105,7 @@ def speed_distribution_discs(dataset: xr.Dataset) -> list[Claim]:
 
 
 def distribution(dataset: xr.Dataset) -> list[Claim]:
-    """Return the claims on chi-square, Kolmogorov's distance, kurtosis and temperature of every point."""
+    """Return the claims on chi-square, Kolmogorov distance, kurtosis and temperature, by point."""
     return [claim for gas in Table(dataset, "point") for claim in _equilibrium(gas)]
 
 

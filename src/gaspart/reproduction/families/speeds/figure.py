@@ -16,12 +16,16 @@ from gaspart.reproduction.families.speeds.claims import ENGINE_TITLES
 from gaspart.reproduction.table import Table
 
 KOLMOGOROV_BAND = 1.36
-"""sqrt(n) times the Kolmogorov distance of n samples of the right distribution is below this in 95 %."""
+"""Value that sqrt(n) times the Kolmogorov distance exceeds with probability 5 %, for n samples of the true
+distribution."""
 SPEED, SIGMA = r"speed $v/\sqrt{\langle v^2\rangle}$", r"residual ($\sigma$)"
 
 
 def speed_relaxation(dataset: xr.Dataset) -> Figure:
-    """Draw histograms at the source's three times; kurtosis and fraction never hit against collisions."""
+    """Draw speed histograms, kurtosis, and fraction of particles never hit.
+
+    Histograms are at the source's three times. Kurtosis and fraction are drawn against collisions.
+    """
     figure, axes = style.new((2.8,), (1.9, 1.0), (1.9, 1.0))
     histograms, kurtosis, kurtosis_residual, unhit, unhit_residual = axes
     engines = Table(dataset, "engine")
@@ -47,7 +51,7 @@ def speed_relaxation(dataset: xr.Dataset) -> Figure:
 
 
 def _histograms(axis: Axes, engines: Table) -> None:
-    """Draw densities at the three times: outlines of the time-stepped engine, points of events."""
+    """Draw densities at three times: lines for the time-stepped engine, points for event-driven."""
     edges = np.append(engines.lower, engines.upper[-1])
     middle = 0.5 * (edges[1:] + edges[:-1])
     for kind, frame in enumerate(engines.shown):
@@ -72,7 +76,7 @@ def _histograms(axis: Axes, engines: Table) -> None:
 def _compare(
     top: Axes, bottom: Axes, engines: Table, name: str, curve: Callable[[np.ndarray], ArrayLike]
 ) -> None:
-    """Draw both engines' points on the curve, and their residuals in standard errors of each."""
+    """Draw both engines' points on the theoretical curve, and their residuals in standard errors."""
     style.band(bottom, -3.0, 3.0)
     style.level(bottom, 0.0)
     for kind, gas in enumerate(engines):
@@ -85,12 +89,12 @@ def _compare(
 
 
 def speed_distribution_spheres(dataset: xr.Dataset) -> Figure:
-    """Draw the density, residual, tails and the difference of the cumulative distribution in 3D."""
+    """Draw the density, residual, tails and difference of the cumulative distribution in 3D."""
     return _distribution(Table(dataset, "point"))
 
 
 def speed_distribution_discs(dataset: xr.Dataset) -> Figure:
-    """Draw the density, residual, tails and the difference of the cumulative distribution in 2D."""
+    """Draw the density, residual, tails and difference of the cumulative distribution in 2D."""
     return _distribution(Table(dataset, "point"))
 
 
@@ -109,7 +113,7 @@ def _distribution(gases: Table) -> Figure:
     for kind, gas in enumerate(gases):
         label = rf"$\eta={gas.packing_fraction:.2g}$, {ENGINE_TITLES[gas.engine]}"
         style.points(density, middle, gas.density, kind=kind, hollow=True, label=label)
-        # Different packing fractions are drawn side by side within their bin.
+        # Points of different packing fractions are drawn side by side in their bin.
         beside = middle + width * 0.25 * (kind - 0.5 * (len(gases) - 1))
         seen = gas.density.value > 0.0
         style.points(tail, beside[seen], gas.density[seen], kind=kind, hollow=True)

@@ -1,7 +1,8 @@
-"""Speeds of the particles: relaxation from equal speeds, and the distribution in equilibrium.
+"""Particle speeds: relaxation from equal speeds, and distribution in equilibrium.
 
-Speeds are given as u = v / sqrt(<v^2>), root-mean-square speed 1: at fixed energy that is the unit of the
-sources (all speeds 1 at first, temperature 1/d). Collisions per particle are s = 2 N_collisions / N, counted.
+Speeds are given as u = v / sqrt(<v^2>), so that the root-mean-square speed is 1. At fixed energy this is the
+unit of the sources (initially all speeds are 1, and the temperature is 1/d). The number of collisions per
+particle, s = 2 N_collisions / N, is counted.
 """
 
 from __future__ import annotations
@@ -27,8 +28,10 @@ from gaspart.scene.scene import Scene
 class Velocities:
     """Velocities in a run of T frames, N particles, d axes.
 
-    time (T,); collisions (T,), per particle since the start; velocities (T, N, d), single precision as
-    stored; temperature (T,), between walls 2 E / (d N) from the energy in double precision.
+    time : (T,), times.
+    collisions : (T,), collisions per particle since the start.
+    velocities : (T, N, d), in single precision as stored.
+    temperature : (T,), temperature. Between walls it is 2 E / (d N), from the energy in double precision.
     """
 
     time: np.ndarray
@@ -38,13 +41,16 @@ class Velocities:
 
     @property
     def speeds(self) -> np.ndarray:
-        """(T, N) speeds over the root-mean-square speed, in double precision."""
+        """Speeds (T, N) divided by the root-mean-square speed, in double precision."""
         square = np.einsum("tnd,tnd->tn", self.velocities, self.velocities, dtype=float)
         return np.sqrt(square / square.mean(axis=1, keepdims=True))
 
 
 def read(point: Point, first: int | None = None) -> list[Velocities]:
-    """Return the velocities in all replicas of a point, after equilibration or from frame `first` on."""
+    """Return the velocities in all replicas of a point.
+
+    They are from frames after equilibration, or from frame `first` on.
+    """
     return [
         Velocities(
             time=run.time,
@@ -65,8 +71,8 @@ def kurtosis(speeds: np.ndarray) -> np.ndarray:
 def never_hit(velocities: np.ndarray) -> np.ndarray:
     """Compute the fraction (T,) of particles that no particle has hit since the first frame.
 
-    A wall only reverses the sign of a component, so |v_k| of such a particle keeps its bits in every
-    component; a collision changes them all (but for exceptions of probability 0).
+    A wall only changes the sign of a velocity component. If only walls hit a particle, all |v_k| keep their
+    bits. A collision changes all components (with probability 1).
     """
     return (np.abs(velocities) == np.abs(velocities[0])).all(axis=-1).mean(axis=-1)
 
@@ -74,10 +80,9 @@ def never_hit(velocities: np.ndarray) -> np.ndarray:
 def shared_error(samples: list[np.ndarray]) -> list[np.ndarray]:
     """Compute standard errors of the means over axis 0 of groups of runs, (R_g, ...) each.
 
-    All runs have the same physics.
-
-    The groups are assumed to have the same scatter, which is estimated from all of them about their own
-    means. A group of few runs has no good estimate of its own. Needs more runs than groups.
+    All runs have the same physics. The groups are assumed to have equal scatter. It is estimated from all
+    groups, about their own means, because a group of few runs has no good estimate. The number of runs must
+    exceed the number of groups.
     """
     freedom = sum(len(group) for group in samples) - len(samples)
     if freedom < 1:
@@ -87,20 +92,23 @@ def shared_error(samples: list[np.ndarray]) -> list[np.ndarray]:
 
 
 def shared_means(samples: list[np.ndarray]) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Compute the mean over axis 0 of each group of runs, and its error; see `shared_error`."""
+    """Compute the mean over axis 0 of each group of runs, and its error.
+
+    See `shared_error`.
+    """
     return [(group.mean(axis=0), error) for group, error in zip(samples, shared_error(samples), strict=True)]
 
 
 def speed_relaxation(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure kurtosis, fraction never hit and histogram during relaxation from equal speeds.
 
-    The final distribution is Maxwell's.
+    The final distribution is Maxwell's. There is one point for each engine, with equal scene and sampling.
+    The settings are `times` of the histograms (each must be a sampled time), and `bins` of the histograms up
+    to the speed `highest` (in units of the root-mean-square speed).
 
-    One point for each engine, of the same scene and sampling. The settings are `times`, of the histograms
-    (each must be a sampled one), `bins` of the histograms up to speed `highest` (over root-mean-square).
-
-    Dimensions engine, frame, snapshot, bin. Errors are of the mean over replicas, from the scatter of all
-    runs, with their degrees of freedom. Raises SceneError if the points differ or a time is not sampled.
+    The dimensions are engine, frame, snapshot, bin. Errors are errors of the mean over replicas, from the
+    scatter of all runs, with their degrees of freedom. Raises SceneError if the points differ, or a time is
+    not sampled.
     """
     groups = [read(point, first=0) for point in points]
     scene, time = points[0].scene, groups[0][0].time
@@ -138,7 +146,7 @@ def speed_relaxation(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _relaxing(run: Velocities, grid: Grid, frames: np.ndarray) -> dict[str, Any]:
-    """Return the numbers of a run, by the names of `speed_relaxation`."""
+    """Return the numbers of a run, named as in `speed_relaxation`."""
     speeds = run.speeds
     fourth = kurtosis(speeds)
     return {
@@ -158,7 +166,7 @@ def _bins(grid: Grid) -> dict[str, Any]:
 
 
 def _require_alike(points: list[Point], groups: list[list]) -> None:
-    """Raise SceneError unless all points have the first one's scene and times.
+    """Raise SceneError unless all points have the scene and times of the first point.
 
     Each point has a group of runs.
     """
@@ -173,14 +181,15 @@ def _require_alike(points: list[Point], groups: list[list]) -> None:
 
 
 def _rate_between_walls(scene: Scene, temperature: float) -> float:
-    """Compute collisions per particle and time of a dilute gas within a container.
+    """Compute the collision rate per particle of a dilute gas in a container.
 
     The centres are confined to the container.
 
-    Enskog's rate times (N - 1) / N, as a particle has N - 1 partners, and times the chance that the other
-    particle of a contact, at distance sigma in the direction n, lies within the walls too: the mean over n of
-    prod_k (1 - sigma |n_k| / L_k) to first order in sigma / L, with <|n_k|> = 1/2 in 3D, 2/pi in 2D. Exact to
-    that order for a dilute gas, whose density is uniform up to the walls.
+    The result is Enskog's rate times (N - 1) / N, because a particle has N - 1 partners, times a probability.
+    This is the probability that the partner in a collision, at distance sigma in the direction n, also lies
+    within the walls. It is the mean over n of prod_k (1 - sigma |n_k| / L_k), to first order in sigma / L,
+    with <|n_k|> = 1/2 in 3D and 2/pi in 2D. To this order the result is exact for a dilute gas, whose density
+    is uniform up to the walls.
     """
     diameter = 2.0 * scene.largest_radius
     accessible = [upper - lower for lower, upper in zip(*scene.reach(scene.largest_radius), strict=True)]
@@ -203,9 +212,9 @@ def _frame_at(time: np.ndarray, chosen: float) -> int:
 
 
 def _density(speeds: np.ndarray, grid: Grid) -> np.ndarray:
-    """Compute the fraction of the speeds per bin and width.
+    """Compute the fraction of the speeds in each bin, divided by the width.
 
-    Speeds beyond the last edge count in the norm.
+    Speeds beyond the last edge are part of the norm.
     """
     return grid.sums(grid.cells(speeds[..., None])) / speeds.size / grid.volume
 
@@ -221,29 +230,29 @@ def _initial_slope(s: np.ndarray, values: np.ndarray) -> float:
 
 
 def speed_distribution_spheres(points: list[Point], settings: dict) -> xr.Dataset:
-    """Return Maxwell's distribution in 3D; see `distribution`."""
+    """Measure the distribution of speeds in equilibrium in 3D; see `distribution`."""
     return distribution(points, settings)
 
 
 def speed_distribution_discs(points: list[Point], settings: dict) -> xr.Dataset:
-    """Return Maxwell's distribution in 2D; see `distribution`."""
+    """Measure the distribution of speeds in equilibrium in 2D; see `distribution`."""
     return distribution(points, settings)
 
 
 def distribution(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure speeds in equilibrium against Maxwell's distribution without a fit.
+    """Measure speeds in equilibrium, compared with Maxwell's distribution without a fit.
 
-    All snapshots and replicas count.
+    All snapshots and replicas are used. Snapshots are the frames after equilibration. `collisions_between` is
+    the number of collisions per particle between snapshots; they are independent samples from about 3 on. The
+    settings are `bins` of the histogram up to the speed `highest` (in units of the root-mean-square speed),
+    and `classes` of equal probability for chi-square.
 
-    Snapshots are the frames after equilibration; how many collisions per particle lie between them is in
-    `collisions_between` (they are independent samples from about 3 on). The settings are `bins` of the
-    histogram up to speed `highest` (over root-mean-square), `classes` of equal probability for chi-square.
+    Fluctuations of the kurtosis decay like its mean, exp(-rate s). The error of the kurtosis includes the
+    resulting correlation of successive snapshots.
 
-    Fluctuations of the kurtosis decay like its mean, exp(-rate s): the correlation of successive snapshots at
-    that spacing is in the kurtosis' error.
-
-    Dimensions point, bin, step (of the cumulative distribution). The temperature follows from the conserved
-    energy, so <u^2> = 1 exactly in every snapshot, which takes one degree of freedom from chi-square.
+    The dimensions are point, bin, and step (of the cumulative distribution). The temperature follows from the
+    conserved energy. Therefore <u^2> = 1 exactly in every snapshot, which removes one degree of freedom from
+    chi-square.
     """
     dimension = points[0].settings["dimension"]
     grid = Grid.line(0.0, settings["highest"], settings["bins"])
@@ -261,7 +270,7 @@ def _distribution(
 ) -> dict[str, Any]:
     """Return the numbers of one point.
 
-    Speeds are over the root-mean-square speed: Maxwell's temperature is 1/d.
+    Speeds are divided by the root-mean-square speed; Maxwell's temperature is then 1/d.
     """
     temperature = 1.0 / dimension
     replicas = read(point)
@@ -303,7 +312,10 @@ def _distribution(
 
 
 def _given_temperature(point: Point) -> float:
-    """Return the temperature of the speed given to all particles, which no draw makes uncertain."""
+    """Return the temperature of a gas whose particles all have the same prescribed speed.
+
+    It has no statistical error.
+    """
     if "speed" not in point.settings:
         rule = "is required: all particles start with it"
         raise SceneError(f"experiments.{point.experiment}.speed", None, rule)
@@ -313,7 +325,7 @@ def _given_temperature(point: Point) -> float:
 def _kolmogorov_distance(cumulative: np.ndarray) -> float:
     """Compute the largest |empirical - theoretical| cumulative probability.
 
-    `cumulative` is the latter at the samples.
+    `cumulative` is the theoretical probability at the samples.
     """
     count = len(cumulative)
     above = np.arange(1, count + 1) / count - cumulative

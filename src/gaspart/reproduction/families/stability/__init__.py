@@ -1,4 +1,4 @@
-"""Stability and reversibility."""
+"""Figures on stability and reversibility."""
 
 from gaspart.keys import TEXT, list_of, names
 

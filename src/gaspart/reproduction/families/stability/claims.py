@@ -1,4 +1,4 @@
-"""Claims about extremes of scenes, and reversibility."""
+"""Claims about extreme scenes, and reversibility."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ ROUNDING: dict[str, Any] = {
 
 
 def stability_extremes(dataset: xr.Dataset) -> list[Claim]:
-    """Return the claims that each row passes, or is refused in one line, in every engine.
+    """Return the claims that each scene runs correctly, or is rejected with one line.
 
-    A row is refused where that is expected; where it passes, nothing drifts, overlaps or is missed beyond
-    rounding in the event-driven engine.
+    There is a claim for each engine. Some scenes are expected to be rejected. In the event-driven engine,
+    accepted scenes have no drift, overlap or missed contact beyond rounding.
     """
     scenes = Table(dataset, "row")
     one_line = np.vectorize(lambda message: bool(message) and "\n" not in message)(scenes.message)
@@ -46,7 +46,7 @@ def stability_extremes(dataset: xr.Dataset) -> list[Claim]:
 
 
 def _exact(event: Table) -> list[Claim]:
-    """Return the claims on errors of the event-driven engine, over all rows that pass."""
+    """Return the claims on errors of the event-driven engine, for all accepted scenes."""
     passed = event[event.verdict == "passes"]
     return [
         Claim.at_most(
@@ -71,16 +71,17 @@ def _exact(event: Table) -> list[Claim]:
 
 
 ROUNDINGS = math.log(0.1 * 2.0**53)
-"""ln of the distance at which the memory is lost, in diameters, over the rounding of a coordinate of 1."""
+"""ln of the distance at which the memory is lost, in diameters, divided by the rounding error of a coordinate
+of 1."""
 
 
 def reversibility(ds: xr.Dataset) -> list[Claim]:
     """Return the claims on the growth of echoes, and on the memory of exact runs.
 
-    The growth is compared with the distance of neighbouring runs.
+    The growth of an echo is compared with the growth of the distance of neighbouring runs.
     """
     runs = Table(ds, "row")
-    exact = runs[runs.engine == "event"]  # of time steps nothing is known but what the figure shows
+    exact = runs[runs.engine == "event"]  # there is no theory for time steps
     return [claim for run in exact for claim in _growth(run)]
 
 

@@ -1,4 +1,4 @@
-"""Figures of extremes of scenes, and reversibility."""
+"""Figures of extreme scenes, and of reversibility."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ BLOCKS = {
     "overlap": "overlap",
     "missed": "missed\ncontacts",
 }
-"""Drawn quantities, and the heads of their columns."""
+"""Drawn quantities, and the headings of their columns."""
 GAP = 0.5
-"""Between blocks, in columns."""
+"""Gap between blocks, in columns."""
 FLOOR = 1e-17
 """Errors below this are drawn as 0."""
 MAP, NORM = colormaps["YlGnBu"], LogNorm(FLOOR, 1.0, clip=True)
-"""Colours of errors."""
+"""Colour map of errors, and its scale."""
 REASONS = (
     ("a", "step too long: contacts late or missed", ("step too late", "misses")),
     ("b", "step too short for float32", ("than float32 resolves",)),
@@ -45,19 +45,19 @@ REASONS = (
     ("f", "no room to move", ("no room",)),
     ("g", "inelastic collapse", ("inelastic collapse",)),
 )
-"""Why a scene is refused: a letter, the reason, and parts of the messages that state it."""
+"""Reasons for which scenes are rejected: a letter, the reason, and parts of the messages that state it."""
 OTHER = "?", "another reason, in the data"
 
 
 def stability_extremes(dataset: xr.Dataset) -> Figure:
-    """Draw a line per row; in each block a column per engine.
+    """Draw a row for each scene, and in each block a column for each engine.
 
-    A cell has an error or the letter of a refusal.
+    A cell has an error, or the letter of a rejection.
     """
     scenes = Table(dataset, "row")
     rows, engines = scenes.verdict.shape
     wide = style.width() > style.COLUMN
-    letters = (6.0, 7.0, 8.0) if wide else (4.5, 5.5, 6.0)  # in cells, of rows and keys, of heads
+    letters = (6.0, 7.0, 8.0) if wide else (4.5, 5.5, 6.0)  # heights of rows, key and headings, in cells
     figure, (axis,) = style.new((2.1 + (0.165 if wide else 0.11) * rows,))
     starts = {name: n * (engines + GAP) for n, name in enumerate(BLOCKS)}
     for name, start in starts.items():
@@ -87,14 +87,17 @@ def stability_extremes(dataset: xr.Dataset) -> Figure:
 
 
 def _size(outcome: Row, name: str) -> float:
-    """Return an error as a number below 1; for contacts, the missed or spurious fraction."""
+    """Return an error as a number below 1.
+
+    For contacts, it is the fraction of missed or spurious contacts.
+    """
     if name == "missed":
         return abs(outcome.missed) / max(1, outcome.contacts + outcome.missed)
     return abs(getattr(outcome, name))
 
 
 def _draw_cell(axis: Axes, x: float, top: int, cell: tuple[str, Any, str], letters: float) -> None:
-    """Draw a cell, (text, background, ink), with its upper left corner at a position."""
+    """Draw a cell (text, background, ink) with its upper left corner at (x, top)."""
     text, colour, ink = cell
     axis.add_patch(Rectangle((x, top), 1, 1, facecolor=colour, edgecolor="white", linewidth=0.4))
     if text:
@@ -104,8 +107,8 @@ def _draw_cell(axis: Axes, x: float, top: int, cell: tuple[str, Any, str], lette
 def _cell(outcome: Row, name: str, wide: bool) -> tuple[str, Any, str]:
     """Return text, background and ink of a cell.
 
-    The text is an error's power of ten, for contacts their number, if there is space; a dot where walls
-    absorb momentum.
+    The text is the power of ten of an error. For contacts it is their number, if there is space. A dot means
+    that walls absorb momentum.
     """
     if outcome.verdict == "refused":
         return _reason(outcome.message)[0], "#e6e6e6", "black"
@@ -120,14 +123,14 @@ def _cell(outcome: Row, name: str, wide: bool) -> tuple[str, Any, str]:
 
 
 def _reason(message: str) -> tuple[str, str]:
-    """Return the letter and the text of a refusal's reason."""
+    """Return the letter and the text of the reason for a rejection."""
     return next(
         ((letter, text) for letter, text, parts in REASONS if any(part in message for part in parts)), OTHER
     )
 
 
 def _key(scenes: Table, columns: int) -> str:
-    """Return the reasons that occur, with their letters, a few in a line."""
+    """Return lines with the letters and texts of the reasons that occur."""
     reasons = sorted({_reason(message) for message in scenes.message[scenes.verdict == "refused"]})
     texts = [f"{letter}: {text}" for letter, text in reasons]
     lines = ["; ".join(texts[n : n + columns]) for n in range(0, len(texts), columns)]
@@ -143,7 +146,7 @@ ETA = r"packing fraction $\eta$"
 
 
 def reversibility(ds: xr.Dataset) -> Figure:
-    """Draw echoes against collisions, their growth against density, and the memory of each engine."""
+    """Draw echoes against collisions, growth of echoes against density, and memory by engine."""
     figure, axes = style.new((2.8,), (2.1,), (2.1,))
     runs = Table(ds, "row")
     _echoes(axes[0], runs)

@@ -1,8 +1,7 @@
-"""Measurements of extremes of scenes, and reversibility.
+"""Measurements of extreme scenes, and of reversibility.
 
-The table of extremes: every scene in every engine and precision.
-
-Memory of a gas: growth of echoes, and of the distance of neighbouring runs.
+The first part runs every scene of a table in every engine and precision. The second part measures the memory
+of a gas: growth of echoes, and of the distance of neighbouring runs.
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ from gaspart.reproduction.table import table
 from gaspart.simulation import ENERGY_DRIFT, Simulation
 from gaspart.state.state import State
 
-# Trial of a scene of the table in one engine: drifts, missed contacts, and the verdict.
+# Trial of a scene of the table in an engine: drifts, missed contacts, and the verdict.
 
 
 TRIAL_ENGINES: dict[str, Callable[[Row], Engine]] = {
@@ -42,12 +41,12 @@ TRIAL_ENGINES: dict[str, Callable[[Row], Engine]] = {
 }
 PASSES, REFUSED, FAILS = "passes", "refused", "fails"
 OVERLAP = {"event": 1e-9, "step": 0.01}
-"""Largest permitted overlap, in contact distances, by the engine's name."""
+"""Largest allowed overlap, in contact distances, by engine."""
 MISCOUNTED = 0.03
-"""The permitted relative error of a gas's number of contacts with time steps, in addition to statistical
-error."""
+"""Allowed relative error of the number of contacts with time steps, in addition to the statistical error."""
 MOST_EVENTS, MOST_TESTS = 10_000_000, 50_000_000
-"""Contacts after which an event-driven run ends; with the search of all pairs, pair tests."""
+"""Limits at which an event-driven run ends: number of contacts; number of pair tests if all pairs are
+searched."""
 CHECKS = 8
 """Number of times that a run is checked for overlaps."""
 
@@ -57,12 +56,13 @@ class Outcome:
     """Outcome of one scene in one engine.
 
     verdict : the verdict.
-    message : message of the refusal or failure.
-    energy, momentum : relative drifts (momentum nan where walls absorb some).
-    overlap : the deepest observed one, in contact distances.
-    contacts, missed : contacts of particles and walls, and the number of missed ones (negative: spurious).
-    seconds : time.
-    bits : digest of the last state.
+    message : message of the rejection or failure.
+    energy, momentum : relative drifts (momentum is NaN if walls absorb momentum).
+    overlap : deepest observed overlap, in contact distances.
+    contacts, missed : number of contacts of particles and walls, and number of missed contacts (negative if
+    contacts are spurious).
+    seconds : wall-clock time in s.
+    bits : digest of the final state.
     """
 
     verdict: str
@@ -77,14 +77,15 @@ class Outcome:
 
 
 def attempt(row: Row, engine: str, referee: Outcome | None = None) -> Outcome:
-    """Run a row in one of `TRIAL_ENGINES`.
+    """Run a row of the table in one of `TRIAL_ENGINES`.
 
-    `referee` gives the number of contacts where none is exact.
+    If there is no exact number of contacts, `referee` supplies it.
     """
     start = time.perf_counter()
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # of steps with errors of per cents
+            # warnings of time steps with errors of several per cent
+            warnings.simplefilter("ignore", UserWarning)
             outcome = _run(row, engine, referee)
     except (SceneError, SimulationError) as refusal:
         outcome = {"verdict": REFUSED, "message": str(refusal)}
@@ -122,7 +123,7 @@ def _run(row: Row, engine: str, referee: Outcome | None) -> dict:
 
 
 def _advance(simulation: Simulation, until: float) -> bool:
-    """Advance to a time; whether it was reached within the permitted contacts."""
+    """Advance to a time; return True if it was reached within the allowed contacts."""
     if not isinstance(simulation.engine, EventDriven):
         simulation.advance(until=until)
         return True
@@ -133,7 +134,7 @@ def _advance(simulation: Simulation, until: float) -> bool:
 
 
 def _faults(row: Row, engine: Engine, numbers: dict, expected: int | None) -> dict:
-    """Return the verdict, if any of the numbers shows that the run is incorrect."""
+    """Return the verdict if a number shows that the run is incorrect."""
     drift = ENERGY_DRIFT[engine.precision]
     allowed = 0.0
     if row.chaotic and engine.name == "step" and expected:
@@ -152,7 +153,7 @@ def _faults(row: Row, engine: Engine, numbers: dict, expected: int | None) -> di
 def energy_drift(before: State, after: State, dissipated: float) -> float:
     """Compute the drift of the energy relative to the kinetic energy.
 
-    The energy that a fall through the container brings is added to the latter.
+    The energy of a fall through the container is added to the kinetic energy.
     """
     scale = max(before.kinetic_energy, after.kinetic_energy)
     if after.gravity is not None:
@@ -161,13 +162,16 @@ def energy_drift(before: State, after: State, dissipated: float) -> float:
 
 
 def momentum_drift(before: State, after: State) -> float:
-    """Compute the drift of the momentum relative to the sum of the sizes of all momenta."""
+    """Compute the drift of the momentum relative to the sum of the absolute momenta."""
     scale = float((before.masses * before.speeds).sum())
     return float(np.abs(after.momentum - before.momentum).max()) / (scale or 1.0)
 
 
 def deepest_overlap(state: State, periodic: tuple[bool, ...]) -> float:
-    """Compute the deepest overlap of any pair, in contact distances, from a look at all pairs."""
+    """Compute the deepest overlap of any pair, divided by the contact distance.
+
+    All pairs are searched.
+    """
     deepest = 0.0
     for n in range(state.count - 1):
         apart = state.positions[n + 1 :] - state.positions[n]
@@ -177,15 +181,15 @@ def deepest_overlap(state: State, periodic: tuple[bool, ...]) -> float:
     return deepest
 
 
-# Work that may hang: done in a separate process, which is killed when it does.
+# Work that may hang is done in a separate process, which can be killed.
 
 
 def run_guarded(work: Callable, items: Sequence, limit: float) -> list:
     """Return `work(item)` for each item, in order, or None.
 
     An item that takes more than `limit` seconds, or ends its process, has the result None. Compiled code
-    cannot be interrupted, so it is run in a child process, which can be killed. Raises SceneError where the
-    system cannot fork processes, such as Windows.
+    cannot be interrupted. Therefore it runs in a child process, which can be killed. Raises SceneError on
+    systems that cannot fork processes, such as Windows.
     """
     if not hasattr(os, "fork"):
         raise SceneError("system", os.name, "this figure needs one that forks processes: Linux or macOS")
@@ -199,7 +203,7 @@ def run_guarded(work: Callable, items: Sequence, limit: float) -> list:
         try:
             while len(results) < len(items) and receiver.poll(limit):
                 results.append(receiver.recv())
-        except EOFError:  # the child has ended
+        except EOFError:  # the child process has ended
             pass
         if len(results) < len(items):
             results.append(None)
@@ -214,7 +218,7 @@ def _work(sender: Connection, work: Callable, items: Sequence) -> None:
 
 
 LIMIT = 300.0
-"""Seconds after which a row counts as one that hangs."""
+"""Time limit of a row, in s; a row that takes longer hangs."""
 HANGS = "hangs"
 UNITS = {
     "energy": "kinetic energy",
@@ -226,12 +230,18 @@ _ALL_PAIRS = "event, all pairs"
 
 
 def stability_extremes(points: list[Point], settings: dict) -> xr.Dataset:
-    """Run all rows of the table, or the rows of the setting `groups`, without points.
+    """Run all rows of the table, or the rows of the groups in the setting `groups`.
 
-    Returns over row and engine: verdict ("passes", "refused", "fails", "hangs"), message, of the refusal or
-    failure; energy, momentum, overlap, contacts, missed (see `Outcome`), seconds; refusal, 1
-    if a refusal is the expected result. Over row: group; expected, the contacts that there must be by an
-    exact answer, -1 where all pairs are the referee.
+    There are no points. Variables over row and engine:
+
+    verdict : "passes", "refused", "fails" or "hangs"
+    message : message of the rejection or failure
+    energy, momentum, overlap, contacts, missed : see `Outcome`
+    seconds : wall-clock time in s
+    refusal : 1 if rejection is the expected result
+
+    Over row are `group`, and `expected`, the exact number of contacts; -1 if the search of all pairs is the
+    reference.
     """
     groups = settings.get("groups")
     rows = [row for row in ROWS if groups is None or row.group in groups]
@@ -254,19 +264,20 @@ def _columns(of: tuple[Row, list[Outcome]]) -> dict[str, Any]:
 
 
 def run_row(row: Row) -> list[Outcome]:
-    """Run a row in each engine; the search through all pairs first, as the referee."""
+    """Run a row in each engine; the search of all pairs is first, as the reference."""
     trial = partial(attempt, row)
     referee = trial(_ALL_PAIRS)
     return [referee if engine == _ALL_PAIRS else trial(engine, referee) for engine in TRIAL_ENGINES]
 
 
 WINDOW = {"float64": (1e-10, 1e-2), "float32": (1e-5, 1e-2)}
-"""Distances, in diameters, between which a growth is fitted: below saturation, and three decades above the
-first deviations. These are of all particles alike, and grow faster than by the largest exponent until they
-have turned to the direction of fastest growth: from 1e-9, for two runs 1e-10 apart at first, by 1.13(3) of it
-in spheres of a packing fraction of 0.001, from 1e-7 by 1.03(4)."""
+"""Distances, in diameters, between which exponential growth is fitted. The upper limit is below saturation;
+the lower limit is three decades above the first deviations. Initial deviations have random directions, and
+grow faster than the largest exponent until they have turned into the direction of fastest growth. In spheres
+at packing fraction 0.001, two runs with the initial distance 1e-10 grow with 1.13(3) times the exponent from
+1e-9 on, and with 1.03(4) times from 1e-7 on."""
 APART = WINDOW["float64"]
-"""Window for the distance of two runs."""
+"""Window for the distance between two runs."""
 FORGOTTEN = 0.1
 """Distance of the echo from the start, in diameters, at which the memory ends."""
 
@@ -274,22 +285,28 @@ FORGOTTEN = 0.1
 def reversibility(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure the growth of the echo per collision, and the memory in collisions.
 
-    The latter are the collisions of a particle after which the initial state is forgotten.
+    The memory is the number of collisions of a particle after which the initial state is forgotten. Points
+    are `echo` jobs. Over (``row``, ``sample``) are ``collisions`` (mean) and ``echo`` (median over seeds, in
+    diameters).
 
-    Points are `echo` jobs. Over (``row``, ``sample``): ``collisions`` (mean) and ``echo`` (median over seeds,
-    in diameters). Over ``row``: ``dimension``, ``packing_fraction``, ``count``, ``side`` (in diameters),
-    ``engine``, ``precision``; ``growth`` of the logarithm of the echo per collision of a particle,
-    ``divergence`` of two exact runs per collision, ``exponent``, of the linearised dynamics (NaN for time
-    steps), and ``memory``, in collisions per particle, until the echo is `FORGOTTEN`, each with its
-    ``_error`` over the seeds; ``jumps``, the part of the echoes that leave the window in one interval from
-    its lower half.
+    Variables over ``row``; those from growth to memory have an ``_error`` over seeds:
+
+    dimension, packing_fraction, count, side : gas, with the side in diameters
+    engine, precision : engine and its precision
+    growth : growth of the logarithm of the echo per collision of a particle
+    divergence : growth of the distance of two exact runs, per collision
+    exponent : growth in the linearised dynamics; NaN for time steps
+    memory : collisions per particle until the echo is `FORGOTTEN`
+
+    `jumps` is the fraction of the echoes that pass from the lower half of the window to beyond the window
+    within one interval.
     """
     rows = table("row", points, _row, inner=("sample",))
     return rows.sortby(["dimension", "packing_fraction"])
 
 
 def _row(point: Point) -> dict:
-    """Return the row of one point, with all seeds together."""
+    """Return the row of one point, with all its seeds."""
     run = xr.load_dataset(point.path)
     window = WINDOW[run.attrs["precision"]]
     collisions, echoes, apart = (run[name].values for name in ("collisions", "echo", "divergence"))
@@ -307,7 +324,7 @@ def _row(point: Point) -> dict:
 
 
 def _mean(values: Iterable[float]) -> Estimate:
-    """Average over the seeds with a known value; NaN for fewer than two."""
+    """Average over the seeds with a finite value; NaN for fewer than two."""
     finite = [value for value in values if np.isfinite(value)]
     return mean_of(finite) if len(finite) > 1 else Estimate(math.nan, math.nan, math.nan)
 
@@ -315,7 +332,7 @@ def _mean(values: Iterable[float]) -> Estimate:
 def _slope(window: tuple[float, float], s: np.ndarray, distance: np.ndarray) -> float:
     """Fit the growth of ln distance with s until it first leaves the window.
 
-    NaN with fewer than three points.
+    The result is NaN for fewer than three points.
     """
     low, high = window
     out = np.flatnonzero(distance >= high)
@@ -327,9 +344,9 @@ def _slope(window: tuple[float, float], s: np.ndarray, distance: np.ndarray) -> 
 
 
 def _memory(s: np.ndarray, distance: np.ndarray) -> float:
-    """Find the collisions at which the distance first is `FORGOTTEN`; NaN if it never is.
+    """Find the number of collisions at which the distance first is `FORGOTTEN`.
 
-    The logarithm is interpolated between samples.
+    The logarithm is interpolated between samples. The result is NaN if the distance remains smaller.
     """
     out = np.flatnonzero(distance >= FORGOTTEN)
     if not out.size or out[0] == 0:
@@ -340,9 +357,9 @@ def _memory(s: np.ndarray, distance: np.ndarray) -> float:
 
 
 def _jumps(distance: np.ndarray, low: float, high: float) -> bool:
-    """Return True if the distance jumps from the lower half of the window to beyond it.
+    """Return True if the distance jumps over the upper half of the window.
 
-    The halves are of the logarithms.
+    The window is halved on a logarithmic scale.
     """
     out = np.flatnonzero(distance >= high)
     return bool(out.size and out[0] > 0 and distance[out[0] - 1] < np.sqrt(low * high))

@@ -1,4 +1,4 @@
-"""The rows of the table of extremes: scenes, durations and exact numbers of contacts."""
+"""Rows of the table of extreme scenes: scenes, durations, exact numbers of contacts."""
 
 from __future__ import annotations
 
@@ -14,22 +14,23 @@ from gaspart.scene.restitution import Restitution
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Particle, Species
 
-# The scenes of the table of extremes, one function each, mostly in two dimensions.
+# Scenes of the table: a function for each, mostly in two dimensions.
 
 
 GRAZE = 2.0**-50
-"""Nearly 1e-15, and a number by which a distance of 1 can be changed exactly."""
+"""Distance of about 1e-15, by which a distance of 1 can be changed exactly."""
 
 
 def between_walls(lengths: tuple[float, ...], *particles: Particle, **rest: Any) -> Scene:
-    """Return the scene of a few particles in a container with walls."""
+    """Return a scene of a few particles in a container with walls."""
     return Scene(Container(lengths), particles=particles, **rest)
 
 
 def galperin(ratio: float) -> Scene:
     """Return the scene of a wall, a light disc at rest, and a heavy disc.
 
-    The light disc is 1 from the wall, the heavy one 1 from the light one; it approaches with speed 1.
+    The light disc is at distance 1 from the wall. The heavy disc is at distance 1 from the light disc, and
+    approaches with speed 1.
     """
     light, heavy = Particle((1.5, 2.0), (0.0, 0.0), 0.5), Particle((3.5, 2.0), (-1.0, 0.0), 0.5, mass=ratio)
     return between_walls((20.0, 4.0), light, heavy)
@@ -41,7 +42,7 @@ def gas(*species: Species, side: float = 8.0, dimension: int = 2) -> Scene:
 
 
 def fast_gas(speed: float) -> Scene:
-    """Return a gas of twelve discs of one speed."""
+    """Return a gas of twelve discs of equal speed."""
     return gas(Species(12, 0.5, speed=speed))
 
 
@@ -51,18 +52,18 @@ def slow_beside_fast() -> Scene:
 
 
 def unequal_masses() -> Scene:
-    """Return equal numbers of discs of mass 1 and of mass 1e16, at one temperature."""
+    """Return equal numbers of discs of mass 1 and mass 1e16, at one temperature."""
     return gas(Species(10, 0.5, mass=1.0, temperature=1.0), Species(10, 0.5, mass=1e16, temperature=1.0))
 
 
 def unequal_sizes(dimension: int = 2) -> Scene:
-    """Return a gas of a particle of radius 1 among 200 of 1e-4."""
+    """Return a gas of one particle of radius 1 among 200 particles of radius 1e-4."""
     species = Species(200, 1e-4, temperature=1.0), Species(1, 1.0, temperature=1.0)
     return gas(*species, side=4.0, dimension=dimension)
 
 
 def grazing(nearer: float) -> Scene:
-    """Return two discs of diameter 1 whose centres' tracks are 1 - `nearer` apart."""
+    """Return two discs of diameter 1 that move on parallel tracks 1 - `nearer` apart."""
     return between_walls(
         (4.0, 4.0),
         Particle((1.0, 1.0), (1.0, 0.0), 0.5),
@@ -71,31 +72,31 @@ def grazing(nearer: float) -> Scene:
 
 
 def cradle() -> Scene:
-    """Return Newton's cradle: a disc hits four that touch."""
+    """Return Newton's cradle: a disc hits four discs that touch."""
     still = (Particle((4.0 + n, 2.0), (0.0, 0.0), 0.5) for n in range(4))
     return between_walls((12.0, 4.0), Particle((2.0, 2.0), (1.0, 0.0), 0.5), *still)
 
 
 def four_at_once() -> Scene:
-    """Return four discs that approach one point from four sides, and touch at one instant."""
+    """Return four discs that approach a point from four sides, and touch simultaneously."""
     sides = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
     particles = (Particle((4.0 - 2.0 * x, 4.0 - 2.0 * y), (x, y), 0.5) for x, y in sides)
     return between_walls((8.0, 8.0), *particles)
 
 
 def corner(dimension: int) -> Scene:
-    """Return a particle that moves into a corner, where all faces are hit at once."""
+    """Return a particle that moves into a corner, where it hits all faces simultaneously."""
     particle = Particle((2.0,) * dimension, (-1.0,) * dimension, 0.5)
     return between_walls((4.0,) * dimension, particle)
 
 
 def one_fast() -> Scene:
-    """Return a disc that crosses its container a hundred times in a time of 1."""
+    """Return a disc that crosses its container a hundred times per unit of time."""
     return between_walls((10.0, 10.0), Particle((5.0, 5.0), (1234.5, 777.0), 0.5))
 
 
 def crystal(packing_fraction: float, dimension: int) -> Scene:
-    """Return discs on a triangular lattice, or spheres on a face-centred cubic one.
+    """Return discs on a triangular lattice, or spheres on a face-centred cubic lattice.
 
     The lattice is expanded from close packing.
     """
@@ -114,7 +115,7 @@ def jam_of_four() -> Scene:
 
 
 def touching() -> Scene:
-    """Return four discs that touch each other through periodic faces too, without any gap."""
+    """Return four discs that touch each other without gaps, also through periodic faces."""
     moves = {(0.5, 0.5): (1.0, 0.5), (1.5, 0.5): (-1.0, 0.5), (0.5, 1.5): (1.0, 0.5), (1.5, 1.5): (1.0, 0.5)}
     particles = tuple(Particle(position, move, 0.5) for position, move in moves.items())
     return Scene(Container((2.0, 2.0), "periodic"), particles=particles)
@@ -126,7 +127,7 @@ def tight_disc() -> Scene:
 
 
 def pair_in(side: float) -> Scene:
-    """Return two discs of diameter 1 in a container of any size."""
+    """Return two discs of diameter 1 in a container with sides of length `side`."""
     offset = side / 8.0
     return between_walls(
         (side, side),
@@ -148,18 +149,18 @@ def line() -> Scene:
 
 
 def sticking() -> Scene:
-    """Return a disc that hits another, after which they separate at zero speed."""
+    """Return two discs that separate at zero speed after a collision."""
     particles = Particle((2.0, 2.0), (1.0, 0.0), 0.5), Particle((5.0, 2.0), (0.0, 0.0), 0.5)
     return between_walls((10.0, 4.0), *particles, restitution=Restitution(0.0))
 
 
 def dissipative_gas() -> Scene:
-    """Return sixty discs that retain 1e-12 of their speed of approach at each contact."""
+    """Return a gas of sixty discs with restitution 1e-12 at each contact."""
     return Scene(Container((16.0, 16.0)), [Species(60, 0.5, temperature=1.0)], restitution=Restitution(1e-12))
 
 
 def bouncing(gravity: float) -> Scene:
-    """Return a disc that falls from a height of 2 on to a floor, and bounces."""
+    """Return a disc that falls from a height of 2 onto a floor, and bounces."""
     return between_walls((4.0, 4.0), Particle((1.0, 2.5), (0.0, 0.0), 0.5), gravity=(0.0, -gravity))
 
 
@@ -169,21 +170,21 @@ def falling_gas(gravity: float) -> Scene:
 
 
 def few(count: int) -> Scene:
-    """Return a gas of this number of discs, and of a species without any."""
+    """Return a gas of `count` discs, with an additional empty species."""
     return gas(Species(count, 0.5, speed=1.0), Species(0, 0.7, temperature=1.0), side=3.0)
 
 
-# Exact numbers of contacts: answers that need no simulation.
+# Exact numbers of contacts, which need no simulation.
 
 
 def galperin_contacts(ratio: float, heavy: float, light: float, time: float) -> int:
-    """Compute the contacts, up to `time`, of a wall, a light particle and a heavy one.
+    """Compute the contacts, up to `time`, of a wall, a light particle and a heavy particle.
 
-    The light particle is at rest; the heavy one, `ratio` times as heavy, arrives with speed 1 (Galperin,
-    Regul. Chaotic Dyn. 8, 375 (2003)); for ever, the numbers are the digits of pi. `heavy` and `light` are
-    the distances that each can move until it, pressed against what is between, touches the wall. In the plane
-    of distances times the root of the mass the motion is a straight line across a fan of mirrors, each turned
-    by arctan sqrt(1/ratio) from the last.
+    The light particle is at rest. The heavy particle has `ratio` times its mass, and arrives with speed 1
+    (Galperin, Regul. Chaotic Dyn. 8, 375 (2003)). For infinite time, the numbers are the digits of pi.
+    `heavy` and `light` are the distances that each particle can move until it touches the wall, or the
+    particle pressed against the wall. In the plane of distances times sqrt(mass), the motion is a straight
+    line across a fan of mirrors. The angle between successive mirrors is arctan sqrt(1/ratio).
     """
     narrow = math.sqrt(1.0 / ratio)
     return int(math.atan2(narrow * light, heavy - time) / math.atan(narrow))
@@ -192,9 +193,9 @@ def galperin_contacts(ratio: float, heavy: float, light: float, time: float) -> 
 def hits_in_box(
     starts: Sequence[float], velocities: Sequence[float], rooms: Sequence[float], time: float
 ) -> int:
-    """Count the hits at the walls of a box by one particle.
+    """Count the hits of one particle at the walls of a box.
 
-    For each axis its start, its velocity and its free length are given.
+    The arguments are, for each axis, the initial position, the velocity and the free length.
     """
     total = 0
     for start, velocity, room in zip(starts, velocities, rooms, strict=True):
@@ -204,12 +205,13 @@ def hits_in_box(
 
 
 def contacts_on_line(starts: Sequence[float], velocities: Sequence[float], room: float, time: float) -> int:
-    """Count the contacts of like particles on a line between two walls.
+    """Count the contacts of identical particles on a line between two walls.
 
-    They are contacts with walls and with each other. `starts` are positions minus the diameters on their
-    left; `room` is the length minus all diameters. Equal particles exchange velocities, so points that pass
-    through each other do as well; a point between walls is a point on a circle of twice the free length, and
-    two meet when the sum or the difference of their phases is a multiple of the circle.
+    Contacts with walls and with each other are counted. `starts` are positions minus the diameters on their
+    left. `room` is the length minus all diameters. Identical particles exchange velocities, so that they can
+    be replaced by points that pass through each other. A point between walls corresponds to a point on a
+    circle of twice the free length. Two points meet when the sum or the difference of their phases is a
+    multiple of the circle.
     """
     phases = [(x if v > 0.0 else 2.0 * room - x, abs(v)) for x, v in zip(starts, velocities, strict=True)]
     count = 0
@@ -224,7 +226,7 @@ def contacts_on_line(starts: Sequence[float], velocities: Sequence[float], room:
 
 
 NOWHERE = "-"
-"""No engine has a name that begins so."""
+"""Text with which no engine's name begins."""
 FLOAT32 = "step, float32"
 
 
@@ -232,15 +234,14 @@ FLOAT32 = "step, float32"
 class Row:
     """Line of the table.
 
-    name, group : its name and its group.
-    scene : function that makes the scene, which may be refused.
+    name, group : name and group of the row.
+    scene : function that makes the scene; it may reject its arguments.
     duration, time_step : in the scene's time.
-    contacts : exact number of contacts of particles and walls, where it is known; otherwise the search of all
-        pairs decides.
-    chaotic : True for a gas, in which an engine with other rounding has the same number of contacts only on
-        average.
-    refused : engines where only a refusal is the expected result, by the beginning of their names, as "step";
-        "" for all; NOWHERE for none.
+    contacts : exact number of contacts if known; otherwise the search of all pairs is the reference.
+    chaotic : True for a gas, in which engines agree in the number of contacts only on average.
+    refused : beginning of the names of engines that must reject the scene; "" for all, NOWHERE for none.
+
+    Contacts are between particles, and with walls. In a gas, runs of engines with different rounding diverge.
     """
 
     name: str
@@ -256,7 +257,8 @@ class Row:
 def _galperin(ratio: float, duration: float, time_step: float) -> Row:
     """Return the row of two balls of a mass ratio.
 
-    The light ball becomes sqrt(ratio) times as fast as the heavy one: above 1e4, too fast for steps.
+    The light ball becomes sqrt(ratio) times faster than the heavy ball. Above a ratio of 1e4, it is too fast
+    for time steps.
     """
     contacts = galperin_contacts(ratio, 2.0, 1.0, duration)
     return Row(
@@ -267,7 +269,7 @@ def _galperin(ratio: float, duration: float, time_step: float) -> Row:
 
 
 def _speed(speed: float, text: str) -> Row:
-    """Return twenty diameters of flight, in steps of a thousandth of a diameter."""
+    """Return a row with twenty diameters of flight, in steps of a thousandth of a diameter."""
     moderate = 1e-100 < speed < 1e100
     scale = 1.0 / speed if moderate else 1.0
     return Row(
@@ -277,7 +279,7 @@ def _speed(speed: float, text: str) -> Row:
 
 
 def _bounce(gravity: float) -> Row:
-    """Return a hundred periods of a fall from a height of 2, and a quarter."""
+    """Return a row with 100.25 periods of a ball that falls from a height of 2."""
     period = 2.0 * math.sqrt(4.0 / gravity)
     return Row(
         f"gravity {gravity:g}: 100 bounces", "gravity",

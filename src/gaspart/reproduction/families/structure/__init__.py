@@ -1,4 +1,4 @@
-"""Structure of the fluid and its chemical potential."""
+"""Figures on the structure of the fluid, and on its chemical potential."""
 
 from gaspart.keys import count, names, positive
 

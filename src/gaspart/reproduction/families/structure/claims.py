@@ -1,4 +1,4 @@
-"""Claims about the structure of the fluid and its chemical potential."""
+"""Claims about the structure of the fluid, and its chemical potential."""
 
 from __future__ import annotations
 
@@ -10,21 +10,20 @@ from gaspart.reproduction.families.shared import PARTICLES, SOURCE_C
 from gaspart.reproduction.table import Row, Table
 
 AGREE = 0.005
-"""The largest standard error at which an agreement to 1 % means anything."""
+"""Largest standard error at which an agreement to 1 % is conclusive."""
 DENSE = 0.25
-"""Packing fraction above which Percus and Yevick's numbers of spheres differ from the true ones.
+"""Packing fraction above which numbers of the Percus-Yevick theory of spheres are measurably wrong.
 
-The difference is more than the measurement's errors: 4 % and more of the compressibility, and of the contact
-value.
+Compressibility and contact value differ by 4 % and more, which exceeds the errors of the measurement.
 """
 DENSEST = 0.4
-"""Packing fraction above which its curves also differ throughout, relative to their noise."""
+"""Packing fraction above which the Percus-Yevick curves differ everywhere, relative to their noise."""
 
 
 def structure(ds: xr.Dataset) -> list[Claim]:
-    """Return the claims on compressibility and contact value, and on Verlet and Weis's curves.
+    """Return the claims on compressibility and contact value, and on Verlet-Weis curves.
 
-    Both numbers are measured by independent routes.
+    Both numbers are measured by independent methods.
     """
     claims = []
     for fluid in Table(ds, "point"):
@@ -39,7 +38,7 @@ def _where(fluid: Row) -> str:
 
 
 def _spheres_from(packing_fraction: float, fluid: Row) -> bool:
-    """Return True if a fluid is one of spheres, with at least this packing fraction."""
+    """Return True if a fluid consists of spheres, with at least this packing fraction."""
     return bool(fluid.dimension == 3 and fluid.packing_fraction >= packing_fraction)
 
 
@@ -102,7 +101,7 @@ def _curves(fluid: Row) -> list[Claim]:
 
 
 def chemical_potential(ds: xr.Dataset) -> list[Claim]:
-    """Return the claims on insertion against Gibbs and Duhem, its failures, and Q."""
+    """Return the claims on insertion compared with Gibbs-Duhem, its failures, and Q."""
     fluids = Table(ds, "point")
     claims = [_works(fluid) if fluid.works else _fails(fluid, fluids.enough) for fluid in fluids]
     for dimension in (3, 2):

@@ -1,4 +1,4 @@
-"""Figures of the structure of the fluid and of its chemical potential."""
+"""Figures of the structure of the fluid, and of its chemical potential."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from gaspart.reproduction.families.shared import PARTICLES
 from gaspart.reproduction.table import Row, Table
 
 SHIFT = 0.006
-"""Shift of packing fractions, so that the points of several routes lie next to each other."""
+"""Horizontal shift of packing fractions, so that points of several methods do not overlap."""
 
 
 def structure(ds: xr.Dataset) -> Figure:
-    """Draw g(r) and S(k) of the densest fluids, against theory, and ratios of the routes.
+    """Draw g(r) and S(k) of the densest fluids with theory, and ratios of methods.
 
-    The routes lead to one number.
+    The methods determine the same number.
     """
     figure, axes = style.new((2.3,), (2.3,), (2.3,), (2.3,))
     g, s, zero, contact = axes
@@ -50,7 +50,7 @@ def _spheres_and_discs(ds: xr.Dataset) -> list[Table]:
 
 
 def _curves(g: Axes, s: Axes, fluid: Row, kind: int) -> None:
-    """Draw the measured curves of one fluid, for spheres with theory's."""
+    """Draw the measured curves of a fluid, for spheres with theory."""
     eta, distance, wave_number = fluid.packing_fraction, fluid.distance, fluid.wave_number
     beyond, finite = distance >= 1.0, np.isfinite(fluid.s.value)
     small: dict[str, Any] = {"kind": kind, "hollow": True, "markersize": 2.0}
@@ -81,7 +81,7 @@ def _ratios(axis: Axes, fluids: Table, kind: int, ratios: dict[str, Estimate]) -
 def chemical_potential(ds: xr.Dataset) -> Figure:
     """Draw the chemical potential, its ratio, the insertion probability, and ln Q / N.
 
-    The ratio is of both routes.
+    The ratio compares both methods.
     """
     figure, axes = style.new((2.3, 1.6), (2.3,), (2.3,))
     upper, ratio, chance, partition = axes
@@ -95,7 +95,7 @@ def chemical_potential(ds: xr.Dataset) -> Figure:
     density = r"packing fraction $\eta$"
     style.label_axes(upper, y=r"$\mu_\mathrm{excess}/kT$", legend="best")
     style.label_axes(ratio, density, "insertion / integral", xlim=(0.0, None), ylim=(0.97, 1.03))
-    chance.set(yscale="log", xlim=(0.0, None), ylim=(1e-16, 3.0))  # with room for the legend
+    chance.set(yscale="log", xlim=(0.0, None), ylim=(1e-16, 3.0))  # with space for the legend
     style.label_axes(chance, density, "probability of insertion", "lower left")
     style.label_axes(partition, density, r"$-\ln Q/N$", "best", xlim=(0.0, None))
     style.letters(*axes)
@@ -118,7 +118,7 @@ def _potential(upper: Axes, ratio: Axes, fluids: Table, kind: int) -> None:
 
 
 def _chance(axis: Axes, fluids: Table, kind: int) -> None:
-    """Draw the chance, its theory, and the smallest that could be measured."""
+    """Draw the insertion probability, its theory, and the smallest measurable probability."""
     dimension, colour = fluids.dimension[0], style.COLOURS[kind]
     eta = np.linspace(0.0, fluids.packing_fraction.max(), 200)
     axis.plot(eta, np.exp(-theory.excess_chemical_potential(eta, dimension)), color=colour)

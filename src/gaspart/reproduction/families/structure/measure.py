@@ -1,11 +1,11 @@
-r"""Structure of spheres and discs: g(r), S(k), and three numbers by two or three routes each.
+r"""Structure of spheres and discs: g(r), S(k), and two numbers by several methods.
 
-- The compressibility: S(k) extrapolated to k = 0, and :math:`1 / (d(\eta Z)/d\eta)` of the measured
-  equation of state. 1 / S(k) = 1 - rho c(k), c the direct correlation function: it hardly reaches beyond a
-  diameter, so that c(k) is an even power series which converges fast for k of a few inverse diameters. 1 / S
-  is fitted by a polynomial in :math:`k^2` of order three, at every wave vector that the container admits.
-- The contact value of the N particles: g(r) extrapolated to the diameter, the collisional virial,
-  :math:`(Z_N - 1) / (2^{d-1} \eta)`, and the rate of collisions over the rate of independent particles.
+- The compressibility: by S(k) extrapolated to k = 0, and by :math:`1 / (d(\eta Z)/d\eta)` of the measured
+  equation of state. 1 / S(k) = 1 - rho c(k), with the direct correlation function c. Its range is about one
+  diameter. Therefore c(k) is an even power series that converges fast for k up to a few inverse diameters. 1
+  / S is fitted by a polynomial in :math:`k^2` of order three, at all wave vectors of the container.
+- The contact value of N particles: by g(r) extrapolated to the diameter, by the collisional virial,
+  :math:`(Z_N - 1) / (2^{d-1} \eta)`, and by the collision rate divided by the rate of independent particles.
 """
 
 from __future__ import annotations
@@ -39,23 +39,24 @@ __all__ = ["chemical_potential", "structure"]
 Law = Callable[[np.ndarray, float], Any]
 
 BLOCKS = 10
-"""Stretches of each run, whose scatter makes the errors."""
+"""Number of blocks of each run; their scatter determines the errors."""
 ORDERS = (0, 2, 4, 6)
-"""Powers of k of 1 / S(k)."""
+"""Powers of k in the fit of 1 / S(k)."""
 WIDTH = 0.005
 """Width of the bins of g(r) at contact, in diameters."""
 WINDOW = 0.45
-"""Range of the fit of g(r) at contact times the contact value: g falls over it by about the same part."""
+"""Range of the fit of g(r) at contact, times the contact value; the relative decrease of g in the range is
+nearly constant."""
 BINS, SHELLS, WAVES = 160, 80, 24
-"""Bins of g(r) and of S(k) in the figure, and wave vectors of each of the latter."""
+"""Number of bins of g(r) and of S(k) in the figure, and number of wave vectors in each bin of S(k)."""
 
 
 @dataclass(frozen=True)
 class Averages:
     """Means over blocks of frames, of all runs of a point.
 
-    low : (B, M), S at the longest waves.
-    near : (B, n), g at contact.
+    low : (B, M), S at the smallest wave numbers.
+    near : (B, n), g near contact.
     g, s : (B, BINS) and (B, shells), the curves.
     z, rate : (B,).
     """
@@ -71,13 +72,16 @@ class Averages:
 def structure(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure g(r), S(k) and derived numbers at each point of the experiments `measured`.
 
-    The settings are in `FIGURES`. Returns over `point`: dimension, packing_fraction, count; s0, S(0)
-    extrapolated, and state_s0, by the measured equation of state, `s0_ratio` of the two; contact_g, contact_z
-    and contact_rate, the contact value times (N - 1) / N of N particles, `g_ratio` and `rate_ratio`, the
-    first and the last over contact_z; of spheres `g_gain` and `s_gain`, the root mean square distance of the
-    measured curve from Verlet and Weis's over the distance from Percus and Yevick's; each with _error and
-    _freedom. g over `bin` at `distance`, in diameters, s over `shell` at `wave_number` times the diameter,
-    each with _error.
+    The settings are in `FIGURES`. Variables over `point`, the numbers with _error and _freedom:
+
+    dimension, packing_fraction, count : properties of the fluid
+    s0, state_s0, s0_ratio : extrapolated S(0), S(0) by the measured equation of state, and their ratio
+    contact_g, contact_z, contact_rate : (N - 1) / N times contact value, from g, Z and collision rate
+    g_ratio, rate_ratio : contact_g and contact_rate divided by contact_z
+    g_gain, s_gain : of spheres, distance of the curve from Verlet-Weis over distance from Percus-Yevick
+
+    Distances of curves are root mean squares. Curves with _error are g over `bin`, at `distance` in
+    diameters, and s over `shell`, at `wave_number` times the diameter.
     """
     measured = [point for point in points if point.experiment in settings["measured"]]
     inner = {"g": ("bin",), "distance": ("bin",), "s": ("shell",), "wave_number": ("shell",)}
@@ -117,10 +121,9 @@ def _row(point: Point, states: dict[int, MeasuredState], settings: dict) -> dict
 
 
 def _blocks(run: Run, gas: Gas, low: np.ndarray, curves: tuple, most: int) -> Averages:
-    """Compute the averages of one run, with lengths divided by the diameter.
+    """Compute the averages of one run, with lengths in diameters.
 
-    `curves` has wave vectors, their shells, and the furthest distance; the curves are made of about `most`
-    frames.
+    `curves` has wave vectors, their shells, and the largest distance. The curves use about `most` frames.
     """
     parts, series = Blocks(run, BLOCKS), series_of(run)
     sides = np.array(run.scene.container.lengths) / gas.diameter
@@ -149,9 +152,9 @@ def _blocks(run: Run, gas: Gas, low: np.ndarray, curves: tuple, most: int) -> Av
 
 
 def _numbers(averages: Averages, gas: Gas, size: np.ndarray) -> dict[str, Estimate]:
-    """Compute the compressibility, from S at wave numbers (M,), and the contact values.
+    """Compute the compressibility and the contact values from block averages.
 
-    The wave numbers are `size`.
+    S is given at wave numbers `size` (M,).
     """
     unit = 1.0 / (2.0 ** (gas.dimension - 1) * gas.packing_fraction)
     per_rate = _contact_per_rate(gas)
@@ -161,7 +164,7 @@ def _numbers(averages: Averages, gas: Gas, size: np.ndarray) -> dict[str, Estima
     pairs = np.sqrt(averages.near[:, :first].mean(axis=0)) / (1.0 + distance) ** (0.5 * (gas.dimension - 1))
     k, equal, number = np.unique(size.round(9), return_inverse=True, return_counts=True)
     low = np.array([in_shells(values, equal) for values in averages.low])
-    spread = 1.0 / (low.mean(axis=0) * np.sqrt(number))  # of 1 / S, up to a factor
+    spread = 1.0 / (low.mean(axis=0) * np.sqrt(number))  # weights of 1 / S, up to a factor
 
     def at_contact(near: np.ndarray) -> float:
         fit = fit_polynomial(distance, near[:first], pairs, powers=(0, 1, 2, 3))
@@ -186,9 +189,9 @@ def _numbers(averages: Averages, gas: Gas, size: np.ndarray) -> dict[str, Estima
 
 
 def _contact_per_rate(gas: Gas) -> float:
-    """Compute the contact value times (N - 1) / N over the reduced rate of collisions.
+    """Compute the contact value times (N - 1) / N, divided by the reduced collision rate.
 
-    The ratio of N particles is exact; the reference equation of state cancels.
+    This ratio is exact for N particles. The reference equation of state cancels.
     """
     eta, dimension, count = gas.packing_fraction, gas.dimension, gas.count
     excess = theory.compressibility_factor(eta, dimension) - 1.0
@@ -199,7 +202,7 @@ def _contact_per_rate(gas: Gas) -> float:
 
 
 def _gain(samples: np.ndarray, better: Law, worse: Law, x: np.ndarray, eta: float) -> Estimate:
-    """Compute the distance of the mean of samples (B, n) from one law, relative to another.
+    """Compute the distance of the mean of samples (B, n) from one theory over another.
 
     Distances are root mean squares.
     """

@@ -1,8 +1,8 @@
-r"""Chemical potential by insertion, and by the measured equation of state: Z joined to a curve.
+r"""Chemical potential by insertion, and by a fit to the measured equation of state.
 
 :math:`Z(\eta) = Z_\mathrm{ref}(\eta)\,(1 + c_1 \eta + c_2 \eta^2 + c_3 \eta^3)` is fitted to the measured
-values, the reference being there to interpolate between them. What follows is thermodynamics: the
-compressibility, the free energy and the chemical potential are linear in the coefficients.
+values. The reference serves only for interpolation between them. The compressibility, the free energy and the
+chemical potential then follow by thermodynamics. They are linear in the coefficients.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from gaspart.reproduction.table import Table, table
 from gaspart.scene.gas import plain_gas
 
 POWERS = (1, 2, 3)
-_NODES = 40  # of integrals, whose integrands are polynomials but for the reference
+_NODES = 40  # nodes of integrals, whose integrands are polynomials except for the reference
 
 
 @dataclass(frozen=True)
@@ -36,9 +36,9 @@ class MeasuredState:
     fit: Fit
 
     def _estimate(self, reference: float, factors: list[float]) -> Estimate:
-        """Return a quantity of the reference with the additions of each coefficient.
+        """Return a quantity of the reference plus the contribution of each coefficient.
 
-        The degrees of freedom of the error are the fewest of the coefficients'.
+        The degrees of freedom of the error are the smallest of the coefficients.
         """
         parts = np.array(factors)
         error = np.sqrt(parts @ self.fit.covariance @ parts)
@@ -63,7 +63,7 @@ class MeasuredState:
         return self._estimate(reference, [self._integral(eta, n) for n in POWERS])
 
     def chemical_potential(self, eta: float) -> Estimate:
-        """Compute mu_excess / (k_B T) by Gibbs and Duhem.
+        """Compute mu_excess / (k_B T) by the Gibbs-Duhem relation.
 
         It is Z - 1 plus the integral of (Z - 1) / eta.
         """
@@ -73,7 +73,7 @@ class MeasuredState:
 
 
 def measured_states(points: list[Point]) -> dict[int, MeasuredState]:
-    """Return the equation of state of each dimension, from all its points in the fluid's range."""
+    """Return the equation of state of each dimension, from all its points in the fluid range."""
     highest = theory.HIGHEST_PACKING_FRACTION
     fluids = [point for point in points if point.scene.packing_fraction <= highest[point.scene.dimension]]
     gases = Table(table("point", fluids, _excess), "point")
@@ -96,32 +96,36 @@ def _excess(point: Point) -> dict[str, Any]:
     }
 
 
-# The chemical potential and the partition function.
-#
-# Source C writes the partition function as :math:`V^N Q / (h^{dN} N!)\,(2\pi m k_B T)^{dN/2}` (Eqs. 41 to
-# 46). All but the configuration integral Q is known. With N particles in place, a further one at a random
-# place overlaps none with the chance :math:`Q_{N+1}/Q_N`, so that ln Q is the sum of the logarithms of
-# these chances over all smaller numbers in one container: per particle, minus the mean of mu_excess / k_B
-# T over the packing fractions below. By the equation of state it is minus the integral of (Z - 1) / eta.
+# The chemical potential and the partition function. Source C writes the partition function as :math:`V^N Q /
+# (h^{dN} N!)\,(2\pi m k_B T)^{dN/2}` (Eqs. 41 to 46). Only the configuration integral Q is unknown. If N
+# particles are in place, a further particle at a random position overlaps no other particle with the
+# probability :math:`Q_{N+1}/Q_N`. Therefore ln Q is the sum of the logarithms of these probabilities over all
+# smaller numbers in one container. Per particle, it is minus the mean of mu_excess / k_B T over all lower
+# packing fractions. By the equation of state it is minus the integral of (Z - 1) / eta.
 
 
-_POWERS = (0, 1, 2)  # of eta, by which the measured chemical potential differs from the reference
+_POWERS = (0, 1, 2)  # powers of eta in the difference between measured chemical potential and reference
 
 
 def chemical_potential(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure mu_excess / (k_B T) at each point of `measured` by two methods.
+    """Measure mu_excess / (k_B T) at each point of `measured`, by insertion and Gibbs-Duhem.
 
-    They are insertion and Gibbs and Duhem; `measured` are experiments.
+    `measured` are experiments. The settings are in `FIGURES`. Variables over `point`, by ascending packing
+    fraction in each dimension:
 
-    The settings are in `FIGURES`. Returns over `point`, by ascending packing fraction in each dimension:
-    dimension, packing_fraction, count; probability, that a random place is free, and expected, by the
-    measured equation of state, for this number; inserted, the chemical potential of the infinite fluid (the
-    finite size subtracted), integrated, by the measured equation of state, `ratio` of the two; each with
-    _error and _freedom; reference and its _error, of the reference equation of state; successes, the free
-    places; hit_frames, frames that have any; frames; places, how many random places those tried stand for;
-    resolution, the probability that one success would have been; works, 1 with `enough` hit frames. Over
-    `point` too: ln_q, minus ln Q / N by insertion up to this packing fraction, ln_q_integrated, by the
-    equation of state, `ln_q_ratio` of the two (NaN where insertion does not work).
+    dimension, packing_fraction, count : properties of the fluid
+    probability, expected : probability that a random position is free, and by the measured equation of state
+    inserted : chemical potential by insertion, for the infinite fluid (finite size is subtracted)
+    integrated, ratio : chemical potential by the measured equation of state, and ratio of both
+    reference : chemical potential by the reference equation of state, with _error
+    successes, hit_frames, frames : numbers of free positions, of frames that have any, and of all frames
+    places : number of random positions that the trials represent
+    resolution : probability that corresponds to a single success
+    works : 1 if there are `enough` hit frames
+    ln_q, ln_q_integrated, ln_q_ratio : minus ln Q / N by insertion, by the equation of state, and their ratio
+
+    ln Q / N is for this packing fraction, and NaN if insertion does not work. `expected` is for this number
+    of particles. Variables from probability to ratio, and of ln_q, have _error and _freedom.
     """
     states = measured_states(points)
     measured = [point for point in points if point.experiment in settings["measured"]]
@@ -129,7 +133,7 @@ def chemical_potential(points: list[Point], settings: dict) -> xr.Dataset:
     rows = [_row(point, states[point.scene.dimension], settings) for point in measured]
     for dimension, state in states.items():
         works = [row for row in rows if row["dimension"] == dimension and row["works"]]
-        if len(works) >= len(_POWERS):  # the coefficients of the curve
+        if len(works) >= len(_POWERS):  # coefficients of the curve
             _add_partition(works, state)
     return table("point", rows, dict, of=measured).assign_attrs(enough=settings["enough"])
 
@@ -193,9 +197,9 @@ def _chance(insertions: Insertions) -> Estimate:
 
 
 def _add_partition(rows: list[dict[str, Any]], state: MeasuredState) -> None:
-    """Add minus ln Q / N, by insertion and equation of state, to rows.
+    """Add minus ln Q / N, by insertion and by the equation of state, to rows.
 
-    The rows are of one dimension.
+    All rows have the same dimension.
     """
     eta = np.array([row["packing_fraction"] for row in rows])
     logarithms = ln_q(eta, Estimate.stack([row["inserted"] for row in rows]), state.dimension)
@@ -207,8 +211,8 @@ def _add_partition(rows: list[dict[str, Any]], state: MeasuredState) -> None:
 def ln_q(eta: np.ndarray, potential: Estimate, dimension: int) -> Estimate:
     """Compute minus ln Q / N at packing fractions eta (n,) from excess chemical potentials.
 
-    They are joined to a curve, the reference times a polynomial in eta, whose integral over eta is divided by
-    eta. The degrees of freedom of the errors are the fewest of the coefficients'.
+    A curve is fitted to the potentials: the reference times a polynomial in eta. Its integral over eta is
+    divided by eta. The degrees of freedom of the errors are the smallest of the coefficients.
     """
     reference = theory.excess_chemical_potential(eta, dimension)
     fit = fit_polynomial(eta, potential / reference - 1.0, powers=_POWERS)

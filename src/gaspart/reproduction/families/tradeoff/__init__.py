@@ -1,10 +1,16 @@
-"""Speed against accuracy."""
+"""Figures on speed against accuracy."""
 
 from gaspart.keys import COUNT, POSITIVE, count, list_of, names, positive
 
 TITLE = "Speed against accuracy"
 CHAPTER = "Speed and accuracy"
 COSTS = ["time_to_accuracy"]
+ENGINES = ("event", "step", "boltzmann", "enskog")
+"""Engines that are compared; the last two are the models of the DSMC engine."""
+PARTS = ("model", "discretisation", "noise", "equilibration", "finite_size")
+"""Parts of an error, from the bottom of a stacked bar; the parts that add up to the accuracy come first."""
+FREE_TIMES = 2.5
+"""Duration of the relaxation of speeds over which it is integrated, in mean free times."""
 _ACCURACIES = list_of(POSITIVE, "relative accuracies of the cheapest settings")
 FIGURES = {
     "speed_accuracy": {

@@ -1,4 +1,4 @@
-"""Claims about speed and accuracy."""
+"""Claims about speed against accuracy."""
 
 from __future__ import annotations
 
@@ -8,18 +8,19 @@ import xarray as xr
 from gaspart import theory
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.families.shared import PARTICLES
-from gaspart.reproduction.families.tradeoff.choices import relaxation_time
+from gaspart.reproduction.families.tradeoff import FREE_TIMES
 from gaspart.reproduction.table import Row, Table, each
+from gaspart.theory.discretisation import MISSED_CONTACTS, ONE_PASS
 
 # Claims about the map of the cheapest engine: costs of collisions, and errors of engines.
 
 
 THIN, THICK = 0.0011, 0.29
-"""Packing fractions: up to which a gas is called dilute here, and from which dense."""
+"""Packing fractions: a gas below THIN is dilute here, a gas above THICK is dense."""
 KNOWN = 0.4
-"""Packing fraction up to which the loss of collisions in cells is known (docs/dsmc.md)."""
+"""Largest packing fraction at which the loss of collisions in cells is known (docs/dsmc.md)."""
 TESTED = 0.02
-"""The smallest bound that runs of a few seconds can test."""
+"""Smallest bound that runs of a few seconds can test."""
 FLOW_NAMES = {"heat_flux": "heat flux between plates", "relaxation": "relaxation time of speeds"}
 SOLVERS = {"step": "time steps", "boltzmann": "the Boltzmann model", "enskog": "the Enskog model"}
 
@@ -37,7 +38,7 @@ def _by_engine(at: Row, name: str) -> dict[str, Estimate]:
 def _dilute(ds: xr.Dataset) -> list[Claim]:
     """Return the claims that DSMC is much cheaper in a dilute gas.
 
-    It is the cheaper the more dilute the gas.
+    The advantage grows with decreasing density.
     """
     claims = []
     gases = Table(ds.sel(quantity="collision_rate"), "fraction")
@@ -80,7 +81,7 @@ def _dilute(ds: xr.Dataset) -> list[Claim]:
 def _dense(ds: xr.Dataset) -> list[Claim]:
     """Return the claims that the Enskog model costs more than events in a dense gas.
 
-    It has another D.
+    Its diffusion coefficient D differs from D of hard spheres.
     """
     claims, gases = [], Table(ds, "fraction")
     for at in gases[gases.fraction >= THICK]:
@@ -95,7 +96,8 @@ def _dense(ds: xr.Dataset) -> list[Claim]:
                 fails_if="a search for contacts costs more than random trials",
             )
         )
-        if at.fraction > 0.35:  # beyond, D / Enskog's falls again and passes through 1
+        # at higher densities D divided by Enskog's D decreases again, and passes through 1
+        if at.fraction > 0.35:
             continue
         model = float(at.dataset.error.sel(quantity="D", solver="enskog", part="model").isel(accuracy=0))
         claims.append(
@@ -135,9 +137,9 @@ def _flows(ds: xr.Dataset) -> list[Claim]:
 
 
 def _relaxation(ds: xr.Dataset) -> list[Claim]:
-    """Return the claims that speeds relax equally in both models, by clocks.
+    """Return the claims that speeds relax equally in both models, in reduced time.
 
-    The clocks differ by the contact value.
+    The units of time differ by the contact value.
     """
     claims = []
     for at in Table(ds.sel(flow_quantity="relaxation"), "fraction"):
@@ -161,13 +163,25 @@ def _relaxation(ds: xr.Dataset) -> list[Claim]:
     return claims
 
 
-def _cells(ds: xr.Dataset) -> list[Claim]:
-    """Return the claims on collisions that the Enskog model loses to its cells.
+def relaxation_time(slower: float) -> float:
+    """Compute the relaxation time of a gas with collisions rarer by a factor.
 
-    It loses no more than `gaspart advise` allows for.
+    Its speeds follow the homogeneous Boltzmann equation.
+    """
+    times = np.linspace(0.0, FREE_TIMES / slower, 251)
+    curve = theory.relaxation(3)
+    end = theory.kurtosis(3)
+    remainder = (end - curve.kurtosis(curve.collisions(times))) / (end - 1.0)
+    return float(np.trapezoid(remainder, times) * slower)
+
+
+def _cells(ds: xr.Dataset) -> list[Claim]:
+    """Return the claims on collisions that the Enskog model loses due to its cells.
+
+    The loss is at most the allowance of `gaspart advise`.
     """
     gases = Table(ds, "fraction")
-    measured = np.isfinite(gases.cells.value) & (gases.cells_bound > 0.0)  # a single cell loses nothing
+    measured = np.isfinite(gases.cells.value) & (gases.cells_bound > 0.0)  # a single cell loses no collisions
     rows = gases[measured & (gases.fraction <= KNOWN)]
     return each(
         rows,
@@ -182,21 +196,20 @@ def _cells(ds: xr.Dataset) -> list[Claim]:
     )
 
 
-MISSED = {2: 1.0 / 4.0, 3: 2.0 / 3.0}
-"""The part of all contacts of a dilute gas that touch and part within a step, over (v_th dt / sigma)^2."""
 BAND = {1.0: 0.15, 2.0: 0.3, 3.0: 0.6}
-"""Half-width of the band around an order."""
+"""Half width of the interval around an order."""
 REQUIRED = {1.0: 0.1, 2.0: 0.2, 3.0: 0.4}
-"""Largest uncertainty at which a measured order means anything."""
+"""Largest uncertainty of a measured order that is conclusive."""
 FLOOR = 1e-3
-"""Finer accuracies are not predicted: the errors of steps that reach them are below those measured."""
+"""Smallest accuracy for which costs are predicted; step errors for smaller accuracies are below the measured
+errors."""
 FLUX = "flux of pairs through chords crossed within a step (docs/time-stepped.md)"
 
 
 def speed_accuracy(ds: xr.Dataset) -> list[Claim]:
-    """Return the claims on orders of errors, missed contacts, the frontier, the steady state.
+    """Return the claims on error orders, missed contacts, the cost frontier, the steady state.
 
-    The contacts are missed in a dilute gas.
+    Contacts are missed in a dilute gas.
     """
     errors = Table(ds, "row")
     frontier = [claim for gas in Table(ds, "gas") for claim in _frontier(_of(gas, "Z"))]
@@ -244,17 +257,17 @@ def _orders(errors: Table) -> list[Claim]:
 
 
 def _claims_on_misses(errors: Table) -> list[Claim]:
-    """Return the claims on the rate of a dilute gas, at a long step.
+    """Return the claims on the collision rate of a dilute gas, at a long step.
 
-    It is the longest step that loses 2 % at most.
+    It is the longest step that loses at most 2 % of the contacts.
     """
     claims = []
     for row in errors[errors.packing_fraction <= 0.01]:
         setting = row.setting
         if setting not in ("4 passes", "1 pass"):
             continue
-        factor = MISSED[row.dimension] * (1.0 if setting == "4 passes" else 4.0)
-        lost = factor * row.time_step**2  # v_th and sigma are 1
+        factor = MISSED_CONTACTS[row.dimension] * (1.0 if setting == "4 passes" else ONE_PASS)
+        lost = factor * row.time_step**2  # in units with v_th = sigma = 1
         at = int(np.argmax(np.where(lost <= 0.02, lost, -1.0)))
         claims.append(
             Claim(
@@ -271,10 +284,10 @@ def _claims_on_misses(errors: Table) -> list[Claim]:
 
 
 def _frontier(z: Row) -> list[Claim]:
-    """Return the claims that events are cheaper in a dense gas where 0.1 % is required.
+    """Return the claims that events are cheaper in a dense gas for 0.1 %.
 
-    Accuracy then requires more steps. Elsewhere the cheaper engine depends on the machine: see `gaspart
-    advise`. `z` is Z of one gas.
+    Time stepping then requires more steps. For other accuracies the cheaper engine depends on the machine;
+    see `gaspart advise`. `z` is Z of one gas.
     """
     if z.gas_packing_fraction < 0.3 or z.gas_dimension == 2:
         return []
@@ -313,9 +326,9 @@ def _frontier(z: Row) -> list[Claim]:
 
 
 def _steady(at: Row) -> Claim:
-    """Return the claim that long runs have the errors that the short, paired ones measure.
+    """Return the claim that long runs have the errors that short paired runs measure.
 
-    One pass leaves pairs that overlap, and there are more of them in the steady state.
+    A single pass leaves pairs that overlap. In the steady state there are more of these pairs.
     """
     setting = at.steady_setting
     is_converged = setting.startswith("4 passes")
@@ -334,8 +347,8 @@ def _steady(at: Row) -> Claim:
 def time_to_accuracy(ds: xr.Dataset) -> list[Claim]:
     """Return the claims on predicted costs, chosen settings, and the map.
 
-    The model predicts the cost of two engines, and chooses the setting measured to be the best; the map is of
-    the cheapest engine.
+    The model predicts the cost of two engines, and chooses the setting that was measured to be the best. The
+    map is of the cheapest engine.
     """
     claims = of_map(ds)
     for engine in Table(ds, "engine"):

@@ -13,12 +13,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from gaspart.rendering import style
-from gaspart.reproduction.families.tradeoff.choices import ENGINES
+from gaspart.reproduction.families.tradeoff import ENGINES
 from gaspart.reproduction.table import Row, Table
 
-# Panels of the map of the cheapest engine, and of errors at two points.
-#
-# There is a panel for each observable.
+# Panels of the map of the cheapest engine, and of errors at two points, for each observable.
 
 
 TITLES = {
@@ -30,13 +28,13 @@ TITLES = {
 }
 NAMES = dict(zip(ENGINES, ("event-driven", "time-stepped", "DSMC, Boltzmann", "DSMC, Enskog"), strict=True))
 TINTS = {"event": (0, 0.65), "step": (1, 0.5), "boltzmann": (2, 0.6), "enskog": (2, 0.25)}
-"""Colour of each engine, and the part of white in it: figures are read on it."""
+"""Colour of each engine, and the fraction of white in it, so that numbers on it are legible."""
 PART_NAMES = ("model", "step, cells", "noise", "equilibration", "finite size")
 PLACES = (("D", 0.01, 0.01), ("D", 0.3, 0.01))
-"""Observable, packing fraction and accuracy of the errors that are shown; where they were not measured the
-nearest ones that were."""
+"""Observable, packing fraction and accuracy of the errors that are drawn; if not measured, the nearest
+measured values."""
 HIGHEST = 1.6
-"""Largest drawn error, relative to the accuracy."""
+"""Largest error that is drawn, divided by the accuracy."""
 _SMALL = 5.6
 
 
@@ -48,7 +46,7 @@ def tint(engine: str) -> tuple[float, float, float]:
 
 
 def keys() -> list[Patch]:
-    """Return the entries of a legend of the colours."""
+    """Return the entries of a legend of the engines' colours."""
     return [Patch(facecolor=tint(engine), label=name) for engine, name in NAMES.items()]
 
 
@@ -66,9 +64,9 @@ def duration(seconds: float) -> str:
 def cheapest_engine(ds: xr.Dataset) -> Iterator[tuple[int, int, str, float]]:
     """Yield (fraction, accuracy, engine, cost) of one quantity where any engine was measured.
 
-    The first two are positions; the engine is "" and the cost infinite where no engine reaches the accuracy.
+    The first two are indices. If no engine reaches the accuracy, the engine is "" and the cost infinite.
     """
-    cost = Row(ds).cost.value  # fraction, accuracy, solver
+    cost = Row(ds).cost.value  # indices: fraction, accuracy, solver
     for f, a in np.ndindex(*cost.shape[:2]):
         if not np.isnan(cost[f, a]).all():
             best = int(np.nanargmin(cost[f, a]))
@@ -79,7 +77,7 @@ def cheapest_engine(ds: xr.Dataset) -> Iterator[tuple[int, int, str, float]]:
 def map_of(axis: Axes, ds: xr.Dataset) -> None:
     """Draw one quantity: a field for each density and accuracy, with its cost.
 
-    The colour is that for the cheapest engine.
+    The colour represents the cheapest engine.
     """
     gas, fields = Row(ds), list(cheapest_engine(ds))
     columns = sorted({f for f, *_ in fields})
@@ -100,12 +98,12 @@ def map_of(axis: Axes, ds: xr.Dataset) -> None:
 
 
 def _fraction(value: float) -> str:
-    """Return a packing fraction, a small one as a power of ten."""
+    """Return a packing fraction as text, a small one as a power of ten."""
     return rf"$10^{{{round(math.log10(value))}}}$" if value < 0.005 else f"{value:g}"
 
 
 def places(ds: xr.Dataset) -> list[Row]:
-    """Return the `PLACES`, or the measured ones nearest to them, each once."""
+    """Return the distinct `PLACES`, or the measured values nearest to them."""
     rows: dict[tuple[str, float, float], Row] = {}
     for quantity, fraction, accuracy in PLACES:
         of = ds.sel(quantity=quantity)
@@ -118,12 +116,12 @@ def places(ds: xr.Dataset) -> list[Row]:
 
 
 def _nearest(values: xr.DataArray, target: float) -> int:
-    """Return the position of the value whose ratio to the wanted one is nearest to 1."""
+    """Return the index of the value whose ratio to `target` is nearest to 1."""
     return int(np.argmin(np.abs(np.log(values.values / target))))
 
 
 def draw_breakdown(axis: Axes, ds: xr.Dataset) -> None:
-    """Draw errors over the required accuracy of every engine at the `PLACES`, by what makes them."""
+    """Draw errors divided by the required accuracy at the `PLACES`, by engine and cause."""
     rows: list[tuple[float, str]] = []
     for p, at in enumerate(places(ds)):
         top = -(len(ENGINES) + 1.5) * p
@@ -139,15 +137,15 @@ def draw_breakdown(axis: Axes, ds: xr.Dataset) -> None:
     axis.set_yticks(*zip(*rows, strict=True) if rows else ([], []))
     axis.set_ylim(rows[-1][0] - 0.7 if rows else -1.0, 0.7)
     axis.set_xticks([0.0, 0.5, 1.0, 1.5])
-    axis.set_xlim(0.0, 2.4 * HIGHEST)  # with room for the legend
+    axis.set_xlim(0.0, 2.4 * HIGHEST)  # with space for the legend
     axis.tick_params(axis="y", length=0)
     axis.set_xlabel("error / required accuracy")
 
 
 def _stack(axis: Axes, y: float, parts: list[float]) -> None:
-    """Draw one bar of parts, cut off at `HIGHEST`.
+    """Draw a stacked bar of parts, truncated at `HIGHEST`.
 
-    If it is cut off, its length is written.
+    A truncated bar is labelled with its length.
     """
     low = 0.0
     for kind, part in enumerate(parts):
@@ -161,15 +159,16 @@ def _stack(axis: Axes, y: float, parts: list[float]) -> None:
 
 
 SHOWN = {"4 passes": "-", "1 pass, no rewinding": "--"}
-"""Line of each setting that is drawn: the default one, and the source's. The claims have the others."""
+"""Line style of each setting that is drawn: the default, and the source's setting. The claims also cover the
+other settings."""
 MARKERS = {"boltzmann": "s", "enskog": "D"}
-"""Markers of the models of the DSMC engine."""
+"""Markers of the DSMC engine's models."""
 
 
 def speed_accuracy(ds: xr.Dataset) -> Figure:
-    """Draw errors of spheres against the time step, and time against the error of Z.
+    """Draw errors for spheres against the time step, and time against the error of Z.
 
-    The errors are of the collision rate, Z and D.
+    The errors are of collision rate, Z and D.
     """
     figure, axes = style.new((2.3,), (2.3,), (2.3,), (2.3,))
     errors, models = Table(ds, "row"), Table(ds, "dsmc")
@@ -212,9 +211,9 @@ def _of(row: Row, observable: str) -> Row:
 
 
 def _errors(axis: Axes, at: Row, kind: int, line: str) -> None:
-    """Draw sizes of errors of one observable, and the fitted order.
+    """Draw the absolute errors of one observable, and the fitted order.
 
-    They are filled if more than two standard errors, else hollow at that bound.
+    An error above two standard errors is drawn filled, otherwise hollow at this bound.
     """
     size, error, step = 100.0 * np.abs(at.bias.value), 100.0 * at.bias.error, at.time_step
     seen = size > 2.0 * error
@@ -228,7 +227,7 @@ def _errors(axis: Axes, at: Row, kind: int, line: str) -> None:
 
 
 def _costs(axis: Axes, z: Row, kind: int) -> None:
-    """Draw time per collision against the size of the error of Z, or its bound.
+    """Draw the time per collision against the absolute error of Z, or its bound.
 
     The event-driven engine is a line.
     """
@@ -240,7 +239,7 @@ def _costs(axis: Axes, z: Row, kind: int) -> None:
 
 
 def _models(axis: Axes, models: Table, kind: int) -> None:
-    """Time per collision against the error of the models of the DSMC engine."""
+    """Draw time per collision against the error of the DSMC engine's models."""
     for model, marker in MARKERS.items():
         own = models[models.dsmc_model == model]
         look: dict = {"kind": kind, "marker": marker, "markersize": 5.0}
@@ -250,7 +249,7 @@ def _models(axis: Axes, models: Table, kind: int) -> None:
 def time_to_accuracy(ds: xr.Dataset) -> Figure:
     """Draw the cheapest engine and its cost, and the parts of the errors of each engine.
 
-    The cost is against density and accuracy, for each observable.
+    The cost is drawn against density and accuracy, for each observable.
     """
     figure, axes = style.new(*((2.0,),) * len(TITLES), (2.4,))
     for axis, letter, (quantity, title) in zip(axes, "abcde", TITLES.items(), strict=False):

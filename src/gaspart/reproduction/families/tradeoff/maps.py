@@ -1,77 +1,78 @@
-"""Cheapest engine for each observable, density and accuracy, with the parts of every error."""
+"""Cheapest engine for each observable, density and accuracy, with all parts of the error."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
 
 from gaspart import theory
-from gaspart.accuracy.conditions import even_conditions
+from gaspart.accuracy.estimates import Component
+from gaspart.accuracy.option import Option
 from gaspart.accuracy.table import PRECISIONS
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import mean_of
-from gaspart.engines.dsmc.accuracy import boltzmann_error, enskog_error
-from gaspart.engines.dsmc.defaults import rates
-from gaspart.engines.engine import AccuracyRequest
+from gaspart.engines.engine import AccuracyRequest, Candidate
 from gaspart.reproduction.families.heat.gap import Gap, averages
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.families.speeds.measure import kurtosis
-from gaspart.reproduction.families.tradeoff import uniform
-from gaspart.reproduction.families.tradeoff.choices import ENGINES, FREE_TIMES, PARTS, Choice, cheapest
-from gaspart.reproduction.families.tradeoff.uniform import BOUND, costs
+from gaspart.reproduction.families.tradeoff import ENGINES, FREE_TIMES, PARTS, uniform
+from gaspart.reproduction.families.tradeoff.uniform import BOUND, QUANTILE, Choice, costs, solver_of
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import entries
-from gaspart.theory.dsmc import cell_factor, step_factor
+from gaspart.scene.gas import Gas
+from gaspart.theory.bulk import EXACT
+from gaspart.theory.conditions import even_conditions
 
-# Choices for two gases out of equilibrium: heat flux between plates, relaxation of speeds.
-#
-# Neither has a theory that is exact in a dense gas, so that each engine is run, and its difference from the
-# event-driven one, with two standard errors, bounds its error; theory's own bound is taken where it is
-# lower, as in a dilute gas. Runs are of about the number of particles that costs are stated for.
+# Choices for two gases out of equilibrium: heat flux between plates, relaxation of speeds. There is no exact
+# theory in a dense gas. Therefore each engine is run. The error is bounded by the difference from the
+# event-driven engine plus two standard errors, or by a theoretical bound if this is lower, as in a dilute
+# gas. The number of particles is about the number for which costs are stated.
 
 
 FLOWS = ("heat_flux", "relaxation")
 SETTLED = 5.0
-"""Decay times of the slowest wave of temperature between plates before the flux is measured."""
+"""Decay times of the slowest temperature wave between plates, before the flux is measured."""
 
 
 @dataclass(frozen=True)
 class Flow:
     """Measurement by one engine.
 
-    engine : one of `choices.ENGINES`.
-    time_step : time step, 0 without.
+    candidate : the engine, with its bounds on the errors of model and discretisation.
     count : number of particles.
-    value : value of the flux, or the relaxation time over the mean free time.
-    variance : relative variance, times the time of simulation.
+    value : flux, or relaxation time divided by the mean free time.
+    variance : relative variance times the simulated time.
     contacts : contacts per time.
-    decay : time in which the slowest trace of the initial state falls to 1/e, 0 if that is what is measured.
-    shortest : minimum time that is simulated.
-    bounds : theory's, on the errors of model and discretisation.
+    decay : time in which the slowest trace of the initial state falls to 1/e; 0 if this decay itself is
+    measured.
+    shortest : minimum simulated time.
     """
 
     observable: str
     packing_fraction: float
-    engine: str
-    time_step: float
+    candidate: Candidate
     count: int
     value: Estimate
     variance: float
     contacts: float
     decay: float
     shortest: float
-    bounds: tuple[float, float]
+
+    @property
+    def engine(self) -> str:
+        """Name of the engine among `ENGINES`."""
+        return solver_of(self.candidate.engine)
 
 
 def flux_of(point: Point, blocks: int) -> Flow:
-    """Measure the heat flux between plates, averaged over both and over `blocks` blocks of the run.
+    """Measure the heat flux between plates, averaged over both plates and over blocks.
 
-    The slowest wave between them is the wave of the temperature, whose decay time is (gap / pi)^2 n c_p /
-    kappa, c_p = 5/2 k_B, kappa Enskog's at the mean temperature.
+    Each run has `blocks` of them. The slowest wave between the plates is a temperature wave. Its decay time
+    is (gap / pi)^2 n c_p / kappa, with c_p = 5/2 k_B and Enskog's kappa at the mean temperature.
     """
     scene, gap = point.scene, Gap.of(point.scene)
     flux = averages(point, gap, blocks, 1).flux()
@@ -84,24 +85,22 @@ def flux_of(point: Point, blocks: int) -> Flow:
     return Flow(
         observable="heat_flux",
         packing_fraction=fraction_of(point),
-        engine=engine_of(point),
-        time_step=_step(point),
+        candidate=_candidate(point),
         count=point.scene.count,
         value=flux,
         variance=(flux.error / flux.value) ** 2 * length,
         contacts=contacts / length,
         decay=decay,
         shortest=decay,
-        bounds=_bounds(point, "conductivity"),
     )
 
 
 def relaxation_of(point: Point) -> Flow:
-    """Return the time in which speeds, equal at first, become Maxwell's, over the mean free time.
+    """Return the time in which equal speeds relax to Maxwell's, over the mean free time.
 
-    It is the integral of the kurtosis' part that is still to come, (K_end - K) / (K_end - 1), up to
-    `FREE_TIMES`, of the mean over replicas. In a uniform gas steps and cells of the DSMC engine change
-    nothing but positions, if all particles are in one cell.
+    It is the integral of (K_end - K) / (K_end - 1) up to `FREE_TIMES`, where K is the kurtosis, averaged over
+    replicas. In a uniform gas, steps and cells of the DSMC engine affect only positions, if all particles are
+    in one cell.
     """
     values, contacts, rate = [], 0, float(theory.collision_rate(point.scene.packing_fraction, 3))
     for run in runs(point, first=0):
@@ -114,107 +113,72 @@ def relaxation_of(point: Point) -> Flow:
         contacts += int(run.data["collisions"].values[-1])
     value = mean_of(values)
     length = FREE_TIMES / rate
-    model, steps = _bounds(point, "diffusion")
+    candidate = _candidate(point)
+    if candidate.engine.equation != EXACT:
+        candidate = replace(candidate, discretisation=0.0)
     return Flow(
         observable="relaxation",
         packing_fraction=fraction_of(point),
-        engine=engine_of(point),
-        time_step=_step(point),
+        candidate=candidate,
         count=point.scene.count,
         value=value,
         variance=(value.error / value.value) ** 2 * len(values) * length,
         contacts=contacts / (len(values) * (run.time[-1] - run.time[0])),
         decay=0.0,
         shortest=length,
-        bounds=(model, steps if engine_of(point) == "step" else 0.0),
     )
 
 
 def fraction_of(point: Point) -> float:
-    """Compute the packing fraction, to two digits."""
+    """Compute the packing fraction, rounded to two digits."""
     return float(f"{point.scene.packing_fraction:.2g}")
 
 
-def engine_of(point: Point) -> str:
-    """Return the engine of a point, one of `choices.ENGINES`."""
-    return point.engine.name if point.engine.equation == "exact" else point.engine.equation
-
-
-def _step(point: Point) -> float:
-    """Compute the length of a step, 0 of the event-driven engine."""
-    return point.engine.for_scene(point.scene, point.schedule.sample_interval).quantum or 0.0
-
-
-def _bounds(point: Point, coefficient: str) -> tuple[float, float]:
-    """Return theory's bounds on the errors of model and discretisation; infinite without one.
-
-    Time steps lose 2/3 (v_th dt / sigma)^2 of the contacts of a dilute gas, and no more of what these pass
-    on; of a dense gas no theory states their error. Cells and steps of the DSMC engine change a transport
-    coefficient, `coefficient`, and the flux by that at most.
-    """
-    scene, name = point.scene, engine_of(point)
-    if name == "event":
-        return 0.0, 0.0
-    kinetics = rates(scene, dense=True)
-    if name == "step":
-        speed = kinetics.speed / math.sqrt(8.0 / math.pi)
-        lost = 2.0 / 3.0 * (speed * _step(point) / (2.0 * scene.largest_radius)) ** 2
-        return 0.0, lost if scene.packing_fraction <= 0.01 * 1.05 else math.inf
-    engine = point.engine.for_scene(scene, point.schedule.sample_interval)
-    cells = asdict(engine)["cells_per_side"]
-    width = max(
-        (length / n for length, n in zip(scene.container.lengths, cells, strict=True) if n > 1), default=0.0
-    )
-    step = _step(point) * kinetics.speed / math.sqrt(8.0 / math.pi) * math.sqrt(2.0)
-    grown = cell_factor(coefficient, width / kinetics.path) * step_factor(coefficient, step / kinetics.path)
-    bound = boltzmann_error if name == "boltzmann" else enskog_error
-    even = even_conditions(scene, 1.0)
-    model = bound(AccuracyRequest("D", 1.0, even, transported=True, memory=even.memory))
-    return model, float(grown) - 1.0
+def _candidate(point: Point) -> Candidate:
+    """Return the engine of a point, with its bounds on the errors of a flux."""
+    scene, engine = point.scene, point.engine.for_scene(point.scene, point.schedule.sample_interval)
+    if engine.equation == EXACT:
+        return Candidate(engine, discretisation=engine.bias(scene, "fluxes"))
+    return engine.candidate(AccuracyRequest("heat_flux", 1.0, even_conditions(scene, 1.0), transported=True))
 
 
 def flow_choices(flows: Sequence[Flow], count: int, speeds: Mapping[str, Estimate]) -> Iterator[Choice]:
-    """Yield the choices for the engines that have measured one observable of one gas.
+    """Yield the choices for the engines that measured one observable of one gas.
 
-    count : number of particles that costs are for.
-    speeds : CPU time per time of simulation by engine, of the runs' particles.
+    count : number of particles for which costs are stated.
+    speeds : CPU time per simulated time by engine, for the particle number of the runs.
     """
     event = next(flow for flow in flows if flow.engine == "event")
-    # One equation governs what fluctuates, so that all runs together tell its variance.
+    # The fluctuations obey one equation, so all runs together determine their variance.
     pooled = float(np.mean([flow.variance for flow in flows]))
     for flow in flows:
         if flow.engine not in speeds:
             continue
         seconds = speeds[flow.engine].value
-        scaled = seconds * count / flow.count
         model, discretisation = errors_of(flow, event)
-        yield Choice(
-            engine=flow.engine,
-            model=model,
-            discretisation=discretisation,
-            finite_size=0.0,
-            unit=pooled * seconds,
-            least=flow.shortest * scaled,
-            equilibration=SETTLED * flow.decay * scaled,
-            decay=flow.decay * scaled,
-            trace=1.0,
-            uncertainty=speeds[flow.engine].error / seconds,
+        candidate = Candidate(flow.candidate.engine, model, discretisation)
+        noise = Component(
+            1.0, 1.0, flow.shortest, QUANTILE**2 * pooled * flow.count / count, freedom=math.inf
         )
+        settling = SETTLED * flow.decay
+        limits = flow.shortest + settling, math.inf, settling, 0.0
+        option = Option(candidate, candidate.bias, noise, seconds * count / flow.count, 1.0, *limits)
+        yield Choice(option, flow.decay, speeds[flow.engine].error / seconds)
 
 
 def errors_of(flow: Flow, event: Flow) -> tuple[float, float]:
     """Return bounds on the errors of model and discretisation.
 
-    They are theory's bounds, or less if the runs differ by less in all.
+    The theoretical bounds are used, unless the measured difference from the event-driven engine gives a
+    smaller bound.
     """
-    if flow.engine == "event":
+    bounds = flow.candidate
+    if bounds.engine.reference:
         return 0.0, 0.0
     ratio = flow.value / event.value
     seen = abs(ratio.value - 1.0) + BOUND * ratio.error
-    if flow.engine == "step":
-        return 0.0, min(flow.bounds[1], seen)
-    discretisation = min(flow.bounds[1], seen)
-    return min(flow.bounds[0], seen - discretisation), discretisation
+    discretisation = min(bounds.discretisation, seen)
+    return min(bounds.model, seen - discretisation), discretisation
 
 
 QUANTITIES = (*uniform.OBSERVABLES, *FLOWS)
@@ -223,21 +187,23 @@ QUANTITIES = (*uniform.OBSERVABLES, *FLOWS)
 def maps(points: Sequence[Point], settings: dict, timed: list[dict], compared: list[dict]) -> xr.Dataset:
     """Compute the costs of all engines in spheres of every timed density.
 
-    The points are of the experiments `cells`, `plates`, `plates_cost` and `relaxation` in settings, and
-    others; `timed` and `compared` are explained in `uniform`. The settings are also ``counts`` of particles,
-    of which the first is the map's, ``accuracies``, ``blocks`` of each run between plates.
+    The points belong to the experiments `cells`, `plates`, `plates_cost` and `relaxation` in settings, and
+    others. `timed` and `compared` are explained in `uniform`. Further settings are ``counts`` of particles
+    (the map uses the first), ``accuracies``, and ``blocks`` of each run between plates.
 
     Over (``quantity``, ``fraction``, ``accuracy``, ``solver``): ``cost`` in s of the cheapest setting, with
-    its uncertainty from the timings, infinite if none is known to be as accurate and NaN where the engine was
-    not run. Over these and ``part``: ``error``, relative, of `PARTS`: ``model`` and ``discretisation`` bounds
-    from theory, or from runs where theory has none, ``finite_size`` the remainder after theory's correction,
-    ``equilibration`` a bound on the trace of the initial state, ``noise`` 1.96 standard errors.
+    its uncertainty from the timings. It is infinite if no setting is known to be as accurate, and NaN if the
+    engine was not run. With the further dimension ``part``: ``error``, relative, of `PARTS`. ``model`` and
+    ``discretisation`` are bounds from theory, or from runs if there is no theory. ``finite_size`` is the
+    remainder after theory's correction. ``equilibration`` is a bound on the trace of the initial state.
+    ``noise`` is 1.96 standard errors.
 
     Over (``flow_quantity``, ``fraction``, ``solver``): ``flow``, the heat flux, or the relaxation time over
-    the mean free time, with its error, and ``flow_bound`` of theory on its relative difference from hard
-    spheres. Over (``fraction``, ``solver``): ``each``, CPU time in s per contact of the exact gas, with the
-    cheapest step, and its error. Over ``fraction``: ``cells``, the collision rate of the Enskog model in its
-    default cells over the rate of its equation, with its error and ``cells_bound`` on the difference.
+    the mean free time, with its error; and ``flow_bound``, a theoretical bound on its relative difference
+    from hard spheres. Over (``fraction``, ``solver``): ``each``, CPU time in s per contact of the exact gas,
+    with the cheapest step, and its error. Over ``fraction``: ``cells``, the collision rate of the Enskog
+    model in its default cells divided by the rate of its equation, with its error; and ``cells_bound`` on the
+    difference.
     """
     fractions = sorted({timing["gas"][1] for timing in timed if timing["gas"][0] == 3})
     cells = uniform.cells_by_fraction(points, settings["cells"])
@@ -248,7 +214,7 @@ def maps(points: Sequence[Point], settings: dict, timed: list[dict], compared: l
     for q, f in np.ndindex(shape[:2]):
         eta = fractions[f]
         if QUANTITIES[q] in uniform.OBSERVABLES:
-            gas = uniform.Uniform(eta, count)
+            gas = Gas(3, eta, count, 1.0, 1.0)
             choices = list(uniform.choices(gas, QUANTITIES[q], timed, compared, cells.get(eta)))
         else:
             of = [
@@ -282,15 +248,16 @@ def _enter(costs: np.ndarray, parts: np.ndarray, choices: list[Choice], accuraci
     The arrays are costs (A, E, 2) with errors, and parts (A, E, `PARTS`).
     """
     for e, engine in enumerate(ENGINES):
-        of = [choice for choice in choices if choice.engine == engine]
+        of = [choice for choice in choices if solver_of(choice.option.engine) == engine]
         for a, accuracy in enumerate(accuracies if of else ()):
-            best = cheapest(of, accuracy)
-            costs[a, e] = best.cost(accuracy) * np.array([1.0, best.uncertainty])
+            # the least biased choice, if no choice reaches the accuracy
+            best = min(of, key=lambda choice: (choice.option.cost(accuracy), choice.option.bias))
+            costs[a, e] = best.option.cost(accuracy) * np.array([1.0, best.uncertainty])
             parts[a, e] = list(best.parts(accuracy).values())
 
 
 def _flows(points: Sequence[Point], settings: dict) -> list[Flow]:
-    """Return all flows that were measured."""
+    """Return all measured flows."""
     plates = [point for point in points if point.experiment in settings["plates"]]
     relaxing = [point for point in points if point.experiment in settings["relaxation"]]
     return [
@@ -300,19 +267,19 @@ def _flows(points: Sequence[Point], settings: dict) -> list[Flow]:
 
 
 def _speeds_between(points: Sequence[Point], experiments: Sequence[str]) -> dict[float, dict[str, Estimate]]:
-    """Compute the CPU time per time of simulation between plates, by packing fraction and engine."""
+    """Compute the CPU time per simulated time between plates, by packing fraction and engine."""
     speeds: dict[float, dict[str, Estimate]] = {}
     for point in points:
         if point.experiment in experiments:
             (seconds,) = uniform.each_of(costs(point), 1.0)
-            speeds.setdefault(fraction_of(point), {})[engine_of(point)] = seconds
+            speeds.setdefault(fraction_of(point), {})[solver_of(point.engine)] = seconds
     return speeds
 
 
 def _speeds_of(timed: list[dict], of: list[Flow]) -> dict[str, Estimate]:
-    """Return the speeds of flows in a uniform gas, from the timings of other particles.
+    """Return the speeds of flows in a uniform gas, from timings with other particle numbers.
 
-    The step is the one nearest to theirs.
+    The step nearest to the flow's step is used.
     """
     if not of:
         return {}
@@ -325,7 +292,8 @@ def _speeds_of(timed: list[dict], of: list[Flow]) -> dict[str, Estimate]:
     for flow in of:
         if flow.engine in same:
             steps = same[flow.engine]["time_step"]
-            at = int(np.argmin(np.abs(np.log(steps / flow.time_step)))) if flow.time_step else 0
+            step = flow.candidate.engine.quantum
+            at = int(np.argmin(np.abs(np.log(steps / step)))) if step else 0
             speeds[flow.engine] = uniform.each_of(same[flow.engine], rate)[at] * contacts
     return speeds
 
@@ -333,18 +301,18 @@ def _speeds_of(timed: list[dict], of: list[Flow]) -> dict[str, Estimate]:
 def _solver(setting: str) -> str:
     """Return the engine of a timed setting.
 
-    Other settings of the time-stepped engine than the default keep their names.
+    Non-default settings of the time-stepped engine keep their names.
     """
     return "step" if PRECISIONS.get(setting) == "float64" else setting
 
 
 def _compare_flows(measured: list[Flow], fractions: list[float]) -> xr.Dataset:
-    """Return the measurements of each engine, and theory's bounds on its error."""
+    """Return the measurements of each engine, and theoretical bounds on its error."""
     names = ("flow", "flow_error", "flow_freedom", "flow_bound")
     array = np.full((len(names), len(FLOWS), len(fractions), len(ENGINES)), np.nan)
     for flow in measured:
         at = FLOWS.index(flow.observable), fractions.index(flow.packing_fraction)
-        numbers = flow.value.value, flow.value.error, flow.value.freedom, sum(flow.bounds)
+        numbers = flow.value.value, flow.value.error, flow.value.freedom, flow.candidate.bias
         array[:, *at, ENGINES.index(flow.engine)] = numbers
     axes = ("flow_quantity", "fraction", "solver")
     columns = {name: (axes, values, {"units": "1"}) for name, values in zip(names, array, strict=True)}

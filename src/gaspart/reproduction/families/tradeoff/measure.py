@@ -1,8 +1,8 @@
-"""Cost of accuracy: errors and costs of the time-stepped engine relative to the event-driven one.
+"""Cost of accuracy: errors and costs of time stepping relative to event-driven runs.
 
-Errors are from the job `compare` and costs from the job `measure_cost`, of the same gases and settings. The
-diffusion coefficient follows Enskog's theory, kT / m over the rate at which a particle forgets its velocity,
-taken from the memory after about one collision per particle.
+Errors come from the job `compare`, and costs from the job `measure_cost`, for equal gases and settings. The
+diffusion coefficient follows from Enskog's theory: it is kT / m divided by the rate at which a particle loses
+the memory of its velocity. The memory is measured after about one collision per particle.
 """
 
 from __future__ import annotations
@@ -14,13 +14,15 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.accuracy import table
-from gaspart.accuracy.table import EQUILIBRATION, LEAST, PRECISIONS, REFERENCE, STEP
+from gaspart.accuracy.option import Option, fluid_option
+from gaspart.accuracy.table import PRECISIONS, REFERENCE, STEP
 from gaspart.accuracy.tabulated import model_error
 from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
+from gaspart.engines.engine import Candidate
 from gaspart.reproduction import table as tables
 from gaspart.reproduction.families.shared.runs import pressure
-from gaspart.reproduction.families.tradeoff.choices import required_length
+from gaspart.reproduction.families.tradeoff import uniform
 from gaspart.reproduction.families.tradeoff.maps import maps
 from gaspart.reproduction.families.tradeoff.uniform import (
     OBSERVABLES,
@@ -33,22 +35,24 @@ from gaspart.reproduction.families.tradeoff.uniform import (
 )
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table
+from gaspart.scene.gas import Gas
+from gaspart.theory.bulk import EXACT
 
 # Cheapest time-stepped setting for each accuracy of a collision, and the event-driven engine.
 
 
 SEEN = 3.5
-"""Number of standard errors from 0 above which an error counts as seen."""
+"""Smallest significant error, in standard errors."""
 
 
 def frontier(dataset: xr.Dataset) -> xr.Dataset:
     """Find the cheapest time-stepped setting whose error is within each accuracy.
 
-    Two standard errors, and the error that is known to build up over many steps, are added.
+    Two standard errors, and the known increase of the error over many steps, are added to the error.
 
     Over ``gas``: ``gas_dimension``, ``gas_packing_fraction``. Over (``gas``, ``observable``, ``accuracy``):
-    ``best_seconds`` per exact collision (NaN if none is known to reach it), ``best_ratio`` of it to the
-    event-driven engine's with ``best_ratio_error``, ``best_step``, ``best_setting``.
+    ``best_seconds`` per exact collision (NaN if no setting is known to reach the accuracy), ``best_ratio``,
+    the ratio to the event-driven engine's time, with ``best_ratio_error``, ``best_step``, ``best_setting``.
     """
     errors, steady = Table(dataset, "row"), Table(dataset, "steady")
     gases = list(dict.fromkeys(zip(errors.dimension, errors.packing_fraction, strict=True)))
@@ -57,7 +61,7 @@ def frontier(dataset: xr.Dataset) -> xr.Dataset:
     chosen = np.full(shape, "none", dtype=object)
     for g, (dimension, fraction) in enumerate(gases):
         of = errors[(errors.dimension == dimension) & (errors.packing_fraction == fraction)]
-        within = np.abs(of.bias.value) + 2.0 * of.bias.error  # row, observable, step
+        within = np.abs(of.bias.value) + 2.0 * of.bias.error  # axes: row, observable, step
         within[:, OBSERVABLES.index("Z")] += np.array([_built_up(steady, row) for row in of])[:, None]
         cost = of.seconds.value
         for o, a in np.ndindex(shape[1:]):
@@ -83,9 +87,9 @@ def frontier(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def _built_up(steady: Table, row: Row) -> float:
-    """Return the largest error of Z that builds up over many steps, or 0.
+    """Return the largest increase of the error of Z over many steps, or 0.
 
-    It is of a gas and a setting; 0 means that no such error is seen.
+    The `row` is a gas with a setting. The result is 0 if no increase is significant.
     """
     if not steady:
         return 0.0
@@ -99,31 +103,35 @@ def _built_up(steady: Table, row: Row) -> float:
 
 
 FITTED = 3
-"""Errors that a fit of their order needs at least: two have an order whatever their law, also where an error
+"""Minimum number of errors in a fit of their order. Two errors always have an order, even if the error
 changes its sign."""
 
 
 def speed_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure errors and costs over the time steps of each gas and setting.
 
-    The points are `compare` jobs; `measure_cost` jobs of both engines; and runs of the time-stepped engine
-    long enough to see its errors in its steady state. The settings are ``order_up_to``, the largest error
-    that the fits of the order take; ``accuracies`` of the frontier.
+    The points are `compare` jobs, `measure_cost` jobs of both engines, and runs of the time-stepped engine
+    that are long enough for the error in the steady state. The settings are ``order_up_to``, the largest
+    error in the fits of the order, and ``accuracies`` of the frontier.
 
-    Over (``row``, ``step``), NaN beyond a row's own: ``time_step``; ``bias`` and ``bias_error`` (also over
-    ``observable``), relative to the exact run, an error being the snapshots' and at least one contact's;
-    ``missed``, ``made_up`` as parts of all contacts; ``energy_drift``, ``deepest_overlap`` (worst);
-    ``seconds`` (CPU time per exact collision, with ``seconds_error``) and ``pair_tests`` (per exact
-    collision), NaN where not timed. Over ``row``: ``dimension``, ``packing_fraction``, ``setting``,
-    ``contacts`` (of the exact runs), ``event_seconds`` with its error. Over (``row``, ``observable``):
-    ``order`` of the error in the time step, with ``order_error`` (NaN without `FITTED` errors of one sign).
-    Over (``gas``, ``observable``, ``accuracy``): see `frontier`. Over ``steady``: gas and setting of long
-    runs, and ``build_up`` with error, the relative error of their Z minus the error of the paired runs. Over
-    ``timed``, all gases in which the event-driven engine was timed: ``timed_dimension``,
-    ``timed_packing_fraction``, ``timed_seconds`` (per collision) with its error. Over ``dsmc``, the models of
-    the DSMC engine: ``dsmc_model``, ``dsmc_dimension``, ``dsmc_packing_fraction``, ``dsmc_seconds`` per exact
-    collision with its error, and ``dsmc_bias`` of Z, a bound; over ``part`` too, ``dsmc_step``, each step in
-    the engine's own, and the time with it, ``dsmc_step_seconds`` with its error.
+    Over (``row``, ``step``), with NaN beyond the steps of a row: ``time_step``; ``bias`` and ``bias_error``
+    (also over ``observable``), relative to the exact run; ``missed`` and ``made_up``, as fractions of all
+    contacts; ``energy_drift`` and ``deepest_overlap`` (worst values); ``seconds`` (CPU time per exact
+    collision, with ``seconds_error``) and ``pair_tests`` (per exact collision), NaN if not timed.
+    `bias_error` is computed from the scatter of snapshots; it corresponds to at least one contact.
+
+    Over ``row``: ``dimension``, ``packing_fraction``, ``setting``, ``contacts`` (of the exact runs),
+    ``event_seconds`` with its error. Over (``row``, ``observable``): ``order`` of the error in the time step,
+    with ``order_error`` (NaN without `FITTED` errors of equal sign). Over (``gas``, ``observable``,
+    ``accuracy``): see `frontier`.
+
+    Over ``steady``: gas and setting of long runs, and ``build_up`` with error. It is the relative error of
+    their Z minus the error of the paired runs. Over ``timed``, all gases with timings of the event-driven
+    engine: ``timed_dimension``, ``timed_packing_fraction``, ``timed_seconds`` (per collision) with its error.
+    Over ``dsmc``, the models of the DSMC engine: ``dsmc_model``, ``dsmc_dimension``,
+    ``dsmc_packing_fraction``, ``dsmc_seconds`` per exact collision with its error, and ``dsmc_bias``, a bound
+    on the bias of Z. With the further dimension ``part``: ``dsmc_step``, each step divided by the engine's
+    default step, and the time with this step, ``dsmc_step_seconds`` with its error.
     """
     timed = [costs(point) for point in points if point.job == "measure_cost"]
     rows = compare_steps(points, timed)
@@ -152,20 +160,20 @@ def speed_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
 def time_to_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure the cost of a required accuracy, by engine.
 
-    It is given in all gases, see `maps`; and in gases that the model was not fitted to, measured and by the
-    model.
+    The first part is for all gases; see `maps`. The second part compares measured costs with the model's
+    predictions, in gases that were not used to fit the model.
 
-    The points are as for `speed_accuracy`, the points of gases that are not in the model's table being the
-    experiments ``elsewhere`` in settings; timings of its reference gas, which scale the table's times to this
-    machine. The settings are ``counts`` of particles, ``accuracies``, and the settings of `maps`.
+    The points are those for `speed_accuracy`. The gases outside the model's table are the experiments
+    ``elsewhere`` in settings. Timings of the model's reference gas scale the table's times to this machine.
+    The settings are ``counts`` of particles, ``accuracies``, and the settings of `maps`.
 
     Over (``gas``, ``observable``, ``count``, ``accuracy``, ``engine``): ``measured`` and ``model``, CPU time
-    in s of the cheapest setting (see `gaspart.accuracy.plan`), NaN without one. Without ``engine``:
-    ``regret``, measured cost of the setting that the model picks divided by the cost of the measured best,
-    with ``regret_error`` from the timings.
+    in s of the cheapest setting (see `gaspart.accuracy.plan`), NaN without a setting. Without ``engine``:
+    ``regret``, the measured cost of the setting that the model chooses divided by the cost of the measured
+    best setting, with ``regret_error`` from the timings.
     """
-    uniform = (point for point in points if point.experiment not in settings["plates_cost"])
-    timed = [costs(point) for point in uniform if point.job == "measure_cost"]
+    of_gases = (point for point in points if point.experiment not in settings["plates_cost"])
+    timed = [costs(point) for point in of_gases if point.job == "measure_cost"]
     every = compare_steps(points, timed)
     rows = compare_steps([point for point in points if point.experiment in settings["elsewhere"]], timed)
     speeds = _speeds(timed)
@@ -173,19 +181,24 @@ def time_to_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     shape = (len(gases), len(OBSERVABLES), len(settings["counts"]), len(settings["accuracies"]))
     measured, model = np.full((*shape, 2), np.nan), np.full((*shape, 2), np.nan)
     regret, error = np.full(shape, np.nan), np.full(shape, np.nan)
-    for g, o, c, a in np.ndindex(shape):
-        choices = _total_costs(
-            [row for row in rows if (row["dimension"], row["packing_fraction"]) == gases[g]],
-            o, settings["counts"][c], settings["accuracies"][a], speeds,
-        )  # fmt: skip
-        for e in range(2):
-            of = choices[choices[:, 0] == e]
-            if of.size:
-                measured[g, o, c, a, e], model[g, o, c, a, e] = of[:, 1].min(), of[:, 2].min()
-        if choices.size and np.isfinite(choices[:, 2].min()):
-            picked = choices[np.argmin(choices[:, 2])]
-            regret[g, o, c, a] = picked[1] / choices[:, 1].min()
-            error[g, o, c, a] = picked[3] * regret[g, o, c, a]
+    for g, o, c in np.ndindex(shape[:3]):
+        gas = Gas(*gases[g], settings["counts"][c], 1.0, 1.0)
+        exact = [
+            choice
+            for choice in uniform.choices(gas, OBSERVABLES[o], timed, rows, None)
+            if choice.option.engine.equation == EXACT
+        ]
+        steps = np.array([not choice.option.engine.reference for choice in exact])
+        options = [(choice.option, _by_table(gas, choice, OBSERVABLES[o], speeds)) for choice in exact]
+        for a, accuracy in enumerate(settings["accuracies"]):
+            both = np.array([[option.cost(accuracy) for option in pair] for pair in options])
+            for e, of in enumerate((both[~steps], both[steps])):
+                if of.size:
+                    measured[g, o, c, a, e], model[g, o, c, a, e] = of.min(axis=0)
+            picked = int(np.argmin(both[:, 1]))
+            if np.isfinite(both[picked, 1]):
+                regret[g, o, c, a] = both[picked, 0] / both[:, 0].min()
+                error[g, o, c, a] = exact[picked].uncertainty * regret[g, o, c, a]
     axes = ("gas", "observable", "count", "accuracy")
     return xr.Dataset(
         {
@@ -210,7 +223,10 @@ def time_to_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _speeds(timed: list[dict]) -> dict[tuple[str, str], float]:
-    """Time of this machine over the table's, for each engine and precision, from the reference gas."""
+    """Compute this machine's time over the table's time in the reference gas.
+
+    The result is for each engine and precision.
+    """
     speeds = {}
     for timing in timed:
         if timing["gas"] != (3, REFERENCE) or timing["setting"] not in ("event", *PRECISIONS):
@@ -228,38 +244,23 @@ def _speeds(timed: list[dict]) -> dict[tuple[str, str], float]:
     return speeds
 
 
-def _total_costs(rows: list[dict], observable: int, count: int, accuracy: float, speeds: dict) -> np.ndarray:
-    """Compute the costs of settings, (settings, 4).
+def _by_table(gas: Gas, choice: uniform.Choice, observable: str, speeds: dict) -> Option:
+    """Return the option of a choice, but with errors and times from the table.
 
-    The columns are 0 for the event-driven engine or 1, measured cost, the model's, relative error of the
-    first; inf for a setting that does not reach the accuracy.
+    Times are converted to this machine.
     """
-    dimension, fraction = rows[0]["dimension"], rows[0]["packing_fraction"]
-    name = OBSERVABLES[observable]
-    noise = table.noise(dimension, fraction, name)
-
-    def cost(bias: float, each: float) -> float:
-        contacts = required_length(noise, accuracy, bias, 0.5 * count * LEAST) + 0.5 * count * EQUILIBRATION
-        return contacts * each if np.isfinite(each) else np.inf
-
-    tabulated = table.seconds(dimension, fraction, "event") * speeds["event", "float64"]
-    event = rows[0]["event_seconds"]
-    costs = [(0, cost(0.0, event), cost(0.0, tabulated), rows[0]["event_error"] / event)]
-    for row in rows:
-        precision = PRECISIONS[row["setting"]]
-        bounds = np.abs(row["bias"][observable]) + 2.0 * row["bias_error"][observable]
-        for n, step in enumerate(row["time_step"]):
-            each = table.seconds(dimension, fraction, "step", precision, step) * speeds["step", precision]
-            bias = table.bias(dimension, fraction, precision, step, name)
-            spread = row["seconds_error"][n] / row["seconds"][n]
-            costs.append((1, cost(bounds[n], row["seconds"][n]), cost(bias, each), spread))
-    return np.array(costs)
+    engine, row = choice.option.engine, (gas.dimension, gas.packing_fraction)
+    step = engine.quantum or 0.0  # in units with v_th = sigma = 1
+    each = table.seconds(*row, engine.name, engine.precision, step) * speeds[engine.name, engine.precision]
+    bias = 0.0 if engine.reference else table.bias(*row, engine.precision, step, observable)
+    noise = uniform.QUANTILE**2 * table.noise(*row, observable)
+    return fluid_option(gas, Candidate(engine, discretisation=bias), each, noise, 1.0, discarded=0.0)
 
 
 def _orders(row: dict, largest: float) -> list[tuple[float, float]]:
     """Fit the order of each observable's error in the time step, with its error.
 
-    The error is scaled by the scatter.
+    The error of the order is scaled by the scatter.
     """
     orders = []
     for bias, error in zip(row["bias"], row["bias_error"], strict=True):
@@ -277,7 +278,7 @@ def _orders(row: dict, largest: float) -> list[tuple[float, float]]:
 def _models(events: list[dict], timed: list[dict], cells: dict[float, Cells]) -> list[tuple[dict, dict]]:
     """Pair the timings of the event-driven engine and of a DSMC model in one gas.
 
-    For the Enskog model the error by cells must have been measured, in spheres.
+    For the Enskog model, the error due to cells must have been measured, in spheres.
     """
     return [
         (event, timing)
@@ -295,9 +296,9 @@ def _cells(timed: dict, cells: dict[float, Cells]) -> Cells | None:
 
 
 def _model(timings: tuple[dict, dict], cells: dict[float, Cells]) -> dict[str, Any]:
-    """Return the cost and the error of Z of a model of the DSMC engine.
+    """Return the cost of a DSMC model, and its error of Z.
 
-    The step is the cheapest one, on which Z does not depend.
+    The cheapest step is used, because Z does not depend on the step.
     """
     event, timing = timings
     (dimension, fraction), model, own_cells = timing["gas"], timing["setting"], _cells(timing, cells)
@@ -316,7 +317,7 @@ def _model(timings: tuple[dict, dict], cells: dict[float, Cells]) -> dict[str, A
 
 
 def _time_per_collision(run: dict) -> dict[str, Any]:
-    """Return the time of a collision of the event-driven engine, in the gas of a timing."""
+    """Return the event-driven engine's time per collision in the gas of a timing."""
     dimension, fraction = run["gas"]
     return {
         "timed_dimension": dimension,
@@ -329,7 +330,7 @@ def _time_per_collision(run: dict) -> dict[str, Any]:
 def _steady(point: Point, rows: list[dict]) -> dict[str, Any]:
     """Return the error of Z in a long run of the time-stepped engine.
 
-    The error of the paired runs of its gas is subtracted.
+    The error of the paired runs of the same gas is subtracted.
     """
     own = point.settings
     long, fraction, dimension = pressure(point).z, own["packing_fraction"], own["dimension"]

@@ -1,44 +1,53 @@
-"""Choices for a gas in equilibrium: its collision rate, its compressibility factor Z and its D.
+"""Choices for a gas in equilibrium: its collision rate, compressibility factor Z, and D.
 
-The event-driven engine has no error but noise. Errors of time steps are measured, see
-`errors`. Errors of the DSMC engine follow from theory: its model lacks the contact value, the virial
-or the memory of collisions, and its steps change D by a law that `dsmc_convergence` confirms; only the effect
-of the few particles of a cell on the collisions of the Enskog model is measured.
+The event-driven engine has only a statistical error. Errors of time steps are measured; see `errors`. Errors
+of the DSMC engine follow from theory. Its model lacks the contact value, the virial or the memory of
+collisions. Its steps change D by a law that `dsmc_convergence` confirms. Only one of its errors is measured:
+the effect of the few particles per cell on the collisions of the Enskog model.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
 
 from gaspart import theory
 from gaspart.accuracy import table
-from gaspart.accuracy.table import EQUILIBRATION, LEAST, PRECISIONS
-from gaspart.accuracy.tabulated import model_error, step_error
+from gaspart.accuracy.option import Option, fluid_option
+from gaspart.accuracy.table import PRECISIONS
+from gaspart.accuracy.tabulated import model_error
 from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.expected.equilibrium import collision_rate
+from gaspart.analysis.observables import OBSERVABLES as declared
 from gaspart.analysis.statistics import mean_of
+from gaspart.engines import DSMC, Engine, EventDriven, TimeStepped
+from gaspart.engines.engine import Candidate
 from gaspart.reproduction.families.shared.runs import runs, series_of
 from gaspart.reproduction.families.shared.timings import median
-from gaspart.reproduction.families.tradeoff.choices import Choice
+from gaspart.reproduction.families.tradeoff import PARTS
 from gaspart.reproduction.points.point import Point
-from gaspart.theory.enskog import approach_factor
+from gaspart.scene.container import Container
+from gaspart.scene.gas import Gas
+from gaspart.scene.scene import Scene
+from gaspart.scene.species import Species
+from gaspart.theory import bulk
 
 # Errors of time-stepped settings, and costs of all engines, from `compare` and `measure_cost` jobs.
 
 
 def setting_name(rewind: bool, passes: int, precision: str) -> str:
-    """Return the name of a setting of the time-stepped engine in figures and claims."""
+    """Return the name of a time-stepped setting in figures and claims."""
     name = f"{passes} passes" if passes > 1 else "1 pass"
     return name + ("" if rewind else ", no rewinding") + (", float32" if precision == "float32" else "")
 
 
 def errors(point: Point) -> dict:
-    """Return the errors over the accepted time steps of a `compare` point, the longest first."""
+    """Return the errors of the accepted time steps of a `compare` point, the longest first."""
     run = xr.load_dataset(point.path)
     run = run.isel(setting=np.flatnonzero(run.refused == 0)).sortby("time_step", ascending=False)
     contacts = run.exact_collisions.sum("snapshot").values
@@ -75,9 +84,9 @@ def errors(point: Point) -> dict:
 
 
 def _difference(run: xr.Dataset, name: str, least: np.ndarray) -> np.ndarray:
-    """Compute the relative difference from the exact runs' sum, and its error.
+    """Compute the relative difference from the sum of the exact runs, and its error.
 
-    The shape is (2, setting); the error is from the snapshots.
+    The shape is (2, setting). The error is computed from the snapshots.
     """
     exact = run[f"exact_{name}"].values
     apart = run[name].values - exact
@@ -86,10 +95,10 @@ def _difference(run: xr.Dataset, name: str, least: np.ndarray) -> np.ndarray:
 
 
 def costs(point: Point) -> dict:
-    """Return the costs of a `measure_cost` point, per time simulated.
+    """Return the costs of a `measure_cost` point, per simulated time.
 
-    setting : "event", the name of the time-stepped engine's, or the model of the DSMC engine.
-    step_parts : steps of the latter, in its own.
+    setting : "event", the name of a time-stepped setting, or the model of the DSMC engine.
+    step_parts : steps of the DSMC engine divided by its default step.
     """
     run = xr.load_dataset(point.path)
     seconds, error = median(run.seconds.values)
@@ -112,9 +121,9 @@ def costs(point: Point) -> dict:
 
 
 def add_costs(row: dict, timed: list[dict]) -> None:
-    """Add the costs of a row's steps, where they were timed, and of the event-driven engine.
+    """Add the costs of a row's steps, if they were timed, and of the event-driven engine.
 
-    The latter are in the same gas.
+    All are for the same gas.
     """
     same = [timing for timing in timed if timing["gas"] == (row["dimension"], row["packing_fraction"])]
     event = next(timing for timing in same if timing["setting"] == "event")
@@ -137,96 +146,106 @@ def add_costs(row: dict, timed: list[dict]) -> None:
 
 OBSERVABLES = ("collision_rate", "Z", "D")
 BOUND = 2.0
-"""Standard errors that are added to a measured error, so that it is a bound."""
+"""Number of standard errors that are added to a measured error, so that it becomes a bound."""
 _VISCOSITY_UNCERTAINTY = 0.05
-"""Uncertainty of Enskog's viscosity, with which D is corrected for the size of the container [Yeh 2004]."""
+"""Relative uncertainty of Enskog's viscosity, used to correct D for the size of the container [Yeh 2004]."""
+
+
+QUANTILE = 1.96
+"""Half width of a 95 % interval, in standard errors. Figures compare engines at an accuracy that 95 % of all
+runs have."""
 
 
 @dataclass(frozen=True)
-class Uniform:
-    """Spheres of a packing fraction in a periodic cube, `count` of them."""
+class Choice:
+    """Option of `gaspart.accuracy`, with the errors that advice does not add.
 
-    packing_fraction: float
-    count: int
+    option : option whose noise is half of a 95 % interval.
+    decay : time in which the initial state's slowest trace falls to 1/e; 0 if this decay is measured.
+    uncertainty : relative uncertainty of CPU times, from the timings.
+    finite_size : error that remains after theory's correction for finite size, equal for all engines and
+        runs.
+    trace : maximum relative change of the observable by this trace, initially.
+    """
 
-    def finite_size(self, observable: str) -> float:
-        """Compute the relative error that theory's correction for finite size leaves.
+    option: Option
+    decay: float
+    uncertainty: float
+    finite_size: float = 0.0
+    trace: float = 1.0
 
-        It is the square of a correction of first order in 1/N; for D the uncertainty of the viscosity, and
-        the next order of hydrodynamics, see `displacement`.
+    def parts(self, accuracy: float) -> dict[str, float]:
+        """Compute the relative error by `PARTS` of a run for an accuracy.
+
+        If the accuracy is out of reach, the run is infinitely long. The trace of the initial state decays
+        during the measurement. Its mean is the decay time divided by the time of the measurement, times the
+        trace that remains after equilibration.
         """
-        eta, count = self.packing_fraction, self.count
-        if observable == "collision_rate":
-            return float(theory.collision_rate_finite_size_factor(eta, 3, count) - 1.0) ** 2
-        if observable == "Z":
-            shift = theory.finite_size_correction(eta, 3, count, ensemble="canonical")
-            return float(shift / theory.compressibility_factor(eta, 3)) ** 2
-        order = (2.0 * math.pi * float(theory.mean_free_path(eta, 3)) / self._side) ** 2
-        return self._lost * min(1.0, math.hypot(_VISCOSITY_UNCERTAINTY, order))
+        option = replace(self.option, accuracy=accuracy)
+        length, remainder = option.measured, 0.0
+        if self.decay and math.isfinite(length):
+            remainder = self.trace * math.exp(-option.settling / self.decay) * self.decay / length
+        bounds = option.candidate.model, option.candidate.discretisation
+        values = *bounds, option.noise.reaches(length), remainder, self.finite_size
+        return dict(zip(PARTS, values, strict=True))
 
-    def decay(self, observable: str) -> tuple[float, float]:
-        """Return the decay of the slowest trace of the initial state, and its initial size.
 
-        The decay to 1/e is in collisions per particle; the size is a maximum, relative to the observable. The
-        trace is in the speeds, all of the observable; but for D it is the longest shear wave, which carries
-        what D lacks in a finite container.
-        """
-        speeds = 1.0 / theory.KURTOSIS_RELAXATION_RATE[3]
-        wave = (self._side / (2.0 * math.pi)) ** 2 / self._spreading
-        wave *= float(theory.collision_rate(self.packing_fraction, 3))
-        return (wave, self._lost) if observable == "D" and wave > speeds else (speeds, 1.0)
+def solver_of(engine: Engine) -> str:
+    """Return the name of an engine among `ENGINES`."""
+    return engine.name if engine.equation == bulk.EXACT else engine.equation
 
-    def choice(
-        self, engine: str, observable: str, errors: tuple[float, float], each: Estimate, noise: float
-    ) -> Choice:
-        """Return the choice of an engine.
 
-        errors : errors of model and discretisation.
-        each : CPU time per contact.
-        noise : relative variance times contacts.
-        """
-        particle = 0.5 * self.count * each.value  # per collision of every particle
-        decay, trace = self.decay(observable)
-        return Choice(
-            engine=engine,
-            model=errors[0],
-            discretisation=errors[1],
-            finite_size=self.finite_size(observable),
-            unit=noise * each.value,
-            least=LEAST * particle,
-            equilibration=EQUILIBRATION * particle,
-            decay=decay * particle,
-            trace=trace,
-            uncertainty=each.error / each.value,
-        )
+def choice_of(gas: Gas, observable: str, candidate: Candidate, each: Estimate, noise: float) -> Choice:
+    """Return the choice of an engine for an observable of a fluid.
 
-    @property
-    def _lost(self) -> float:
-        """The part of D that the container takes by its size, without correction [Yeh 2004]."""
-        diffusion = float(theory.enskog_diffusion(self.packing_fraction, 3))
-        return float(theory.yeh_hummer(self._side, self._spreading * self._density)) / diffusion
+    each : CPU time per contact.
+    noise : relative variance times contacts.
+    """
+    option = fluid_option(gas, candidate, each.value, QUANTILE**2 * noise, 1.0, discarded=0.0)
+    decay, trace = decay_of(gas, observable)
+    return Choice(option, decay, each.error / each.value, finite_size(gas, observable), trace)
 
-    @property
-    def _density(self) -> float:
-        return float(theory.number_density(self.packing_fraction, 3))
 
-    @property
-    def _side(self) -> float:
-        return (self.count / self._density) ** (1.0 / 3.0)
+def finite_size(gas: Gas, observable: str) -> float:
+    """Compute the relative error that remains after theory's correction for finite size.
 
-    @property
-    def _spreading(self) -> float:
-        """Coefficient by which shear waves decay, a particle's own diffusion included."""
-        viscosity = float(theory.enskog_viscosity(self.packing_fraction, 3))
-        return viscosity / self._density + float(theory.enskog_diffusion(self.packing_fraction, 3))
+    It is the square of a correction of first order in 1/N. For D it is the uncertainty of the viscosity, and
+    the next order of hydrodynamics; see `displacement`.
+    """
+    correction = abs(getattr(bulk, f"finite_{declared[observable].bulk}")(gas)[0])
+    if observable != "D":
+        return float(correction**2)
+    order = (2.0 * math.pi * float(theory.mean_free_path(gas.packing_fraction, 3)) / _side(gas)) ** 2
+    return float(correction * min(1.0, math.hypot(_VISCOSITY_UNCERTAINTY, order)))
+
+
+def decay_of(gas: Gas, observable: str) -> tuple[float, float]:
+    """Return the decay time of the slowest trace of the initial state, and its initial size.
+
+    The size is a maximum, relative to the observable. For most observables the trace is in the speeds, and
+    its size is 1. For D the trace is the longest shear wave, which carries the part of D that is missing in a
+    finite container.
+    """
+    eta = gas.packing_fraction
+    speeds = 1.0 / (theory.KURTOSIS_RELAXATION_RATE[3] * float(theory.collision_rate(eta, 3)))
+    viscosity = float(theory.enskog_viscosity(eta, 3) / theory.number_density(eta, 3))
+    wave = (_side(gas) / (2.0 * math.pi)) ** 2 / (viscosity + float(theory.enskog_diffusion(eta, 3)))
+    if observable == "D" and wave > speeds:
+        return wave, -bulk.finite_diffusion(gas)[0]
+    return speeds, 1.0
+
+
+def _side(gas: Gas) -> float:
+    """Return the side of the periodic cube."""
+    return float(gas.count / theory.number_density(gas.packing_fraction, 3)) ** (1.0 / 3.0)
 
 
 @dataclass(frozen=True)
 class Cells:
     """Effect of the cells of the Enskog model at one packing fraction.
 
-    rate : collision rate divided by the rate of its equation.
-    bound : bound on the fraction of the collisions that is lost, from docs/dsmc.md.
+    rate : collision rate divided by the rate of the Enskog equation.
+    bound : bound on the fraction of lost collisions, from docs/dsmc.md.
     noise : relative variance times contacts, by observable.
     """
 
@@ -236,49 +255,44 @@ class Cells:
 
     @property
     def error(self) -> float:
-        """Bound on the relative error of the collision rate, and of all that follows from it."""
+        """Bound on the relative error of the collision rate, and of all results derived from it."""
         return abs(self.rate.value - 1.0) + BOUND * self.rate.error
 
 
 def cells_of(point: Point) -> Cells:
-    """Return the cells of a run of the Enskog model in its default cells.
-
-    The rate is relative to its equation.
-    """
-    (replica,) = (series_of(run) for run in runs(point))
-    fraction, count = point.scene.packing_fraction, point.scene.count
-    contact = (float(theory.carnahan_starling(fraction)) - 1.0) / (4.0 * fraction)
-    expected = float(theory.collision_rate(fraction, 3) / theory.contact_value(fraction, 3)) * contact
-    expected *= (1.0 - 1.0 / count) * approach_factor(3, count)
-    contacts = 0.5 * count * expected * replica.interval
+    """Return the effect of cells in a run of the Enskog model, relative to its equation."""
+    ((replica, expected),) = ((series_of(run), collision_rate(run)) for run in runs(point))
+    assert expected is not None
+    rate, uncertainty, _ = expected
+    contacts = 0.5 * point.scene.count * rate * replica.interval
     variances = {
         name: float(series.var(ddof=1) / series.mean() ** 2) * contacts
         for name, series in (("collision_rate", replica.rate), ("Z", replica.z))
     }
-    return Cells(mean_of(replica.rate) / expected, point.engine.bias(point.scene, "rates"), variances)
+    return Cells(mean_of(replica.rate) / rate, uncertainty / rate, variances)
 
 
 def cells_by_fraction(points: Iterable[Point], experiments: Sequence[str]) -> dict[float, Cells]:
-    """Return the cells of the points of some experiments, by packing fraction.
+    """Return the effect of cells at the points of some experiments, by packing fraction.
 
-    The packing fraction is in their settings.
+    The packing fraction is in the points' settings.
     """
     of = (point for point in points if point.experiment in experiments)
     return {float(point.settings["packing_fraction"]): cells_of(point) for point in of}
 
 
 def choices(
-    gas: Uniform, observable: str, timed: list[dict], compared: list[dict], cells: Cells | None
+    gas: Gas, observable: str, timed: list[dict], compared: list[dict], cells: Cells | None
 ) -> Iterator[Choice]:
-    """Yield all settings of all engines that were timed in a gas.
+    """Yield all settings of all engines that were timed in a gas of spheres.
 
-    `cells` are those for the Enskog model, None if unknown.
+    `cells` is the effect of cells in the Enskog model, or None if it is unknown.
     """
     same = [timing for timing in timed if timing["gas"] == (3, gas.packing_fraction)]
     event = next(timing for timing in same if timing["setting"] == "event")
     rate = float(event["collisions"][0])
     variance = table.noise(3, gas.packing_fraction, observable)
-    yield gas.choice("event", observable, (0.0, 0.0), each_of(event, rate)[0], variance)
+    yield choice_of(gas, observable, Candidate(EventDriven()), each_of(event, rate)[0], variance)
     at = OBSERVABLES.index(observable)
     for row in compared:
         if (row["dimension"], row["packing_fraction"]) != (3, gas.packing_fraction):
@@ -286,33 +300,43 @@ def choices(
         if row["setting"] not in PRECISIONS:
             continue
         bound = np.abs(row["bias"][at]) + BOUND * row["bias_error"][at]
-        for error, *each in zip(bound, row["seconds"], row["seconds_error"], strict=True):
-            if np.isfinite(error) and np.isfinite(each[0]):
-                yield gas.choice("step", observable, (0.0, float(error)), Estimate(*each), variance)
+        seconds = Estimate(row["seconds"], row["seconds_error"])
+        for n in np.flatnonzero(np.isfinite(bound) & np.isfinite(seconds.value)):
+            engine = TimeStepped(float(row["time_step"][n]), precision=PRECISIONS[row["setting"]])
+            candidate = Candidate(engine, discretisation=float(bound[n]))
+            yield choice_of(gas, observable, candidate, seconds[n], variance)
     for timing in same:
         model = timing["setting"]
         if model not in ("boltzmann", "enskog") or (model == "enskog" and cells is None):
             continue
+        error = model_error(gas.packing_fraction, 3, model, observable)
+        of_cells = cells.error if cells and model == "enskog" else 0.0
+        own = cells.noise.get(observable, variance) if cells and model == "enskog" else variance
+        if model == "boltzmann" and observable == "Z":
+            own = 0.0  # it is 1 in any case
         for step, each in zip(timing["time_step"], each_of(timing, rate), strict=True):
-            error = step_error(gas.packing_fraction, step) if observable == "D" else 0.0
-            of_cells = cells.error if cells and model == "enskog" else 0.0
-            own = cells.noise.get(observable, variance) if cells and model == "enskog" else variance
-            if model == "boltzmann" and observable == "Z":
-                own = 0.0  # it is 1, whatever happens
-            both = model_error(gas.packing_fraction, 3, model, observable), error + of_cells
-            yield gas.choice(model, observable, both, each, own)
+            engine = DSMC(float(step), model=model)
+            steps = _error_of_steps(engine, gas) if observable == "D" else 0.0
+            yield choice_of(gas, observable, Candidate(engine, error, steps + of_cells), each, own)
+
+
+def _error_of_steps(engine: Engine, gas: Gas) -> float:
+    """Return the relative error of D due to time steps alone, as the engine estimates it."""
+    species = Species(gas.count, 0.5 * gas.diameter, temperature=gas.temperature)
+    scene = Scene(Container((_side(gas),) * 3, boundary="periodic"), species=(species,))
+    return engine.bias(scene, "paths") - engine.bias(scene, "rates")
 
 
 def each_of(timed: dict, rate: float) -> Estimate:
     """Compute the CPU time per contact with each time step of a timing, (T,).
 
-    `rate` is the number of contacts per time.
+    `rate` is the number of contacts per simulated time.
     """
     return Estimate(timed["seconds"], timed["error"]) / rate
 
 
 def compare_steps(points: list[Point], timed: list[dict]) -> list[dict]:
-    """Return the errors of time steps with their costs, see `errors` and `add_costs`."""
+    """Return the errors of time steps with their costs; see `errors` and `add_costs`."""
     rows = [errors(point) for point in points if point.job == "compare"]
     for row in rows:
         add_costs(row, timed)

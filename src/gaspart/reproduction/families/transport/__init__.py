@@ -1,4 +1,4 @@
-"""Viscosity and conductivity of heat."""
+"""Figures on viscosity and thermal conductivity."""
 
 from gaspart.keys import positive
 

@@ -1,4 +1,4 @@
-"""Claims about viscosity and conductivity."""
+"""Claims about viscosity and thermal conductivity."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from gaspart.reproduction.families.shared import ENSKOG_LIMIT, PARTICLES
 from gaspart.reproduction.table import Row, Table
 
 DILUTE_BAND = 0.01
-"""Most that a coefficient of such a gas differs from Enskog's, as a part of it: at 0.02 a particle meets a
-former partner again in 2 of 100 collisions, which changes D by 0.6 %."""
+"""Largest relative difference between a coefficient of a dilute gas and Enskog theory. At packing fraction
+0.02, a particle collides again with a former partner in 2 of 100 collisions, which changes D by 0.6 %."""
 ENSKOG = "Enskog's theory, with the Sonine polynomials that matter [Chapman 1970]"
 ACCURATE = 0.3
-"""Packing fraction up to which Enskog's coefficients of spheres are known to be good to a few per cent."""
+"""Largest packing fraction at which Enskog's coefficients of spheres are accurate to a few per cent."""
 FEW_PER_CENT = 0.05
 
 
@@ -30,7 +30,7 @@ def conductivity(ds: xr.Dataset) -> list[Claim]:
 
 
 def _is_within(gas: Row, packing_fraction: float) -> bool:
-    """Return True if a gas is at most at this packing fraction, but for rounding."""
+    """Return True if a gas has at most this packing fraction, except for rounding."""
     return bool(gas.packing_fraction <= packing_fraction * (1.0 + 1e-6))
 
 
@@ -97,7 +97,7 @@ def _claims(gases: Table, name: str) -> list[Claim]:
 
 
 def logarithmic_growth(ds: xr.Dataset) -> list[Claim]:
-    """Return the claims on the growth of discs' coefficients with the logarithm of time."""
+    """Return the claims on the logarithmic growth of discs' coefficients with time."""
     gases = Table(ds, "point")
     growths = {
         "viscosity": (gases.viscosity_growth, gases.viscosity_short_waves),

@@ -1,4 +1,4 @@
-"""Figures of viscosity and conductivity."""
+"""Figures of viscosity and thermal conductivity."""
 
 from __future__ import annotations
 
@@ -11,19 +11,20 @@ from gaspart.reproduction.families.shared import PARTICLES
 from gaspart.reproduction.table import Table
 
 SHOWN_FROM = 4.0
-"""Collisions of a particle after which the integrals are near enough to their ends for the axis."""
+"""Collisions of a particle after which the integrals are close to their final values, and fit on the axis."""
 
 
 def viscosity(ds: xr.Dataset) -> Figure:
-    """Draw the shear viscosity over Enskog's and the bulk viscosity, and the running integral.
+    """Draw shear viscosity divided by Enskog's, bulk viscosity, and running integrals.
 
-    The viscosities are against density, the integral of the former is until each time.
+    Viscosities are drawn against density. The running integral of the shear viscosity extends up to each
+    time.
     """
     return _figure(ds, r"$\eta/\eta_\mathrm{Enskog}$")
 
 
 def conductivity(ds: xr.Dataset) -> Figure:
-    """Draw the thermal conductivity over Enskog's against density, and the running integral."""
+    """Draw the thermal conductivity divided by Enskog's, and the running integral."""
     return _figure(ds, r"$\lambda/\lambda_\mathrm{Enskog}$")
 
 
@@ -66,7 +67,7 @@ def _figure(ds: xr.Dataset, name: str) -> Figure:
 
 
 def _density(axis: Axes, gases: Table) -> None:
-    """Draw both forms against the packing fraction."""
+    """Draw both estimates against the packing fraction."""
     eta, shift = gases.packing_fraction, 0.004
     style.points(axis, eta - shift, gases.value, kind=0, label="Green-Kubo")
     style.points(axis, eta + shift, gases.growth, kind=1, hollow=True, label="Helfand")
@@ -78,7 +79,7 @@ def _density(axis: Axes, gases: Table) -> None:
 
 
 def _running(axis: Axes, gases: Table) -> None:
-    """Draw the integral of the correlation until each time."""
+    """Draw the integral of the correlation up to each time."""
     for kind, gas in enumerate(gases[:: max(1, len(gases) // 4)]):
         style.points(axis, gas.time, gas.running, kind=kind, label=rf"$\phi={gas.packing_fraction:.3g}$")
     axis.axhline(1.0, color=style.GREY, lw=0.8)

@@ -1,7 +1,7 @@
 """Viscosity and thermal conductivity from equilibrium, by Green and Kubo and by Helfand.
 
-A point is a gas whose runs have correlated the stress tensor and the heat flux. Its coefficients are divided
-by Enskog's; times are in collisions of a particle.
+A point is a gas whose runs accumulated correlations of the stress tensor and the heat flux. Coefficients are
+divided by Enskog's values. Times are in collisions of a particle.
 """
 
 from __future__ import annotations
@@ -24,12 +24,13 @@ from gaspart.scene.gas import plain_gas
 from gaspart.trajectory.reading import open_trajectory
 
 QUANTITIES = {"shear": "viscosity", "heat": "conductivity"}
-"""Quantity that follows from the correlation of each flux."""
+"""Transport coefficient that follows from the correlation of each flux."""
 ENSKOG = {"viscosity": theory.enskog_viscosity, "conductivity": theory.enskog_conductivity}
 LONGER = 2.0
-"""Mean free paths: if only longer waves count, the modes' growth differs by the theory's uncertainty."""
+"""Minimum wavelength in mean free paths. If only longer waves count, the growth of the modes changes by the
+uncertainty of theory."""
 LATE = 0.5
-"""Part of the longest lag from which on the squared change of Helfand's sum is taken to grow evenly."""
+"""Fraction of the longest lag after which the squared change of Helfand's sum is assumed to grow linearly."""
 
 
 UNITS = {"time": "collisions per particle"}
@@ -38,13 +39,13 @@ UNITS = {"time": "collisions per particle"}
 def viscosity(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure the shear viscosity, see `coefficient`, and `bulk`, the bulk viscosity.
 
-    The latter is over Enskog's, by Green and Kubo.
+    The bulk viscosity is divided by Enskog's, and computed by Green and Kubo.
     """
     return table("point", points, _viscosities, inner=("lag",), units=UNITS)
 
 
 def conductivity(points: list[Point], settings: dict) -> xr.Dataset:
-    """Return the thermal conductivity; see `coefficient`."""
+    """Measure the thermal conductivity; see `coefficient`."""
     of = "heat", theory.enskog_conductivity
     return table("point", points, coefficient, *of, inner=("lag",), units=UNITS)
 
@@ -54,9 +55,10 @@ def _viscosities(point: Point) -> dict[str, Any]:
 
 
 def _bulk(point: Point) -> Estimate:
-    """Measure the bulk viscosity over Enskog's, until a part `LATE` of the longest lag.
+    """Measure the bulk viscosity over Enskog's, up to the fraction `LATE` of the longest lag.
 
-    The mean of the pressure is taken in each run, of duration T, which takes off 2 lag / T of the value.
+    The mean pressure is computed for each run, of duration T. This reduces the value by the fraction 2 lag /
+    T.
     """
     gas, samples = plain_gas(point.scene), []
     for path in point.replica_paths:
@@ -70,15 +72,17 @@ def _bulk(point: Point) -> Estimate:
 
 
 def coefficient(point: Point, flux: str, enskog: Callable[..., Any]) -> dict[str, Any]:
-    """Measure a coefficient of a point over Enskog's, by the flux of this name.
+    """Measure a transport coefficient of a point, divided by Enskog's, from a flux.
 
-    The flux is in `trajectory.correlator.STRESS`.
+    The fluxes are named in `trajectory.correlator.STRESS`. All numbers are estimates.
 
-    `value`, the integral of the correlation until the longest lag, and `growth`, half of the slope of
-    Helfand's squared change between lags `LATE` and 1 of the longest; `difference`, growth over the mean of
-    the integral between these lags, minus 1, from the same runs; running (lag,), the integral until each lag;
-    all estimates. `time`, `end` of the integral. dimension, packing_fraction, count; `finite`, the ratio of a
-    dilute gas of `count` particles to an infinite one.
+    value : integral of the correlation up to the longest lag
+    growth : half of the slope of Helfand's squared change, between lags `LATE` and 1 of the longest
+    difference : growth divided by the mean of the integral between these lags, minus 1, from the same runs
+    running : integral up to each lag, (lag,)
+    time, end : time of each lag, and end of the integral
+    dimension, packing_fraction, count : properties of the gas
+    finite : coefficient of a dilute gas of `count` particles, divided by the coefficient of an infinite gas
     """
     gas = plain_gas(point.scene)
     exact, rate = float(enskog(**gas.parameters)), float(theory.collision_rate(**gas.parameters))
@@ -91,7 +95,8 @@ def coefficient(point: Point, flux: str, enskog: Callable[..., Any]) -> dict[str
             growths += [_growth(lags, curve) for curve in helfand(run, flux) / exact]
     samples, freedom = np.array(curves), len(curves) - 1
     value, growth = samples[:, -1], np.array(growths)
-    meanwhile = samples[:, _half(lags) : -1].mean(axis=1)  # exactly the growth, but for pairs at the ends
+    # equals the growth exactly, except for pairs at the ends
+    meanwhile = samples[:, _half(lags) : -1].mean(axis=1)
     return {
         "dimension": gas.dimension,
         "packing_fraction": gas.packing_fraction,
@@ -106,22 +111,23 @@ def coefficient(point: Point, flux: str, enskog: Callable[..., Any]) -> dict[str
 
 
 def end(lags: np.ndarray) -> np.ndarray:
-    """Compute the time until which the integral with each lag extends.
+    """Compute the time up to which the integral at each lag extends.
 
-    It is half an interval later, the mean until the next lag, since fluxes are means over intervals.
+    It is half an interval after the lag, because fluxes are averages over intervals. It is computed as the
+    mean of this lag and the next.
     """
     return lags + 0.5 * (lags[1] - lags[0])
 
 
 def _half(lags: np.ndarray) -> int:
-    """Return the lag from which on the growth counts."""
+    """Return the lag from which on the growth is measured."""
     return round(LATE * (len(lags) - 1))
 
 
 def _growth(lags: np.ndarray, slopes: np.ndarray) -> float:
     """Compute half of the slope of the squared change between two lags.
 
-    `slopes` are half of it over each lag.
+    `slopes` are half of the squared change divided by each lag.
     """
     first = _half(lags)
     change = slopes * lags
@@ -131,14 +137,18 @@ def _growth(lags: np.ndarray, slopes: np.ndarray) -> float:
 def logarithmic_growth(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure the growth of the integrals of discs with time, and of hydrodynamic modes.
 
-    The settings are `viscosity_from` and `conductivity_from`, collisions of a particle from which on they are
-    compared. Over `point`: count, packing_fraction, sound (collisions until sound has crossed the container);
-    over `lag` too: time, in collisions. Of each quantity, "viscosity" and "conductivity", over Enskog's: its
-    integral until each time (lag,) and `_error`; _modes (lag,), the modes of the container, with the height
-    of the integrals from then on (NaN before); _growth, how much the integral grows until the last time over
-    how much its modes do, with `_error` and `_freedom`; _short_waves, the part of that which waves of one to
-    two mean free paths make. Raises SceneError for spheres, and for discs whose diameter or temperature is
-    not 1.
+    The settings `viscosity_from` and `conductivity_from` are numbers of collisions of a particle after which
+    both are compared. Over `point`: count, packing_fraction, and sound, the number of collisions until sound
+    has crossed the container. With the further dimension `lag`: time, in collisions.
+
+    The following variables begin with "viscosity" or "conductivity", and are divided by Enskog's values. The
+    variable without a suffix is the integral up to each time, (lag,), with `_error`. `_modes`: the modes of
+    the container, (lag,), shifted to the height of the integral at the start of the comparison; NaN before.
+    `_growth`: the growth of the integral up to the last time, divided by the growth of the modes, with
+    `_error` and `_freedom`. `_short_waves`: the fraction of this growth due to waves of one to two mean free
+    paths.
+
+    Raises SceneError for spheres, and for discs whose diameter or temperature is not 1.
     """
     starts = {"viscosity": settings["viscosity_from"], "conductivity": settings["conductivity_from"]}
     return table("point", points, _growing, starts, inner=("lag",), units=UNITS)
@@ -177,9 +187,9 @@ def _growing(point: Point, starts: dict[str, float]) -> dict[str, Any]:
 
 
 def _integrals(point: Point, flux: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lags (lags,), and Green and Kubo's integrals of a flux (B, lags).
+    """Return the lags (lags,), and the Green-Kubo integrals of a flux (B, lags).
 
-    The blocks are of all runs.
+    The B blocks are from all runs.
     """
     blocks = []
     for path in point.replica_paths:

@@ -1,8 +1,9 @@
-"""Theory of a plain gas without an end, by the equation that an engine solves (`Engine.equation`).
+"""Theory of an infinite plain gas, for the kinetic equation that an engine solves (`Engine.equation`).
 
-"exact": particles that collide when they touch. "boltzmann": points. "enskog": pairs at the distance of a
-diameter collide at a rate proportional to the contact value of the engine, without correlated collisions.
-Each function takes a `Gas` and an equation; NaN where nothing is known.
+"exact" is the dynamics of particles that collide when they touch. "boltzmann" is a gas of point particles.
+"enskog" is the model in which pairs at a distance of one diameter collide at a rate proportional to the
+contact value of the engine; correlated collisions are neglected. Each function takes a `Gas` and an equation,
+and returns NaN if the value is unknown.
 """
 
 from __future__ import annotations
@@ -13,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from gaspart import theory
-from gaspart.engines.dsmc import defaults as rates
 from gaspart.scene.gas import Gas
+from gaspart.theory.discretisation import contact_values
 
 EXACT, BOLTZMANN, ENSKOG = "exact", "boltzmann", "enskog"
 
@@ -26,19 +27,19 @@ def contact_value(gas: Gas, equation: str) -> float:
     if equation == ENSKOG:
         density = theory.number_density(gas.packing_fraction, gas.dimension, gas.diameter)
         radius = np.array([0.5 * gas.diameter])
-        return float(rates.contact_values(np.atleast_1d(density), radius, gas.dimension)[0, 0])
+        return float(contact_values(np.atleast_1d(density), radius, gas.dimension)[0, 0])
     return float(theory.contact_value(gas.packing_fraction, gas.dimension))
 
 
 def excess(gas: Gas, equation: str) -> float:
-    """Compute Z - 1."""
+    """Compute Z - 1, the excess compressibility factor."""
     if equation == BOLTZMANN:
         return 0.0
     return 2.0 ** (gas.dimension - 1) * gas.packing_fraction * contact_value(gas, equation)
 
 
 def compressibility_factor(gas: Gas, equation: str) -> float:
-    """Compute Z."""
+    """Compute the compressibility factor Z."""
     return 1.0 + excess(gas, equation)
 
 
@@ -50,8 +51,8 @@ def collision_rate(gas: Gas, equation: str) -> float:
 def diffusion(gas: Gas, equation: str) -> float:
     """Compute the coefficient of self-diffusion of spheres; NaN for discs.
 
-    For the exact dynamics it is the result of Erpenbeck and Wood, otherwise the coefficient of the kinetic
-    equation.
+    For the exact dynamics it is the result of Erpenbeck and Wood; for the other equations it is the
+    coefficient of the kinetic equation.
     """
     if gas.dimension == 2 or (equation == EXACT and not _fluid(gas)):
         return math.nan
@@ -60,9 +61,9 @@ def diffusion(gas: Gas, equation: str) -> float:
 
 
 def shear_viscosity(gas: Gas, equation: str) -> float:
-    """Compute the shear viscosity of Chapman and Enskog, or of Enskog.
+    """Compute the shear viscosity by the theory of Chapman and Enskog, or of Enskog.
 
-    For the exact dynamics of spheres it is multiplied by the ratio that was measured in a dense gas.
+    For the exact dynamics of spheres, Enskog's value is multiplied by the ratio measured in dense gases.
     """
     value = float(theory.enskog_viscosity(**_enskog_arguments(gas, equation)))
     if equation == EXACT and gas.dimension == 3:
@@ -76,7 +77,7 @@ def bulk_viscosity(gas: Gas, equation: str) -> float:
 
 
 def thermal_conductivity(gas: Gas, equation: str) -> float:
-    """Compute the thermal conductivity of Chapman and Enskog, or of Enskog."""
+    """Compute the thermal conductivity by the theory of Chapman and Enskog, or of Enskog."""
     return float(theory.enskog_conductivity(**_enskog_arguments(gas, equation)))
 
 
@@ -88,24 +89,25 @@ def chemical_potential(gas: Gas, equation: str) -> float:
 
 
 def _fluid(gas: Gas) -> bool:
-    """Return True if spheres are in the range of density in which transport was measured."""
+    """Return True if the gas consists of spheres at a density at which transport was measured."""
     return gas.packing_fraction <= theory.ERPENBECK_WOOD_HIGHEST
 
 
 def _enskog_arguments(gas: Gas, equation: str) -> dict[str, Any]:
     """Return the arguments of Enskog's transport coefficients.
 
-    The coefficients of points do not depend on the density.
+    The coefficients of point particles do not depend on the density.
     """
     if equation == BOLTZMANN:
         return {**gas.parameters, "packing_fraction": 0.0, "contact": 1.0}
     return {**gas.parameters, "contact": contact_value(gas, equation)}
 
 
-# Difference between a finite gas in a periodic container and an infinite one, to first order.
+# Difference between a finite periodic gas and an infinite gas, to first order in 1/N.
 #
-# Each function takes a `Gas` of two particles or more. It returns the relative difference, and the power
-# with which the number of particles grows for a smaller one: 1 for a difference in proportion to 1/N.
+# Each function takes a `Gas` of at least two particles. It returns the relative difference and an exponent p:
+# a difference that is smaller by a factor f needs f^p times as many particles. p is 1 for a difference
+# proportional to 1/N.
 
 
 def finite_compressibility_factor(gas: Gas) -> tuple[float, float]:
@@ -116,20 +118,20 @@ def finite_compressibility_factor(gas: Gas) -> tuple[float, float]:
 
 
 def finite_collision_rate(gas: Gas) -> tuple[float, float]:
-    """Compute the relative difference of the collisions of a particle per time at fixed energy."""
+    """Compute the relative difference of the collision rate of a particle at fixed energy."""
     factor = theory.collision_rate_finite_size_factor(gas.packing_fraction, gas.dimension, gas.count)
     return float(factor) - 1.0, 1.0
 
 
 def finite_diffusion(gas: Gas) -> tuple[float, float]:
-    """Compute the relative difference of D, by Yeh and Hummer's shift.
+    """Compute the relative difference of D, by the correction of Yeh and Hummer.
 
-    The shift is proportional to one over the side.
+    The correction is inversely proportional to the side length.
     """
     fraction, dimension = gas.packing_fraction, gas.dimension
     side = (gas.count * theory.particle_volume(dimension) / fraction) ** (1.0 / dimension)
     value = float(theory.enskog_diffusion(fraction, dimension))
-    carried = float(theory.number_density(fraction, dimension)) * value  # modes decay with nu + D
+    carried = float(theory.number_density(fraction, dimension)) * value  # modes decay as nu + D
     viscosity = float(theory.enskog_viscosity(fraction, dimension) * theory.viscosity_ratio(fraction))
     lost = theory.yeh_hummer(side, viscosity + carried)
     return -float(lost) / value, float(dimension)

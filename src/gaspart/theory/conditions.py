@@ -1,0 +1,237 @@
+"""Local density and temperature of a steady scene, and barometric columns under gravity.
+
+In a homogeneous gas the local values are equal to the mean values. For a gas under gravity, the profiles
+follow from hydrostatics (`gaspart.theory.columns`), if theory covers the gas. For all other gases, a pilot
+run of the exact engine measures the values. The conditions are used to bound the errors of DSMC.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from gaspart.scene.faces import Thermal
+from gaspart.scene.limits import ball_volume
+from gaspart.scene.scene import Scene
+from gaspart.state.state import State
+from gaspart.theory.columns import Column, GravityColumn, compare_columns, gravity_column
+from gaspart.theory.diffusion import ERPENBECK_WOOD_HIGHEST, erpenbeck_wood_ratio
+from gaspart.theory.discretisation import contact_values
+
+_FREE = 0.02
+"""Minimum fraction of the volume that is accessible to a pair where its contact value is evaluated."""
+_HELD = 0.02
+"""Smallest fraction of the particles in a layer that counts in the shortest length scale."""
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """Layers of a steady scene across an axis, from wall to wall.
+
+    Attributes
+    ----------
+    scene : scene
+    share : array (S,), fraction of all particles in each layer
+    crowding : (S,), density divided by the density of a gas that fills the accessible volume homogeneously
+    temperature : (S,), k_B T
+    axis : axis of the layers, None for a homogeneous gas
+    scale : shortest length along the axis over which density or temperature changes by a factor e
+    columns : under gravity, the columns of the real and of the ideal gas, None if theory does not cover them
+    """
+
+    scene: Scene
+    share: np.ndarray
+    crowding: np.ndarray
+    temperature: np.ndarray
+    axis: int | None = None
+    scale: float = math.inf
+    columns: tuple[Column, Column] | None = None
+
+    @cached_property
+    def free(self) -> np.ndarray:
+        """Accessible lengths for centres, shape (d,)."""
+        lower, upper = self.scene.reach(self.scene.smallest_radius)
+        return np.subtract(upper, lower)
+
+    @cached_property
+    def _kinds(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Radii, masses and mean number densities (K,) of the kinds of moving particles."""
+        kinds = self.scene.moving_kinds
+        radii = np.array([kind.radius for kind in kinds])
+        masses = np.array([kind.mass for kind in kinds])
+        return radii, masses, np.array([kind.count for kind in kinds]) / float(self.free.prod())
+
+    @cached_property
+    def filled(self) -> np.ndarray:
+        """Packing fraction in the accessible volume, shape (S,)."""
+        radii, _, numbers = self._kinds
+        d = self.scene.dimension
+        return self.crowding * ball_volume(d) * float((numbers * radii**d).sum())
+
+    @cached_property
+    def contact(self) -> np.ndarray:
+        """Contact value of an infinite gas, the maximum over all pairs of kinds, shape (S,)."""
+        radii, _, numbers = self._kinds
+        d = self.scene.dimension
+        return np.array([float(contact_values(numbers * ratio, radii, d).max()) for ratio in self.crowding])
+
+    @cached_property
+    def contact_of_few(self) -> np.ndarray:
+        """Contact value for the number of particles, shape (S,); inf if no pair fits.
+
+        A particle of a pair in contact does not exclude volume from itself. So the result is the contact
+        value of the other particles times 1 / (1 - v / V). Here v is the volume from which one particle of
+        the pair excludes the centre of the other. The factor is exact for two particles. To first order in
+        the packing fraction of spheres the result is 1 + (5/2 + 3/N) eta: 4 eta for two particles, 5/2 eta
+        for many.
+        """
+        radii, _, numbers = self._kinds
+        d, count = self.scene.dimension, self.scene.count
+        pair = ball_volume(d) * (2.0 * float(radii.max())) ** d / float(self.free.prod())
+        others = max(0.0, count - 2.0) / count
+        room = np.maximum(0.0, 1.0 - pair * self.crowding)
+        rest = [float(contact_values(others * numbers * ratio, radii, d).max()) for ratio in self.crowding]
+        return np.where(room > _FREE, np.array(rest) / np.maximum(room, _FREE), math.inf)
+
+    @cached_property
+    def virial(self) -> np.ndarray:
+        """Local value of Z - 1, shape (S,)."""
+        return 2.0 ** (self.scene.dimension - 1) * self.filled * self.contact_of_few
+
+    @cached_property
+    def path(self) -> np.ndarray:
+        """Mean free path of the kind with the shortest mean free path, shape (S,)."""
+        radii, _, numbers = self._kinds
+        d = self.scene.dimension
+        sigma = radii[:, None] + radii
+        section = math.pi * sigma**2 if d == 3 else 2.0 * sigma
+        most = float((section * numbers).sum(axis=1).max())
+        return np.asarray(1.0 / (math.sqrt(2.0) * most * self.crowding * self.contact))
+
+    @cached_property
+    def speed(self) -> np.ndarray:
+        """Mean speed of the lightest particles, shape (S,)."""
+        _, masses, _ = self._kinds
+        mean = 8.0 / math.pi if self.scene.dimension == 3 else math.pi / 2.0
+        return np.sqrt(mean * self.temperature / masses.min())
+
+    @property
+    def contrast(self) -> float:
+        """Shortest mean free path of a homogeneous gas divided by the shortest one in these layers."""
+        radii, _, numbers = self._kinds
+        even = float(contact_values(numbers, radii, self.scene.dimension).max())
+        return float((self.crowding * self.contact).max() / even)
+
+    @cached_property
+    def surfaces(self) -> float:
+        """Fraction of contacts with a missing neighbour because of a wall, to first order.
+
+        It is the largest diameter divided by the accessible length, summed over the axes with walls.
+        """
+        sides = np.where(self.scene.container.periodic, math.inf, self.free)
+        if self.axis is not None and math.isfinite(sides[self.axis]):
+            sides[self.axis] = min(sides[self.axis], self.scale)
+        return float((2.0 * self.scene.largest_radius / np.maximum(sides, 1e-300)).sum())
+
+    @property
+    def quickened(self) -> float:
+        """Collision rate divided by the rate in a homogeneous gas at the initial temperature."""
+        kinds = self.scene.moving_kinds
+        d = self.scene.dimension
+        start = sum(kind.count * kind.initial_temperature(d) for kind in kinds) / self.scene.count
+        hotter = np.sqrt(self.temperature / (start or math.inf))
+        mean = (self.share * self.crowding * self.contact * hotter).sum()
+        return float(mean / even_conditions(self.scene, 1.0).contact[0])
+
+    @cached_property
+    def memory(self) -> float:
+        """Effect of correlated collisions on the transport coefficients of spheres, |D / D_Enskog - 1|.
+
+        For discs the transport coefficients depend on the size of the system, so the value for spheres at the
+        same packing fraction is used as an estimate.
+        """
+        densest = min(float(self.filled.max()), ERPENBECK_WOOD_HIGHEST)
+        return abs(float(erpenbeck_wood_ratio(densest)) - 1.0) if densest > 0.0 else 0.0
+
+    def of_points(self, observable: str, face: str | None) -> float | None:
+        """Compute the relative difference of an observable between point particles and finite particles.
+
+        `face` is the wall at which a pressure acts. Returns None if theory does not cover the column.
+        """
+        return compare_columns(*self.columns, observable, self._top(face)) if self.columns else None
+
+    def _top(self, face: str | None) -> bool | None:
+        """Return True if a face of the container is at the top of a column.
+
+        Return None for a face that is not perpendicular to the axis of the column.
+        """
+        scene, axis = self.scene, self.axis
+        if face is None or axis is None or face[0] != "xyz"[axis] or scene.gravity is None:
+            return None
+        return (scene.gravity[axis] < 0.0) == face.endswith("high")
+
+
+def known_conditions(scene: Scene, start: State) -> Conditions | None:
+    """Compute the local conditions from theory, or return None if theory does not cover the scene.
+
+    The energy of the scene is computed from the initial state `start`.
+    """
+    if column := gravity_column(scene):
+        try:
+            return _of_column(scene, column, start)
+        except ValueError:  # for example, particles that come to rest as a crystal
+            return None
+    if not _is_even(scene):
+        return None
+    heat = max(scene.face_temperatures, default=0.0)
+    return even_conditions(scene, heat or kinetic_temperature(scene, start))
+
+
+def _is_even(scene: Scene) -> bool:
+    """Return True if a scene becomes homogeneous from any initial state."""
+    law = scene.restitution
+    uneven = [
+        scene.gravity is not None,
+        law is not None and (law.dissipative or law.rough),
+        scene.thermostat is not None,
+        len(scene.face_temperatures) > 1,
+        any(not isinstance(face, Thermal) or face.slides for face in scene.faces.values()),
+        bool(scene.walls),
+    ]
+    return not any(uneven)
+
+
+def kinetic_temperature(scene: Scene, start: State) -> float:
+    """Compute the temperature k_B T of a state; 0 for particles at rest."""
+    moving = np.isfinite(start.masses)
+    freedom = scene.dimension * moving.sum() - sum(scene.conserved_axes)
+    return float(2.0 * start.translational_energy / freedom) if freedom > 0 else 0.0
+
+
+def even_conditions(scene: Scene, temperature: float) -> Conditions:
+    """Return the conditions of a homogeneous gas."""
+    return Conditions(scene, np.ones(1), np.ones(1), np.array([temperature]))
+
+
+def _of_column(scene: Scene, pulled_scene: GravityColumn, start: State) -> Conditions:
+    """Compute the conditions under gravity; raise ValueError if theory does not cover the scene."""
+    energy, heat = pulled_scene.energy_of(start), max(scene.face_temperatures, default=None)
+    real, ideal = (pulled_scene.equilibrate(energy, heat, is_ideal) for is_ideal in (False, True))
+    z, numbers = real.heights, real.numbers.sum(axis=0)
+    share = numbers * np.gradient(z)
+    share /= share.sum()
+    gradient = np.abs(np.gradient(np.log(np.maximum(numbers, 1e-300)), z))
+    within = np.cumsum(share) < 1.0 - _HELD
+    within[0] = True
+    return Conditions(
+        scene,
+        share,
+        numbers * pulled_scene.height / scene.count,
+        np.full(len(z), real.temperature),
+        pulled_scene.axis,
+        1.0 / max(float(gradient[within].max()), 1e-300),
+        (real, ideal),
+    )

@@ -1,0 +1,124 @@
+"""Effects of cells and time steps of engines, and contact values of the Enskog model.
+
+For DSMC, widths are in mean free paths l = 1 / (sqrt 2 pi n sigma^2), steps in l / c with c = sqrt(2 k_B T /
+m). Particles within a cell exchange momentum and energy at any distance. Within a step, all particles
+move before any collision takes place. Both effects are computed exactly in the first Sonine approximation, in
+which fluxes relax exponentially.
+
+Each run depends on the formulas of its engine, so this module imports no other theory except for geometry.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from gaspart.scene.limits import ball_volume
+from gaspart.theory.geometry import Numbers, Values
+
+SLOPE, BEND = {2: 0.5625, 3: 1.5}, {2: 0.0, 3: 0.5}
+"""Coefficients of the contact value, see `contact_values`, by dimension."""
+_HIGHEST = 0.7  # packing fraction up to which contact values are evaluated
+MISSED_CONTACTS = {2: 1.0 / 4.0, 3: 2.0 / 3.0}
+"""Fraction of the contacts of a dilute gas that begin and end within a step, divided by (v_th dt / sigma)^2,
+by dimension, with v_th = sqrt(k_B T / m): the flux of pairs through chords that they cross within a step.
+"""
+ONE_PASS = 4.0
+"""Factor of the missed contacts if a step resolves only overlaps that grow, in one pass."""
+CELL_COEFFICIENTS = {
+    "viscosity": 16.0 / (45.0 * math.pi),
+    "conductivity": 32.0 / (225.0 * math.pi),
+    "diffusion": 0.0,
+}
+"""Coefficients of (width / l)^2, spheres; Alexander, Garcia & Alder, Phys. Fluids 10, 1540 (1998), with its
+erratum, Phys. Fluids 12, 731 (2000). The displacement of a single particle transfers nothing to others, so
+cells do not change D.
+"""
+CELL_VISCOSITY = {2: math.pi / 24.0, 3: CELL_COEFFICIENTS["viscosity"]}
+"""Coefficients of (width / l)^2 for the viscosity, by dimension; for discs by the same argument."""
+STEP_COEFFICIENTS = {
+    "viscosity": 16.0 / (75.0 * math.pi),
+    "conductivity": 64.0 / (675.0 * math.pi),
+    "diffusion": 4.0 / (27.0 * math.pi),
+}
+"""Coefficients of (c step / l)^2, spheres; Hadjiconstantinou, Phys. Fluids 12, 2634 (2000), confirmed by
+Garcia & Wagner, Phys. Fluids 12, 2621 (2000)."""
+
+
+def contact_values(number_densities: np.ndarray, radii: np.ndarray, dimension: int) -> np.ndarray:
+    """Compute the contact values of a mixture in the Enskog model.
+
+    Parameters
+    ----------
+    number_densities : ndarray, shape (K,), [length^-d]
+        Number density of each kind of particles.
+    radii : ndarray, shape (K,), [length]
+        Radius of each kind.
+    dimension : {2, 3}
+        Discs or spheres.
+
+    Returns
+    -------
+    ndarray, shape (K, K), [1]
+        Contact value of each pair of kinds. Above a packing fraction of 0.7 the free volume is that at 0.7.
+
+    Notes
+    -----
+    Spheres: Boublik, J. Chem. Phys. 53, 471 (1970), and Mansoori et al., J. Chem. Phys. 54, 1523 (1971); for
+    one species this is Carnahan & Starling's value. Discs: Jenkins & Mancini, J. Appl. Mech. 54, 27 (1987);
+    for one species this is Henderson's value.
+    """
+    filled = ball_volume(dimension) * float((number_densities * radii**dimension).sum())
+    free = 1.0 - min(filled, _HIGHEST)
+    surface = ball_volume(dimension) * float((number_densities * radii ** (dimension - 1)).sum())
+    ratio = surface * 2.0 * radii[:, None] * radii / (radii[:, None] + radii)
+    return 1.0 / free + SLOPE[dimension] * ratio / free**2 + BEND[dimension] * ratio**2 / free**3
+
+
+def cell_factor(quantity: str, width: Numbers) -> Values:
+    """Compute a transport coefficient of spheres in cells divided by its value in small cells.
+
+    Parameters
+    ----------
+    quantity : {"viscosity", "conductivity", "diffusion"}
+        Transport coefficient.
+    width : array_like, [1]
+        Width of a cell in mean free paths.
+
+    Returns
+    -------
+    float or ndarray, same shape as `width`, [1]
+        Factor of the coefficient.
+
+    Notes
+    -----
+    1 + a width^2 with a from `CELL_COEFFICIENTS`, and <dx^2> = width^2 / 6 for two positions in a cell (exact
+    for any width).
+    """
+    return 1.0 + CELL_COEFFICIENTS[quantity] * np.square(width)
+
+
+def step_factor(quantity: str, step: Numbers) -> Values:
+    """Compute a transport coefficient of spheres with time steps divided by its value with short steps.
+
+    Parameters
+    ----------
+    quantity : {"viscosity", "conductivity", "diffusion"}
+        Transport coefficient.
+    step : array_like, [1]
+        Time step in mean free paths divided by sqrt(2 k_B T / m).
+
+    Returns
+    -------
+    float or ndarray, same shape as `step`, [1]
+        Factor of the coefficient.
+
+    Notes
+    -----
+    (x/2) coth(x/2) = 1 + x^2/12 - ..., where x is the step divided by the relaxation time of the flux. The
+    sum of the flux correlation over whole steps replaces the integral. The first order in the literature is
+    x^2/12, `STEP_COEFFICIENTS`.
+    """
+    half = np.sqrt(3.0 * STEP_COEFFICIENTS[quantity]) * np.maximum(step, 1e-6)  # limit of 0 / 0
+    return half / np.tanh(half)
