@@ -263,21 +263,6 @@ def same(one, other):
     return all(alike)
 
 
-@pytest.mark.parametrize("search", ["boxes", "direct", "pairs"])
-def test_bits_depend_neither_on_the_search_nor_on_where_a_run_is_split(search):
-    whole, parts = gp.Simulation(DISCS, seed=8), gp.Simulation(DISCS, gp.EventDriven(search), seed=8)
-    whole.advance(duration=40.0)
-    parts.advance(duration=0.7)
-    for _ in range(10):
-        parts.advance(max_events=3)
-        parts.advance(until=40.0, max_work=7)
-    middle = gp.Simulation(DISCS, gp.EventDriven(search), seed=8)
-    middle.restore(parts.checkpoint())
-    for one in (parts, middle):
-        one.advance(until=40.0)
-        assert same(whole, one)
-
-
 @given(opened(), st.integers(0, 1000))
 @settings(max_examples=15)
 def test_random_open_scenes_keep_their_books_and_bits(scene, seed):
@@ -297,20 +282,6 @@ def test_random_open_scenes_keep_their_books_and_bits(scene, seed):
     assert state.energy + tally.wall_energy.sum() == pytest.approx(begun, abs=1e-12 * exchanged)
     assert state.count <= scene.capacity
     whole.check_invariants()
-
-
-def test_units_of_powers_of_two_change_no_bit():
-    """Lengths times 4, times a half, masses times 8: temperatures times 512."""
-    faces = {"x_low": gp.Open(0.3, 1024.0), "x_high": gp.Open(0.1, 512.0)}
-    faces |= {"y_low": gp.Thermal(3.0 * 512.0), "y_high": gp.Open()}
-    species = [gp.Species(12, 2.0, mass=16.0, temperature=512.0)]
-    large = gp.Scene(gp.Container((24.0, 24.0)), species, faces=faces, centres_to_walls=True)
-    one, other = gp.Simulation(DISCS, seed=9), gp.Simulation(large, seed=9)
-    one.advance(duration=20.0)
-    other.advance(duration=10.0)
-    assert np.array_equal(4.0 * one.state.positions, other.state.positions)
-    assert np.array_equal(one.tally.entries, other.tally.entries) and one.tally.entries.any()
-    assert np.array_equal(512.0 * one.tally.wall_energy, other.tally.wall_energy)
 
 
 def test_numbers_of_particles_are_those_of_the_lowest_free_places():
