@@ -248,8 +248,8 @@ def mean_count(scene: Scene) -> float:
     """Return an upper bound of the mean number of particles between reservoirs.
 
     The bound is the number of an ideal gas at the same activity, and 0 with a vacuum outside. Particles that
-    repel each other are fewer. The pressure in the container is at most the pressure of the strongest reservoir. The gas is at
-    least as hot as the coldest face or wall.
+    repel each other are fewer. The pressure in the container is at most the pressure of the strongest
+    reservoir. The gas is at least as hot as the coldest face or wall.
     """
     reservoirs = [face for _, face in scene.faces_of(Open) if face.temperature is not None]
     if not reservoirs:
