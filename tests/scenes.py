@@ -192,9 +192,12 @@ def partitioned(draw, most=10):
 
 
 @st.composite
-def opened(draw):
-    """Discs between open faces: dense, dilute or empty, one or more reservoirs or a vacuum."""
-    activities = st.one_of(st.none(), st.floats(-8.0, 4.0).map(lambda power: 10.0**power))
+def opened(draw, most=1e4):
+    """Discs between open faces: dense, dilute or empty, one or more reservoirs or a vacuum.
+
+    most: greatest activity
+    """
+    activities = st.one_of(st.none(), st.floats(-8.0, math.log10(most)).map(lambda power: 10.0**power))
     kinds = {}
     for name in draw(st.sets(st.sampled_from(["x_low", "x_high", "y_low", "y_high"]), min_size=1)):
         activity = draw(activities)
@@ -207,6 +210,126 @@ def opened(draw):
 
 
 @st.composite
+def pressed(draw):
+    """Some discs or spheres of one or two kinds behind a piston on one of the walls; spheres have one mass,
+    so that fewer kernels are compiled."""
+    dimension = draw(st.sampled_from([2, 3]))
+    lengths = draw(st.lists(st.floats(4.5, 9.0), min_size=dimension, max_size=dimension))
+    boundary = ["wall", *draw(st.lists(st.sampled_from(["wall", "periodic"]), min_size=1, max_size=2))]
+    species = [gp.Species(draw(st.integers(1, 12)), draw(st.floats(0.1, 0.4)), temperature=1.0)]
+    if draw(st.booleans()):
+        mass = draw(st.floats(0.01, 100.0)) if dimension == 2 else 1.0
+        species.append(gp.Species(3, 0.3, mass=mass, temperature=1.0))
+    piston = gp.Piston(draw(st.floats(1e-3, 1e4)), draw(st.sampled_from([0.0, 0.01, 0.5, 20.0])))
+    boundary = (boundary * 2)[:dimension] if dimension == 3 else boundary[:2]
+    return gp.Scene(
+        gp.Container(lengths, boundary), species, faces={draw(st.sampled_from(["x_low", "x_high"])): piston}
+    )
+
+
+@st.composite
+def parted(draw):
+    """Some discs of one or two sizes and masses, and a light or a heavy wall across x or y."""
+    axis = draw(st.sampled_from([0, 1]))
+    lengths, boundary = [6.0, 6.0], [draw(st.sampled_from(["wall", "periodic"]))] * 2
+    lengths[axis], boundary[axis] = 10.0, "wall"
+    place, low, high = draw(st.floats(3.0, 7.0)), [0.0, 0.0], list(lengths)
+    low[axis] = high[axis] = place
+    regions = ((0.0, 0.0), tuple(high)), (tuple(low), tuple(lengths))
+    species = [
+        gp.Species(
+            draw(st.integers(1, 8)),
+            draw(st.floats(0.1, 0.4)),
+            mass=draw(st.sampled_from([1.0, 0.01, 50.0])),
+            temperature=draw(st.sampled_from([1.0, 9.0])),
+            region=region,
+        )
+        for region in regions
+    ]
+    wall = gp.Wall(tuple(low), tuple(high), mass=draw(st.floats(1e-3, 1e4)))
+    return gp.Scene(gp.Container(lengths, boundary), species, walls=[wall])
+
+
+@st.composite
+def shaken(draw, most=10):
+    """Rough inelastic discs that fall, or elastic spheres, between faces that vibrate."""
+    dimension = draw(st.sampled_from([2, 3]))
+    lengths = draw(st.lists(st.floats(4.5, 9.0), min_size=dimension, max_size=dimension))
+    face = st.builds(
+        gp.Vibrating, st.floats(1e-4, 0.5), st.floats(0.05, 8.0), st.sampled_from(["sine", "sawtooth"])
+    )
+    faces = draw(st.dictionaries(st.sampled_from(["x_high", "y_low", "y_high"]), face, min_size=1))
+    species = [gp.Species(draw(st.integers(1, most)), draw(st.floats(0.1, 0.4)), temperature=1.0)]
+    container = gp.Container(lengths, ("wall",) * dimension)
+    if dimension == 3:
+        return gp.Scene(container, species, faces=faces)
+    law = gp.Restitution(draw(st.sampled_from([0.0, 0.7, 0.95])), draw(st.sampled_from([-1.0, 0.5])))
+    gravity = (0.0, draw(st.sampled_from([-1.0, 0.3])))
+    return gp.Scene(container, species, faces=faces, gravity=gravity, restitution=law)
+
+
+@st.composite
+def lossy(draw):
+    """Discs of two sizes, rough and viscoelastic, between walls."""
+    species = [
+        gp.Species(draw(st.integers(1, 12)), radius, mass=mass, temperature=1.0)
+        for radius, mass in ((0.4, 1.0), (draw(st.floats(0.1, 0.5)), draw(st.floats(0.1, 10.0))))
+    ]
+    normal, speed = draw(st.floats(0.5, 0.99)), draw(st.sampled_from([1.0, 30.0, 1e3]))
+    law = gp.Restitution(normal, draw(st.sampled_from([-0.5, 0.5])), reference_speed=speed)
+    return gp.Scene(gp.Container((8.0, 9.0)), species, restitution=law)
+
+
+@st.composite
+def cornered(draw):
+    """A disc that sticks in a corner, one that sticks beside it on the floor, and one that comes to them."""
+    angle, turned = draw(st.floats(0.05, 1.5)), draw(st.floats(-0.05, 0.05))
+    radius, mass = draw(st.floats(0.2, 3.0)), draw(st.floats(0.1, 20.0))
+    place = [max(0.5 + 6.0 * component, radius) for component in (math.cos(angle), math.sin(angle))]
+    angle = math.atan2(place[1] - 0.5, place[0] - 0.5) + turned
+    particles = [
+        gp.Particle((0.5, 0.5), (-0.01, -0.01), 0.5),
+        gp.Particle(tuple(place), (-math.cos(angle), -math.sin(angle)), radius, mass),
+    ]
+    if draw(st.booleans()):
+        particles.append(gp.Particle((1.5, 0.5), (0.0, -0.01), 0.5))
+    faces = dict.fromkeys(("x_low", "x_high", "y_low", "y_high"), gp.Sticky(3.0))
+    return gp.Scene(gp.Container((20.0, 20.0)), particles=particles, faces=faces)
+
+
+@st.composite
+def pushed(draw):
+    """Some discs or spheres in front of a piston at a low or a high speed."""
+    lengths = tuple(draw(st.floats(5.0, 9.0)) for _ in range(draw(st.sampled_from([2, 3]))))
+    species = [gp.Species(draw(st.integers(1, 12)), draw(st.floats(0.1, 0.4)), temperature=1.0)]
+    container = gp.Container(lengths, ("wall", "periodic", "periodic")[: len(lengths)])
+    piston = gp.Piston(speed=draw(st.sampled_from([0.01, 0.3, 3.0])))
+    return gp.Scene(container, species, faces={draw(st.sampled_from(["x_low", "x_high"])): piston})
+
+
+@st.composite
+def piled(draw):
+    """Discs that fall onto a wall in a box, with contacts that last."""
+    law = gp.Restitution(
+        draw(st.sampled_from([0.0, 0.5, 0.95])),
+        draw(st.sampled_from([-1.0, 0.5])),
+        draw(st.sampled_from([1e-3, 0.05, 0.5])),
+    )
+    species = [gp.Species(draw(st.integers(2, 12)), 0.5, temperature=1.0)]
+    rest = {"gravity": (0.0, -1.0), "walls": [gp.Wall((1.0, 4.0), (5.0, 3.0))]}
+    return gp.Scene(gp.Container((8.0, 8.0)), species, restitution=law, **rest)
+
+
+@st.composite
+def kicked(draw):
+    """A periodic gas of discs that random kicks drive, from rest or from a temperature."""
+    law = draw(st.sampled_from([None, gp.Restitution(0.5)]))
+    kicks = gp.Thermostat(0.3, draw(st.floats(0.05, 2.0)))
+    scene = gas(2, draw(st.integers(2, 12)), 0.3, temperature=draw(st.sampled_from([None, 1e-24, 1.0])))
+    return replace(scene, restitution=law, thermostat=kicks)
+
+
+@st.composite
 def dense(draw):
     """Two to twelve particles in a periodic container at the densities of a fluid."""
     dimension = draw(st.sampled_from([2, 3]))
@@ -214,12 +337,27 @@ def dense(draw):
     return gas(dimension, draw(st.integers(2, 12)), fraction, arrangement="compressed")
 
 
+def place(face, time):
+    """How far a face has moved inwards, by the library's cosine."""
+    turns = time / face.period % 1.0
+    if face.waveform == "sawtooth":
+        return 2.0 * face.amplitude * turns
+    return face.amplitude * (1.0 - math.cos(2.0 * math.pi * turns))
+
+
 def check_inside(scene, state, tolerance):
-    """All particles are as far inside the container as the scene states."""
+    """All particles are as far inside the container, and its moving faces, as the scene states."""
+    moved = np.zeros((state.dimension, 2))
+    for name, face in scene.faces.items():
+        axis, high = "xyz".index(name[0]), name.endswith("high")
+        if face.kind == "vibrating":
+            moved[axis, int(high)] = place(face, state.time)
+        elif face.kind == "piston":
+            moved[axis, int(high)] = abs(state.piston[0] - (state.lengths[axis] if high else 0.0))
     for position, radius in zip(state.positions, state.radii, strict=True):
         low, high = scene.reach(radius)
-        assert (position >= np.array(low) - tolerance).all()
-        assert (position <= np.array(high) + tolerance).all()
+        assert (position >= np.array(low) + moved[:, 0] - tolerance).all()
+        assert (position <= np.array(high) - moved[:, 1] + tolerance).all()
 
 
 def check_outside_walls(scene, state, tolerance):

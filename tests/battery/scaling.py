@@ -1,7 +1,7 @@
 """The same run in other units of mass, length and time: factors of powers of two, which change no bit."""
 
 import json
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 from battery.units import Powers, powers_of
@@ -20,15 +20,25 @@ KEYS = {
     "mass": Powers(mass=1),
     "temperature": _ENERGY,
     **dict.fromkeys(FACES, _ENERGY),
-    "corner": Powers(length=1),
+    **dict.fromkeys(("corner", "start", "end"), Powers(length=1)),
     "edges": Powers(length=1),
     "velocity": _SPEED,
     "speed": _SPEED,
+    "reference_speed": _SPEED,
+    "position": Powers(length=1),
+    "region": Powers(length=1),
+    "width": Powers(length=1),
+    "skin": Powers(length=1),
+    "depth": _ENERGY,
+    "vibration": _ENERGY,
+    "momentum": Powers(1, 1, -1),
+    "moment_of_inertia": Powers(1, 2, 0),
+    "spin": Powers(0, 0, -1),
+    "contact_duration": Powers(time=1),
     "gravity": Powers(0, 1, -2),
     "shear_rate": Powers(0, 0, -1),
     "amplitude": Powers(length=1),
     "period": Powers(time=1),
-    "pressure": Powers(1, -1, -2),
     "power": Powers(1, 2, -3),
     "interval": Powers(time=1),
     "furthest": Powers(length=1),
@@ -53,43 +63,63 @@ KEYS = {
 }
 """Key of a scene or an engine -> its units, of a face those of the temperature there. Another number in a
 scene of the battery is a KeyError."""
+STATE = {
+    "time": Powers(time=1),
+    "positions": Powers(length=1),
+    "velocities": _SPEED,
+    "lengths": Powers(length=1),
+    "radii": Powers(length=1),
+    "masses": Powers(mass=1),
+    "moments_of_inertia": Powers(1, 2, 0),
+    "spins": Powers(0, 0, -1),
+    "gravity": Powers(0, 1, -2),
+    "well_energies": _ENERGY,
+    "vibrations": _ENERGY,
+    "displaced": Powers(length=1),
+    "shear_rate": Powers(0, 0, -1),
+}
+"""Field of a state -> its units, but for the piston's place and velocity; the others are numbers."""
 
 
-def _scaled(values, key=""):
+def scaled(values, units, key="", dimension=3):
     """Numbers of a mapping in the other units."""
     if isinstance(values, dict):
-        return {name: _scaled(value, name) for name, value in values.items()}
+        return {name: scaled(value, units, name, dimension) for name, value in values.items()}
     if isinstance(values, list | tuple):
-        return [_scaled(value, key) for value in values]
+        return [scaled(value, units, key, dimension) for value in values]
     if isinstance(values, bool | str) or values is None:
         return values
-    factor = KEYS[key].scale(**UNITS)
+    powers = Powers(1, 2 - dimension, -2) if key == "pressure" else KEYS[key]
+    factor = powers.scale(**units)
     return values if factor == 1.0 else values * factor
 
 
-def scene_in_units(scene):
+def scene_in_units(scene, units=UNITS):
     """A scene in the other units."""
-    return gp.Scene.from_dict(_scaled(scene.to_dict()))
+    return gp.Scene.from_dict(scaled(scene.to_dict(), units, dimension=scene.dimension))
 
 
-def engine_in_units(engine):
+def engine_in_units(engine, units=UNITS):
     """An engine in the other units."""
-    return engine_from_dict(_scaled(engine_to_dict(engine)))
+    return engine_from_dict(scaled(engine_to_dict(engine), units))
 
 
-def state_in_units(state):
-    """A state at time 0 in the other units."""
-    length, speed = Powers(length=1).scale(**UNITS), _SPEED.scale(**UNITS)
-    mass, moment = Powers(mass=1).scale(**UNITS), Powers(1, 2, 0).scale(**UNITS)
-    return replace(
-        state,
-        positions=state.positions * length,
-        velocities=state.velocities * speed,
-        lengths=state.lengths * length,
-        radii=state.radii * length,
-        masses=state.masses * mass,
-        moments_of_inertia=state.moments_of_inertia * moment,
-    )
+def state_in_units(state, units=UNITS):
+    """A state in the other units."""
+    changed = {key: getattr(state, key) * powers.scale(**units)
+               for key, powers in STATE.items() if getattr(state, key) is not None}  # fmt: skip
+    if state.piston is not None:
+        changed["piston"] = state.piston * [STATE[key].scale(**units) for key in ("positions", "velocities")]
+    return replace(state, **changed)
+
+
+def tally_in_units(tally, dimension, units=UNITS):
+    """A tally in the other units."""
+    declared = {field.name: field.metadata["units"] for field in fields(tally) if "units" in field.metadata}
+    declared["time"] = "time"
+    factors = {name: powers_of(text, dimension).scale(**units) for name, text in declared.items()}
+    present = {name: getattr(tally, name) for name in factors if getattr(tally, name) is not None}
+    return replace(tally, **{name: value * factors[name] for name, value in present.items()})
 
 
 def _variables(data, dimension):
@@ -116,7 +146,7 @@ def data_in_units(data):
         engine = engine_from_dict(json.loads(data.attrs["engine"]))
         attributes["engine"] = json.dumps(engine_to_dict(engine_in_units(engine)))
     if "tallies" in data.attrs:
-        attributes["tallies"] = json.dumps(_scaled(json.loads(data.attrs["tallies"])))
+        attributes["tallies"] = json.dumps(scaled(json.loads(data.attrs["tallies"]), UNITS))
     if "correlations" in data.attrs:
         attributes["correlations"] = json.dumps(_correlations(json.loads(data.attrs["correlations"])))
     return result.assign_attrs(attributes)

@@ -19,13 +19,13 @@ from gaspart.scene.features import FEATURES
 RUNS, NOT_MODELLED = runs()
 ELSEWHERE = {
     "roughness": "tests/engines/test_metamorphic.py",
-    "viscoelasticity": "tests/engines/test_viscoelastic.py",
-    "contact_duration": "tests/engines/test_contact_duration.py",
+    "viscoelasticity": "tests/battery/test_bits.py",
+    "contact_duration": "tests/battery/test_bits.py",
     "fixed": "tests/engines/test_metamorphic.py",
-    "centres_to_walls": "tests/engines/test_event_driven.py",
-    "well": "tests/engines/test_event_driven.py",
-    "sticky": "tests/engines/test_event_driven.py",
-    "vibrations": "tests/engines/test_vibration.py",
+    "centres_to_walls": "tests/battery/test_bits.py",
+    "well": "tests/battery/test_bits.py",
+    "sticky": "tests/battery/test_bits.py",
+    "vibrations": "tests/battery/test_bits.py",
 }
 """Features of scenes that the battery has not, and the tests of their symmetries."""
 

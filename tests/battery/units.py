@@ -33,6 +33,7 @@ _TOKEN = re.compile(r"\s*([a-z]+|1(?![\d.])|[()/]|\^(?:-?[\d.]+|d\b))")
 def powers_of(text, dimension):
     """The powers of units such as `mass / (length^2 time)`; a product is of words, and what stands behind a
     bar up to the end of its bracket divides. Raises KeyError and ValueError for other texts."""
+    text = re.sub(r"\((\d)-d\)", lambda power: str(int(power[1]) - dimension), text)
     tokens, at = [], 0
     while at < len(text.rstrip()):
         found = _TOKEN.match(text, at)

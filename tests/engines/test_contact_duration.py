@@ -5,9 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from referee import check_restored, check_searches
 from scenes import closest, gas
 
 import gaspart as gp
@@ -85,26 +82,6 @@ def test_perfectly_rough_discs_do_not_stay_in_a_corner():
         sim.advance(until=100.0)
         sim.check_invariants()
         assert sim.state.kinetic_energy < 1e-3
-
-
-@given(
-    st.integers(2, 12), st.sampled_from([0.0, 0.5, 0.95]), st.sampled_from([-1.0, 0.5]),
-    st.sampled_from([1e-3, 0.05, 0.5]), st.integers(0, 2**32),
-)  # fmt: skip
-def test_all_searches_give_the_same_events_bit_for_bit(count, normal, tangential, duration, seed):
-    walls = [gp.Wall((1.0, 4.0), (5.0, 3.0))]
-    scene = pile(count, 8.0, normal, tangential, duration, walls=walls)
-    check_searches(scene, 400, seed, "tally.elastic_contacts", "tally.retained_energy")
-
-
-def test_splits_and_checkpoints_change_no_bit():
-    """Across epochs of the clocks, while the pile settles and after it has come to rest."""
-    scene = pile(12, walls=[gp.Wall((1.0, 4.0), (5.0, 3.0))])
-    kept = ("collisions", "elastic_contacts", "retained_energy")
-    kept = ("state.positions", "state.velocities", *(f"tally.{name}" for name in kept))
-    sim = check_restored(scene, (0.3, 5.0, 11.7, 30.0, 200.0), *kept)
-    assert sim.tally.elastic_contacts > 0
-    assert sim.tally.retained_energy > 0.0
 
 
 def test_the_default_follows_from_the_scales():

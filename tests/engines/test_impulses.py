@@ -56,25 +56,6 @@ def test_the_tally_is_the_momentum_that_particles_carry_through_planes(name):
     assert found == pytest.approx(wanted, abs=(5e-3 if scene.gravity else 1e-10) * np.abs(wanted).max())
 
 
-def test_the_tally_changes_no_bit_and_has_the_same_bits_however_a_run_is_made():
-    bare, whole = started(FALLING, "z", tallies=False), started(FALLING, "z")
-    for simulation in (bare, whole):
-        simulation.advance(until=20.0)
-    assert whole.state.positions.tobytes() == bare.state.positions.tobytes()
-    assert bare.tally.momentum_flux_sum is None
-    wanted = whole.tally.momentum_flux_sum
-    for search in ("automatic", "pairs"):
-        first, second = started(FALLING, "z", search), started(FALLING, "z", search)
-        first.advance(until=7.3)
-        assert first.tally.momentum_flux_sum.shape == (1, BINS)  # to read it changes nothing
-        second.restore(first.checkpoint())
-        second.advance(until=20.0)
-        assert second.tally.momentum_flux_sum.tobytes() == wanted.tobytes()
-    second.reset_tally()
-    second.advance(duration=0.0)
-    assert np.abs(second.tally.momentum_flux_sum).max() < 1e-12
-
-
 def test_halves_of_a_gas_add_up_to_it_in_any_order_of_its_particles():
     start = started(FALLING, "z").initial_state
     halves = replace(FALLING, species=[replace(MIXTURE[0], count=8), replace(MIXTURE[0], count=4)])

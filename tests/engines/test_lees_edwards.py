@@ -96,28 +96,6 @@ def test_a_particle_meets_an_image_that_comes_only_after_whole_lengths():
     assert 30.0 < times[0] < 40.0 and len(set(times)) == 1  # 1.5 / 0.05 until they are near in y
 
 
-ROUGH = gp.Restitution(normal=0.9, tangential=0.3)
-
-
-@pytest.mark.parametrize(("dimension", "law"), [(2, None), (3, ROUGH)], ids=["smooth discs", "rough spheres"])
-def test_all_searches_give_the_same_bits(dimension, law):
-    scene = sheared(0.8, 40, 0.25, dimension, restitution=law)
-    searches = [
-        engine for name, engine in SEARCHES.items() if dimension == 2 or name not in ("columns", "rows")
-    ]
-    found = []
-    for engine in searches:
-        sim = gp.Simulation(scene, engine, seed=4, stress=True)
-        sim.advance(until=3.0)
-        assert sim.tally.collisions > 60
-        found.append((sim.state, sim.tally.stress_sum))
-    for state, stress in found[1:]:
-        assert (state.positions == found[0][0].positions).all()
-        assert (state.velocities == found[0][0].velocities).all()
-        assert (state.images == found[0][0].images).all()
-        assert (stress == found[0][1]).all()
-
-
 def test_neighbour_lists_and_oversized_particles_are_not_used():
     with pytest.raises(gp.SceneError, match="neighbour lists do not support sheared faces"):
         gp.Simulation(sheared(0.5), gp.EventDriven(search="lists"), 1)
@@ -231,25 +209,6 @@ def test_the_flow_may_be_reversed_by_a_reflection():
         states.append(sim.state)
     assert states[0].displaced == -states[1].displaced
     assert states[0].velocities * (-1.0, 1.0) == pytest.approx(states[1].velocities, abs=1e-6)
-
-
-@pytest.mark.parametrize("search", ["direct", "boxes"])
-def test_splits_and_checkpoints_change_no_bit(search):
-    scene = sheared(0.7, restitution=gp.Restitution(normal=0.9))
-    whole = gp.Simulation(scene, SEARCHES[search], seed=6, stress=True)
-    whole.advance(until=900.0)  # several epochs of the clocks
-    parts = gp.Simulation(scene, SEARCHES[search], seed=6, stress=True)
-    for until in (1.234, 57.0, 400.5, 700.0):
-        parts.advance(until=until)
-        again = gp.Simulation(scene, SEARCHES["boxes"], seed=6, stress=True)
-        again.restore(parts.checkpoint())
-        assert (again.state.positions == parts.state.positions).all()
-        parts = again if until < 500.0 else parts
-    parts.advance(until=900.0)
-    for name in ("positions", "velocities", "images", "displaced"):
-        assert np.array_equal(getattr(whole.state, name), getattr(parts.state, name)), name
-    assert (whole.tally.stress_sum == parts.tally.stress_sum).all()
-    assert (whole.tally.wall_energy == parts.tally.wall_energy).all()
 
 
 def test_images_are_displaced_by_what_the_time_says():

@@ -20,6 +20,14 @@ POINT = 1e-3
 PERIODIC = ("wall", "periodic", "periodic")
 
 
+ENGINES = {
+    "event": gp.EventDriven(),
+    "dsmc": gp.DSMC(time_step=0.5, cells_per_side=(2, 1, 1), adapt="nothing"),
+}
+"""Engines that model open faces. The particles of some tests never collide."""
+in_both = pytest.mark.parametrize("engine", ENGINES.values(), ids=ENGINES)
+
+
 def reservoir(density, temperature=1.0, radius=POINT):
     """A face open to an ideal gas of particles of this radius."""
     return gp.Open(density * 4.0 / 3.0 * math.pi * radius**3, temperature)
@@ -53,12 +61,13 @@ def agrees(values, expected, least):
     return abs(np.mean(values) - expected) < 3.0 * error
 
 
-def test_effusion_into_a_vacuum():
+@in_both
+def test_effusion_into_a_vacuum(engine):
     """Behind the mirror at the far end stands its image: a free particle leaves once it has gone a way that
     is evenly spread over 2L at the start, at a speed |v| of a normal distribution. The number of those that
     stay is binomial."""
     count = 4000
-    simulation = gp.Simulation(slit({"x_low": gp.Open()}, count), seed=1)
+    simulation = gp.Simulation(slit({"x_low": gp.Open()}, count), engine, seed=1)
     for time in (2.0, 8.0, 32.0, 128.0):
         simulation.advance(until=time)
         a = 2.0 * LENGTHS[0] / time
@@ -69,9 +78,11 @@ def test_effusion_into_a_vacuum():
     simulation.check_invariants()
 
 
-def test_a_stream_from_an_opening_is_hotter_than_the_gas():
+@in_both
+def test_a_stream_from_an_opening_is_hotter_than_the_gas(engine):
     """2 k_B T per particle, of variance 2 (k_B T)^2, at first, and the momentum (pi m k_B T / 2)^(1/2)."""
-    simulation = gp.Simulation(slit({"x_low": gp.Open()}, 8000, temperature=3.0), seed=2)
+    scene = slit({"x_low": gp.Open()}, 8000, temperature=3.0)
+    simulation = gp.Simulation(scene, replace(engine, time_step=0.25) if engine.quantum else engine, seed=2)
     simulation.advance(duration=0.25)
     left = simulation.tally.wall_hits[0]
     energy, momentum = simulation.tally.wall_energy[0] / left, simulation.tally.wall_impulse[0] / left
@@ -84,26 +95,28 @@ def test_a_stream_from_an_opening_is_hotter_than_the_gas():
 
 
 @cache
-def ideal():
+def ideal(engine):
     """(40, 20) numbers of an ideal gas with the reservoirs of one gas at both ends, and tallies."""
     density = 1.5
     faces = {"x_low": reservoir(density), "x_high": reservoir(density)}
-    simulation = gp.Simulation(slit(faces, 150), seed=3)
+    simulation = gp.Simulation(slit(faces, 150), engine, seed=3)
     simulation.advance(duration=50.0)
     return density * math.prod(LENGTHS), *blocks(simulation, 40, 200.0, 20)
 
 
-def test_an_ideal_gas_has_the_distribution_of_poisson():
-    expected, counts, _ = ideal()
+@in_both
+def test_an_ideal_gas_has_the_distribution_of_poisson(engine):
+    expected, counts, _ = ideal(engine)
     assert agrees(counts.mean(axis=1), expected, 0.005)
     assert agrees(((counts - expected) ** 2).mean(axis=1), expected, 0.08)
     third = ((counts - expected) ** 3).mean(axis=1)
     assert abs(third.mean() - expected) < 3.0 * third.std(ddof=1) / math.sqrt(len(third))
 
 
-def test_as_many_enter_as_kinetic_theory_has_it():
+@in_both
+def test_as_many_enter_as_kinetic_theory_has_it(engine):
     """n (k_B T / 2 pi m)^(1/2) per area, in and out; momentum and energy as from a gas in equilibrium."""
-    expected, _, tallies = ideal()
+    expected, _, tallies = ideal(engine)
     density, area = expected / math.prod(LENGTHS), LENGTHS[1] * LENGTHS[2]
     for face in (0, 1):
         each = density * area * math.sqrt(0.5 / math.pi)
@@ -114,12 +127,13 @@ def test_as_many_enter_as_kinetic_theory_has_it():
     assert abs(np.mean(heat)) < 3.0 * np.std(heat, ddof=1) / math.sqrt(len(heat))
 
 
-def test_flow_between_two_reservoirs_without_collisions():
+@in_both
+def test_flow_between_two_reservoirs_without_collisions(engine):
     """What enters at one end leaves at the other: (z_1 T_1^(1/2) - z_2 T_2^(1/2)) / (2 pi m)^(1/2) of
     particles, and 2 k_B T of energy with each."""
     dense, thin = (2.0, 1.0), (0.5, 4.0)
     faces = {"x_low": reservoir(*dense), "x_high": reservoir(*thin)}
-    simulation = gp.Simulation(slit(faces), seed=4)
+    simulation = gp.Simulation(slit(faces), engine, seed=4)
     simulation.advance(duration=100.0)
     _, tallies = blocks(simulation, 40, 100.0, 1)
     area = LENGTHS[1] * LENGTHS[2]
@@ -137,14 +151,15 @@ CHANNELS = {
 }
 
 
+@in_both
 @pytest.mark.parametrize("wall", CHANNELS)
-def test_no_net_flow_between_reservoirs_that_send_equally_many(wall):
+def test_no_net_flow_between_reservoirs_that_send_equally_many(wall, engine):
     """z sqrt(T) is equal on both sides: without collisions as many pass each way, whatever the walls."""
     faces = {"x_low": reservoir(0.5, 4.0), "x_high": reservoir(1.0, 1.0), "y_low": CHANNELS[wall]}
     container = gp.Container(LENGTHS, ("wall", "wall", "periodic"))
     species = [gp.Species(80, POINT, temperature=2.0)]
     scene = gp.Scene(container, species, faces=faces, centres_to_walls=True)
-    simulation = gp.Simulation(scene, seed=11)
+    simulation = gp.Simulation(scene, engine, seed=11)
     simulation.advance(duration=100.0)
     _, tallies = blocks(simulation, 40, 50.0, 1)
     each = 0.5 * math.sqrt(4.0 / (2.0 * math.pi)) * LENGTHS[1] * LENGTHS[2]
@@ -248,21 +263,6 @@ def same(one, other):
     return all(alike)
 
 
-@pytest.mark.parametrize("search", ["boxes", "direct", "pairs"])
-def test_bits_depend_neither_on_the_search_nor_on_where_a_run_is_split(search):
-    whole, parts = gp.Simulation(DISCS, seed=8), gp.Simulation(DISCS, gp.EventDriven(search), seed=8)
-    whole.advance(duration=40.0)
-    parts.advance(duration=0.7)
-    for _ in range(10):
-        parts.advance(max_events=3)
-        parts.advance(until=40.0, max_work=7)
-    middle = gp.Simulation(DISCS, gp.EventDriven(search), seed=8)
-    middle.restore(parts.checkpoint())
-    for one in (parts, middle):
-        one.advance(until=40.0)
-        assert same(whole, one)
-
-
 @given(opened(), st.integers(0, 1000))
 @settings(max_examples=15)
 def test_random_open_scenes_keep_their_books_and_bits(scene, seed):
@@ -282,20 +282,6 @@ def test_random_open_scenes_keep_their_books_and_bits(scene, seed):
     assert state.energy + tally.wall_energy.sum() == pytest.approx(begun, abs=1e-12 * exchanged)
     assert state.count <= scene.capacity
     whole.check_invariants()
-
-
-def test_units_of_powers_of_two_change_no_bit():
-    """Lengths times 4, times a half, masses times 8: temperatures times 512."""
-    faces = {"x_low": gp.Open(0.3, 1024.0), "x_high": gp.Open(0.1, 512.0)}
-    faces |= {"y_low": gp.Thermal(3.0 * 512.0), "y_high": gp.Open()}
-    species = [gp.Species(12, 2.0, mass=16.0, temperature=512.0)]
-    large = gp.Scene(gp.Container((24.0, 24.0)), species, faces=faces, centres_to_walls=True)
-    one, other = gp.Simulation(DISCS, seed=9), gp.Simulation(large, seed=9)
-    one.advance(duration=20.0)
-    other.advance(duration=10.0)
-    assert np.array_equal(4.0 * one.state.positions, other.state.positions)
-    assert np.array_equal(one.tally.entries, other.tally.entries) and one.tally.entries.any()
-    assert np.array_equal(512.0 * one.tally.wall_energy, other.tally.wall_energy)
 
 
 def test_numbers_of_particles_are_those_of_the_lowest_free_places():
@@ -353,7 +339,7 @@ def test_attempts_to_enter_are_events():
 def test_numbers_beyond_the_first_block_are_found():
     """Of a thousand numbers those of the first 256 are taken, then the lowest that is vacant."""
     from gaspart.kernels.model import Open
-    from gaspart.kernels.obstacles.face import NUMBERS, lowest_vacant
+    from gaspart.kernels.obstacles.opening import NUMBERS, lowest_vacant
 
     present = np.ones(1000, dtype=np.uint8)
     opened = Open(present, np.zeros(4, dtype=np.int64), np.zeros(4, dtype=np.int64))
@@ -411,8 +397,11 @@ def test_what_is_not_defined_of_changing_particles():
         simulation.record_events = True
     with pytest.raises(gp.SceneError, match="look at the states"):
         simulation.properties("positions", at=[0.0])
-    for engine in (gp.TimeStepped(0.01), gp.DSMC(0.1, 1)):
-        with pytest.raises(gp.SceneError, match='faces.x_low.*needs the "event" engine'):
+    for engine, able in (
+        (gp.TimeStepped(0.01), '"event" or "dsmc" engine'),
+        (gp.DSMC(0.1, 1, "enskog"), '"event" engine, or the "boltzmann" model'),
+    ):
+        with pytest.raises(gp.SceneError, match=f"faces.x_low.*needs the {able}"):
             gp.Simulation(DISCS, engine)
     with pytest.raises(gp.SceneError, match="neighbour lists do not support open faces"):
         gp.Simulation(DISCS, gp.EventDriven("lists"))

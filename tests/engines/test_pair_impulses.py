@@ -63,24 +63,6 @@ def test_the_tally_is_what_contacts_give_to_pairs():
     assert tally.other_impulse_sum == pytest.approx(wanted[1], rel=1e-6, abs=1e-6)
 
 
-def test_the_tally_changes_no_bit_and_has_the_same_bits_however_a_run_is_made():
-    bare, whole = started(CUBE, asked=()), started(CUBE)
-    for simulation in (bare, whole):
-        simulation.advance(until=6.0)
-    assert whole.state.positions.tobytes() == bare.state.positions.tobytes()
-    assert bare.tally.contact_impulse_sum is None
-    wanted = [whole.tally.contact_impulse_sum.tobytes(), whole.tally.other_impulse_sum.tobytes()]
-    for search in ("boxes", "lists"):
-        first, second = started(CUBE, search), started(CUBE, search)
-        first.advance(until=2.3)
-        second.restore(first.checkpoint())
-        second.advance(until=6.0)
-        tally = second.tally
-        assert [tally.contact_impulse_sum.tobytes(), tally.other_impulse_sum.tobytes()] == wanted
-    second.reset_tally()
-    assert not second.tally.contact_impulse_sum.any() and not second.tally.other_impulse_sum.any()
-
-
 REFUSED = {
     "loses energy": replace(CUBE, restitution=gp.Restitution(0.9)),
     "periodic": replace(CUBE, container=gp.Container((7.0, 6.0, 5.0))),

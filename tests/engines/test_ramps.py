@@ -93,22 +93,6 @@ def test_particles_leave_with_the_temperature_of_the_place():
         assert squares[part, 0].mean() == pytest.approx(1.0, abs=3.0 * math.sqrt(2.0 / len(part)))
 
 
-def test_units_of_powers_of_two_change_no_bit():
-    """Lengths times 4 and times a half: temperatures times 64."""
-    ramp = gp.Thermal({"x_low": 64.0 * COLD, "x_high": 64.0 * HOT})
-    faces = {"x_low": gp.Thermal(64.0 * COLD), "x_high": gp.Thermal(64.0 * HOT)}
-    large = gp.Scene(
-        gp.Container((4.0 * LENGTH, 4.0 * WIDTH)),
-        [gp.Species(COUNT, 8e-5, temperature=128.0)],
-        faces=faces | {"y_low": ramp, "y_high": ramp},
-    )
-    one, other = (gp.Simulation(scene, ENGINES["event"], seed=1) for scene in (VESSEL, large))
-    one.advance(duration=20.0)
-    other.advance(duration=10.0)
-    assert np.array_equal(4.0 * one.state.positions, other.state.positions)
-    assert np.array_equal(64.0 * one.tally.wall_energy, other.tally.wall_energy)
-
-
 def test_files_and_faces_by_either_name():
     scene = gp.Scene.from_dict(VESSEL.to_dict())
     assert scene == VESSEL and scene.faces["y_low"].temperatures == (COLD, HOT)

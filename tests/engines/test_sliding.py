@@ -59,19 +59,6 @@ def test_momentum_is_conserved_with_that_of_the_walls(engine):
     assert sim.tally.wall_energy.sum() == pytest.approx(energy - sim.state.kinetic_energy, abs=1e-6)
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-def test_a_checkpoint_keeps_what_walls_were_given(engine):
-    sim = gp.Simulation(between(1.0, radius=0.2), ENGINES[engine], seed=4)
-    sim.advance(duration=1.0)
-    stored = sim.checkpoint()
-    again = gp.Simulation(sim.scene, ENGINES[engine], seed=4)
-    again.restore(stored)
-    for one in (sim, again):
-        one.advance(duration=1.0)
-    assert (sim.tally.wall_shear == again.tally.wall_shear).all()
-    assert (sim.state.velocities == again.state.velocities).all()
-
-
 def test_a_trajectory_has_the_shear(tmp_path):
     path = gp.run(between(1.0, radius=0.2), ENGINES["event"], 1, 2.0, 0.5, tmp_path / "run.nc")
     with gp.open_trajectory(path) as run:

@@ -119,28 +119,6 @@ def test_nothing_is_missing_however_long_the_step(pull, how):
         assert found.sum() * 0.1 == pytest.approx(spread * tally.time, rel=0.1)
 
 
-def test_the_tally_changes_no_bit_and_has_the_same_bits_however_a_run_is_made():
-    scene = gp.Scene(BOX, [DENSE, MIXTURE[1]], gravity=FALLING.gravity)
-    bare, whole = started(scene, step=0.01, bins=0), started(scene, step=0.01)
-    for simulation in (bare, whole):
-        simulation.advance(until=2.0)
-    for name in ("positions", "velocities", "images"):
-        assert getattr(whole.state, name).tobytes() == getattr(bare.state, name).tobytes()
-    assert bare.tally.momentum_flux_sum is None
-    assert (bare.tally.wall_impulse == whole.tally.wall_impulse).all()
-    wanted = whole.tally.momentum_flux_sum
-    for settings in ({}, {"boxes_per_side": 2}, {"threads": 2}):
-        first, second = (started(scene, step=0.01, **settings) for _ in range(2))
-        first.advance(until=0.7)
-        assert first.tally.momentum_flux_sum.shape == (2, BINS)  # to read it changes nothing
-        second.restore(first.checkpoint())
-        second.advance(until=2.0)
-        assert second.tally.momentum_flux_sum.tobytes() == wanted.tobytes()
-    second.reset_tally()
-    second.advance(duration=0.0)
-    assert not second.tally.momentum_flux_sum.any()
-
-
 def test_halves_of_a_gas_add_up_to_it():
     start = started(FALLING, step=0.01).initial_state
     halves = replace(FALLING, species=[replace(MIXTURE[0], count=8), replace(MIXTURE[0], count=4)])

@@ -133,25 +133,6 @@ def test_the_trace_is_that_of_energy_and_virial(engine):
     assert tally.collisions > 10
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-@pytest.mark.parametrize("name", ["mixture", "rough"])
-def test_observing_and_restoring_change_no_bit(name, engine):
-    scene = SCENES[name]
-    plain, whole, cut = (
-        gp.Simulation(scene, ENGINES[engine], seed=4, stress=stress) for stress in (False, True, True)
-    )
-    plain.advance(until=3.0)
-    whole.advance(until=3.0)
-    assert np.array_equal(plain.state.velocities, whole.state.velocities)
-    assert plain.tally.stress_sum is None
-    cut.advance(until=1.2)
-    again = gp.Simulation(scene, ENGINES[engine], seed=4, stress=True)
-    again.restore(cut.checkpoint())
-    again.advance(until=3.0)
-    assert np.array_equal(again.tally.stress_sum, whole.tally.stress_sum)
-    assert np.array_equal(again.tally.heat_sum, whole.tally.heat_sum)
-
-
 @pytest.mark.parametrize("search", ["boxes", "lists", "direct", "pairs"])
 def test_every_search_gives_the_same_sums(search):
     first, other = (
@@ -161,17 +142,6 @@ def test_every_search_gives_the_same_sums(search):
     for sim in (first, other):
         sim.advance(duration=2.0)
     assert np.array_equal(first.tally.stress_sum, other.tally.stress_sum)
-
-
-def test_threads_change_no_bit():
-    one, two = (
-        gp.Simulation(gas(3, 2000, 0.01), replace(ENGINES["boltzmann"], cells_per_side=6, threads=n), 1, True)
-        for n in (1, 2)
-    )
-    for sim in (one, two):
-        sim.advance(duration=0.5)
-    assert np.array_equal(one.tally.stress_sum, two.tally.stress_sum)
-    assert np.array_equal(one.tally.heat_sum, two.tally.heat_sum)
 
 
 def test_many_epochs_of_the_clocks_lose_nothing():

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from referee import check_restored, check_searches
 from scenes import gas
 
 import gaspart as gp
@@ -16,29 +15,6 @@ import gaspart as gp
 def driven(dimension=2, count=20, law=None, power=0.3, interval=0.37, boundary="periodic", temperature=1.0):
     scene = gas(dimension, count, 0.1, boundary, temperature=temperature)
     return replace(scene, restitution=law, thermostat=gp.Thermostat(power, interval))
-
-
-@given(
-    st.integers(1, 12),
-    st.sampled_from([None, 0.5]),
-    st.floats(0.01, 2.0),
-    st.sampled_from([None, 1e-24, 1.0]),
-    st.integers(0, 2**32),
-)
-def test_all_searches_give_the_same_events_bit_for_bit(count, normal, interval, temperature, seed):
-    law = None if normal is None else gp.Restitution(normal)
-    scene = driven(2, count, law, interval=interval, temperature=temperature)
-    if count > 1:
-        check_searches(scene, 100, seed, "tally.thermostat_energy")
-
-
-@pytest.mark.parametrize("dimension", [2, 3])
-def test_splits_and_checkpoints_change_no_bit(dimension):
-    scene = driven(dimension, law=gp.Restitution(0.8))
-    kept = ("state.positions", "state.velocities", "tally.thermostat_energy")
-    sim = check_restored(scene, (0.1, 0.37, 5.0, 40.0, 700.0), *kept)
-    sim.check_invariants()
-    assert sim.tally.thermostat_energy > 0.0
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -89,11 +65,6 @@ def test_what_has_no_meaning_is_refused():
         gp.Thermostat(1.0, 0.0)
     with pytest.raises(gp.SceneError, match='needs the "event" .*engine'):
         gp.Simulation(driven(), gp.TimeStepped(0.01))
-
-
-def test_a_scene_file_has_it(tmp_path):
-    driven().to_file(tmp_path / "scene.yaml")
-    assert gp.Scene.from_file(tmp_path / "scene.yaml") == driven()
 
 
 @given(st.integers(1, 4000), st.integers(0, 2**32))

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from referee import WHOLE_TALLY, check_restored
 from scenes import gas, measured_compressibility, mixtures
 
 import gaspart as gp
@@ -49,20 +48,6 @@ def test_any_search_gives_the_same_bits(scene, precision, rewind, passes, seed):
         ends.append((sim.state.unwrapped, tally.wall_impulse, tally.virial_sum, tally.overlaps_left))
     for end in ends[1:]:
         assert all(np.array_equal(one, other) for one, other in zip(ends[0], end, strict=True))
-
-
-@pytest.mark.parametrize("boundary", ["wall", "periodic", ("wall", "periodic")])
-def test_any_number_of_threads_gives_the_same_bits(boundary):
-    """In so dense a gas many contacts of a step depend on one another, across the threads' parts as well."""
-    ends = []
-    for threads in (1, 2, 4):
-        sim = gp.Simulation(gas(2, 300, 0.5, boundary), gp.TimeStepped(0.1, threads=threads), seed=3)
-        sim.advance(duration=4.0)
-        assert sim.tally.multiple_contacts > 1000
-        ends.append((sim.state.unwrapped, str(sim.tally)))
-    for positions, tally in ends[1:]:
-        assert np.array_equal(positions, ends[0][0])
-        assert tally == ends[0][1]
 
 
 def test_one_box_tests_each_pair_once_a_step():
@@ -209,11 +194,6 @@ def test_time_is_a_whole_number_of_steps():
     for _ in range(7):
         sim.advance(until=sim.time + 0.1)
     assert sim.tally.steps == 10
-
-
-def test_splitting_changes_no_bit_and_checkpoints_go_on():
-    scene, engine = gas(2, 100, 0.2, ("wall", "periodic")), gp.TimeStepped(0.02, precision="float32")
-    check_restored(scene, (3.0, 10.0), "state.unwrapped", *WHOLE_TALLY, engine=engine, seed=1)
 
 
 @pytest.mark.parametrize(

@@ -6,9 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from referee import check_restored, events_of, same_bits
+from scenes import place
 from scipy.optimize import brentq
 
 import gaspart as gp
@@ -23,14 +21,6 @@ def ball(faces, height=2.0, velocity=0.0, law=None, gravity=DOWN, side=40.0):
     particle = gp.Particle((2.0, 0.5 + height), (0.0, velocity), 0.5)
     container = gp.Container((4.0, side), ("periodic", "wall"))
     return gp.Scene(container, particles=[particle], faces=faces, gravity=gravity, restitution=law)
-
-
-def place(face, time):
-    """How far a face has moved inwards, by the library's cosine."""
-    turns = time / face.period % 1.0
-    if face.waveform == "sawtooth":
-        return 2.0 * face.amplitude * turns
-    return face.amplitude * (1.0 - math.cos(2.0 * math.pi * turns))
 
 
 def speed(face, time):
@@ -138,60 +128,6 @@ def test_a_ball_without_bounce_follows_a_slow_floor_and_leaves_a_fast_one():
         sim.check_invariants()
 
 
-@st.composite
-def shaken(draw, most=10):
-    """Rough inelastic discs that fall, or elastic spheres, between faces that vibrate."""
-    dimension = draw(st.sampled_from([2, 3]))
-    lengths = draw(st.lists(st.floats(4.5, 9.0), min_size=dimension, max_size=dimension))
-    face = st.builds(
-        gp.Vibrating, st.floats(1e-4, 0.5), st.floats(0.05, 8.0), st.sampled_from(["sine", "sawtooth"])
-    )
-    faces = draw(st.dictionaries(st.sampled_from(["x_high", "y_low", "y_high"]), face, min_size=1))
-    species = [gp.Species(draw(st.integers(1, most)), draw(st.floats(0.1, 0.4)), temperature=1.0)]
-    container = gp.Container(lengths, ("wall",) * dimension)
-    if dimension == 3:
-        return gp.Scene(container, species, faces=faces)
-    law = gp.Restitution(draw(st.sampled_from([0.0, 0.7, 0.95])), draw(st.sampled_from([-1.0, 0.5])))
-    gravity = (0.0, draw(st.sampled_from([-1.0, 0.3])))
-    return gp.Scene(container, species, faces=faces, gravity=gravity, restitution=law)
-
-
-def deepest(sim):
-    """The least gap between any particle and any face that vibrates."""
-    state, gaps = sim.state, []
-    for name, face in sim.scene.faces.items():
-        axis, x = "xyz".index(name[0]), place(face, sim.time)
-        centre = state.positions[:, axis]
-        gaps.append((state.lengths[axis] - centre if "high" in name else centre) - state.radii - x)
-    return np.min(gaps)
-
-
-@given(shaken(), st.integers(0, 2**32))
-def test_energy_is_what_faces_give_and_contacts_take_and_all_searches_agree(scene, seed):
-    sim = events_of(scene, "boxes", 200, seed)
-    sim.check_invariants()
-    tally, before, after = sim.tally, sim.initial_state, sim.state
-    flows = tally.dissipated_energy, *tally.wall_energy
-    scale = np.abs([*flows, before.energy, after.energy, before.kinetic_energy, after.kinetic_energy]).sum()
-    assert after.energy - before.energy == pytest.approx(-sum(flows), abs=1e-11 * scale)
-    assert deepest(sim) > -1e-9
-    for search in ("direct", "pairs") if scene.dimension == 2 else ("direct",):
-        assert same_bits(sim, events_of(scene, search, 200, seed))
-
-
-def test_splits_and_checkpoints_change_no_bit():
-    container = gp.Container((9.0, 12.0), ("periodic", "wall"))
-    scene = gp.Scene(
-        container,
-        [gp.Species(20, 0.05, temperature=1.0)],
-        gravity=DOWN,
-        restitution=gp.Restitution(0.9, 0.5),
-        faces={"y_low": SINE, "y_high": SAWTOOTH},
-    )
-    kept = ("state.positions", "state.velocities", "state.spins", "tally.wall_energy")
-    check_restored(scene, (0.1, 0.37, 5.0, 40.0, 100.0), *kept).check_invariants()
-
-
 def test_what_cannot_vibrate_is_refused():
     scene = ball({"y_low": SINE})
     with pytest.raises(gp.SceneError, match='faces.*needs the "event" engine'):
@@ -223,9 +159,3 @@ def test_obstacles_against_which_a_face_would_press_are_refused():
             replace(scene, walls=[gp.Wall(*ends)])
     for wall in (gp.Wall((0.0, 1.5), (1.0, 1.5)), gp.Wall((1.0, 0.0), (1.0, 9.0))):
         assert replace(scene, walls=[wall]).walls == (wall,)
-
-
-def test_a_scene_file_has_it(tmp_path):
-    scene = ball({"y_low": SINE, "y_high": SAWTOOTH})
-    scene.to_file(tmp_path / "scene.yaml")
-    assert gp.Scene.from_file(tmp_path / "scene.yaml") == scene

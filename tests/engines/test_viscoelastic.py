@@ -1,12 +1,8 @@
 """Viscoelastic particles: single contacts, their scaling, and the energy of many."""
 
-import math
 from dataclasses import replace
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from referee import check_restored, events_of, same_bits
 
 import gaspart as gp
 from gaspart.kernels.physics.contact import fifth_root, restitution_of
@@ -63,34 +59,6 @@ def test_the_damping_depends_on_radii_and_masses():
     assert sim.state.velocities[0, 1] == pytest.approx(expected, rel=1e-13)
 
 
-@st.composite
-def lossy(draw):
-    """Discs of two sizes, rough and viscoelastic, between walls."""
-    species = [
-        gp.Species(draw(st.integers(1, 12)), radius, mass=mass, temperature=1.0)
-        for radius, mass in ((0.4, 1.0), (draw(st.floats(0.1, 0.5)), draw(st.floats(0.1, 10.0))))
-    ]
-    normal, speed = draw(st.floats(0.5, 0.99)), draw(st.sampled_from([1.0, 30.0, 1e3]))
-    law = gp.Restitution(normal, draw(st.sampled_from([-0.5, 0.5])), reference_speed=speed)
-    return gp.Scene(gp.Container((8.0, 9.0)), species, restitution=law)
-
-
-@given(lossy(), st.integers(0, 2**32))
-def test_contacts_take_what_is_lost_and_all_searches_agree(scene, seed):
-    sim = events_of(scene, "boxes", 300, seed)
-    sim.check_invariants()
-    lost = sim.initial_state.energy - sim.state.energy
-    assert sim.tally.dissipated_energy == pytest.approx(lost, rel=1e-9, abs=1e-12)
-    assert lost > 0.0
-    assert same_bits(sim, events_of(scene, "direct", 300, seed))
-
-
-def test_splits_and_checkpoints_change_no_bit():
-    scene = gp.Scene(ROOM, [gp.Species(60, 0.5, temperature=1.0)], restitution=LAW)
-    sim = check_restored(scene, (0.1, 5.0, 40.0), "state.velocities")
-    assert math.isfinite(sim.state.energy)
-
-
 def test_what_has_no_meaning_is_refused():
     for normal in (0.0, 1.0):
         with pytest.raises(gp.SceneError, match="normal.*between 0 and 1, both excluded"):
@@ -99,11 +67,6 @@ def test_what_has_no_meaning_is_refused():
         gp.Restitution(0.9, reference_speed=0.0)
     with pytest.raises(gp.SceneError, match=r'restitution.reference_speed.*needs the "event" .*engine'):
         gp.Simulation(pair(1.0), gp.TimeStepped(0.01))
-
-
-def test_a_scene_file_has_it(tmp_path):
-    pair(1.0).to_file(tmp_path / "scene.yaml")
-    assert gp.Scene.from_file(tmp_path / "scene.yaml") == pair(1.0)
 
 
 def test_a_dense_gas_does_not_collapse():

@@ -10,7 +10,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from referee import WHOLE_TALLY, check_restored
 from scenes import gas
 
 import gaspart as gp
@@ -80,31 +79,6 @@ def test_checkpoints_change_no_bit(tmp_path, engine):
     plain = gp.run(small("wall"), engine, 7, 4.0, 2.0, tmp_path / "plain.nc")
     often = gp.run(small("wall"), engine, 7, 4.0, 2.0, tmp_path / "often.nc", checkpoint_seconds=0.0)
     assert plain.read_bytes() == often.read_bytes()
-
-
-@pytest.mark.parametrize("engine", [ENGINES["event"], ENGINES["step"]], ids=["event", "step"])
-def test_restored_again_and_again_to_the_same_counts(engine):
-    """Large enough for both particles of a pair to plan one contact at one time, one of them out of date."""
-    scene = gas(3, 1000, 0.2)
-    ends = [0.25 * n for n in range(1, 41)]
-    check_restored(scene, ends, "state.positions", *WHOLE_TALLY, engine=engine)
-
-
-def test_restored_lists_have_their_room():
-    """When it does not suffice all lists are made anew, and crossings begin from there: what has happened to
-    a simulation before a checkpoint must not happen after that again."""
-    simulation, restored = (
-        gp.Simulation(gas(3, 500, 0.3), gp.EventDriven("lists"), (4, 2)) for _ in range(2)
-    )
-    at_first = simulation.checkpoint()["room"]
-    simulation.advance(until=80.0)
-    checkpoint = simulation.checkpoint()
-    assert checkpoint["room"].tolist() != at_first.tolist()
-    restored.restore(checkpoint)
-    for one in (simulation, restored):
-        one.advance(until=80.5)
-    for counter in ("collisions", "crossings", "pair_tests"):
-        assert getattr(restored.tally, counter) == getattr(simulation.tally, counter)
 
 
 @every_engine

@@ -210,19 +210,6 @@ def test_work_is_bounded_where_nothing_but_crossings_happens(search):
         assert np.array_equal(getattr(sim.state, name), getattr(whole.state, name)), name
 
 
-@pytest.mark.parametrize("search", ["boxes", "direct", "pairs"])
-def test_pieces_of_bounded_work_change_no_bit(search):
-    sims = [gp.Simulation(gas(2, 20, 0.2, "periodic"), gp.EventDriven(search), seed=2) for _ in range(2)]
-    pieces = 0
-    while sims[0].time < 5.0:
-        sims[0].advance(until=5.0, max_work=1 + pieces % 5)
-        pieces += 1
-    sims[1].advance(until=5.0)
-    assert pieces > sims[1].tally.collisions / 5 > 10
-    for name, values in sims[1].checkpoint().items():
-        assert np.array_equal(sims[0].checkpoint()[name], values), name
-
-
 def test_work_is_counted_by_the_event_driven_engine_only():
     sim = gp.Simulation(gas(2, 5, 0.1), gp.TimeStepped(0.01), seed=1)
     with pytest.raises(gp.SceneError, match="max_work"):

@@ -67,8 +67,10 @@ def test_a_run_that_goes_on_has_the_bytes_of_one_in_one_go(trajectory, tmp_path)
     assert gp.resume(part, duration=20.0).read_bytes() == whole
 
 
-def test_a_run_that_was_cut_short_is_continued_to_the_same_bytes(trajectory, tmp_path, monkeypatch):
+@pytest.mark.parametrize("engine", ["event", "dsmc"])
+def test_a_run_that_was_cut_short_is_continued_to_the_same_bytes(engine, trajectory, tmp_path, monkeypatch):
     path, checked = tmp_path / "cut.nc", Simulation.check_invariants
+    whole = trajectory[0] if engine == "event" else made(tmp_path / "whole.nc", engine=engine)
 
     def fails(self, state=None):
         if self.time > 12.0:
@@ -78,8 +80,8 @@ def test_a_run_that_was_cut_short_is_continued_to_the_same_bytes(trajectory, tmp
     with monkeypatch.context() as patched:
         patched.setattr(Simulation, "check_invariants", fails)
         with pytest.raises(KeyboardInterrupt):
-            made(path, checkpoint_seconds=0.0)
-    assert gp.resume(path).read_bytes() == trajectory[0].read_bytes()
+            made(path, engine=engine, checkpoint_seconds=0.0)
+    assert gp.resume(path).read_bytes() == whole.read_bytes()
 
 
 def test_the_energy_is_conserved_and_the_numbers_are_stated(trajectory):
@@ -217,12 +219,17 @@ def test_what_is_not_steady_or_vanishes_ends_no_run(tmp_path):
             gp.run(scene, until=gp.Accuracy(name, 0.1), path=tmp_path / "run.nc")
 
 
-@given(opened(), st.integers(0, 1000))
-@settings(max_examples=8)
-def test_random_open_runs_are_read_checked_and_exported(scene, seed):
+OPEN_RUNS = st.one_of(st.tuples(opened(), st.just("event")), st.tuples(opened(most=0.1), st.just("dsmc")))
+
+
+@given(OPEN_RUNS, st.integers(0, 1000))
+@settings(max_examples=16)
+@pytest.mark.filterwarnings("ignore:gaspart")
+def test_random_open_runs_are_read_checked_and_exported(scene_and_engine, seed):
     """Also those without any particle in some or all frames."""
+    scene, engine = scene_and_engine
     with TemporaryDirectory() as folder:
-        path = gp.run(scene, seed=seed, duration=8.0, sample_interval=0.4, path=Path(folder, "run.nc"))
+        path = gp.run(scene, engine, seed, 8.0, 0.4, Path(folder, "run.nc"))
         with gp.open_trajectory(path) as data:
             counts = np.isfinite(data["coordinates"].values[..., 0]).sum(axis=1)
         assert not any(check.passed is False for check in judge_open(path)[1])

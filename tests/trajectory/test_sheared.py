@@ -81,12 +81,6 @@ def test_its_file_passes_the_checks_and_is_drawn(path, tmp_path, capsys):
     gp.view(path, frames=4).save(tmp_path / "view.html")
 
 
-def test_a_scene_file_has_the_faces(tmp_path):
-    SCENE.to_file(tmp_path / "scene.yaml")
-    assert "kind: lees_edwards" in (tmp_path / "scene.yaml").read_text(encoding="utf-8")
-    assert gp.Scene.from_file(tmp_path / "scene.yaml") == SCENE
-
-
 def test_a_granular_gas_of_any_sizes_responds_as_it_dissipates(tmp_path):
     """In the steady state the work of the flow, viscosity shear_rate^2 volume, is what contacts take: to the
     change of the energy."""

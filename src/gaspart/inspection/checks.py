@@ -42,7 +42,7 @@ from gaspart.scene.scene import Scene
 from gaspart.state.boxes import deepest_overlap
 from gaspart.state.initial import initial_state
 from gaspart.trajectory.reading import open_trajectory
-from gaspart.trajectory.recipe import read_recipe
+from gaspart.trajectory.recipe import Recipe, read_recipe
 
 __all__ = ["Check", "judge", "judge_places"]
 
@@ -272,7 +272,8 @@ def judge_open(path: Path, tolerance: float | None = None) -> tuple[str, list[Ch
     Returns a line that states the numbers of particles, and the checks of positions, of the balances of
     particles and energy, and of flights. `tolerance` is the allowed overlap, as a fraction of a diameter.
     """
-    scene = read_recipe(path).scene
+    recipe = read_recipe(path)
+    scene = recipe.scene
     with open_trajectory(path) as data:
         data.load()
     counts = particle_numbers(scene, data)
@@ -280,14 +281,15 @@ def judge_open(path: Path, tolerance: float | None = None) -> tuple[str, list[Ch
     title = f"{path}: {counts.min()} to {counts.max()} {kind} in {len(counts)} frames"
     checks = [_particles(data, counts), _energy(scene, data)]
     if "keep" not in data.attrs:
-        frames = _frames(scene, data)
+        frames = _frames(recipe, data)
         checks = [*judge_places(frames, tolerance), *checks, judge_flights(frames)]
     unknown = "speed law", "pressure Z", "diffusion coefficient D"
     return title, [*checks, *(Check(name, None, _CHANGING) for name in unknown)]
 
 
-def _frames(scene: Scene, data: xr.Dataset) -> Frames:
+def _frames(recipe: Recipe, data: xr.Dataset) -> Frames:
     """Return the frames of a run. Absent particles have NaN positions and zero velocities."""
+    scene = recipe.scene
     lengths = np.array(scene.container.lengths)
     positions, velocities = (data[name].values.astype(float) for name in ("coordinates", "velocities"))
     return Frames(
@@ -298,6 +300,8 @@ def _frames(scene: Scene, data: xr.Dataset) -> Frames:
         velocities=np.nan_to_num(velocities),
         time=data["time"].values,
         resolution=float(np.finfo(np.float32).eps * lengths.max()),
+        sampled=not recipe.engine.forbids_overlap,
+        engine=recipe.engine,
         scene=scene,
     )
 

@@ -94,7 +94,7 @@ def positive(meaning: str, **more: Any) -> Kind:
     Returns
     -------
     Kind
-        Kind, whose check returns a float.
+        The kind; its check returns a float.
     """
     return describe(POSITIVE, meaning, **more)
 
@@ -112,7 +112,7 @@ def not_negative(meaning: str, **more: Any) -> Kind:
     Returns
     -------
     Kind
-        Kind, whose check returns a float.
+        The kind; its check returns a float.
     """
     return describe(NOT_NEGATIVE, meaning, **more)
 
@@ -128,7 +128,7 @@ def real(meaning: str) -> Kind:
     Returns
     -------
     Kind
-        Kind, whose check returns a float.
+        The kind; its check returns a float.
     """
     return describe(NUMBER, meaning)
 
@@ -146,7 +146,7 @@ def in_range(meaning: str, least: float, most: float) -> Kind:
     Returns
     -------
     Kind
-        Kind, whose check returns a float.
+        The kind; its check returns a float.
     """
     rule = f"must be from {least:g} to {most:g}"
 
@@ -167,7 +167,7 @@ def fraction(meaning: str) -> Kind:
     Returns
     -------
     Kind
-        Kind, whose check returns a float.
+        The kind; its check returns a float.
     """
 
     def check(key: str, value: Any) -> float:
@@ -191,7 +191,7 @@ def count(meaning: str, minimum: int = 1, **more: Any) -> Kind:
     Returns
     -------
     Kind
-        Kind, whose check returns an int.
+        The kind; its check returns an int.
     """
 
     def check(key: str, value: Any) -> int:
@@ -213,7 +213,7 @@ def flag(meaning: str, **more: Any) -> Kind:
     Returns
     -------
     Kind
-        Kind, whose check returns a bool.
+        The kind; its check returns a bool.
     """
     return describe(FLAG, meaning, **more)
 
@@ -233,7 +233,7 @@ def choice(meaning: str, *accepted: Any, **more: Any) -> Kind:
     Returns
     -------
     Kind
-        Kind, whose check returns the value.
+        The kind; its check returns the value.
     """
 
     def check(key: str, value: Any) -> Any:
@@ -257,7 +257,7 @@ def vector(meaning: str, dimension: int | None = None, sized: bool = True) -> Ki
     Returns
     -------
     Kind
-        Kind, whose check returns a tuple of float.
+        The kind; its check returns a tuple of float.
     """
 
     def check(key: str, value: Any) -> tuple[float, ...]:
@@ -282,7 +282,7 @@ def two_vectors(meaning: str, dimension: int | None = None) -> Kind:
     Returns
     -------
     Kind
-        Kind, whose check returns a tuple of tuples of float.
+        The kind; its check returns a tuple of tuples of float.
     """
 
     def check(key: str, value: Any) -> tuple[tuple[float, ...], ...]:

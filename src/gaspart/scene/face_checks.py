@@ -244,21 +244,31 @@ def attempt_rate(scene: Scene, number: int, face: Open) -> float:
     return number_density(scene, face) * area * width / math.sqrt(2.0 * math.pi)
 
 
-def capacity(scene: Scene) -> int:
-    """Return the maximum number of particles.
+def mean_count(scene: Scene) -> float:
+    """Return the greatest mean number of particles that reservoirs let into a container; 0 for a vacuum.
 
-    Without open faces this is the initial number. With open faces it is the mean number in equilibrium plus
-    10 standard deviations. The estimate is for an ideal gas at the same activity, whose number has a Poisson
-    distribution. Particles that repel each other are fewer. The pressure in the container is at most the
-    pressure of the strongest reservoir. The gas is at least as hot as the coldest face or wall. The maximum
-    never exceeds the number of particles that fit.
+    This is an upper bound. Particles that repel each other are fewer than those of an ideal gas at the same
+    activity. The pressure in the container is at most the pressure of the strongest reservoir. The gas is at
+    least as hot as the coldest face or wall.
     """
     reservoirs = [face for _, face in scene.faces_of(Open) if face.temperature is not None]
     if not reservoirs:
+        return 0.0
+    pressure = max(number_density(scene, face) * (face.temperature or 0.0) for face in reservoirs)
+    return pressure / min(scene.face_temperatures) * scene.container.volume
+
+
+def capacity(scene: Scene) -> int:
+    """Return the maximum number of particles.
+
+    Without open faces this is the number at the start. With reservoirs it is the mean number in equilibrium
+    plus 10 standard deviations: the number of an ideal gas has the distribution of Poisson. The number is
+    never higher than the number that fits.
+    """
+    mean = mean_count(scene)
+    if mean == 0.0:
         return scene.count
     species, d = scene.species[0], scene.dimension
-    pressure = max(number_density(scene, face) * (face.temperature or 0.0) for face in reservoirs)
-    mean = pressure / min(scene.face_temperatures) * scene.container.volume
     most = scene.count + mean + _SIGMAS * math.sqrt(mean) + _SIGMAS
     around = math.prod(length + 2.0 * species.radius for length in scene.container.lengths)
     packed = CLOSE_PACKING[d] * around / ball_volume(d, species.radius)

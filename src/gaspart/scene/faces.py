@@ -613,6 +613,9 @@ class Open(Surface):
     entry is the reversal of an exit, and the weight is z^N exp(-E / k_B T). The density equals the density of
     the reservoir only at some diameters from a face.
 
+    The Boltzmann model of the DSMC engine has no excluded volume, so that no particle is rejected: its
+    reservoir is an ideal gas with the packing fraction `activity`.
+
     Examples
     --------
     >>> import gaspart as gp

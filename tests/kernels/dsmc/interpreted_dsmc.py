@@ -28,6 +28,7 @@ def scenes():
         {"y_low": gp.Thermal(2.0)},
         {"x_low": gp.Thermal({"z_low": 2.0, "z_high": 1.0}, "normal", accommodation=0.75)},
     )
+    openings = {"x_low": gp.Open(0.002, 2.0), "x_high": gp.Open(), "z_low": gp.Thermal(1.5)}
     falling = gp.Scene(flat, two, gravity=(0.0, -0.3), restitution=rough, faces=heated)
     kicked = gp.Scene(cube, two, restitution=viscous, thermostat=gp.Thermostat(1.0, 0.03))
     dense = {"model": "enskog", "cells_per_side": (3, 4, 2)}
@@ -36,6 +37,7 @@ def scenes():
         "mixture": (gp.Scene(room, two), {}),
         "rough and falling": (falling, {}),
         "thermal": (gp.Scene(room, two, faces=normal), {}),
+        "open": (gp.Scene(room, [kind], faces=openings, centres_to_walls=True), {}),
         "kicked": (kicked, {}),
         "dense": (gp.Scene(room, two), dense),
         "stress": (gp.Scene(cube, two, restitution=rough), {}),

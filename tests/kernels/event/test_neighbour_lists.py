@@ -2,14 +2,12 @@
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
-from referee import check_same, events_of, restored, same_bits
-from scenes import gas, mixtures
+from referee import events_of, same_bits
+from scenes import gas
 
 import gaspart as gp
 from gaspart.engines.event import search as event_search
-from gaspart.engines.event.search import chosen_search, distances, obstacle_to_lists
+from gaspart.engines.event.search import chosen_search, distances
 from gaspart.kernels.model import NUMBER_BITS
 
 
@@ -54,38 +52,6 @@ def test_lists_hold_exactly_what_the_centres_say(dimension, boundary):
         assert np.linalg.norm(moved, axis=1).max() < margin * (1 + 1e-9)
 
 
-@given(mixtures(most=40), st.integers(0, 2**32))
-def test_lists_give_the_same_events_bit_for_bit(scene, seed):
-    assume(obstacle_to_lists(scene) is None)
-    assert same_bits(events_of(scene, "pairs", 150, seed), events_of(scene, "lists", 150, seed))
-
-
-@pytest.mark.parametrize(("dimension", "eta"), [(2, 0.65), (3, 0.45)])
-@pytest.mark.parametrize("boundary", ["periodic", "wall"])
-def test_a_dense_gas_has_the_same_events_with_lists_and_boxes(dimension, eta, boundary):
-    scene = gas(dimension, 400, eta, boundary, arrangement="lattice")
-    assert same_bits(events_of(scene, "boxes", 20_000), events_of(scene, "lists", 20_000))
-
-
-@pytest.mark.parametrize(
-    "properties",
-    [
-        {"restitution": gp.Restitution(1.0, 0.5)},
-        {"faces": {"x_low": gp.Thermal(2.0), "x_high": gp.Well(0.5, 0.7), "y_low": gp.Sticky(1.0)}},
-    ],
-    ids=["rough", "faces"],
-)
-def test_other_features_have_the_same_events(properties):
-    species = [
-        gp.Species(60, 0.5, temperature=1.0, moment_of_inertia=0.1),
-        gp.Species(20, 0.4, mass=3.0, temperature=1.0, moment_of_inertia=0.1, fixed=True),
-    ]
-    scene = gp.Scene(gp.Container((15.0, 12.0)), species, **properties)
-    one, other = (events_of(scene, search, 3000) for search in ("boxes", "lists"))
-    assert same_bits(one, other)
-    assert one.tally.wall_impulse.tolist() == other.tally.wall_impulse.tolist()
-
-
 def test_lists_and_cells_grow_when_they_are_full():
     """Small particles among large ones are more than there is room for at first."""
     species = [gp.Species(2, 1.5, temperature=1.0), gp.Species(900, 0.1, temperature=1.0)]
@@ -106,18 +72,6 @@ def test_room_that_is_lacking_on_the_way_is_made(monkeypatch):
     sim = events_of(scene, "lists", 5000)
     assert lists_of(sim).room > room
     assert same_bits(events_of(scene, "boxes", 5000), sim)
-
-
-@given(st.integers(0, 2**32), st.integers(1, 2000))
-@settings(max_examples=10)
-def test_a_checkpoint_goes_on_to_the_same_bits_and_counts(seed, most):
-    scene = gas(3, 120, 0.4, ("periodic", "periodic", "wall"), arrangement="lattice")
-    whole = gp.Simulation(scene, gp.EventDriven("lists"), seed=seed)
-    whole.advance(max_events=most)
-    again = restored(whole)
-    for sim in (whole, again):
-        sim.advance(max_events=1500)
-    check_same(whole, again, "state.positions", "tally.pair_tests", "tally.crossings")
 
 
 @pytest.mark.parametrize(

@@ -4,10 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
-from hypothesis import strategies as st
-from referee import check_searches, events_of
-from scenes import check_outside_walls, partitioned
 
 import gaspart as gp
 from gaspart.kernels.physics.ballistic import time_of_summit
@@ -24,16 +20,6 @@ def sent(position, velocity, search="boxes", walls=(PLATE,), gravity=(0.0, 0.0, 
     sim.record_events = True
     sim.advance(max_events=1)
     return sim
-
-
-@given(partitioned(), st.integers(0, 2**32))
-def test_all_searches_agree_bit_for_bit_and_no_particle_passes_a_plate(scene, seed):
-    assume(scene.walls)
-    check_searches(scene, 100, seed, may_collapse=True)
-    sim = events_of(scene, "boxes", 1500, seed, may_collapse=True)
-    sim.check_invariants()
-    assert sim.tally.worst_contact < 1e-8
-    check_outside_walls(scene, sim.state, 1e-8)
 
 
 @SEARCHES
@@ -140,6 +126,5 @@ def test_random_particles_keep_clear_and_files_keep_plates():
     scene = gp.Scene(gp.Container((12.0,) * 3), [gp.Species(300, 0.4)], walls=[PLATE])
     state = gp.Simulation(scene, gp.EventDriven(), seed=3).initial_state
     assert all(PLATE.distance(tuple(place)) >= 0.4 for place in state.positions)
-    assert gp.Scene.from_dict(scene.to_dict()) == scene
     assert PLATE.distance((5.0, 3.0, 3.0)) == pytest.approx(math.sqrt(3.0))
     assert PLATE.distance((4.5, 5.0, 9.0)) == pytest.approx(math.hypot(1.5, 1.0))

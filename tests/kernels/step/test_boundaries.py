@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from referee import WHOLE_TALLY, check_restored
 from scenes import granular, measured_heat, metals, surfaced
 
 import gaspart as gp
@@ -26,14 +25,6 @@ THREE = (
     gp.Particle((2.0, 5.0), (1.0, 0.3), 0.5, mass=2.0, spin=0.3),
     gp.Particle((6.0, 5.4), (-0.5, 0.0), 0.5, mass=3.0),
     gp.Particle((8.0, 2.4), (-0.5, 0.4), 0.8),
-)
-SEARCHES = (
-    {"boxes_per_side": 1},
-    {"boxes_per_side": 3},
-    {"skin": 0.05},
-    {"skin": 2.0},
-    {"threads": 2},
-    {"threads": 4},
 )
 
 
@@ -75,31 +66,6 @@ def test_few_particles_follow_the_event_driven_engine(parts):
         assert np.array_equal(sim.state.well_energies, exact.state.well_energies)
         if exact.state.vibrations is not None:
             assert np.allclose(sim.state.vibrations, exact.state.vibrations, atol=1e-9)
-
-
-@pytest.mark.parametrize("boundary", ["wall", ("periodic", "wall")])
-def test_any_search_and_any_threads_give_the_same_bits(boundary):
-    faces = {name: face for name, face in FACES.items() if boundary == "wall" or name[0] == "y"}
-    ends = []
-    for search in SEARCHES:
-        sim = gp.Simulation(rough_gas(boundary, faces), gp.TimeStepped(0.02, **search), seed=4)
-        sim.advance(duration=0.4)
-        sim.reset_tally()
-        sim.advance(duration=1.2)
-        sim.check_invariants()
-        state, tally = sim.state, sim.tally
-        assert tally.collisions > 40
-        assert tally.wall_hits.sum() > 10
-        sums = tally.wall_hits, tally.wall_impulse, tally.wall_energy, tally.virial_sum
-        ends.append((state.unwrapped, state.spins, state.vibrations, state.well_energies, *sums))
-    for end in ends[1:]:
-        assert all(np.array_equal(one, other) for one, other in zip(ends[0], end, strict=True))
-
-
-def test_splits_and_kills_change_no_bit():
-    scene, engine = rough_gas(), gp.TimeStepped(0.02)
-    kept = ("state.positions", "state.spins", "state.vibrations", *WHOLE_TALLY)
-    check_restored(scene, (2.0, 6.0), *kept, engine=engine, seed=1)
 
 
 def test_heat_through_a_gas_is_that_of_the_event_driven_engine():

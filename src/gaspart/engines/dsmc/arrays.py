@@ -18,7 +18,7 @@ from gaspart.engines.features.faces import (
 from gaspart.errors import SceneError
 from gaspart.kernels.dsmc.enskog import Dense
 from gaspart.kernels.dsmc.model import PADDED, Faces, Grid, Law, Particles, Workspace
-from gaspart.kernels.model import ContactLaw, flight_dtype
+from gaspart.kernels.model import ContactLaw, Open, flight_dtype
 from gaspart.kernels.physics.exact_sum import WIDTH
 from gaspart.scene.accessible import Accessible
 from gaspart.scene.limits import ball_volume
@@ -43,7 +43,10 @@ def empty_particles(state: State) -> Particles:
 
 
 def grid_for(scene: Scene, state: State, cells: tuple[int, ...], threads: int) -> Grid:
-    """Return a grid with a number of cells along each axis, over the accessible volume."""
+    """Return a grid with a number of cells along each axis, over the accessible volume.
+
+    Between open faces, one more count is for the slots without a particle.
+    """
     lower, upper = accessible(scene)
     per_side = np.array(cells, dtype=np.int64)
     strides = np.append(np.cumprod(per_side[:0:-1])[::-1], 1)
@@ -56,7 +59,7 @@ def grid_for(scene: Scene, state: State, cells: tuple[int, ...], threads: int) -
         volume=float(((upper - lower) / per_side).prod()),
         cell=np.zeros(state.count, np.uint32),
         order=np.zeros(state.count, np.uint32),
-        counts=np.zeros((threads, number), np.uint32),
+        counts=np.zeros((threads, number + scene.is_open), np.uint32),
         starts=np.zeros(number + 1, np.uint32),
     )
 
@@ -117,13 +120,14 @@ TALLY = ("counts", "virial", "loss", "wall_hits", "wall_impulse", "wall_heat")
 """Arrays of `Workspace` with counters, by thread."""
 
 
-def faces_for(scene: Scene, threads: int) -> Faces | None:
-    """Return the kinds of the container's faces, or None if no face is thermal."""
+def faces_for(scene: Scene, threads: int, opened: Open | None) -> Faces | None:
+    """Return the kinds of the container's faces, or None if all are hard or periodic."""
     if not scene.faces:
         return None
     velocities = sliding_velocities(scene)
     shear = None if velocities is None else np.zeros((threads, *velocities.shape, WIDTH), np.int64)
-    return Faces(*kinds_and_levels(scene), velocities, shear, accommodations(scene), ramp_of(scene))
+    present = opened.present if opened else None
+    return Faces(*kinds_and_levels(scene), velocities, shear, accommodations(scene), ramp_of(scene), present)
 
 
 def law_for(law: ContactLaw | None) -> Law | None:

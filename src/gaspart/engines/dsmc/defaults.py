@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from gaspart.errors import SceneError, SimulationError
+from gaspart.scene.face_checks import mean_count
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Particle, Species
 from gaspart.state.boxes import cube_side
@@ -44,6 +45,14 @@ class Rates:
     def at_density(self, times: float) -> Rates:
         """Return the rates at a density multiplied by `times`."""
         return Rates(times * self.frequency, self.speed, self.path / times)
+
+
+def usual_count(scene: Scene) -> float:
+    """Return the number of particles to which cells and steps fit.
+
+    Between open faces this is the number at the start or with the strongest reservoir, if that is more.
+    """
+    return max(scene.count, mean_count(scene)) if scene.is_open else scene.count
 
 
 def accessible(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
@@ -90,7 +99,7 @@ def _rates(scene: Scene, kinds: Kinds, dense: bool, squares: list[float]) -> tup
     """Return collision frequency and speed of kinds with given mean squares of a velocity component."""
     d, square = scene.dimension, np.array(squares)
     radius = np.array([kind.radius for kind in kinds])
-    number = np.array([float(kind.count) for kind in kinds])
+    number = np.array([usual_count(scene) if scene.is_open else float(kind.count) for kind in kinds])
     lower, upper = accessible(scene)
     density = number / float((upper - lower).prod())
     sigma = radius[:, None] + radius
@@ -264,13 +273,18 @@ def levels(reach: Reach, step: float, divided: bool) -> tuple[np.ndarray, np.nda
     return np.array(kicked), np.array([reach.speed(ROOM * reach.recommended, part) for part in steps])
 
 
-def pace_for(scene: Scene, reach: Reach, step: float, divided: bool) -> Pace:
-    """Return the levels of a step in the form of the kernels."""
+def pace_for(
+    scene: Scene, reach: Reach, step: float, divided: bool, present: np.ndarray | None = None
+) -> Pace:
+    """Return the levels of a step in the form of the kernels.
+
+    present : see `kernels.dsmc.model.Faces`
+    """
     from gaspart.kernels.dsmc import model as pace
 
     pulls = scene.gravity or (0.0,) * scene.dimension
     drifts = tuple(around and g != 0.0 for around, g in zip(scene.container.periodic, pulls, strict=True))
-    return pace.Pace(*levels(reach, step, divided), 0, drifts, np.zeros(1))
+    return pace.Pace(*levels(reach, step, divided), 0, drifts, np.zeros(1), present)
 
 
 _TOO_LONG = f"lets particles fly more than {MOST:g} mean free paths, or {MOST:g} times from wall to wall"
@@ -333,7 +347,9 @@ def cells_for(engine: DSMC, scene: Scene, gas_rates: Rates, crowding: float = 1.
         if len(sides) != d:
             raise SceneError("cells_per_side", prescribed, f"must be one number, or one for each of {d} axes")
         return sides
-    return recommended_cells(engine.model, scene, gas_rates.at_density(crowding), crowding * scene.count)
+    return recommended_cells(
+        engine.model, scene, gas_rates.at_density(crowding), crowding * usual_count(scene)
+    )
 
 
 def recommended_cells(model: str, scene: Scene, gas_rates: Rates, number: float) -> tuple[int, ...]:
@@ -440,7 +456,7 @@ def coarse(
     crowding : see `cells_for`
     """
     texts = {}
-    fit = recommended_cells(engine.model, scene, gas_rates, crowding * scene.count)
+    fit = recommended_cells(engine.model, scene, gas_rates, crowding * usual_count(scene))
     effect = f"makes the viscosity {100.0 * predicted_error(cells, step, scene, gas_rates):.2g} % too high"
     wide, met = float(widths_of(cells, scene).max()) / gas_rates.path, step * gas_rates.frequency
     if not engine.adapts_cells and wide > WIDEST * (1.0 + 1e-9) and any(map(operator.lt, cells, fit)):

@@ -12,6 +12,7 @@ from gaspart.engines.dsmc.arrays import TALLY, empty_particles, faces_for, kinds
 from gaspart.engines.dsmc.defaults import FINEST
 from gaspart.engines.dsmc.resolution import EPOCH, HIGHEST, Resolution
 from gaspart.engines.dynamics import check_parts
+from gaspart.engines.features.faces import OpenPart, crowded_error, open_of, reservoirs_of, with_room
 from gaspart.engines.features.law import LawPart, contact_law
 from gaspart.engines.features.part import Part, TallyPart, step_kicks
 from gaspart.engines.features.tallies import ThreadedPerAreaPart, tallied_fluxes
@@ -24,6 +25,7 @@ from gaspart.kernels.dsmc.boltzmann import Stress
 from gaspart.kernels.dsmc.model import kick_all
 from gaspart.kernels.model import Space
 from gaspart.kernels.physics.exact_sum import WIDTH, exact_parts, sum_over_threads
+from gaspart.scene.face_checks import mean_count, refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State, drift_of
@@ -43,25 +45,31 @@ _OVERSIZED = (
 
 
 def check_scene(scene: Scene, state: State) -> None:
-    """Raise SceneError for features that this engine does not model, or for too many particles."""
+    """Raise SceneError for particles that this engine does not model, or for too many of them."""
     if oversized_particles(state).any():
         raise SceneError("radius", scene.largest_radius, _OVERSIZED)
     if state.count > MOST_PARTICLES:
         raise SceneError("count", state.count, f"the DSMC engine takes {MOST_PARTICLES} particles at most")
+    if (mean := mean_count(scene)) > scene.capacity:
+        rule = f"lets in {mean:.3g} particles of an ideal gas, of which {scene.capacity} fit"
+        refuse_open(scene, f'{rule}: a reservoir of this density needs the "event" engine')
 
 
-def check_made(counts: np.ndarray, time: float) -> None:
+def check_made(counts: np.ndarray, time: float, most: int) -> None:
     """Raise SimulationError if steps could not be completed.
 
     counts : see `kernels.dsmc.model`
+    most : greatest number of particles
     """
-    from gaspart.kernels.dsmc.model import FAR, UNFINISHED
+    from gaspart.kernels.dsmc.model import CROWDED, FAR, UNFINISHED
 
     if counts[:, UNFINISHED].any():
         raise SimulationError(
             f"at time {time:g} a particle has met faces of the container more than 2^24 times in a step,"
             " which is not finished: give a shorter time_step"
         )
+    if counts[:, CROWDED].any():
+        raise crowded_error(time, most)
     if counts[:, FAR].any():
         raise SimulationError(
             f"at time {time:g} a particle has crossed the container 2^31 times along a periodic axis,"
@@ -145,24 +153,32 @@ class DsmcDynamics(SteppedDynamics):
     ) -> None:
         engine.check_features(scene)
         check_scene(scene, state)
-        self._resolution = Resolution(engine, scene, state, len(kinds_of(state)[0]))
+        state = with_room(scene, state)
+        self._open = open_of(scene, state)
+        self._reservoirs = reservoirs_of(scene, seed, self._open) if self._open else None
+        self._resolution = Resolution(engine, scene, state, len(kinds_of(state)[0]), self._open)
         super().__init__(scene, state, self._resolution.step, engine.threads)
         self._particles = empty_particles(state)
         self._workspace = workspace_for(engine, scene, state, self.time_step, seed)
         self._space = Space(scene.container.lengths, scene.container.periodic, self._workspace.margin)
         law = contact_law(scene, state)
-        self._faces, self._law = faces_for(scene, engine.threads), law_for(law)
+        self._faces, self._law = faces_for(scene, engine.threads, self._open), law_for(law)
         self._kicks = step_kicks(scene, self.time_step, seed)
         parts = (
             LawPart(law) if law else None,
             self._kicks,
             WallShearPart(self._faces.shear) if self._faces and self._faces.shear is not None else None,
             ThreadedPerAreaPart(self._workspace.per_area, _per_area) if scene.has_unequal_areas else None,
+            OpenPart(scene, self._open, self._reservoirs) if self._open else None,
         )
         optional = tally_parts(tallies, scene, state, engine.threads)
         self._parts = [*(part for part in parts if part), *optional]
         self._optional = {part.name: part.kernel for part in optional}
-        self._place(np.arange(state.count), state.positions, state.velocities, state.images)
+        for part in self._parts:
+            part.set_clock(0.0)
+        middle = 0.5 * np.array(scene.container.lengths)  # where slots without a particle are at rest
+        positions = np.where(np.isnan(state.positions), middle, state.positions)
+        self._place(np.arange(state.count), positions, state.velocities, state.images)
         self._place_in_step = self._clock_since = 0
         self._look()
 
@@ -174,7 +190,10 @@ class DsmcDynamics(SteppedDynamics):
     def _look(self) -> None:
         """Adapt the cells to the present density of the gas."""
         if self._resolution.crowds:
-            self._resolution.look(self._positions.T, self.time)
+            positions = self._positions.T
+            if self._open:
+                positions = positions[self._open.present[self._slots] > 0]
+            self._resolution.look(positions, self.time)
 
     def _place(
         self, slots: np.ndarray, positions: np.ndarray, velocities: np.ndarray, images: np.ndarray
@@ -229,7 +248,7 @@ class DsmcDynamics(SteppedDynamics):
             self._steps, self._place_in_step = divmod(at, _WHOLE)
             if self._kicks is not None and (kick := self._kicks.due(at / _WHOLE, 0.5**level)):
                 kick_all(self._particles, self._workspace, *kick, self._kicks.given_terms)
-            check_made(self._workspace.counts, self.time)
+            check_made(self._workspace.counts, self.time, self._scene.capacity)
 
     def _run(self, level: int, number: int) -> int:
         """Run the kernel for some parts of a step, and return the number of completed parts.
@@ -241,7 +260,7 @@ class DsmcDynamics(SteppedDynamics):
         workspace = self._workspace._replace(dt=math.ldexp(self.time_step, -level))
         context = layout.ThreadContext(self._space, workspace, 0)
         stress = self._optional.get("stress")
-        options = self._scene.gravity, self._faces, self._law, now.dense, stress, pace
+        options = (self._scene.gravity, self._faces, self._law, now.dense, stress, pace, self._reservoirs)
         return loop.run_steps(self._particles, now.grid, context, number, self._threads, options)
 
     def reset_tally(self) -> None:

@@ -24,9 +24,11 @@ from gaspart.engines.dsmc.defaults import (
     recommended_cells,
     step_for,
     too_fast,
+    usual_count,
 )
 from gaspart.kernels.dsmc.enskog import Dense
 from gaspart.kernels.dsmc.model import Grid, Pace, Particles, fitting_level
+from gaspart.kernels.model import Open
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 
@@ -54,22 +56,27 @@ _CHANGED = 0.75
 
 def may_crowd(scene: Scene) -> bool:
     """Return True if the density can become nonuniform."""
-    return scene.count > 1 and (
-        bool(scene.gravity and any(scene.gravity)) or bool(scene.faces) or not spreads(scene)
+    return scene.is_open or (
+        scene.count > 1
+        and (bool(scene.gravity and any(scene.gravity)) or bool(scene.faces) or not spreads(scene))
     )
 
 
 def crowding(positions: np.ndarray, cells: tuple[int, ...], scene: Scene) -> float:
     """Return the relative density around particles at positions (N, d).
 
-    It is computed from the numbers of pairs in some cells, and is 1 in a uniform gas.
+    It is computed from the numbers of pairs in some cells, and is 1 in a uniform gas of the usual number of
+    particles.
     """
     lower, upper = accessible(scene)
     coordinates = (positions - lower) / (upper - lower) * cells
     at = np.clip(coordinates.astype(np.int64), 0, np.array(cells) - 1)
     counts = np.bincount(np.ravel_multi_index(tuple(at.T), cells)).astype(float)
     number = len(positions)
-    return float((counts * (counts - 1.0)).sum()) * math.prod(cells) / (number * (number - 1.0))
+    if number < 2:
+        return 0.0
+    usual = usual_count(scene) if scene.is_open else number
+    return float((counts * (counts - 1.0)).sum()) * math.prod(cells) / (usual * (number - 1.0))
 
 
 def next_level(level: int, times: float) -> int:
@@ -95,8 +102,11 @@ class Resolution:
     grid, dense, pace : arrays for the kernels; `dense` for a dense gas, `pace` if steps follow the speeds
     """
 
-    def __init__(self, engine: DSMC, scene: Scene, state: State, kinds: int) -> None:
+    def __init__(
+        self, engine: DSMC, scene: Scene, state: State, kinds: int, opened: Open | None = None
+    ) -> None:
         self._engine, self._scene, self._state, self._kinds = engine, scene, state, kinds
+        self._present = opened.present if opened else None
         self._found = rates(scene, engine.model == "enskog")
         self.step = step_for(engine, scene, self._found)
         check_step(reach_of(scene, self._found.path), self.step, self._found)
@@ -124,13 +134,13 @@ class Resolution:
         self._reach = reach_of(scene, self._found.at_density(2.0**crowded).path)
         self.pace: Pace | None = None
         if may_speed_up(scene) or is_hotter(state, self._found):
-            self.pace = pace_for(scene, self._reach, self.step, engine.adapts_steps)
+            self.pace = pace_for(scene, self._reach, self.step, engine.adapts_steps, self._present)
 
     def look(self, positions: np.ndarray, time: float) -> None:
         """Adapt the cells to the density around particles at positions (N, d)."""
         scene, times = self._scene, 2.0**self.crowded
         cells = recommended_cells(
-            self._engine.model, scene, self._found.at_density(times), times * scene.count
+            self._engine.model, scene, self._found.at_density(times), times * usual_count(scene)
         )
         crowded = next_level(self.crowded, crowding(positions, cells, scene))
         if crowded != self.crowded:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from gaspart.engines.engine import Engine, register
 from gaspart.errors.guidance import with_guidance
 from gaspart.keys import choice, count, declare, per_side, positive
+from gaspart.scene.face_checks import refuse_open
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.dynamics import DsmcDynamics
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from gaspart.state.state import State
 
 MODELS = ("boltzmann", "enskog")
+_DILUTE = 'needs the "event" engine, or the "boltzmann" model of this one'
 ADAPTED = ("nothing", "steps", "cells", "both")
 
 
@@ -103,10 +105,10 @@ class DSMC(Engine):
     title: ClassVar[str] = "DSMC"
     neutral_settings: ClassVar[tuple[str, ...]] = ("threads",)
     forbids_overlap: ClassVar[bool] = False
-    tallies: ClassVar[frozenset[str]] = frozenset(("stress", "wall_shear", "per_area"))
+    tallies: ClassVar[frozenset[str]] = frozenset(("stress", "wall_shear", "per_area", "entries"))
     models: ClassVar[frozenset[str]] = frozenset(
         ("gravity", "restitution", "roughness", "viscoelasticity", "thermostat")
-    ) | {"centres_to_walls", "thermal", "sliding", "accommodation", "ramp"}
+    ) | {"centres_to_walls", "thermal", "sliding", "accommodation", "ramp", "open"}
     counters: ClassVar[tuple[str, ...]] = ("steps",)
     timed_at: ClassVar[tuple[float, float]] = (0.01, 1.0)
     advised: ClassVar[tuple[str, ...]] = ("model",)
@@ -158,6 +160,12 @@ class DSMC(Engine):
         0.5
         """
         return self.time_step
+
+    def check_features(self, scene: Scene) -> None:
+        """Raise SceneError for features of a scene that the engine with this model does not model."""
+        super().check_features(scene)
+        if self.model == "enskog":
+            refuse_open(scene, f"{_DILUTE}: the particles of its reservoirs have no excluded volume")
 
     def for_scene(self, scene: Scene, interval: float | None = None) -> DSMC:
         """Return a copy with cells and time step chosen for a scene.

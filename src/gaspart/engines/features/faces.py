@@ -11,10 +11,10 @@ import numpy as np
 from gaspart.engines.features.part import Part
 from gaspart.errors import SimulationError
 from gaspart.kernels import model as kernels
-from gaspart.kernels.event.entry import schedule_first
 from gaspart.kernels.model import NONE, STICKY, Faces, Model, Motion, Ramp, Sliding
-from gaspart.kernels.obstacles.face import NUMBERS, RULES
+from gaspart.kernels.obstacles.face import RULES
 from gaspart.kernels.obstacles.moving import advance_piston
+from gaspart.kernels.obstacles.opening import NUMBERS, schedule_first
 from gaspart.kernels.physics.running_sum import values
 from gaspart.scene.face_checks import attempt_rate
 from gaspart.scene.faces import FACES, Open, Vibrating

@@ -8,7 +8,7 @@ slots, for any number of threads.
 import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
-from gaspart.kernels.dsmc.model import number_row, position_row
+from gaspart.kernels.dsmc.model import number_at, number_row, position_row
 
 _ONE = np.uint32(1)  # whole numbers of this type index arrays without a test for negative ones
 
@@ -37,6 +37,15 @@ def locate(particles, first, end, grid):
         add_coordinates(x, grid.origin[k], grid.inverse[k], per_side, stride, cell)
 
 
+@inner_helper
+def leave_out_absent(particles, first, end, grid, present):
+    """Take the slots without a particle, of those from `first` to `end`, out of their cells."""
+    if present is not None:
+        for slot in range(first, end):
+            if not present[number_at(particles, slot)]:
+                grid.cell[slot] = len(grid.starts) - 1
+
+
 @inner_kernel
 def count(first, end, part, grid):
     """Count the slots of one thread, from `first` to `end`, in each cell."""
@@ -48,7 +57,10 @@ def count(first, end, part, grid):
 
 @inner_kernel
 def find_starts(grid):
-    """Find the first slot of each cell, and in `counts` of each thread in a cell."""
+    """Find the first slot of each cell, and in `counts` of each thread in a cell.
+
+    Slots without a particle count as one more cell, so that the last cell ends before them.
+    """
     counts, starts = grid.counts, grid.starts
     offset = np.uint32(0)
     for cell in range(counts.shape[1]):
@@ -57,7 +69,8 @@ def find_starts(grid):
             number = counts[part, cell]
             counts[part, cell] = offset
             offset += number
-    starts[counts.shape[1]] = offset
+    if counts.shape[1] < len(starts):
+        starts[counts.shape[1]] = offset
 
 
 @inner_kernel

@@ -1,4 +1,4 @@
-"""Sequence of the steps: motion, sort into cells, collisions.
+"""Sequence of the steps: motion, entries through open faces, sort into cells, collisions.
 
 The parts of a step that threads share are functions of their own; with `threads` None there is one thread,
 and the machine code has no other threads. numba passes no nested tuples to threads, so each thread makes its
@@ -24,6 +24,7 @@ from gaspart.kernels.dsmc.cells import (
     swap_row,
 )
 from gaspart.kernels.dsmc.enskog import collide_slab, find_bounds, find_near_speeds, look_at_cells
+from gaspart.kernels.dsmc.entry import admit_all, first_free_slot
 from gaspart.kernels.dsmc.model import ThreadContext, open_space, still_fits
 from gaspart.kernels.dsmc.motion import move
 from gaspart.kernels.model import Space
@@ -196,13 +197,15 @@ def run_steps(particles, grid, context, steps, threads, options):
 
     threads : number of threads, or None for one thread
     options : gravity (d,), the faces with a kind, the law, the data of a dense gas, the sums of the stress,
-        and the lengths that fit; each may be None
+        the lengths that fit, and the gases outside of open faces; each may be None
     """
-    gravity, faces, law, dense, stress, pace = options
+    gravity, faces, law, dense, stress, pace, reservoirs = options
     for n in range(steps):
         if n > 0 and not still_fits(particles, pace):
             return n
+        slot = first_free_slot(reservoirs)
         move_all(particles, grid, context, threads, gravity, faces, law)
+        admit_all(particles, slot, grid, context, faces, reservoirs)
         sort_all(particles, grid, threads)
         collide_all(particles, grid, context, threads, law, dense, stress)
         context.workspace.clock[0] += 1

@@ -13,13 +13,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gaspart.kernels.compile.policy import inner_helper, kernel
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
 from gaspart.kernels.model import Ramp, Space
 from gaspart.kernels.physics.logarithm import LN2, LOG_SERIES
 from gaspart.kernels.physics.rng import normal_pair
 from gaspart.kernels.physics.running_sum import add
 
-COLLISIONS, TRIALS, EXCEEDED, UNFINISHED, FAR = range(5)
+COLLISIONS, TRIALS, EXCEEDED, UNFINISHED, FAR, CROWDED = range(6)
 PADDED = 8  # number of counts of a thread, a cache line
 
 
@@ -53,8 +53,9 @@ class Grid(NamedTuple):
     volume : volume of a cell
     cell : (N,), cell of the particle in each slot
     order : (N,), workspace of the sort
-    counts : (threads, cells), number of each thread's slots in each cell
-    starts : (cells + 1,), first slot of each cell
+    counts : (threads, cells), number of each thread's slots in each cell; between open faces
+        (threads, cells + 1), with the slots without a particle, which come last
+    starts : (cells + 1,), first slot of each cell, and end of the last one
     """
 
     per_side: np.ndarray
@@ -122,14 +123,16 @@ class Workspace(NamedTuple):
 
 
 class Faces(NamedTuple):
-    """Thermal and sliding faces of the container.
+    """Thermal, sliding and open faces of the container.
 
     Attributes
     ----------
-    kind, level : (2d,), kind and temperature of the thermal faces, see `kernels.model`
+    kind, level : (2d,), kind of the faces and temperature of the thermal ones, see `kernels.model`
     velocity : (2d, d), velocities of the faces, or None if no face slides
     shear : (threads, 2d, d, WIDTH), momentum given to each face along each axis, or None if no face slides
     accommodation, ramp : see `kernels.model`
+    present : (N,), 1 for particles inside; 0 for the others, which are at rest in the middle of the container
+        and in no cell; None if no face is open
     """
 
     kind: np.ndarray
@@ -138,6 +141,7 @@ class Faces(NamedTuple):
     shear: np.ndarray | None
     accommodation: np.ndarray | None
     ramp: Ramp | None
+    present: np.ndarray | None
 
 
 class Law(NamedTuple):
@@ -194,6 +198,15 @@ def kind_in(particles, slot, workspace):
     if len(workspace.kind) == 0:
         return np.int64(0)
     return np.int64(workspace.kind[number_at(particles, slot)])
+
+
+@inner_kernel
+def count_inside(present):
+    """Return the number of particles inside."""
+    number = 0
+    for n in range(len(present)):
+        number += present[n]
+    return number
 
 
 @inner_helper
@@ -299,6 +312,7 @@ class Pace(NamedTuple):
     level : present level
     drifts : (d,), whether only the motion relative to the mean counts along an axis
     fastest : (1,), highest mean speed found
+    present : see `Faces`
     """
 
     low: np.ndarray
@@ -306,6 +320,7 @@ class Pace(NamedTuple):
     level: int
     drifts: tuple[bool, ...]
     fastest: np.ndarray
+    present: np.ndarray | None
 
 
 @inner_helper
@@ -321,7 +336,15 @@ def drift_along(particles, axis, drifts):
 
 
 @inner_helper
-def mean_speed(particles, drifts):
+def number_moving(particles, present):
+    """Return the number of particles inside."""
+    if present is not None:
+        return count_inside(present)
+    return particles.data.shape[1]
+
+
+@inner_helper
+def mean_speed(particles, drifts, present):
     """Return the mean speed of all particles; 0 if there are no particles."""
     d, count = len(particles.images), particles.data.shape[1]
     u = particles.data[velocity_row(particles, 0)]
@@ -334,13 +357,13 @@ def mean_speed(particles, drifts):
     for n in range(count):
         x, y, z = u[n] - mean_u, v[n] - mean_v, flat * (w[n] - mean_w)
         total += sqrt(x * x + y * y + z * z)
-    return total / max(count, 1)
+    return total / max(number_moving(particles, present), 1)
 
 
 @kernel
 def fitting_level(particles, pace):
     """Return the first level that fits the particles, or the number of levels."""
-    speed = mean_speed(particles, pace.drifts)
+    speed = mean_speed(particles, pace.drifts, pace.present)
     pace.fastest[0] = max(pace.fastest[0], speed)
     for level in range(len(pace.low)):
         if pace.low[level] <= speed <= pace.high[level]:

@@ -7,7 +7,7 @@ them has left the container.
 import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
-from gaspart.kernels.dsmc.cells import count, locate
+from gaspart.kernels.dsmc.cells import count, leave_out_absent, locate
 from gaspart.kernels.dsmc.model import FAR, kind_in, number_at, position_row, velocity_row
 from gaspart.kernels.dsmc.walls import fly_among_faces
 from gaspart.kernels.step.motion import fall, fly
@@ -66,7 +66,7 @@ def redo_flight_with_faces(particles, slot, which, context, gravity, faces, law)
             x -= (v + 0.5 * gravity[k] * dt) * dt
         flights[0].position[k], flights[0].velocity[k] = x, v
     flights[0].radius = context.workspace.radius[which]
-    fly_among_faces(number_at(particles, slot), which, context, gravity, faces, law)
+    fly_among_faces(number_at(particles, slot), which, dt, context, gravity, faces, law)
     for k in range(len(context.space.lengths)):
         particles.data[position_row(particles, k), slot] = flights[0].position[k]
         particles.data[velocity_row(particles, k), slot] = flights[0].velocity[k]
@@ -132,4 +132,6 @@ def move(particles, slots, grid, context, gravity, faces, law):
             if space.periodic[k] and crossed[3 - len(space.lengths) + k] + hits > 0:
                 wrap_all(particles, block, k, space.lengths[k], context)
         locate(particles, block[0], block[1], grid)
+    if faces is not None:
+        leave_out_absent(particles, slots[0], slots[1], grid, faces.present)
     count(slots[0], slots[1], context.part, grid)

@@ -1,9 +1,10 @@
-"""Hits of particles at the container's faces, which are hard, by the collision law, or thermal.
+"""Hits of particles at the container's faces, which are hard, by the collision law, thermal, or open.
 
-This code is only used for a particle that a step has moved beyond a face. The particle returns to its
-position at the begin of the step and flies from face to face until the step ends, under gravity on parabolas.
-All hits are performed, whatever their number: the hits of smooth, elastic particles by whole periods if they
-are many, and the bounces of other particles on a floor until they are too short to matter.
+This code is only used for a particle that a step has moved beyond a face, or that enters in the step. The
+first returns to its position at the begin of the step. Both fly from face to face until the step ends, under
+gravity on parabolas. All hits are performed, whatever their number: the hits of smooth, elastic particles by
+whole periods if they are many, and the bounces of other particles on a floor until they are too short to
+matter.
 """
 
 from math import floor, inf, sqrt
@@ -13,7 +14,7 @@ import numpy as np
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.dsmc.boltzmann import Sums, count_loss, law_of, load_spin, store_spin
 from gaspart.kernels.dsmc.model import UNFINISHED, open_space
-from gaspart.kernels.model import HARD, NONE, THERMAL
+from gaspart.kernels.model import HARD, NONE, OPEN, THERMAL
 from gaspart.kernels.obstacles.thermal import mirrors, temperature_at
 from gaspart.kernels.physics.ballistic import advance_coordinate
 from gaspart.kernels.physics.collision import collide_wall_by_law
@@ -345,13 +346,33 @@ def comes_to_rest(face, speed, remaining, which, context, gravity, law):
 
 
 @inner_kernel
-def fly_among_faces(i, which, context, gravity, faces, law):
-    """Move the particle in a thread's workspace for a step, with all its hits.
+def leave_open(i, face, which, context, present):
+    """Remove a particle, and count the energy and momentum that it carries through the face.
+
+    Its slot keeps a place in the middle of the container, at rest.
+    """
+    if present is None:
+        return
+    workspace, part = context.workspace, context.part
+    flights, mass, square = workspace.flights[part], workspace.mass[which], 0.0
+    press(face, which, mass * abs(flights[0].velocity[face // 2]), context)
+    for k in range(len(context.space.lengths)):
+        square += flights[0].velocity[k] * flights[0].velocity[k]
+        flights[0].position[k] = 0.5 * context.space.lengths[k]
+        flights[0].velocity[k] = 0.0
+    add_exact(workspace.wall_heat[part, face], 0.5 * mass * square)
+    present[i] = 0
+
+
+@inner_kernel
+def fly_among_faces(i, which, remaining, context, gravity, faces, law):
+    """Move the particle in a thread's workspace to the end of a step, with all its hits.
 
     i, which : number and kind of the particle
+    remaining : time until the end of the step
     """
     space, workspace, part = context.space, context.workspace, context.part
-    flights, radius, remaining = workspace.flights[part], workspace.radius[which], workspace.dt
+    flights, radius = workspace.flights[part], workspace.radius[which]
     resting, clock = 0, np.int64(workspace.clock[0])
     for hit in range(_MOST):
         time, face, speed = next_face(flights, radius, space, gravity, resting)
@@ -373,6 +394,10 @@ def fly_among_faces(i, which, context, gravity, faces, law):
                 resting |= 1 << (face // 2)
                 continue
         workspace.wall_hits[part, face] += 1
+        if faces is not None:
+            if faces.kind[face] == OPEN:
+                leave_open(i, face, which, context, faces.present)
+                return
         if hard:
             bounce(i, face, which, context, law)
         if faces is not None:

@@ -1,39 +1,25 @@
-"""Particles of reservoirs outside of open faces, which try to enter.
-
-All attempts at all faces are one Poisson process. Attempt n has the random words of the counter n, which
-alone determine its position, its velocity, and the time to the next attempt. Whether it succeeds depends on
-the particles inside.
-"""
+"""Entry of particles from reservoirs outside of open faces: an attempt succeeds if there is room inside."""
 
 from math import inf
 
 from numpy import int64, uint64
 
-from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.event.boxes import insert, member
 from gaspart.kernels.event.prediction import NOT_CROSSED, predict_after, without_contacts
 from gaspart.kernels.event.queue import count_event
 from gaspart.kernels.model import NONE
-from gaspart.kernels.obstacles.face import lowest_vacant, occupy
+from gaspart.kernels.obstacles.opening import (
+    draw_entering_velocity,
+    face_of,
+    lowest_vacant,
+    occupy,
+    place_on,
+    schedule_next,
+    words_of_attempt,
+)
 from gaspart.kernels.physics.mass import mass_of
-from gaspart.kernels.physics.rng import flux_speed, log_of, normal_pair, random_words, uniform
 from gaspart.kernels.physics.running_sum import add
-
-_PLACE, _VELOCITY = 0, 1  # random words of an attempt
-
-
-@inner_helper
-def waiting_time(random_bits, rate):
-    """Draw a time from the exponential distribution with a given rate."""
-    return -log_of(uniform(random_bits)) / rate
-
-
-@kernel
-def schedule_first(reservoirs, clock):
-    """Schedule the first attempt after the time `clock`, by the words of the counter 0."""
-    random_bits, _, _, _ = random_words(reservoirs.key, _PLACE, 0, 0)
-    reservoirs.number[0] = 1
-    reservoirs.time[0] = clock + waiting_time(random_bits, reservoirs.rate)
 
 
 @inner_helper
@@ -42,27 +28,6 @@ def next_attempt(reservoirs):
     if reservoirs is not None:
         return reservoirs.time[0]
     return inf
-
-
-@inner_helper
-def face_of(random_bits, reservoirs):
-    """Return the face of an attempt."""
-    face, fraction = 0, uniform(random_bits)
-    while fraction >= reservoirs.up_to[face]:
-        face += 1
-    return face
-
-
-@inner_helper
-def place_on(position, face, words, lengths):
-    """Set a random position on a face from two random `words`."""
-    axis, n = face // 2, 0
-    for k in range(len(lengths)):
-        if k == axis:
-            position[k] = lengths[k] if face % 2 else 0.0
-        else:
-            position[k] = uniform(words[n]) * lengths[k]
-            n += 1
 
 
 @inner_helper
@@ -139,19 +104,10 @@ def is_free(particles, time, queue, boxes, space, reservoirs):
 @inner_kernel
 def send_in(flights, i, face, reservoirs, model, tally):
     """Set position and velocity of an entering particle, and count momentum and energy."""
-    axis, d, width = face // 2, len(model.space.lengths), reservoirs.width[face]
-    number, key = reservoirs.number[0], reservoirs.key
-    mass, inwards = mass_of(i, model.masses, model.law), -1.0 if face % 2 else 1.0
-    speed = width * flux_speed(key, _VELOCITY, number)
-    first, second, _ = normal_pair(key, _VELOCITY, number, 1)
-    flights[i].velocity[axis] = inwards * speed
-    flights[i].velocity[(axis + 1) % d] = width * first
-    if d == 3:
-        flights[i].velocity[(axis + 2) % d] = width * second
-    square = 0.0
-    for k in range(d):
+    mass = mass_of(i, model.masses, model.law)
+    speed, square = draw_entering_velocity(flights[i].velocity, face, reservoirs)
+    for k in range(len(model.space.lengths)):
         flights[i].position[k] = reservoirs.position[k]
-        square += flights[i].velocity[k] * flights[i].velocity[k]
     add(tally.wall_impulse, face, mass * speed)
     add(tally.wall_energy, face, -0.5 * mass * square)
 
@@ -179,7 +135,7 @@ def admit(particles, queue, boxes, model, tally, limits, reservoirs):
     soonest, stop, most = limits
     attempts, last, time, entered = 0, -inf, reservoirs.time[0], False
     while attempts < most and time < soonest and time <= stop and not entered:
-        wait, where, first, second = random_words(reservoirs.key, _PLACE, reservoirs.number[0], 0)
+        wait, where, first, second = words_of_attempt(reservoirs)
         face = face_of(where, reservoirs)
         place_on(reservoirs.position, face, (first, second), model.space.lengths)
         entered = is_free(particles, time, queue, boxes, model.space, reservoirs)
@@ -194,9 +150,8 @@ def admit(particles, queue, boxes, model, tally, limits, reservoirs):
             predict_entered(particles, i, time, queue, boxes, model, tally)
         attempts += 1
         last = time
-        time += waiting_time(wait, reservoirs.rate)
-        reservoirs.number[0] += 1
-        reservoirs.time[0] = time
+        schedule_next(time, wait, reservoirs)
+        time = reservoirs.time[0]
     return attempts, last, False
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf, nan
+from math import inf
 
 from numpy import int64
 
@@ -27,6 +27,7 @@ from gaspart.kernels.obstacles.moving import (
     is_piston,
     moves,
 )
+from gaspart.kernels.obstacles.opening import collide_open
 from gaspart.kernels.obstacles.support import (
     come_to_rest,
     longest_rest,
@@ -42,57 +43,6 @@ from gaspart.kernels.physics.lees_edwards import shift_image
 from gaspart.kernels.physics.mass import mass_of
 from gaspart.kernels.physics.per_area import add_per_area, spin_before, velocity_before
 from gaspart.kernels.physics.running_sum import add
-
-# Open faces: a particle that reaches one leaves the container, and its number becomes vacant.
-#
-# A particle that enters takes the lowest vacant number. Vacant numbers are counted in blocks, so that the
-# search is short; its result depends only on which particles are inside.
-
-
-NUMBERS = 256
-"""Numbers of particles in a block of `Open.vacant`."""
-
-
-@inner_kernel
-def leave(flights, i, face, model, tally, law, opened):
-    """Remove a particle, and count the energy and momentum that it carries through the face."""
-    axis, square = face // 2, 0.0
-    mass = mass_of(i, model.masses, law)
-    add(tally.wall_impulse, face, mass * abs(flights[i].velocity[axis]))
-    for k in range(len(model.space.lengths)):
-        square += flights[i].velocity[k] * flights[i].velocity[k]
-        flights[i].position[k] = nan
-        flights[i].velocity[k] = 0.0
-    add(tally.wall_energy, face, 0.5 * mass * square)
-    opened.present[i] = 0
-    opened.vacant[i // NUMBERS] += 1
-
-
-@inner_helper
-def collide_open(flights, i, face, model, tally, law, opened):
-    """Remove a particle at a face if faces may be open."""
-    if opened is not None:
-        leave(flights, i, face, model, tally, law, opened)
-
-
-@inner_kernel
-def lowest_vacant(opened):
-    """Return the lowest number that no particle inside has, or NONE."""
-    for block in range(len(opened.vacant)):
-        if opened.vacant[block] > 0:
-            for i in range(block * NUMBERS, min((block + 1) * NUMBERS, len(opened.present))):
-                if not opened.present[i]:
-                    return i
-    return NONE
-
-
-@inner_kernel
-def occupy(opened, i, face):
-    """Count a particle that has entered through a face as present."""
-    opened.present[i] = 1
-    opened.vacant[i // NUMBERS] -= 1
-    opened.entries[face] += 1
-
 
 RULES = {
     "hard": HARD,

@@ -261,9 +261,9 @@ def counts_of(holder: Holder, height: np.ndarray, velocity: np.ndarray, settings
     """Average counts of particles and fluxes over the frames of one block.
 
     The counts are for three groups: held particles, other particles, and gas particles at least a diameter
-    from both walls (and from the well). The fluxes are for particles that leave, near the wall: with speeds
-    below `slow`, and by bins of speed (bins,). `height` (T, N) are heights of centres above the lowest
-    position. `velocity` (T, N) is along x.
+    from both walls (and from the well). The fluxes are for particles that leave the wall and are near it:
+    particles with speeds below `slow`, and particles in each bin of speed (bins,). `height` (T, N) are
+    heights of centres above the lowest position. `velocity` (T, N) is along x.
     """
     held = holder.holds(height, velocity)
     above = height - holder.width

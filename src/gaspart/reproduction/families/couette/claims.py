@@ -129,8 +129,8 @@ def _over_equilibrium(responses: Table, still: Table) -> dict[str, Estimate]:
 def _equilibrium(dense: Table, still: Table) -> list[Claim]:
     """Return the claims on the viscosity of dense gases relative to equilibrium.
 
-    There is a claim for each gas, and one for all gases together. In equilibrium the viscosity follows from
-    the fluctuations of the stress.
+    There is a claim for each gas, and a claim for all gases together. In equilibrium the viscosity follows
+    from the fluctuations of the stress.
     """
     ratios = _over_equilibrium(dense, still)
     stated = {name: (ratio, 0.03) for name, ratio in ratios.items()}

@@ -44,10 +44,13 @@ def freezing_discs(points: list[Point], settings: dict) -> xr.Dataset:
     variables:
 
     compared_pressure : pressure of COMPARED discs, with _error, _drift and _drift_error
-    plateau : plateau pressure with plateau_error (`start`)
-    plateau_low, plateau_high : packing fractions at the ends of the plateau (see `plateau`), over `start`
+    plateau : plateau pressure with plateau_error, over `start` (see `plateau`)
+    plateau_low, plateau_high : packing fractions at the ends of the plateau, over `start`
     g, S : g(distance) and S(wave_x, wave_y) of the last start, over `shown`
     x, y, angle : position in diameters, and argument of psi_6, in the last frame, over `shown` and `particle`
+
+    The dimensions of `compared_pressure` are `start` and `compared_packing_fraction`. It is absent if there
+    are no points of COMPARED discs.
     """
     compared = [point for point in points if point.scene.count == COMPARED]
     points = [point for point in points if point not in compared]

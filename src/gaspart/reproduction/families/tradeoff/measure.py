@@ -54,8 +54,8 @@ def speed_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     Over (``row``, ``step``), with NaN beyond the steps of a row: ``time_step``; ``bias`` and ``bias_error``
     (also over ``observable``), relative to the exact run; ``missed`` and ``made_up``, as fractions of all
     contacts; ``energy_drift`` and ``deepest_overlap`` (worst values); ``seconds`` (CPU time per exact
-    collision, with ``seconds_error``) and ``pair_tests`` (per exact collision), NaN if not timed. An error of
-    a bias is computed from the scatter of snapshots, and is at least one contact.
+    collision, with ``seconds_error``) and ``pair_tests`` (per exact collision), NaN if not timed.
+    `bias_error` is computed from the scatter of snapshots; it corresponds to at least one contact.
 
     Over ``row``: ``dimension``, ``packing_fraction``, ``setting``, ``contacts`` (of the exact runs),
     ``event_seconds`` with its error. Over (``row``, ``observable``): ``order`` of the error in the time step,
