@@ -24,7 +24,7 @@ from gaspart.kernels.step.model import part_of
 
 @inner_helper
 def first_free_slot(reservoirs):
-    """Return the first slot without a particle at the begin of a step: all particles come before."""
+    """Return the first slot without a particle at the begin of a step."""
     if reservoirs is not None:
         return count_inside(reservoirs.opened.present)
     return 0
@@ -32,7 +32,7 @@ def first_free_slot(reservoirs):
 
 @inner_kernel
 def send_in(particles, slot, face, words, context, reservoirs):
-    """Put a particle that enters into the first row of the workspace, and count its momentum and energy.
+    """Write an entering particle to the workspace, and count its momentum and energy.
 
     words : two random words, for its position
     """
@@ -51,7 +51,10 @@ def send_in(particles, slot, face, words, context, reservoirs):
 
 @inner_kernel
 def count_entered(particles, slot, grid, present):
-    """Count a particle that has entered in its cell instead of among the slots without a particle."""
+    """Count a particle that has entered in its cell.
+
+    Until now, its slot was counted among the slots without a particle.
+    """
     parts, absent = len(grid.counts), len(grid.starts) - 1
     locate(particles, slot, slot + 1, grid)
     leave_out_absent(particles, slot, slot + 1, grid, present)
@@ -64,9 +67,10 @@ def count_entered(particles, slot, grid, present):
 
 @inner_kernel
 def admit(particles, slot, grid, context, faces, reservoirs):
-    """Perform the entries of one step, into slots from `slot` on, after the motion of the other particles.
+    """Perform the entries of one step, after the motion of the other particles.
 
-    The time of the next attempt counts from the begin of a step.
+    slot : first slot without a particle, which the first entering particle takes
+    reservoirs : their time of the next attempt counts from the begin of the step
     """
     workspace, space, dt = context.workspace, context.space, context.workspace.dt
     flights = workspace.flights[context.part]

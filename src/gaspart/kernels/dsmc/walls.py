@@ -1,4 +1,4 @@
-"""Hits of particles at the container's faces, which are hard, by the collision law, thermal, or open.
+"""Hits of particles at hard, thermal and open faces of the container.
 
 This code is only used for a particle that a step has moved beyond a face, or that enters in the step. The
 first returns to its position at the begin of the step. Both fly from face to face until the step ends, under
@@ -366,7 +366,7 @@ def leave_open(i, face, which, context, present):
 
 @inner_kernel
 def fly_among_faces(i, which, remaining, context, gravity, faces, law):
-    """Move the particle in a thread's workspace to the end of a step, with all its hits.
+    """Move the particle in the workspace to the end of a step, with all its hits.
 
     i, which : number and kind of the particle
     remaining : time until the end of the step

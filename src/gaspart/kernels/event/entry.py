@@ -1,4 +1,4 @@
-"""Entry of particles from reservoirs outside of open faces: an attempt succeeds if there is room inside."""
+"""Entry of particles from reservoirs outside of open faces, if there is room inside."""
 
 from math import inf
 

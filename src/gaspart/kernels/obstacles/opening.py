@@ -86,7 +86,10 @@ def schedule_next(time, random_bits, reservoirs):
 
 @inner_helper
 def words_of_attempt(reservoirs):
-    """Return the random words of the next attempt: for the time to the one after it, face, and position."""
+    """Return four random words of the next attempt.
+
+    They are for the time until the attempt after it, for the face, and for the position on the face.
+    """
     return random_words(reservoirs.key, _PLACE, reservoirs.number[0], 0)
 
 
