@@ -245,11 +245,11 @@ def attempt_rate(scene: Scene, number: int, face: Open) -> float:
 
 
 def mean_count(scene: Scene) -> float:
-    """Return the greatest mean number of particles that reservoirs let into a container; 0 for a vacuum.
+    """Return an upper bound of the mean number of particles between reservoirs.
 
-    This is an upper bound. Particles that repel each other are fewer than those of an ideal gas at the same
-    activity. The pressure in the container is at most the pressure of the strongest reservoir. The gas is at
-    least as hot as the coldest face or wall.
+    The bound is the number of an ideal gas at the same activity, and 0 with a vacuum outside. Particles that
+    repel each other are fewer. The pressure in the container is at most the pressure of the strongest
+    reservoir. The gas is at least as hot as the coldest face or wall.
     """
     reservoirs = [face for _, face in scene.faces_of(Open) if face.temperature is not None]
     if not reservoirs:

@@ -14,12 +14,11 @@ from gaspart.reproduction.families.tradeoff import ENGINES, PARTS, figure, maps,
 from gaspart.reproduction.families.tradeoff import claims as claims_of_tradeoff
 from gaspart.reproduction.families.tradeoff import figure as draw_tradeoff
 from gaspart.reproduction.families.tradeoff.maps import QUANTITIES
-from gaspart.reproduction.families.tradeoff.measure import _orders, frontier, speed_accuracy, time_to_accuracy
-from gaspart.reproduction.families.tradeoff.uniform import OBSERVABLES
+from gaspart.reproduction.families.tradeoff.measure import _orders, speed_accuracy, time_to_accuracy
 from gaspart.reproduction.points.point import Point
 
 STEPS = np.array([0.32, 0.16, 0.08, 0.04])
-SETTINGS = {"order_up_to": 0.2, "accuracies": [0.01, 0.001, 0.0001], "cells": []}
+SETTINGS = {"order_up_to": 0.2, "cells": []}
 FRACTIONS = (0.0001, 0.001, 0.01, 0.1, 0.3)
 SNAPSHOTS, CONTACTS, Z, SECONDS = 6, 1e5, 1.5, 1e-6
 
@@ -181,7 +180,7 @@ def map_measurement(accuracy):
     )
 
 
-# Orders of convergence and the frontier, from made-up runs.
+# Orders of convergence, from made-up runs.
 
 
 @pytest.fixture(scope="module")
@@ -220,14 +219,6 @@ def test_a_refused_step_is_left_out(dataset):
     late = dataset.set_index(row="setting").sel(row="1 pass, no rewinding")
     assert late.time_step.values[:3] == pytest.approx(STEPS[1:])
     assert np.isnan(late.time_step.values[3])
-
-
-def test_the_frontier_takes_the_longest_step_that_will_do(dataset):
-    rate = dataset.isel(gas=0).sel(observable="collision_rate")
-    assert rate.best_step.sel(accuracy=0.01) == 0.08  # 2/3 0.08^2 = 0.4 %
-    assert rate.best_ratio.sel(accuracy=0.01) == pytest.approx(2.0 * 1.125)
-    assert np.isnan(rate.best_ratio.sel(accuracy=0.0001))
-    assert str(rate.best_setting.sel(accuracy=0.01).values) == "4 passes"
 
 
 def test_models_of_dsmc_in_discs(tmp_path):
@@ -280,33 +271,29 @@ def test_time_to_accuracy_of_the_reference_gas(tmp_path):
     assert np.isnan(dataset.cost.sel(quantity="heat_flux")).all()
 
 
-def with_long_runs(dataset, build_up, setting="4 passes"):
-    """The data with one long run, whose error of Z differs by `build_up` from that of paired runs."""
-    return dataset.assign(
+@pytest.mark.parametrize(
+    ("build_up", "setting", "verdict"),
+    [(1e-4, "4 passes", "agrees"), (9e-3, "4 passes", "disagrees"), (9e-3, "1 pass", "no verdict")],
+)
+def test_errors_that_build_up_over_many_steps_are_noticed(dataset, build_up, setting, verdict):
+    """In one long run, whose error of Z differs by `build_up` from that of paired runs."""
+    long = dataset.assign(
         steady_dimension=("steady", [3]),
         steady_packing_fraction=("steady", [0.01]),
         steady_setting=("steady", [setting]),
+        steady_step=("steady", [0.16]),
         build_up=("steady", [build_up]),
         build_up_error=("steady", [1e-4]),
     )
-
-
-@pytest.mark.parametrize(
-    ("build_up", "setting", "step"),
-    [(0.0, "4 passes", 0.16), (3e-4, "4 passes", 0.16), (9e-3, "4 passes", 0.08), (9e-3, "1 pass", 0.16)],
-)
-def test_the_frontier_allows_for_what_builds_up_over_many_steps(dataset, build_up, setting, step):
-    """A hundredth is reached by steps of 0.16 (an error of 0.0014), by those of 0.08 if 0.009 builds up."""
-    best = frontier(with_long_runs(dataset, build_up, setting)).best_step.isel(gas=0, accuracy=0)
-    assert best.values[OBSERVABLES.index("Z")] == step
-    assert best.values[0] == float(dataset.best_step[0, 0, 0])  # of the collision rate
+    (found,) = (value for claim, value in verdicts(long).items() if "steady state" in claim)
+    assert found == verdict
 
 
 def verdicts(dataset):
     return judged(claims_of_tradeoff.speed_accuracy(dataset))
 
 
-def test_orders_losses_and_frontier_agree_where_theory_holds(tmp_path):
+def test_orders_and_losses_agree_where_theory_holds(tmp_path):
     found = verdicts(speed_accuracy_measurement(tmp_path))
     assert set(found.values()) == {"agrees"}
     assert any("order of the error of Z" in claim and "no rewinding" in claim for claim in found)
@@ -318,27 +305,6 @@ def test_contacts_late_by_half_a_step_are_noticed(tmp_path):
     dataset["order"] = dataset.order * 0.5
     found = verdicts(dataset)
     assert sum(verdict == "disagrees" for verdict in found.values()) == 3
-
-
-def test_the_cheaper_engine_is_reported_without_a_verdict(tmp_path):
-    dataset = speed_accuracy_measurement(tmp_path)
-    dataset["gas_packing_fraction"] = dataset.gas_packing_fraction * 0.0 + 0.3
-    found = [verdict for claim, verdict in verdicts(dataset).items() if "time of steps over" in claim]
-    assert set(found) == {"no verdict"}
-
-
-def test_the_cost_is_compared_with_that_of_the_finest_accuracy_that_steps_reach(tmp_path):
-    dataset = speed_accuracy_measurement(tmp_path)
-    dataset["gas_packing_fraction"] = dataset.gas_packing_fraction * 0.0 + 0.3
-    finest, next_to = np.sort(dataset.accuracy.values)[:2]
-    coarsest = dataset.accuracy.values.max()
-    for absent in (np.nan, np.inf):
-        dataset["best_seconds"] = dataset.best_seconds.where(dataset.accuracy > finest, absent)
-        (text,) = (claim for claim in verdicts(dataset) if "time of steps for" in claim)
-        assert f"for {100 * next_to:g} % of Z over that for {100 * coarsest:g} %" in text
-        assert verdicts(dataset)[text] != "inconclusive"
-    dataset["best_seconds"] = dataset.best_seconds.where(dataset.accuracy == coarsest)
-    assert not [claim for claim in verdicts(dataset) if "time of steps for" in claim]
 
 
 def choice(dataset):

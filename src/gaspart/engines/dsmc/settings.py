@@ -162,7 +162,24 @@ class DSMC(Engine):
         return self.time_step
 
     def check_features(self, scene: Scene) -> None:
-        """Raise SceneError for features of a scene that the engine with this model does not model."""
+        """Check that the engine, with its collision model, has all features of a scene.
+
+        Parameters
+        ----------
+        scene : Scene
+            The scene.
+
+        Raises
+        ------
+        SceneError
+            If a feature is missing. The message names the engines that have it.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> box, particles = gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)]
+        >>> gp.DSMC().check_features(gp.Scene(box, particles, gravity=(0.0, -1.0)))
+        """
         super().check_features(scene)
         if self.model == "enskog":
             refuse_open(scene, f"{_DILUTE}: the particles of its reservoirs have no excluded volume")

@@ -11,16 +11,14 @@ PARTS = ("model", "discretisation", "noise", "equilibration", "finite_size")
 """Parts of an error, from the bottom of a stacked bar; the parts that add up to the accuracy come first."""
 FREE_TIMES = 2.5
 """Duration of the relaxation of speeds over which it is integrated, in mean free times."""
-_ACCURACIES = list_of(POSITIVE, "relative accuracies of the cheapest settings")
 FIGURES = {
     "speed_accuracy": {
         "order_up_to": positive("largest relative error that the fits of the order use"),
-        "accuracies": _ACCURACIES,
         "cells": names("experiments of the Enskog model in its default cells"),
     },
     "time_to_accuracy": {
         "counts": list_of(COUNT, "numbers of particles; the first is that of the map"),
-        "accuracies": _ACCURACIES,
+        "accuracies": list_of(POSITIVE, "relative accuracies of the cheapest settings"),
         "elsewhere": names("experiments of gases that the model of costs was not fitted to"),
         "cells": names("experiments of the Enskog model in its default cells"),
         "plates": names("experiments between a hot and a cold plate"),

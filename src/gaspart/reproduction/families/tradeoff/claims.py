@@ -207,13 +207,12 @@ FLUX = "flux of pairs through chords crossed within a step (docs/time-stepped.md
 
 
 def speed_accuracy(ds: xr.Dataset) -> list[Claim]:
-    """Return the claims on error orders, missed contacts, the cost frontier, the steady state.
+    """Return the claims on error orders, missed contacts and the steady state.
 
     Contacts are missed in a dilute gas.
     """
     errors = Table(ds, "row")
-    frontier = [claim for gas in Table(ds, "gas") for claim in _frontier(_of(gas, "Z"))]
-    return [*_orders(errors), *_claims_on_misses(errors), *frontier, *map(_steady, Table(ds, "steady"))]
+    return [*_orders(errors), *_claims_on_misses(errors), *map(_steady, Table(ds, "steady"))]
 
 
 def _of(row: Row, observable: str) -> Row:
@@ -283,48 +282,6 @@ def _claims_on_misses(errors: Table) -> list[Claim]:
     return claims
 
 
-def _frontier(z: Row) -> list[Claim]:
-    """Return the claims that events are cheaper in a dense gas for 0.1 %.
-
-    Time stepping then requires more steps. For other accuracies the cheaper engine depends on the machine;
-    see `gaspart advise`. `z` is Z of one gas.
-    """
-    if z.gas_packing_fraction < 0.3 or z.gas_dimension == 2:
-        return []
-    where = _gas(z.gas_dimension, z.gas_packing_fraction)
-    accuracies = Table(z.dataset, "accuracy")
-    accuracies = accuracies.assign(percent=100 * accuracies.accuracy)
-    fine = accuracies[accuracies.accuracy <= 0.001]
-    claims = each(
-        fine,
-        f"time of steps over that of events for {{percent:g}} % of Z, {where}",
-        form=Claim.at_least,
-        measured=fine.best_ratio,
-        bound=1.0,
-        required=0.2 * fine.best_ratio.value,
-        source="cost of a collision by each engine, on this machine",
-        no_verdict="which engine is cheaper depends on the machine and on both programs",
-        fails_if="time steps are nevertheless cheaper than events",
-    )
-    reached = accuracies[np.isfinite(accuracies.best_seconds)]  # no step is known to be more accurate
-    if len(reached) < 2:
-        return claims
-    relative = reached.best_ratio.error / reached.best_ratio.value
-    seconds = Estimate(reached.best_seconds, reached.best_seconds * relative)
-    claims.append(
-        Claim.at_least(
-            claim=f"time of steps for {reached.percent[-1]:g} % of Z over that for "
-            f"{reached.percent[0]:g} %, {where}",
-            measured=seconds[-1] / seconds[0],
-            bound=1.0,
-            required=0.1,
-            source="shorter steps, more of them; by how much depends on what a collision costs",
-            fails_if="the cost does not depend on the length of a step",
-        )
-    )
-    return claims
-
-
 def _steady(at: Row) -> Claim:
     """Return the claim that long runs have the errors that short paired runs measure.
 
@@ -339,7 +296,7 @@ def _steady(at: Row) -> Claim:
         expected=0.0,
         required=FLOOR,
         source="[Kolafa 2004], first order in 1/N",
-        no_verdict="" if is_converged else "what one pass leaves builds up; the frontier allows for it",
+        no_verdict="" if is_converged else "what one pass leaves builds up; advice takes several passes",
         fails_if="errors accumulate over many steps",
     )
 

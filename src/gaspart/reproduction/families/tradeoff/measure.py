@@ -34,74 +34,11 @@ from gaspart.reproduction.families.tradeoff.uniform import (
     setting_name,
 )
 from gaspart.reproduction.points.point import Point
-from gaspart.reproduction.table import Row, Table
 from gaspart.scene.gas import Gas
 from gaspart.theory.bulk import EXACT
 
-# Cheapest time-stepped setting for each accuracy of a collision, and the event-driven engine.
-
-
 SEEN = 3.5
 """Smallest significant error, in standard errors."""
-
-
-def frontier(dataset: xr.Dataset) -> xr.Dataset:
-    """Find the cheapest time-stepped setting whose error is within each accuracy.
-
-    Two standard errors, and the known increase of the error over many steps, are added to the error.
-
-    Over ``gas``: ``gas_dimension``, ``gas_packing_fraction``. Over (``gas``, ``observable``, ``accuracy``):
-    ``best_seconds`` per exact collision (NaN if no setting is known to reach the accuracy), ``best_ratio``,
-    the ratio to the event-driven engine's time, with ``best_ratio_error``, ``best_step``, ``best_setting``.
-    """
-    errors, steady = Table(dataset, "row"), Table(dataset, "steady")
-    gases = list(dict.fromkeys(zip(errors.dimension, errors.packing_fraction, strict=True)))
-    shape = (len(gases), len(errors.observable), len(errors.accuracy))
-    columns = {name: np.full(shape, np.nan) for name in ("seconds", "ratio", "ratio_error", "step")}
-    chosen = np.full(shape, "none", dtype=object)
-    for g, (dimension, fraction) in enumerate(gases):
-        of = errors[(errors.dimension == dimension) & (errors.packing_fraction == fraction)]
-        within = np.abs(of.bias.value) + 2.0 * of.bias.error  # axes: row, observable, step
-        within[:, OBSERVABLES.index("Z")] += np.array([_built_up(steady, row) for row in of])[:, None]
-        cost = of.seconds.value
-        for o, a in np.ndindex(shape[1:]):
-            fit = np.where((within[:, o] <= errors.accuracy[a]) & np.isfinite(cost), cost, np.inf)
-            best = np.unravel_index(np.argmin(fit), fit.shape)
-            if not np.isfinite(fit[best]):
-                continue
-            event = Estimate(of.event_seconds[best[0]], of.event_error[best[0]])
-            ratio = of.seconds[best] / event
-            values = (cost[best], ratio.value, ratio.error, of.time_step[best])
-            for name, value in zip(columns, values, strict=True):
-                columns[name][g, o, a] = value
-            chosen[g, o, a] = of.setting[best[0]]
-    axes = ("gas", "observable", "accuracy")
-    return xr.Dataset(
-        {f"best_{name}": (axes, values) for name, values in columns.items()}
-        | {
-            "best_setting": (axes, chosen.astype(str)),
-            "gas_dimension": ("gas", [int(dimension) for dimension, _ in gases]),
-            "gas_packing_fraction": ("gas", [float(fraction) for _, fraction in gases]),
-        }
-    )
-
-
-def _built_up(steady: Table, row: Row) -> float:
-    """Return the largest increase of the error of Z over many steps, or 0.
-
-    The `row` is a gas with a setting. The result is 0 if no increase is significant.
-    """
-    if not steady:
-        return 0.0
-    own = steady[
-        (steady.steady_dimension == row.dimension)
-        & (steady.steady_packing_fraction == row.packing_fraction)
-        & (steady.steady_setting == row.setting)
-    ]
-    size = np.abs(own.build_up.value)
-    return float(size[size > SEEN * own.build_up.error].max(initial=0.0))
-
-
 FITTED = 3
 """Minimum number of errors in a fit of their order. Two errors always have an order, even if the error
 changes its sign."""
@@ -111,8 +48,8 @@ def speed_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure errors and costs over the time steps of each gas and setting.
 
     The points are `compare` jobs, `measure_cost` jobs of both engines, and runs of the time-stepped engine
-    that are long enough for the error in the steady state. The settings are ``order_up_to``, the largest
-    error in the fits of the order, and ``accuracies`` of the frontier.
+    that are long enough for the error in the steady state. The setting is ``order_up_to``, the largest
+    error in the fits of the order.
 
     Over (``row``, ``step``), with NaN beyond the steps of a row: ``time_step``; ``bias`` and ``bias_error``
     (also over ``observable``), relative to the exact run; ``missed`` and ``made_up``, as fractions of all
@@ -122,8 +59,7 @@ def speed_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
 
     Over ``row``: ``dimension``, ``packing_fraction``, ``setting``, ``contacts`` (of the exact runs),
     ``event_seconds`` with its error. Over (``row``, ``observable``): ``order`` of the error in the time step,
-    with ``order_error`` (NaN without `FITTED` errors of equal sign). Over (``gas``, ``observable``,
-    ``accuracy``): see `frontier`.
+    with ``order_error`` (NaN without `FITTED` errors of equal sign).
 
     Over ``steady``: gas and setting of long runs, and ``build_up`` with error. It is the relative error of
     their Z minus the error of the paired runs. Over ``timed``, all gases with timings of the event-driven
@@ -137,18 +73,14 @@ def speed_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     rows = compare_steps(points, timed)
     rows = sorted(rows, key=lambda row: (-row["dimension"], row["packing_fraction"]))
     inner = {name: ("observable", "step")[2 - np.ndim(value) :] for name, value in rows[0].items()}
-    dataset = tables.from_rows("row", rows, inner).assign_coords(
-        observable=list(OBSERVABLES), accuracy=settings["accuracies"]
-    )
+    dataset = tables.from_rows("row", rows, inner).assign_coords(observable=list(OBSERVABLES))
     orders = np.array([_orders(row, settings["order_up_to"]) for row in rows])
     dataset["order"] = (("row", "observable"), orders[..., 0])
     dataset["order_error"] = (("row", "observable"), orders[..., 1])
     long = [
         point for point in points if point.job == "simulate" and point.experiment not in settings["cells"]
     ]
-    dataset = dataset.assign(tables.table("steady", long, _steady, rows)).merge(
-        frontier(dataset), join="outer", compat="no_conflicts"
-    )
+    dataset = dataset.assign(tables.table("steady", long, _steady, rows))
     events = [timing for timing in timed if timing["setting"] == "event"]
     dataset = dataset.assign(tables.table("timed", events, _time_per_collision))
     cells = cells_by_fraction(points, settings["cells"])
