@@ -48,7 +48,7 @@ class Rates:
 
 
 def usual_count(scene: Scene) -> float:
-    """Return the number of particles to which cells and steps fit.
+    """Return the number of particles for which cells and steps are chosen.
 
     Between open faces this is the number at the start or with the strongest reservoir, if that is more.
     """
