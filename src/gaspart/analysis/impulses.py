@@ -371,8 +371,8 @@ def described_density(run: Run, axis: int, bins: int, by_impulses: bool) -> dict
 #     (I_low + I_high) h / 2 = int dt sum m v^2 + sum of r dp over contacts - change of sum m x v,
 #
 # x is measured from the middle, and I_low - I_high is the change of the momentum. On the right-hand side, all
-# terms except the collisional one have known means: both changes have the mean 0, and sum m v^2 has the mean
-# that follows from equal sharing of the energy among directions. Their deviations from these means are
+# terms except the collisional one have known means. Both changes have the mean 0. The mean of sum m v^2
+# follows from equal sharing of the energy among directions. Their deviations from these means are
 # subtracted, multiplied by regression coefficients (docs/estimators.md).
 
 

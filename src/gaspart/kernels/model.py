@@ -378,7 +378,7 @@ class InteriorWalls(NamedTuple):
     rows : (M, 5) or (M, 11), see `obstacles.distance`
     wall : (M,), see `obstacles.distance`
     first, listed : listed[first[b] : first[b + 1]] are the rows near box b, for particles of a radius up to
-        `largest_radius`. All rows follow after the last box, for larger particles
+        `largest_radius`. After the last box, `listed` contains all rows, for larger particles
     largest_radius : see `listed`
     warm : None if no wall has a temperature
     moving : None if no wall moves; a moving wall is not in the rows

@@ -431,7 +431,7 @@ def enskog_viscosity(
     Notes
     -----
     (eta_0 / chi) [1 + 2 b chi / (d+2)]^2 + bulk viscosity d / (d+2), where b is 2^(d-1) times the packing
-    fraction and eta_0 the dilute value, 0.17913 in 3D and 0.28829 in 2D, times sqrt(m k_B T) / sigma^(d-1).
+    fraction. The dilute value eta_0 is 0.17913 (3D) or 0.28829 (2D), times sqrt(m k_B T) / sigma^(d-1).
     3D: eta_0 [1/chi + 0.8 b + 0.7615 b^2 chi]; 2D: eta_0 [1/chi + b + 0.8729 b^2 chi] (Gass). The formula is
     accurate to a few per cent up to a packing fraction of 0.3 (3D), and too low for denser gases.
 
@@ -536,7 +536,7 @@ def enskog_conductivity(
     Notes
     -----
     (lambda_0 / chi) [1 + 3 b chi / (d+2)]^2 + d / (2m) bulk viscosity, where b is 2^(d-1) times the packing
-    fraction and lambda_0 the dilute value, 0.67783 in 3D and 1.16192 in 2D, times sqrt(T / m) / sigma^(d-1).
+    fraction. The dilute value lambda_0 is 0.67783 (3D) or 1.16192 (2D), times sqrt(T / m) / sigma^(d-1).
     3D: lambda_0 [1/chi + 1.2 b + 0.7574 b^2 chi]; 2D: lambda_0 [1/chi + 1.5 b + 0.8716 b^2 chi].
 
     Examples

@@ -44,7 +44,7 @@ class Rates:
 
 
 def usual_count(scene: Scene) -> float:
-    """Return the usual number of particles of a scene.
+    """Return the number of particles for which rates are computed.
 
     Between open faces this is the number at the start or with the strongest reservoir, if that is more.
     """

@@ -79,8 +79,9 @@ def correlated_mean(series: ArrayLike, minimum_blocks: int = 16) -> CorrelatedMe
 
     Blocks show whether the series is long enough (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461 (1989)). The
     error from blocks of 1, 2, 4 ... samples grows until the blocks are independent. The error from n blocks
-    has the relative uncertainty 1 / sqrt(2 (n-1)). The error is flat from the shortest block length that is
-    not exceeded by any longer one by more than the uncertainty of the longer one. The error from these blocks
+    has the relative uncertainty 1 / sqrt(2 (n-1)). The error is flat from the shortest block length for which
+    the following holds: no longer block length gives an error that is larger by more than the uncertainty of
+    this error. The error from these blocks
     is not used as the result. It would be too small on average, by 5 to 40 % for 16 to 300 autocorrelation
     times, because it is the first error that is not clearly too small. At least `minimum_blocks` (>= 4)
     samples are needed. Samples at the start that do not fill a block are excluded from the blocks.

@@ -242,8 +242,8 @@ class EventDynamics(Dynamics):
         """Process events up to time `until`, at most `max_events` of them.
 
         Events are collisions, wall hits, and attempted entries through open faces. Raises SimulationError,
-        with the state saved, in two cases: if particles collapse, which means infinitely many collisions in a
-        finite time; or if a run that only a number of events ends has no event during a thousand flights
+        with the state saved, in two cases. The first is a collapse: infinitely many collisions in a finite
+        time. The second is a run without an end time in which no event occurs during a thousand flights
         through the container.
 
         max_work : maximum number of events, box crossings and predictions at the start of an epoch. At this

@@ -6,7 +6,8 @@ entries have the type None. Then scenes that differ only in unused entries share
 calls pass less data.
 
 The used entries are found in the source, including entries used by called functions that receive the tuple.
-numba omits a branch that compares an argument of type None with None; such branches are omitted here, too. An
+numba omits a branch that compares an argument of type None with None; this module omits such branches, too.
+An
 argument that is used in any other way than through its entries is passed completely.
 """
 

@@ -1,8 +1,8 @@
-"""Cells, and the sort of particles in memory by cell.
+"""Cells, and sorting of particles in memory by cell.
 
-A counting sort by threads: each thread counts the particles of its slots in each cell, and puts them into the
-cell after the particles of the threads before it. So the order within a cell is the order of the previous
-slots, for any number of threads.
+The sort is a counting sort with threads. Each thread counts the particles of its slots in each cell, and puts
+them into the cell after the particles of the preceding threads. So the order within a cell is the order of
+the previous slots, for any number of threads.
 """
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
 from gaspart.kernels.dsmc.model import number_at, number_row, position_row
 
-_ONE = np.uint32(1)  # whole numbers of this type index arrays without a test for negative ones
+_ONE = np.uint32(1)  # unsigned indices need no test for negative values
 
 
 @inner_helper
@@ -39,7 +39,7 @@ def locate(particles, first, end, grid):
 
 @inner_helper
 def leave_out_absent(particles, first, end, grid, present):
-    """Take the slots without a particle, of those from `first` to `end`, out of their cells."""
+    """Remove empty slots, among those from `first` to `end`, from their cells."""
     if present is not None:
         for slot in range(first, end):
             if not present[number_at(particles, slot)]:
@@ -57,9 +57,9 @@ def count(first, end, part, grid):
 
 @inner_kernel
 def find_starts(grid):
-    """Find the first slot of each cell, and in `counts` of each thread in a cell.
+    """Find the first slot of each cell, and in `counts` of each thread in it.
 
-    Slots without a particle count as one more cell, so that the last cell ends before them.
+    Empty slots count as one additional cell, so that the last cell ends before them.
     """
     counts, starts = grid.counts, grid.starts
     offset = np.uint32(0)

@@ -1,7 +1,7 @@
-"""Entry of particles from reservoirs outside of open faces.
+"""Entry of particles from reservoirs behind open faces.
 
-A reservoir is a gas without excluded volume, so that all attempts to enter succeed. A particle enters at its
-own time within a step and flies for the remainder of this step; it then has its first collisions.
+A reservoir is a gas of point particles, so every attempt to enter succeeds. A particle enters at its own time
+within a step and flies for the rest of this step. Its first collisions take place at the end of the step.
 """
 
 from numpy import int64
@@ -24,7 +24,7 @@ from gaspart.kernels.step.model import part_of
 
 @inner_helper
 def first_free_slot(reservoirs):
-    """Return the first slot without a particle at the begin of a step."""
+    """Return the first empty slot at the beginning of a step."""
     if reservoirs is not None:
         return count_inside(reservoirs.opened.present)
     return 0
@@ -51,9 +51,9 @@ def send_in(particles, slot, face, words, context, reservoirs):
 
 @inner_kernel
 def count_entered(particles, slot, grid, present):
-    """Count a particle that has entered in its cell.
+    """Add an entered particle to the count of its cell.
 
-    Until now, its slot was counted among the slots without a particle.
+    Before that, its slot was counted as an empty slot.
     """
     parts, absent = len(grid.counts), len(grid.starts) - 1
     locate(particles, slot, slot + 1, grid)
@@ -69,8 +69,8 @@ def count_entered(particles, slot, grid, present):
 def admit(particles, slot, grid, context, faces, reservoirs):
     """Perform the entries of one step, after the motion of the other particles.
 
-    slot : first slot without a particle, which the first entering particle takes
-    reservoirs : their time of the next attempt counts from the begin of the step
+    slot : first empty slot, which the first entering particle receives
+    reservoirs : the time of their next attempt is relative to the beginning of the step
     """
     workspace, space, dt = context.workspace, context.space, context.workspace.dt
     flights = workspace.flights[context.part]

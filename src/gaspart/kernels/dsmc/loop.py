@@ -1,8 +1,8 @@
-"""Sequence of the steps: motion, entries through open faces, sort into cells, collisions.
+"""Sequence of a step: motion, entries through open faces, sorting into cells, collisions.
 
-The parts of a step that threads share are functions of their own; with `threads` None there is one thread,
-and the machine code has no other threads. numba passes no nested tuples to threads, so each thread makes its
-own `ThreadContext`. The result for a particle does not depend on the thread that works on it.
+The parts of a step that threads share are separate functions. If `threads` equals None, there is one thread,
+and the machine code contains no threading. numba does not pass nested tuples to threads, so each thread makes
+its own `ThreadContext`. The result for a particle does not depend on the thread that processes it.
 """
 
 import numpy as np
@@ -70,7 +70,7 @@ def gather_shared(particles, row, grid):
 
 @inner_helper
 def collide_part(particles, cells, grid, context, law, stress):
-    """Perform the collisions of one step in the cells of one thread, from cells[0] to cells[1]."""
+    """Perform the collisions of one step in the cells of one thread, cells[0] to cells[1]."""
     if stress is not None:
         add_flights(particles, cells, grid, context, stress, law)
     collide_cells(particles, cells, grid, context, law, stress)
@@ -88,7 +88,7 @@ def collide_shared(particles, shares, grid, workspace, lengths, periodic, law, s
 def look_at_part(particles, cells, grid, context, dense, law, stress):
     """Prepare the cells of one thread for the collisions of a dense gas.
 
-    The cells are those from cells[0] to cells[1].
+    These are cells[0] to cells[1].
     """
     if stress is not None:
         add_flights(particles, cells, grid, context, stress, law)
@@ -107,7 +107,7 @@ def look_at_shared(particles, shares, grid, workspace, lengths, dense, law, stre
 def collide_slabs(particles, turn, parts, grid, context, dense, law, stress):
     """Perform the collisions of one step in one thread's slabs.
 
-    Every second slab is used, beginning with slab `turn`.
+    These are every second slab, beginning with slab `turn`.
     """
     slabs = part_of(context.part, parts, (len(dense.slabs) - turn) // 2)
     for n in range(slabs[0], slabs[1]):
@@ -191,13 +191,13 @@ def collide_all(particles, grid, context, threads, law, dense, stress):
 
 @allocating_kernel
 def run_steps(particles, grid, context, steps, threads, options):
-    """Perform a number of steps, or fewer if the length of a step no longer fits.
+    """Perform a number of steps, or fewer if the step length becomes unsuitable.
 
     Returns the number of steps performed, at least one.
 
     threads : number of threads, or None for one thread
-    options : gravity (d,), the faces with a kind, the law, the data of a dense gas, the sums of the stress,
-        the lengths that fit, and the gases outside of open faces; each may be None
+    options : gravity (d,), special faces, collision law, data of a dense gas, sums of the stress, step
+        lengths that suit the gas, and gases behind open faces; each may be None
     """
     gravity, faces, law, dense, stress, pace, reservoirs = options
     for n in range(steps):

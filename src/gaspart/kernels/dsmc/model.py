@@ -1,9 +1,9 @@
-"""Data structures of the DSMC engine's kernels: particles, grid, kinds, workspace, tally.
+"""Data structures of the kernels of the DSMC engine: particles, grid, kinds, workspace, counters.
 
-A *slot* is a particle's present position in memory; the slots are in the order of the cells, and `numbers`
-gives the particle's number. Sums of several threads are exact (`physics.exact_sum`), so that they do not
-depend on the order of addition. The structures hold only arrays and plain numbers, because numba passes no
-other types to threads.
+A *slot* is the present position of a particle in memory. Slots are in the order of cells, and `numbers`
+contains the number of the particle in each slot. Sums over threads are exact (`physics.exact_sum`), so they
+do not depend on the order of addition. The structures contain only arrays and plain numbers, because numba
+passes no other types to threads.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from gaspart.kernels.physics.rng import normal_pair
 from gaspart.kernels.physics.running_sum import add
 
 COLLISIONS, TRIALS, EXCEEDED, UNFINISHED, FAR, CROWDED = range(6)
-PADDED = 8  # number of counts of a thread, a cache line
+PADDED = 8  # number of counters per thread, a cache line
 
 
 class Particles(NamedTuple):
@@ -29,8 +29,8 @@ class Particles(NamedTuple):
     Attributes
     ----------
     data : (2d + 1, N), rows of positions, of velocities, and one spare row, by slot
-    rows : (2d + 2,), row of `data` of each position, each velocity and the spare row, then the row of
-        `numbers` in use
+    rows : (2d + 2,), row of `data` for each position, each velocity and the spare row, followed by the
+        present row of `numbers`
     numbers : (2, N), numbers of the particles by slot, in one of the two rows
     images : (d, N), periodic images by particle
     """
@@ -42,20 +42,20 @@ class Particles(NamedTuple):
 
 
 class Grid(NamedTuple):
-    """Grid of cells, and the sort of particles into them.
+    """Grid of cells, and arrays for sorting particles into them.
 
     Attributes
     ----------
     per_side : (d,), number of cells along each axis
     origin : (d,), lower end of the first cell
     inverse : (d,), inverse widths of the cells
-    strides : (d,), strides of the index of a cell
+    strides : (d,), index strides of the cells
     volume : volume of a cell
     cell : (N,), cell of the particle in each slot
     order : (N,), workspace of the sort
-    counts : (threads, cells), number of each thread's slots in each cell; between open faces
-        (threads, cells + 1), with the slots without a particle, which come last
-    starts : (cells + 1,), first slot of each cell, and end of the last one
+    counts : (threads, cells), number of each thread's slots in each cell. With open faces it is (threads,
+        cells + 1), and the last column counts empty slots
+    starts : (cells + 1,), first slot of each cell, and end of the last cell
     """
 
     per_side: np.ndarray
@@ -70,31 +70,31 @@ class Grid(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """Constants, working arrays and tally of a step.
+    """Constants, working arrays and counters of a step.
 
     Attributes
     ----------
     margin : 1 if walls stop surfaces, 0 if they stop centres
     dt : length of a step
     clock : (1,), number of the step, counted from 0
-    kind : (N,), kind of each particle, or (0,) if all are alike
+    kind : (N,), kind number of each particle, or (0,) if all particles are equal
     radius, mass, inertia : (K,), by kind; `inertia` is the moment of inertia
     largest : largest radius
     key : (2,), words of 32 bits for the random numbers of collisions
     wall_key : (2,), words of 64 bits for the random numbers of thermal faces
-    flights : (threads, 2), two particles in the form of the event-driven engine's physics, see
+    flights : (threads, 2), two particles in the form of the event-driven engine, see
         `kernels.model.flight_dtype`
-    inverse_mass, inverse_inertia : (threads, 2), inverses for these particles
+    inverse_mass, inverse_inertia : (threads, 2), inverse masses of these particles
     pair_spins : (threads, 2, 3), spins of these particles
     sums : (threads, 2, 2), sums of the collision law
     counts : (threads, 8), see the names at the top of the module
     virial, loss : (threads, WIDTH), exact sums, see `physics.exact_sum`
     wall_hits : (threads, 2d), number of hits of each face
     wall_impulse, wall_heat : (threads, 2d, WIDTH), exact sums of momentum and energy given to each face
-    inverse_area : (K, 2d), inverse of the area of a face that centres of particles of a kind can reach;
-        without entries unless these areas differ
+    inverse_area : (K, 2d), inverse accessible area of each face for each kind of particles; empty unless
+        these areas differ
     per_area : (threads, 2d, d + 1, WIDTH), momentum along each axis and energy given to each face, divided by
-        that area; without entries unless these areas differ
+        the accessible area; empty unless these areas differ
     """
 
     margin: float
@@ -127,12 +127,12 @@ class Faces(NamedTuple):
 
     Attributes
     ----------
-    kind, level : (2d,), kind of the faces and temperature of the thermal ones, see `kernels.model`
+    kind, level : (2d,), kinds of faces, and temperatures of the thermal faces, see `kernels.model`
     velocity : (2d, d), velocities of the faces, or None if no face slides
     shear : (threads, 2d, d, WIDTH), momentum given to each face along each axis, or None if no face slides
     accommodation, ramp : see `kernels.model`
-    present : (N,), 1 for particles inside; 0 for the others, which are at rest in the middle of the container
-        and in no cell; None if no face is open
+    present : (N,), 1 for particles in the container, 0 for all others, which are at rest in the middle of the
+        container and in no cell; None if no face is open
     """
 
     kind: np.ndarray
@@ -150,7 +150,7 @@ class Law(NamedTuple):
     Attributes
     ----------
     normal, tangential : coefficients of restitution
-    spins : (N, 3), by particle
+    spins : (N, 3), spins by particle
     viscous : see `kernels.model.ContactLaw`
     """
 
@@ -170,13 +170,13 @@ class ThreadContext(NamedTuple):
 
 @inner_helper
 def position_row(particles, axis):
-    """Return the row of `data` that holds the coordinates along an axis."""
+    """Return the row of `data` that contains the coordinates along an axis."""
     return particles.rows[axis]
 
 
 @inner_helper
 def velocity_row(particles, axis):
-    """Return the row of `data` that holds the velocities along an axis."""
+    """Return the row of `data` that contains the velocities along an axis."""
     return particles.rows[len(particles.images) + axis]
 
 
@@ -202,7 +202,7 @@ def kind_in(particles, slot, workspace):
 
 @inner_kernel
 def count_inside(present):
-    """Return the number of particles inside."""
+    """Return the number of particles in the container."""
     number = 0
     for n in range(len(present)):
         number += present[n]
@@ -217,19 +217,19 @@ def open_space(lengths):
     return Space(lengths, (False, False), 0.0)
 
 
-# Random numbers of the collisions: a function of a key, the step, the cell and the trial alone.
+# Random numbers of the collisions, which depend only on a key, the step, the cell and the trial.
 
 
 _M0, _M1 = np.uint64(0xD2511F53), np.uint64(0xCD9E8D57)
 _W0, _W1 = np.uint64(0x9E3779B9), np.uint64(0xBB67AE85)
 _LOW, _HALF, _ROUNDS = np.uint64(0xFFFFFFFF), np.uint64(32), 10
-_BLOCK_BITS = np.uint64(8)  # bits of the block in the counter's last word; the higher bits count steps
+_BLOCK_BITS = np.uint64(8)  # block bits in the last word of the counter; the higher bits count steps
 _TABLE_BITS = 7
 _WORD = 2.0**-32
 
 
 def _natural_log(x: float) -> float:
-    """Compute ln x of a number near 1 with +, -, x and / alone."""
+    """Compute ln x of a number near 1 with only +, -, x and /."""
     s = (x - 1.0) / (x + 1.0)
     total = 0.0
     for coefficient in reversed(LOG_SERIES):
@@ -240,7 +240,7 @@ def _natural_log(x: float) -> float:
 _CENTRES = [1.0 + (n + 0.5) / 2**_TABLE_BITS for n in range(2**_TABLE_BITS)]
 _INVERSES = np.array([1.0 / x for x in _CENTRES])
 _LOGS = np.array([_natural_log(x / 1.5) + _natural_log(1.2) + _natural_log(1.25) for x in _CENTRES])
-"""Logarithms of numbers from 1 to 2, and inverses, at the centres of 128 equal parts."""
+"""Logarithms and inverses of numbers from 1 to 2, at the centres of 128 equal intervals."""
 
 
 @inner_helper
@@ -267,25 +267,25 @@ def words_of(key, step, cell, trial, block):
 
 @inner_helper
 def fraction(random_bits):
-    """Convert a word of 32 bits to a number above 0 and below 1."""
+    """Convert a 32-bit word to a number between 0 and 1, excluding both."""
     return (np.float64(random_bits) + 0.5) * _WORD
 
 
 @inner_helper
 def below(random_bits, count):
-    """Convert a word of 32 bits to a whole number from 0 to count - 1.
+    """Convert a 32-bit word to an integer from 0 to count - 1.
 
-    The probabilities of these numbers differ by count / 2^32.
+    The relative differences between the probabilities of these integers are at most count / 2^32.
     """
     return np.int64((random_bits * np.uint64(count)) >> _HALF)
 
 
 @inner_helper
 def waiting_time(random_bits):
-    """Convert a word of 32 bits to an exponential random number of mean 1.
+    """Convert a 32-bit word to an exponentially distributed random number with mean 1.
 
-    The result is -ln of `fraction`, to 1e-12. The leading bits of the word choose an entry of a table; a
-    series gives the rest.
+    The result is -ln of `fraction`, with an error of 1e-12. The leading bits of the word select an entry of a
+    table, and a series gives the remainder.
     """
     bits = np.float64(np.float64(random_bits) + 0.5).view(np.int64)
     exponent = (bits >> 52) - 1023
@@ -296,21 +296,21 @@ def waiting_time(random_bits):
     return (32 - exponent) * LN2 - (_LOGS[entry] + series)
 
 
-# Mean speed of the particles, and the length of a step that fits it.
+# Mean speed of the particles, and the step length that suits it.
 #
-# A step can be divided into 2^level parts. A level fits if the mean speed is within its limits: below the
-# upper limit particles do not fly too far in a part, and above the lower limit the kicks of a part do not
-# change the speeds too much.
+# A step can be divided into 2^level parts. A level suits the gas if the mean speed is between two limits.
+# Below the upper limit, particles do not fly too far in a part. Above the lower limit, the kicks in a part do
+# not change the speeds too much.
 
 
 class Pace(NamedTuple):
-    """Lengths of a step and the speeds that they fit.
+    """Step lengths, and the speeds for which they are suitable.
 
     Attributes
     ----------
     low, high : (levels,), limits of the mean speed of each level
     level : present level
-    drifts : (d,), whether only the motion relative to the mean counts along an axis
+    drifts : (d,), True if only the motion relative to the mean counts along an axis
     fastest : (1,), highest mean speed found
     present : see `Faces`
     """
@@ -337,7 +337,7 @@ def drift_along(particles, axis, drifts):
 
 @inner_helper
 def number_moving(particles, present):
-    """Return the number of particles inside."""
+    """Return the number of particles in the container."""
     if present is not None:
         return count_inside(present)
     return particles.data.shape[1]
@@ -362,7 +362,7 @@ def mean_speed(particles, drifts, present):
 
 @kernel
 def fitting_level(particles, pace):
-    """Return the first level that fits the particles, or the number of levels."""
+    """Return the first level that suits the particles, or the number of levels."""
     speed = mean_speed(particles, pace.drifts, pace.present)
     pace.fastest[0] = max(pace.fastest[0], speed)
     for level in range(len(pace.low)):
@@ -373,7 +373,7 @@ def fitting_level(particles, pace):
 
 @inner_helper
 def still_fits(particles, pace):
-    """Return True if the present level fits the particles."""
+    """Return True if the present level suits the particles."""
     if pace is None:
         return True
     return fitting_level(particles, pace) == pace.level
@@ -413,7 +413,7 @@ def _kick(particles, slot, width, counter, mass, momentum):
 
 @kernel
 def kick_all(particles, workspace, width, counter, injected_energy):
-    """Kick all particles without a change of the total momentum.
+    """Kick all particles without changing the total momentum.
 
     width : width of the distribution of kicks for mass 1
     counter : see `_kick`

@@ -1,6 +1,6 @@
 """Motion of the particles in one step: free flight, return through faces, and the new cells.
 
-The free flight is a loop without branches; the particles of a block are examined one by one only if one of
+The free flight is a loop without branches. The particles of a block are examined one by one only if one of
 them has left the container.
 """
 
@@ -13,20 +13,20 @@ from gaspart.kernels.dsmc.walls import fly_among_faces
 from gaspart.kernels.step.motion import fall, fly
 
 _BLOCK = 128
-_FURTHEST = 2.0**31  # periodic images are counted in 32 bits
+_FURTHEST = 2.0**31  # periodic images are counted with 32 bits
 
 
 @inner_helper
 def wrap(particles, slot, axis, length, context):
-    """Move a particle back into the container on a periodic axis.
+    """Move a particle back into the container along a periodic axis.
 
-    A particle is counted as FAR if its number of periodic images is too large to be stored.
+    The counter FAR is increased if the number of periodic images is too large to be stored.
     """
     x = particles.data[position_row(particles, axis), slot]
     images = np.floor(x / length)
     if images != 0.0:
         x -= images * length
-        if x >= length:  # a tiny negative x rounds up to the length itself
+        if x >= length:  # a tiny negative x is rounded up to the length itself
             x -= length
             images += 1
         particles.data[position_row(particles, axis), slot] = x
@@ -51,7 +51,7 @@ def is_beyond(particles, slot, radius, space):
 
 @inner_kernel
 def redo_flight_with_faces(particles, slot, which, context, gravity, faces, law):
-    """Repeat the step of a particle that has crossed a wall, now with the faces.
+    """Repeat the step of a particle that has crossed a wall, now including the faces.
 
     which : kind of the particle
     """
@@ -109,7 +109,7 @@ def advance_axis(particles, slots, axis, limits, dt, gravity):
 
 @inner_kernel
 def move(particles, slots, grid, context, gravity, faces, law):
-    """Perform the motion of one step for one thread's slots, and count them in their cells.
+    """Perform the motion of one step for one thread's slots, and count them in cells.
 
     slots : first slot, and the end of the slots
     """

@@ -1,10 +1,10 @@
 """Hits of particles at hard, thermal and open faces of the container.
 
-This code is only used for a particle that a step has moved beyond a face, or that enters in the step. The
-first returns to its position at the begin of the step. Both fly from face to face until the step ends, under
-gravity on parabolas. All hits are performed, whatever their number: the hits of smooth, elastic particles by
-whole periods if they are many, and the bounces of other particles on a floor until they are too short to
-matter.
+This code is used only for two kinds of particles: those that a step has moved beyond a face, and those that
+enter during the step. A particle of the first kind returns to its position at the beginning of the step. Both
+kinds fly from face to face until the end of the step, under gravity on parabolas. All hits are performed,
+whatever their number. If smooth elastic particles have many hits, whole periods of the motion are performed
+at once. The bounces of other particles on a floor are performed until they are too short to matter.
 """
 
 from math import floor, inf, sqrt
@@ -22,9 +22,10 @@ from gaspart.kernels.physics.exact_sum import add_exact
 from gaspart.kernels.physics.rng import flux_speed, normal_pair
 
 _FEW = 64
-"""Number of hits of a particle in a step that are always performed singly, with their own random numbers."""
+"""Number of hits of a particle per step that are always performed one by one, with their own random numbers.
+"""
 _MOST = 2**24
-"""Maximum number of hits without a closed form; a step with more hits of a particle is not finished."""
+"""Maximum number of hits without a closed form; a step with more hits of a particle cannot be completed."""
 _REST = 2.0**-20
 """Longest bounce of an inelastic or rough particle that counts as rest at a face, as a fraction of a step."""
 
@@ -33,8 +34,8 @@ _REST = 2.0**-20
 def time_to_face(y, u, a):
     """Return the time until a particle reaches a face, and its speed there.
 
-    The height y over the face, the speed u and the acceleration a are all directed inwards. The time is the
-    root of y + u t + a t^2/2 in the forms that do not cancel; inf if the particle never reaches the face.
+    The height y over the face, the speed u and the acceleration a are directed inwards. The time is the root
+    of y + u t + a t^2/2 in the form without cancellation; inf if the particle never reaches the face.
     """
     y = max(y, 0.0)
     square = u * u - 2.0 * y * a
@@ -63,7 +64,7 @@ def along(axis, upper, flights, radius, space, gravity):
 def next_face(flights, radius, space, gravity, resting):
     """Return the next face that a particle reaches: (time from now, face, speed towards it).
 
-    Without such a face, the time is infinite and the face NONE.
+    Without such a face, the time is infinite and the face equals NONE.
 
     resting : bits of the axes along which the particle rests
     """
@@ -112,8 +113,8 @@ def draw_spin(i, level, inertia, key, counter, spins):
 
     i : number of the particle
     level : temperature
-    counter : number of components of the spin, number of the draw, and first block of random words that the
-        draw may use
+    counter : number of components of the spin, number of the draw, and first block of random words for the
+        draw
     """
     components, number, block = counter
     width, energy = sqrt(level / inertia), 0.0
@@ -127,9 +128,9 @@ def draw_spin(i, level, inertia, key, counter, spins):
 
 @inner_helper
 def add_shear(face, mass, context, shear):
-    """Add the particle's momentum along a face to the momentum given to the face.
+    """Add the momentum of a particle along a face to the momentum given to the face.
 
-    mass : negative if the particle takes the momentum
+    mass : negative if the particle receives the momentum
     """
     if shear is not None:
         workspace, part = context.workspace, context.part
@@ -141,7 +142,7 @@ def add_shear(face, mass, context, shear):
 
 @inner_helper
 def drag(face, mass, context, velocity, shear):
-    """Add the velocity of a sliding face to the particle that leaves it."""
+    """Add the velocity of a sliding face to the velocity of a particle that leaves it."""
     if velocity is not None:
         for k in range(velocity.shape[1]):
             context.workspace.flights[context.part, 0].velocity[k] += velocity[face, k]
@@ -262,9 +263,9 @@ def bounce_often(face, times, speed, which, context):
 
 @inner_helper
 def lean(face, which, duration, context, gravity):
-    """Put a particle to rest at a face for a time; the face carries its weight.
+    """Put a particle to rest at a face for some time; the face carries its weight.
 
-    duration : time of the rest
+    duration : duration of the rest
     which : kind of the particle
     """
     axis = face // 2
@@ -274,9 +275,9 @@ def lean(face, which, duration, context, gravity):
 
 @inner_kernel
 def finish_axis(axis, remaining, which, context, gravity):
-    """Move a smooth, elastic particle along one axis for a time, with all its bounces.
+    """Move a smooth elastic particle along one axis for some time, with all its bounces.
 
-    The axes are independent. Between the first bounce and the last ones whole periods of the motion are
+    The axes are independent. Between the first and the last bounces, whole periods of the motion are
     performed at once.
     """
     space, workspace = context.space, context.workspace
@@ -298,10 +299,10 @@ def finish_axis(axis, remaining, which, context, gravity):
         if skipped:
             continue
         y, u, a = along(axis, face % 2 == 0, flights, radius, space, gravity)
-        time, w = time_to_face(y, u, a)  # to the face across
+        time, w = time_to_face(y, u, a)  # to the opposite face
         across, period = time < inf, 2.0 * time
         if not across:
-            period = 2.0 * speed / a  # the acceleration is towards this face, away from the face across
+            period = 2.0 * speed / a  # the acceleration is towards this face and away from the opposite face
         if gravity is not None:
             if not period > remaining * 2.0**-53:
                 lean(face, which, remaining, context, gravity)
@@ -316,7 +317,7 @@ def finish_axis(axis, remaining, which, context, gravity):
 
 @inner_helper
 def finish_axes(remaining, which, context, gravity, resting):
-    """Move a smooth, elastic particle along all axes for a time, with all its bounces."""
+    """Move a smooth elastic particle along all axes for some time, with all its bounces."""
     space = context.space
     for k in range(len(space.lengths)):
         if space.periodic[k]:
@@ -327,9 +328,10 @@ def finish_axes(remaining, which, context, gravity, resting):
 
 @inner_helper
 def comes_to_rest(face, speed, remaining, which, context, gravity, law):
-    """Return True if a particle rests at a hard face, and count its loss and weight.
+    """Return True if a particle rests at a hard face; count its loss and weight.
 
-    A particle that hits a face rests there if its bounces are too short; later ones would be shorter still.
+    A particle that hits a face rests there if its bounces are too short, because later bounces would be even
+    shorter.
     """
     workspace, axis = context.workspace, face // 2
     pull = gravity[axis] if face % 2 else -gravity[axis]  # towards the face
@@ -349,7 +351,7 @@ def comes_to_rest(face, speed, remaining, which, context, gravity, law):
 def leave_open(i, face, which, context, present):
     """Remove a particle, and count the energy and momentum that it carries through the face.
 
-    Its slot keeps a place in the middle of the container, at rest.
+    Its slot remains at rest at the middle of the container.
     """
     if present is None:
         return

@@ -1,4 +1,4 @@
-"""Entry of particles from reservoirs outside of open faces, if there is room inside."""
+"""Entry of particles from reservoirs behind open faces, if there is space in the container."""
 
 from math import inf
 
@@ -48,7 +48,7 @@ def overlaps(flights, position, j, time, space):
 
 @inner_kernel
 def is_free_of_all(flights, position, time, space, present):
-    """Return True if a new particle overlaps no particle inside."""
+    """Return True if a new particle overlaps no particle in the container."""
     for j in range(len(flights)):
         if present[j]:
             if overlaps(flights, position, j, time, space):
@@ -58,7 +58,7 @@ def is_free_of_all(flights, position, time, space, present):
 
 @inner_helper
 def coordinate(boxes, axis, x):
-    """Return the coordinate of the box that holds `x` along an axis."""
+    """Return the coordinate of the box that contains `x` along an axis."""
     return min(int64(x / boxes.widths[axis]), boxes.per_side[axis] - 1)
 
 
@@ -103,7 +103,7 @@ def is_free(particles, time, queue, boxes, space, reservoirs):
 
 @inner_kernel
 def send_in(flights, i, face, reservoirs, model, tally):
-    """Set position and velocity of an entering particle, and count momentum and energy."""
+    """Set position and velocity of an entering particle, and count its momentum and energy."""
     mass = mass_of(i, model.masses, model.law)
     speed, square = draw_entering_velocity(flights[i].velocity, face, reservoirs)
     for k in range(len(model.space.lengths)):
@@ -125,9 +125,9 @@ def predict_entered(particles, i, time, queue, boxes, model, tally):
 
 @inner_kernel
 def admit(particles, queue, boxes, model, tally, limits, reservoirs):
-    """Process attempts to enter, up to the first success.
+    """Process attempts to enter, up to the first successful one.
 
-    Returns (number of attempts, time of the last one, whether all numbers of particles are in use).
+    Returns (number of attempts, time of the last attempt, True if all particle numbers are in use).
 
     limits : (3,), time of the next event of the particles inside, time at which to stop, and maximum number
         of attempts

@@ -53,19 +53,19 @@ RULES = {
     "piston": PISTON,
     "open": OPEN,
 }
-"""Kinds of faces: the name, and the number in `Faces.kind`."""
+"""Kinds of faces: name, and number in `Faces.kind`."""
 
 
 @inner_helper
 def plane_of(particles, i, axis, upper, boxes, space, oversized):
     """Return the lower or upper face of a particle's box along an axis.
 
-    The result is (coordinate for its centre, face code). A wall stops an oversized particle some boxes before
-    the last.
+    The result is (coordinate for the particle's centre, face code). A wall stops an oversized particle some
+    boxes before the last box.
     """
     flights = particles.flights
     at = particles.predictions[i].box[axis]
-    up = int64(upper)  # a number: the processor cannot predict which way a particle flies
+    up = int64(upper)  # no branch: the direction of flight is unpredictable
     code = 2 * axis + up
     if at == up * (boxes.per_side[axis] - 1):
         return face_plane(flights, i, axis, upper, space), code
@@ -81,8 +81,9 @@ def plane_of(particles, i, axis, upper, boxes, space, oversized):
 def next_face(particles, i, boxes, space, now, gravity, faces, oversized):
     """Return the next face or edge of a well that a particle reaches: (time, face code).
 
-    The face belongs to its box or to the container. A falling particle may cross the face of a box, turn, and
-    cross it again in the same flight: `now` determines which of its crossings are in the past.
+    The face is a face of the particle's box or of the container. A falling particle may cross a face of a
+    box, turn, and cross it again in the same flight. `now` determines which of these crossings are in the
+    past.
     """
     flights = particles.flights
     soon = inf
@@ -125,10 +126,10 @@ def next_face(particles, i, boxes, space, now, gravity, faces, oversized):
 def next_face_pulled(particles, i, axis, pull, boxes, space, now, oversized):
     """Return the next face along an axis with an acceleration: (time, face code).
 
-    A particle that rises against the acceleration can only leave through the face ahead until it turns, and
-    afterwards only through the face in the direction of the acceleration, so no face is ever crossed twice in
-    the same direction (the rule of Spencer 2022, section 2.1.2, in a form that rounding cannot turn into a
-    loop).
+    A particle that moves against the acceleration can leave only through the face ahead until it turns, and
+    after that only through the face in the direction of the acceleration. So no face is crossed twice in the
+    same direction. This is the rule of Spencer 2022, section 2.1.2, in a form that rounding cannot turn into
+    an endless loop.
     """
     flight = particles.flights[i]
     x, clock = flight.position[axis], flight.clock
@@ -155,7 +156,7 @@ def next_face_pulled(particles, i, axis, pull, boxes, space, now, oversized):
 
 @inner_kernel
 def collide_special(flights, i, face, model, tally, law, faces):
-    """Apply a face with a kind to a particle that hits it; return False if hard."""
+    """Apply a special face to a particle that hits it; return False for a hard face."""
     kind = faces.kind[face]
     if kind in (THERMAL, THERMAL_NORMAL):
         collide_thermal(flights, i, face, model, tally, law, faces)
@@ -193,7 +194,7 @@ def reflect(flights, i, face, model, tally, law, faces):
 def rest_on_face(flights, i, face, hard, model, tally, gravity, support):
     """Put a particle that slides down an interior wall to rest at a face.
 
-    It rests on both the wall and the face; if the face is not hard, the particle is released instead.
+    It then rests on both the wall and the face. If the face is not hard, the particle is released instead.
     """
     if support is None:
         return
@@ -212,7 +213,7 @@ def rest_on_face(flights, i, face, hard, model, tally, gravity, support):
 def rest_after(flights, i, face, hard, model, tally, gravity):
     """Put a particle to rest if its bounce is too short for the clocks to resolve.
 
-    Otherwise the bounce would be repeated for ever.
+    Otherwise the bounce would be repeated forever.
     """
     if gravity is not None:
         axis = face // 2
@@ -228,7 +229,7 @@ def rest_after(flights, i, face, hard, model, tally, gravity):
 def place_at(flights, i, face, space, faces):
     """Place a particle exactly at the face that it has reached.
 
-    If the face moves, the particle may be anywhere inside.
+    If the face moves, the particle may be anywhere in the container.
     """
     axis, upper = face // 2, face % 2 == 1
     plane = face_plane(flights, i, axis, upper, space)

@@ -1,12 +1,12 @@
-"""Open faces: particles that leave through them, and particles of reservoirs outside that enter.
+"""Open faces: particles that leave through them, and particles that enter from reservoirs.
 
-All attempts to enter, at all faces, are one Poisson process. Attempt n has the random words of the counter
-n, which alone determine its position, its velocity, and the time to the next attempt. An engine decides
+All attempts to enter, at all faces, form one Poisson process. Attempt n uses the random words of the counter
+n. These words determine its position, its velocity, and the time to the next attempt. An engine decides
 whether an attempt succeeds.
 
-A particle that leaves makes its number vacant. In the event-driven engine, a particle that enters takes the
-lowest vacant number. Vacant numbers are counted in blocks, so that the search is short; its result depends
-only on which particles are inside.
+If a particle leaves, its number becomes free. In the event-driven engine, an entering particle receives the
+lowest free number. Free numbers are counted in blocks, so that the search is short. Its result depends only
+on which particles are in the container.
 """
 
 from math import nan
@@ -18,8 +18,8 @@ from gaspart.kernels.physics.rng import flux_speed, log_of, normal_pair, random_
 from gaspart.kernels.physics.running_sum import add
 
 NUMBERS = 256
-"""Numbers of particles in a block of `Open.vacant`."""
-_PLACE, _VELOCITY = 0, 1  # random words of an attempt
+"""Number of particle numbers in a block of `Open.vacant`."""
+_PLACE, _VELOCITY = 0, 1  # number of random words of an attempt
 
 
 @inner_kernel
@@ -46,7 +46,7 @@ def collide_open(flights, i, face, model, tally, law, opened):
 
 @inner_kernel
 def lowest_vacant(opened):
-    """Return the lowest number that no particle inside has, or NONE."""
+    """Return the lowest free number, or NONE."""
     for block in range(len(opened.vacant)):
         if opened.vacant[block] > 0:
             for i in range(block * NUMBERS, min((block + 1) * NUMBERS, len(opened.present))):
@@ -71,7 +71,7 @@ def waiting_time(random_bits, rate):
 
 @kernel
 def schedule_first(reservoirs, clock):
-    """Schedule the first attempt after the time `clock`, by the words of the counter 0."""
+    """Schedule the first attempt after the time `clock`, with the random words of the counter 0."""
     random_bits, _, _, _ = random_words(reservoirs.key, _PLACE, 0, 0)
     reservoirs.number[0] = 1
     reservoirs.time[0] = clock + waiting_time(random_bits, reservoirs.rate)
@@ -79,7 +79,7 @@ def schedule_first(reservoirs, clock):
 
 @inner_helper
 def schedule_next(time, random_bits, reservoirs):
-    """Schedule the attempt after the one at `time`."""
+    """Schedule the attempt that follows the attempt at `time`."""
     reservoirs.number[0] += 1
     reservoirs.time[0] = time + waiting_time(random_bits, reservoirs.rate)
 
@@ -88,7 +88,7 @@ def schedule_next(time, random_bits, reservoirs):
 def words_of_attempt(reservoirs):
     """Return four random words of the next attempt.
 
-    They are for the time until the attempt after it, for the face, and for the position on the face.
+    They determine the time to the attempt after it, the face, and the position on the face.
     """
     return random_words(reservoirs.key, _PLACE, reservoirs.number[0], 0)
 
@@ -116,7 +116,7 @@ def place_on(position, face, words, lengths):
 
 @inner_kernel
 def draw_entering_velocity(velocity, face, reservoirs):
-    """Draw the velocity of an entering particle; return its speed across the face, and its square."""
+    """Draw the velocity of an entering particle; return its normal speed, and the squared speed."""
     axis, d, width = face // 2, len(reservoirs.up_to) // 2, reservoirs.width[face]
     number, key = reservoirs.number[0], reservoirs.key
     speed = width * flux_speed(key, _VELOCITY, number)
