@@ -10,11 +10,11 @@ import math
 from dataclasses import dataclass
 
 from gaspart import theory
-from gaspart.engines.dsmc.defaults import rates, square_of
 from gaspart.scene.face_checks import attempt_rate, piston_end
 from gaspart.scene.faces import Open
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Particle, Species
+from gaspart.theory.rates import MEAN_SQUARE, rates, square_of
 
 _COLLISIONS, _CROSSINGS = 200.0, 10.0
 """Minimum numbers of collisions and of container crossings per particle in the suggested duration."""
@@ -129,7 +129,7 @@ def scales(scene: Scene) -> Scales:
     pairs of kinds.
     """
     d, gas_rates = scene.dimension, rates(scene, True, _few_kinds(scene))
-    thermal = gas_rates.speed / math.sqrt(8.0 / math.pi if d == 3 else math.pi / 2.0)
+    thermal = gas_rates.speed / math.sqrt(MEAN_SQUARE[d])
     side = min(scene.container.lengths)
     fall = math.sqrt(math.hypot(*scene.gravity) * side) if scene.gravity else 0.0
     fastest = max(thermal, fall)

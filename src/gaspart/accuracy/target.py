@@ -23,7 +23,6 @@ from gaspart.analysis.observables import (
 from gaspart.analysis.paths import MOST_FRAMES
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine, reference_engine
-from gaspart.engines.dsmc.defaults import rates
 from gaspart.errors import SceneError
 from gaspart.scene.face_checks import refuse_open
 from gaspart.scene.faces import wall_of
@@ -33,6 +32,7 @@ from gaspart.state.initial import initial_state
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
 from gaspart.theory.conditions import Conditions, known_conditions
+from gaspart.theory.rates import rates
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.run_options import required_contents
 

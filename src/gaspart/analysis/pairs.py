@@ -372,7 +372,7 @@ def pair_collision_rates(source: Source, start: float | None = None) -> Observab
     Notes
     -----
     Theory is exact except for the contact values, which are for an infinite mixture. A particle has N_i - 1
-    partners of its own species i, and the mean speed is that for a finite number of particles at fixed
+    partners of its own species i. The mean speed is computed for a finite number of particles at fixed
     energy.
 
     Examples

@@ -20,6 +20,7 @@ from gaspart.state.state import State
 from gaspart.theory.columns import Column, GravityColumn, compare_columns, gravity_column
 from gaspart.theory.diffusion import ERPENBECK_WOOD_HIGHEST, erpenbeck_wood_ratio
 from gaspart.theory.discretisation import contact_values
+from gaspart.theory.rates import MEAN_SQUARE, cross_sections
 
 _FREE = 0.02
 """Minimum fraction of the volume that is accessible to a pair where its contact value is evaluated."""
@@ -106,17 +107,14 @@ class Conditions:
         """Mean free path of the kind with the shortest mean free path, shape (S,)."""
         radii, _, numbers = self._kinds
         d = self.scene.dimension
-        sigma = radii[:, None] + radii
-        section = math.pi * sigma**2 if d == 3 else 2.0 * sigma
-        most = float((section * numbers).sum(axis=1).max())
+        most = float((cross_sections(radii, d) * numbers).sum(axis=1).max())
         return np.asarray(1.0 / (math.sqrt(2.0) * most * self.crowding * self.contact))
 
     @cached_property
     def speed(self) -> np.ndarray:
         """Mean speed of the lightest particles, shape (S,)."""
         _, masses, _ = self._kinds
-        mean = 8.0 / math.pi if self.scene.dimension == 3 else math.pi / 2.0
-        return np.sqrt(mean * self.temperature / masses.min())
+        return np.sqrt(MEAN_SQUARE[self.scene.dimension] * self.temperature / masses.min())
 
     @property
     def contrast(self) -> float:

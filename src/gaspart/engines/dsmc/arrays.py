@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.engines.dsmc.defaults import accessible
 from gaspart.engines.features.faces import (
     WALL_DRAWS,
     accommodations,
@@ -26,6 +25,7 @@ from gaspart.scene.scene import Scene
 from gaspart.state.random import key_of
 from gaspart.state.state import State
 from gaspart.theory.discretisation import BEND, SLOPE
+from gaspart.theory.rates import accessible
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.settings import DSMC

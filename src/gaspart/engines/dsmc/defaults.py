@@ -1,124 +1,24 @@
-"""Collision rates of a gas, the default settings of the engine, and the errors of settings.
-
-The rates are for a gas that fills its container homogeneously. The velocities of each kind are Maxwellian,
-with the mean square of the kind.
-"""
+"""Default settings of the engine, and the errors of settings."""
 
 from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gaspart.errors import SceneError, SimulationError
-from gaspart.scene.face_checks import mean_count
 from gaspart.scene.scene import Scene
-from gaspart.scene.species import Particle, Species
 from gaspart.state.boxes import cube_side
 from gaspart.state.state import State
-from gaspart.theory.discretisation import CELL_VISCOSITY, STEP_COEFFICIENTS, contact_values
+from gaspart.theory.discretisation import CELL_VISCOSITY, STEP_COEFFICIENTS
+from gaspart.theory.rates import MEAN_SQUARE, Rates, accessible, highest_speed, rates, usual_count
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.settings import DSMC
     from gaspart.kernels.dsmc.model import Pace
-
-
-@dataclass(frozen=True)
-class Rates:
-    """Mean collision rate, speed and free path of a gas.
-
-    Attributes
-    ----------
-    frequency : number of collisions of a particle per time
-    speed : mean speed
-    path : mean free path with all kinds of particles at one temperature; infinite without collisions
-    """
-
-    frequency: float
-    speed: float
-    path: float
-
-    def at_density(self, times: float) -> Rates:
-        """Return the rates at a density multiplied by `times`."""
-        return Rates(times * self.frequency, self.speed, self.path / times)
-
-
-def usual_count(scene: Scene) -> float:
-    """Return the number of particles to which cells and steps fit.
-
-    Between open faces this is the number at the start or with the strongest reservoir, if that is more.
-    """
-    return max(scene.count, mean_count(scene)) if scene.is_open else scene.count
-
-
-def accessible(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lowest and highest coordinates (d,) of the centres of the smallest particles."""
-    lower, upper = scene.reach(scene.smallest_radius)
-    return np.array(lower), np.array(upper)
-
-
-Kinds: TypeAlias = Sequence[Species | Particle]
-
-
-def rates(scene: Scene, dense: bool, instead: Kinds | None = None) -> Rates:
-    """Compute the collision rates of a scene in its initial state.
-
-    If the faces are hotter than the particles, the temperature of the faces is used.
-
-    dense : True to use the contact values of a dense gas
-    instead : representative kinds of particles that replace the kinds of the scene, because each pair of
-        kinds is evaluated
-    """
-    d, kinds = scene.dimension, scene.moving_kinds if instead is None else instead
-    heat = max(scene.face_temperatures, default=0.0)
-    if not kinds:
-        return Rates(0.0, 0.0, math.inf)
-    squares = [max(square_of(kind, d), heat / kind.mass) for kind in kinds]
-    often, speed = _rates(scene, kinds, dense, [1.0 / kind.mass for kind in kinds])
-    return Rates(*_rates(scene, kinds, dense, squares), path=speed / often if often > 0.0 else math.inf)
-
-
-def highest_speed(scene: Scene) -> float:
-    """Return the highest mean speed that particles can reach with the initial energy.
-
-    It is reached if the energy is distributed such that all particles have momenta of equal magnitude.
-    """
-    kinds = scene.moving_kinds
-    energy = sum(
-        0.5 * kind.count * kind.mass * scene.dimension * square_of(kind, scene.dimension) for kind in kinds
-    )
-    inverse, number = sum(kind.count / kind.mass for kind in kinds), sum(kind.count for kind in kinds)
-    return math.sqrt(2.0 * energy * inverse) / max(1, number)
-
-
-def _rates(scene: Scene, kinds: Kinds, dense: bool, squares: list[float]) -> tuple[float, float]:
-    """Return collision frequency and speed of kinds with given mean squares of a velocity component."""
-    d, square = scene.dimension, np.array(squares)
-    radius = np.array([kind.radius for kind in kinds])
-    number = np.array([usual_count(scene) if scene.is_open else float(kind.count) for kind in kinds])
-    lower, upper = accessible(scene)
-    density = number / float((upper - lower).prod())
-    sigma = radius[:, None] + radius
-    section = math.pi * sigma**2 if d == 3 else 2.0 * sigma
-    mean = 8.0 / math.pi if d == 3 else math.pi / 2.0  # <v>^2 / (kT/m)
-    relative = np.sqrt(mean * (square[:, None] + square))
-    pairs = density[:, None] * (number - np.eye(len(number)))
-    contact = contact_values(density, radius, d) if dense else 1.0
-    frequency = float((np.maximum(pairs, 0.0) * section * relative * contact).sum() / number.sum())
-    return frequency, float((number * np.sqrt(mean * square)).sum() / number.sum())
-
-
-def square_of(kind: Species | Particle, dimension: int) -> float:
-    """Return the initial mean square of a velocity component."""
-    if isinstance(kind, Particle):
-        return sum(v * v for v in kind.velocity) / dimension
-    return (
-        kind.temperature / kind.mass if kind.temperature is not None else (kind.speed or 0.0) ** 2 / dimension
-    )
 
 
 # Length of a step for a scene, for any speeds that its particles reach.
@@ -441,8 +341,7 @@ def lost_collisions(engine: DSMC, cells: tuple[int, ...], scene: Scene) -> float
 
 def _thermal_step(step: float, dimension: int, gas_rates: Rates) -> float:
     """Return c dt / l."""
-    mean = math.sqrt(8.0 / math.pi) if dimension == 3 else math.sqrt(math.pi / 2.0)
-    return math.sqrt(2.0) * gas_rates.speed / mean * step / gas_rates.path
+    return math.sqrt(2.0) * gas_rates.speed / math.sqrt(MEAN_SQUARE[dimension]) * step / gas_rates.path
 
 
 def coarse(

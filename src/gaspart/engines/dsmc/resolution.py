@@ -11,26 +11,23 @@ import numpy as np
 from gaspart.engines.dsmc.arrays import dense_for, grid_for, moved_fields, spreads
 from gaspart.engines.dsmc.defaults import (
     FINEST,
-    Rates,
-    accessible,
     cells_for,
     check_step,
     coarse,
     is_hotter,
     may_speed_up,
     pace_for,
-    rates,
     reach_of,
     recommended_cells,
     step_for,
     too_fast,
-    usual_count,
 )
 from gaspart.kernels.dsmc.enskog import Dense
 from gaspart.kernels.dsmc.model import Grid, Pace, Particles, fitting_level
 from gaspart.kernels.model import Open
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
+from gaspart.theory.rates import Rates, accessible, rates, usual_count
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.settings import DSMC

@@ -212,7 +212,8 @@ class DSMC(Engine):
         >>> gp.DSMC().for_scene(scene, interval=1.0).describe(), gp.DSMC().for_scene(scene).cells_per_side
         ('dsmc, model boltzmann, time_step 0.5', (6, 6, 6))
         """
-        from gaspart.engines.dsmc.defaults import cells_for, rates, step_for
+        from gaspart.engines.dsmc.defaults import cells_for, step_for
+        from gaspart.theory.rates import rates
 
         gas_rates = rates(scene, self.model == "enskog")
         step = step_for(self, scene, gas_rates)
@@ -278,7 +279,8 @@ class DSMC(Engine):
         >>> round(gp.DSMC().predictions(scene)["viscosity_error"], 3)
         0.099
         """
-        from gaspart.engines.dsmc.defaults import cells_for, predicted_error, rates, step_for
+        from gaspart.engines.dsmc.defaults import cells_for, predicted_error, step_for
+        from gaspart.theory.rates import rates
 
         gas_rates = rates(scene, self.model == "enskog")
         cells, step = cells_for(self, scene, gas_rates), step_for(self, scene, gas_rates)
@@ -304,7 +306,8 @@ class DSMC(Engine):
         >>> gp.DSMC().cells_along(gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)]))
         6
         """
-        from gaspart.engines.dsmc.defaults import cells_for, rates
+        from gaspart.engines.dsmc.defaults import cells_for
+        from gaspart.theory.rates import rates
 
         return max(cells_for(self, scene, rates(scene, self.model == "enskog")))
 
@@ -334,7 +337,7 @@ class DSMC(Engine):
         [0.0, 0.0015, 0.099]
         """
         from gaspart.engines.dsmc import defaults
-        from gaspart.engines.dsmc.defaults import rates
+        from gaspart.theory.rates import rates
 
         gas_rates = rates(scene, self.model == "enskog")
         cells, step = defaults.cells_for(self, scene, gas_rates), defaults.step_for(self, scene, gas_rates)

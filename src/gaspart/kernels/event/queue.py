@@ -87,7 +87,7 @@ def tie(predictions, i):
 def bucket_of(queue, predictions, i):
     """Return the bucket for the time of a particle's next event.
 
-    It is at least the current bucket, and the overflow bucket beyond the horizon.
+    It is at least the current bucket. Beyond the horizon it is the overflow bucket.
     """
     buckets = len(queue.head) - 1
     current = queue.cursor[BUCKET]
