@@ -1,6 +1,6 @@
 """Entry point of the command line: `gaspart`, and `python -m gaspart`.
 
-It prepares signals and the three standard streams before any large import.
+This module prepares signals and the three standard streams before any large import.
 """
 
 import os

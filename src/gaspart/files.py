@@ -225,7 +225,7 @@ def is_remainder(path: Path) -> bool:
 def _is_lock(path: Path) -> bool:
     """Return True for a lock file of filelock on a file system without locks.
 
-    Its name begins with the number of a process.
+    The name of such a file begins with the number of a process.
     """
     with open_regular(path) as file:
         return file.read(1).isdigit()

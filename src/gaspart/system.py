@@ -30,7 +30,7 @@ _position = threading.Lock()
 
 
 def memory() -> int | None:
-    """Return the memory of this machine in bytes; None if unknown, as on Windows."""
+    """Return the memory of this machine in bytes; None if it is unknown, as on Windows."""
     try:
         return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     except (AttributeError, ValueError, OSError):
@@ -100,8 +100,8 @@ def descriptor_path(file: IO[bytes]) -> str:
 def path_for_others(file: IO[bytes]) -> str:
     """Return a path with which another process can open a file that this process has open.
 
-    The path is valid even if the file has been renamed or removed. If the system has no such path, return the
-    name of the file.
+    The path remains valid if the file is renamed or removed. If the system has no such path, return the name
+    of the file.
     """
     path = f"/proc/{os.getpid()}/fd/{file.fileno()}"
     return path if os.path.exists(path) else str(file.name)

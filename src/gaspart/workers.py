@@ -48,7 +48,7 @@ def require_processes(key: str, count: int) -> None:
 def in_threads(function: Callable[[Any], Any], items: Iterable[Any], threads: int) -> list[Any]:
     """Return the results of a function for all items, in their order.
 
-    This is faster for functions that mostly run kernels, which release the interpreter lock.
+    Threads speed up functions that mostly run kernels, because kernels release the interpreter lock.
 
     Parameters
     ----------

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 LEAST_FREEDOM = 15.0
 """Minimum number of degrees of freedom of an error that may end a run; 16 groups or blocks give this number.
 
-It is also the number for an observable without stated degrees of freedom.
+An observable without stated degrees of freedom is assumed to have this number.
 """
 _SAME = 1e-12
 """Relative scatter below which a series counts as constant."""

@@ -2,7 +2,7 @@
 
     python -m gaspart.accuracy.fit results/measurements > src/gaspart/accuracy/data/accuracy.csv
 
-It reads the following files from a folder: speed_accuracy.nc (errors and times of the engines),
+The writer reads the following files from a folder: speed_accuracy.nc (errors and times of the engines),
 virial_spheres.nc and virial_discs.nc (noise of Z and of the collision rate), msd_spheres.nc (noise of D) and
 price_of_features.nc.
 """

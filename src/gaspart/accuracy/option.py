@@ -78,12 +78,12 @@ class Option:
 
     @property
     def error(self) -> float:
-        """Relative standard error of the run plus the bound on its bias; inf without a run."""
+        """Relative standard error plus the bound on the bias; inf if no run is long enough."""
         measured = self.measured
         return self.bias + self.noise.reaches(measured) if math.isfinite(measured) else math.inf
 
     def cost(self, accuracy: float) -> float:
-        """Compute the CPU seconds for an accuracy without a budget; inf if out of reach."""
+        """Compute the CPU seconds for an accuracy without a budget; inf if it cannot be reached."""
         return self.whole(self._length(accuracy)) * self.speed
 
     def whole(self, measured: float) -> float:

@@ -277,7 +277,7 @@ def _settled_at(series: np.ndarray) -> int:
 def _digest(target: Target, engine: Engine, seconds: float) -> str:
     """Return a hash that identifies the content of a pilot.
 
-    It is the same for all observables that need the same stored data, so they share pilots.
+    All observables that need the same stored data have the same hash, so they share pilots.
     """
     kind = "motion" if target.correlated else target.declared.samples
     if target.declared.needs in KEPT:
@@ -428,7 +428,7 @@ class Trials:
         """Return the noise of the observable in a run with an engine.
 
         If the engine stores impulses, the noise comes from a pilot with impulses, otherwise from a pilot that
-        counts contacts. Raises the same error as `reference`.
+        counts contacts. Raises SceneError if no pilot measured the observable.
         """
         with_impulses = [pilot for pilot in self.known if pilot.counted]
         if with_impulses and self.target.tallies(engine):

@@ -70,7 +70,8 @@ class Scales:
     def interval(self) -> float | None:
         """Suggested time between frames, rounded to two digits; None if nothing moves.
 
-        It is `event_time`, or longer if the suggested duration would otherwise have more than 1000 frames.
+        The suggested time is `event_time`, or longer if the suggested duration would otherwise have more than
+        1000 frames.
         """
         if not math.isfinite(self.event_time):
             return None

@@ -92,8 +92,8 @@ class Target:
     def start(self) -> State | None:
         """State from which pilots start; None for the default initial state.
 
-        It is a settled state. For particles that are compressed it is the state at time 0, because the
-        compression takes long.
+        Pilots start from a settled state. If particles are compressed, pilots start from the state at time 0,
+        because the compression takes long.
         """
         if self.settled is not None:
             return self.settled

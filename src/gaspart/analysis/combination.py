@@ -210,7 +210,7 @@ def _check_replica(recipe: _Recipe, others: list[_Recipe]) -> None:
 
 
 def _last_common(recipe: _Recipe, other: _Recipe) -> float | None:
-    """Return the last time at which both runs have a state; None without common start."""
+    """Return the last time at which both runs have a state, or None."""
     if recipe.every and other.every:
         return float(min(recipe.times[-1], other.times[-1]))
     if recipe.every or other.every:

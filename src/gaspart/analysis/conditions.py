@@ -152,7 +152,7 @@ def homogeneous(scene: Scene, selection: Selection) -> None:
 def without_obstacles(scene: Scene, selection: Selection) -> None:
     """Require that there are no interior walls or fixed particles.
 
-    They would carry a part of the pressure.
+    Interior walls and fixed particles would carry a part of the pressure.
     """
     _without_obstacles(scene, "carry a part of the pressure, which the virial of the particles does not have")
 
@@ -200,7 +200,11 @@ def one_size_each(scene: Scene, selection: Selection) -> None:
 
 
 def require_particles(scene: Scene, selection: Selection) -> None:
-    """Raise SceneError unless at least 16 particles, or at least one of the selected particles, move."""
+    """Raise SceneError if too few particles move.
+
+    Without a selection, at least 16 particles must move. Of a selected species, at least one particle must
+    move. Selected numbers of particles must exist.
+    """
     chosen = {key: selection.get(key) for key in ("species", "particles")}
     if all(value is None for value in chosen.values()):
         _enough(scene)

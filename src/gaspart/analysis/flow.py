@@ -395,10 +395,11 @@ def mean_motion(
 ) -> Callable[[Run], Peculiar]:
     """Return a function that computes velocities relative to the mean motion in some frames.
 
-    They are relative to rest if the run is; otherwise relative to the local mass-weighted flow in cells along
-    `flow_axes` if the gas can flow; otherwise relative to the centre of mass. `along` maps an axis to its
-    number of cells if it is not the default. If the flow is steady, further axes in `along` are resolved too.
-    If `local`, the motion is always relative to the flow in these cells.
+    If the run measures velocities relative to rest, the function returns them unchanged. Otherwise, if the
+    gas can flow, velocities are relative to the local mass-weighted flow in cells along `flow_axes`. If it
+    cannot flow, they are relative to the centre of mass. `along` maps an axis to its number of cells if this
+    is not the default. If the flow is steady, further axes in `along` are resolved too. If `local`, the
+    motion is always relative to the flow in these cells.
     """
     across, stated = run.flow_axes, dict(along or {})
     if not across and local:

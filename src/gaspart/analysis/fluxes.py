@@ -215,7 +215,7 @@ def _momenta(run: Run, axis: int) -> list[np.ndarray]:
 def _about_faces(run: Run) -> np.ndarray:
     """Compute velocities (T, M, d) relative to the mean velocity of the thermal faces.
 
-    They are the same in any frame of reference.
+    These relative velocities are the same in any frame of reference.
     """
     frame = np.zeros(run.dimension)
     for _, face in run.scene.sliding_faces:
@@ -307,7 +307,7 @@ def particle_flux(
 def _entered_beyond(run: Run, axis: int) -> np.ndarray | int:
     """Return the net number (T,) of particles that have entered through the upper face.
 
-    It is 0 if this face is not open.
+    The number is 0 if this face is not open.
     """
     upper = 2 * axis + 1
     if not isinstance(run.scene.faces.get(FACES[upper]), Open):
@@ -321,7 +321,7 @@ def _entered_beyond(run: Run, axis: int) -> np.ndarray | int:
 def particle_numbers(scene: Scene, data: xr.Dataset) -> np.ndarray:
     """Return the number of particles in the container in each frame.
 
-    It is the initial number plus the particles that have entered minus the particles that have left.
+    This number is the initial number plus the particles that have entered minus the particles that have left.
 
     Parameters
     ----------

@@ -391,9 +391,9 @@ within two errors.
 def wall_controls(run: Run, axis: int) -> np.ndarray | None:
     """Compute control variates (T - 1, 3) of the impulses across an axis, per time.
 
-    They are the deviation of sum m v^2 along the axis from its known mean, and the changes of the momentum
-    and of sum m x v along the axis. Return None unless the run has stored impulses along this axis and the
-    states of all particles, and is in equilibrium at a constant kinetic energy.
+    The control variates are the deviation of sum m v^2 along the axis from its known mean, and the changes of
+    the momentum and of sum m x v along the axis. Return None unless the run has stored impulses along this
+    axis and the states of all particles, and is in equilibrium at a constant kinetic energy.
     """
     has = read_impulses(run.data)
     if has is None or has.axis != "xyz"[axis] or not run.has_states:
@@ -424,7 +424,7 @@ def stores(run: Run) -> np.ndarray:
 def group_count(run: Run) -> int:
     """Return the number of groups of intervals of a run for a regression.
 
-    It is 0 if the intervals or the particles are too few.
+    The number is 0 if there are too few intervals or particles.
     """
     if run.moving.sum() < FEWEST:
         return 0

@@ -76,7 +76,8 @@ class Insertions:
     def resolution(self) -> float:
         """Probability that corresponds to a single free position.
 
-        It is one divided by the equivalent number of random positions in the whole container.
+        This probability is 1 divided by the number of random positions in the container that would be
+        equivalent.
         """
         return float(self.share.mean() / (self.trials * len(self.share)))
 

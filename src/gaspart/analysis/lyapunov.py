@@ -27,8 +27,8 @@ ALIGNMENT = 0.25
 class Deviation:
     """Infinitesimal deviation of a state.
 
-    It contains the deviations of positions and velocities, lists of N vectors, and a time for each particle,
-    because a particle is advanced only at its own events.
+    The deviations of positions and of velocities are lists of N vectors. The object also stores a time for
+    each particle, because a particle is advanced only at its own events.
     """
 
     def __init__(self, positions: np.ndarray, velocities: np.ndarray, time: float) -> None:

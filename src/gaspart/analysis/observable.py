@@ -144,10 +144,10 @@ class Observable(ByFace):
 
     @property
     def deviation(self) -> xr.DataArray | None:
-        """Measured value minus theory, in standard deviations of the difference; None without theory.
+        """Measured value minus theory, in standard deviations of the difference; None if there is no theory.
 
-        It is NaN if the standard deviation is 0, for example for a constant quantity, because the probability
-        of a difference is then unknown.
+        The result is NaN if the standard deviation is 0, for example for a constant quantity, because the
+        probability of a difference is then unknown.
 
         Examples
         --------

@@ -524,8 +524,8 @@ def require_selection(name: str, selection: Mapping[str, Any]) -> None:
 def require_defined(name: str, scene: Scene, **selection: Any) -> None:
     """Raise SceneError, with the reason, if an observable is undefined for a scene.
 
-    It is then undefined for runs of any length. Also raises SceneError for a selection that the observable or
-    the scene does not allow.
+    Such an observable is undefined for runs of any length. Also raises SceneError for a selection that the
+    observable or the scene does not allow.
     """
     declared = OBSERVABLES[observable_name(name)]
     require_selection(name, selection)

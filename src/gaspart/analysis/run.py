@@ -233,8 +233,8 @@ class Run:
     def motion(self) -> Peculiar:
         """Velocities of the moving particles relative to the local flow or the centre of mass.
 
-        They are relative to the local flow if the gas flows, otherwise relative to the centre of mass along
-        axes on which the momentum is conserved (see `flow`).
+        If the gas flows, the velocities are relative to the local flow. Otherwise they are relative to the
+        centre of mass along axes on which the momentum is conserved (see `flow`).
         """
         return about_the_flow(self)
 
@@ -271,9 +271,9 @@ class Run:
     def temperatures(self) -> np.ndarray:
         """Temperature k_B T of each frame, shape (T,).
 
-        It is twice the translational kinetic energy relative to the mean motion (see `motion`) per degree of
-        freedom. It is 0 if this energy is only a rounding error of the centre-of-mass velocity. If the file
-        lacks particles, see `_of_all`. Raises SceneError for the reasons of `freedoms`.
+        The temperature is twice the translational kinetic energy relative to the mean motion (see `motion`)
+        per degree of freedom. It is set to 0 if this energy is only a rounding error of the centre-of-mass
+        velocity. If the file lacks particles, see `_of_all`. Raises SceneError for the reasons of `freedoms`.
         """
         refuse_open(self.scene, "changes the particles: there is no temperature of the whole run")
         lacking = self.is_subset or "velocities" not in self.data

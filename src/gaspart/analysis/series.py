@@ -64,7 +64,7 @@ def collision_rate(run: Run) -> np.ndarray:
 def face_impulses(run: Run) -> np.ndarray:
     """Compute the momentum (T - 1, 2d) given to each face in each interval.
 
-    It is 0 along axes without walls.
+    The momentum is 0 along axes without walls.
     """
     return np.asarray(np.abs(run.increments("wall_impulse")[:, : 2 * run.dimension]))
 

@@ -453,7 +453,7 @@ def _scale(run: Run, name: str) -> float:
 def _blocks(run: Run, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Return the correlation of V J and the squared change of G by block.
 
-    Each has the shape (B, lags).
+    Both arrays have the shape (B, lags).
 
     A nonzero mean of the flux is subtracted.
     """

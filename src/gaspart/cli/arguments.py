@@ -176,7 +176,7 @@ def print_note(text: str) -> None:
 
 
 def several(kind: Callable[[str], T]) -> Callable[[str], tuple[T, ...]]:
-    """Return a reader of `1` or `1,2,3` as a tuple; each part is read by `kind`."""
+    """Return a function that converts `1` or `1,2,3` to a tuple; `kind` converts each item."""
 
     def read(text: str) -> tuple[T, ...]:
         try:

@@ -116,9 +116,9 @@ def _new(options: argparse.Namespace) -> None:
 
 
 def named_command(template: Template, path: Path) -> str:
-    """Return the command that runs the scene, with the names of two files.
+    """Return the command that runs the scene.
 
-    These are the file of the scene, and its trajectory.
+    The command contains the name of the scene file and the name of the trajectory file.
     """
     scene, trajectory = shlex.quote(str(path)), shlex.quote(str(path.with_suffix(".nc")))
     command = template.command.replace(f"{template.name}.yaml", scene)

@@ -53,7 +53,7 @@ def waiting(text: str, quiet: bool = False) -> Iterator[Callable[[], None]]:
 def picture_progress() -> Callable[[int, int], None] | None:
     """Return a function that shows the number of finished pictures and the remaining time.
 
-    Returns None without a terminal.
+    Returns None if the output is not a terminal.
     """
     if not sys.stderr.isatty():
         return None
@@ -72,7 +72,7 @@ def progress(
 ) -> Progress | None:
     """Return a function that shows the progress of a run.
 
-    Returns None without a terminal, or if `quiet` is True.
+    Returns None if the output is not a terminal, or if `quiet` is True.
 
     started : function that is called at the first report.
     remark : function that returns text for the end of the line.

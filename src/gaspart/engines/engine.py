@@ -129,14 +129,14 @@ class Engine:
 
     @property
     def quantum(self) -> float | None:
-        """Smallest time interval, of which all times are multiples; None without time steps."""
+        """Time step, of which all times are multiples; None if the engine has no time steps."""
         return None
 
     def for_scene(self, scene: Scene, interval: float | None = None) -> Engine:
         """Return a copy with settings completed for a scene.
 
-        If `interval` is passed, it is an integer multiple of the quantum. Raises SceneError if the settings
-        do not fit the scene.
+        If `interval` is passed, it must be an integer multiple of the time step of the returned engine.
+        Raises SceneError if the settings do not fit the scene.
         """
         return self
 
@@ -174,7 +174,7 @@ class Engine:
         return "float64"
 
     def timed_step(self, scene: Scene) -> float:
-        """Return the time step in the unit of the table of costs; 0 without steps."""
+        """Return the time step in the unit of the table of costs, or 0."""
         return 0.0
 
     def at_step(self, scene: Scene, step: float, precision: str) -> Engine:

@@ -46,8 +46,8 @@ def energy_line(scene: Scene, data: xr.Dataset) -> str:
 def conserved_energy(scene: Scene, data: xr.Dataset) -> np.ndarray:
     """Compute the conserved energy (T,) of the frames, up to a constant.
 
-    It is the sum of the kinetic, vibrational, potential and exchanged energy. Raises SceneError if the file
-    does not contain the energy.
+    The conserved energy is the sum of the kinetic, vibrational, potential and exchanged energy. Raises
+    SceneError if the file does not contain the energy.
     """
     energy = data["kinetic_energy"].values + _removed_energy(data)
     if "vibrations" in data:
@@ -131,8 +131,8 @@ def _contacts(series: dict) -> str:
 def _samples(scene: Scene, series: dict) -> str:
     """Return a line that states the number of independent values of the pressure.
 
-    It is the number of intervals between frames divided by twice their correlation time, limited to the
-    number of collisions.
+    This number is the number of intervals between frames divided by twice their correlation time, or the
+    number of collisions if this is smaller.
     """
     counted = np.diff(series["virial_sum"])
     per_particle = 2.0 * series["collisions"][-1] / max(scene.count, 1)

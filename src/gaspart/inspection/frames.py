@@ -125,7 +125,7 @@ class Frames:
     def temperatures(self) -> np.ndarray:
         """Temperature k_B T of each frame for particles of mass 1, shape (T,).
 
-        It is 0 for a single particle without motion relative to the mean.
+        The temperature is 0 for a single particle that has no motion relative to the mean.
         """
         freedom = self.dimension * self.count - sum(self.periodic)
         return np.asarray(self.peculiar_squares.sum(axis=1) / max(freedom, 1))
@@ -145,8 +145,8 @@ class Frames:
     def path(self) -> np.ndarray:
         """Displacement (T, N, d) of each particle since the first frame.
 
-        It is relative to the centre of mass along axes on which particles exchange momentum only with each
-        other.
+        The displacement is relative to the centre of mass along axes on which particles exchange momentum
+        only with each other.
         """
         path = np.zeros(self.positions.shape)
         for n, step in enumerate(self.steps()):

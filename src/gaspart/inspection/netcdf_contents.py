@@ -40,7 +40,7 @@ _OFFSETS = {1: 4, 2: 8, 5: 8}
 class _Header:
     """Reader of the numbers and names of a header, in their order.
 
-    Its methods raise ValueError at the end of the header.
+    The methods raise ValueError at the end of the header.
     """
 
     def __init__(self, file: BinaryIO, version: int) -> None:
@@ -86,7 +86,7 @@ def _pad_length(length: int) -> int:
 
 
 def needed_bytes(file: BinaryIO) -> int | None:
-    """Return the minimum size of a netCDF-3 file in bytes; None for other formats.
+    """Return the minimum size of a netCDF-3 file in bytes; None if it has another format.
 
     Raises ValueError for a damaged header.
     """

@@ -103,8 +103,8 @@ def describe_motion(way: np.ndarray, distance: float) -> str:
 def density_modulation(frames: Frames, n: int, of: np.ndarray | None = None) -> float:
     """Compute the largest power of the two longest density waves along each axis.
 
-    It is computed for the particle density in frame n, or, with `of` (N,), for the density of a property
-    minus its mean. The power is about 1 if the density is uniform.
+    The power is computed for the particle density in frame n. If `of` (N,) is passed, it is computed for the
+    density of this property minus the mean of the property. The power is about 1 if the density is uniform.
     """
     weights = np.ones(frames.count) if of is None else of - of.mean()
     total = float((weights**2).sum())

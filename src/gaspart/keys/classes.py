@@ -277,7 +277,7 @@ def require(kind: Mapping[str, Any], value: object, where: str) -> None:
 def _validator() -> Any:
     """Return the validator of JSON schemas.
 
-    Its test for distinct items takes a time proportional to the length of a list.
+    The test of this validator for distinct items takes a time proportional to the length of the list.
     """
     from jsonschema import Draft202012Validator, ValidationError
     from jsonschema.validators import extend

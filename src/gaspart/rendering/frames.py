@@ -69,7 +69,7 @@ class Film(type(Path())):  # type: ignore[misc]
     """Path of a film, .mp4 or .gif, which a notebook shows."""
 
     def _repr_html_(self) -> str | None:
-        """Return HTML with the film or, if it is large, a link; None without a file."""
+        """Return HTML with a film, or with a link to a large film, or None."""
         if not self.is_file():
             return None
         name = html.escape(str(self))

@@ -313,7 +313,7 @@ class LiveGas:
         return readings + list(zip(names, values, errors, theories, strict=True))
 
     def _bulk(self, temperature: float) -> float | None:
-        """Return the pressure, or Z, of a gas without walls; None for other scenes."""
+        """Return Z of a periodic gas, or the bulk pressure between walls; None if unknown."""
         scene = self.simulation.scene
         gas = None if scene.is_open else replace(scene, faces={}).gas
         try:
@@ -370,7 +370,7 @@ class LiveGas:
 
     @property
     def strongest(self) -> float | None:
-        """Largest gravity of the slider; None without a floor, or with reservoirs.
+        """Largest gravity of the slider; None if the scene has no floor, or has reservoirs.
 
         Gravity does not act on reservoirs.
         """
@@ -387,24 +387,24 @@ class LiveGas:
 
     @property
     def temperature(self) -> float:
-        """Temperature of the hottest wall or reservoir of the first scene; 0 without such walls."""
+        """Highest temperature of walls and reservoirs of the first scene; 0 if none has one."""
         faces = self._first.faces.values()
         warm = [item.temperatures for item in faces if isinstance(item, Open | Thermal)]
         return max((max(item) for item in warm if item), default=0.0)
 
     @property
     def activity(self) -> float:
-        """Highest activity of the reservoirs of the first scene; 0 without one."""
+        """Highest activity of the reservoirs of the first scene; 0 if it has no reservoir."""
         return max((item.activity or 0.0 for item in self._reservoirs.values()), default=0.0)
 
     @property
     def richest(self) -> float:
-        """Largest activity of the slider; 0 without reservoirs."""
+        """Largest activity of the slider; 0 if the scene has no reservoir."""
         return _RICHEST * self.activity
 
     @property
     def hottest(self) -> float | None:
-        """Largest temperature of the slider; None without walls that can be thermal."""
+        """Largest temperature of the slider; None if no wall can be thermal."""
         if not self._warm and not self._hard:
             return None
         gas = scales(self._first).thermal_speed ** 2 * float(np.min(self.simulation.state.masses))

@@ -59,7 +59,7 @@ class DrawnParticles:
     def reach(self) -> float:
         """Maximum distance by which particles may extend beyond the container.
 
-        It is the radius of the largest particle that extends beyond it.
+        This distance is the radius of the largest particle that extends beyond the container.
         """
         positions, radii = self.positions, self.radii[:, None]
         out = (np.maximum(radii - positions, positions + radii - self.lengths) > 1e-9 * self.lengths).any(
@@ -69,7 +69,7 @@ class DrawnParticles:
 
     @property
     def root_mean_square_speed(self) -> float:
-        """Root-mean-square speed of all particles; 0 without particles."""
+        """Root-mean-square speed of all particles; 0 if there are no particles."""
         return float(np.sqrt((self.speeds**2).mean())) if len(self.speeds) else 0.0
 
 
@@ -77,7 +77,8 @@ class DrawnParticles:
 class Legend:
     """Meaning of the colours of a picture.
 
-    It has a title, colours (M, 3), and texts: one for each colour, or two for the ends of a continuous scale.
+    The legend has a title, colours (M, 3), and texts. Each colour has a text; a continuous scale has a text
+    at each end.
     """
 
     title: str

@@ -278,8 +278,8 @@ def _show_positive_ends(panel: Axes, axis: Axis, number: int) -> None:
 def _number_ticks(axis: Axis) -> None:
     """Choose ticks of a logarithmic axis whose numbers do not overlap.
 
-    They are 1, 2, 5, 10 on a short axis, and powers of ten on a long axis. Ticks that a figure has chosen are
-    kept.
+    Ticks are at 1, 2, 5, 10 on a short axis, and at powers of ten on a long axis. Ticks that a figure has
+    chosen are kept.
     """
     from matplotlib.ticker import AutoLocator, FixedLocator, FuncFormatter, LogLocator, NullFormatter
 

@@ -62,7 +62,7 @@ class DrawnSurface:
     depth : float, [length]
         Thickness of the shaded region behind the surface.
     band : float, [length]
-        Distance of a dotted line inside the surface; 0 without a dotted line.
+        Distance of a dotted line inside the surface; 0 if there is no dotted line.
     """
 
     ends: np.ndarray
@@ -179,7 +179,7 @@ def _warm_walls(scene: Scene) -> tuple[DrawnSurface, ...]:
 def _moving_walls(scene: Scene, position: float | None) -> tuple[DrawnSurface, ...]:
     """Return the appearance of the moving interior wall.
 
-    Its coordinate is `position`, or its initial coordinate.
+    The wall is drawn at the coordinate `position`; for None, at its initial coordinate.
     """
     wall = scene.moving_wall
     if wall is None:

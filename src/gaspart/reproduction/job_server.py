@@ -133,7 +133,7 @@ def _preload() -> None:
 
 
 def _start_process(connection: socket.socket, dispositions: dict) -> int | None:
-    """Fork the process of a request, and tell the client; return None without a request."""
+    """Fork the process of a request, and tell the client; return None if no request arrives."""
     data, files, _, _ = socket.recv_fds(connection, _MOST, 3)
     while data and not data.endswith(b"\n"):
         more = connection.recv(1 << 20)

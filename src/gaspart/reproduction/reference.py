@@ -226,8 +226,8 @@ def _describe_type(kind: Kind, name: str) -> str:
 class _Page:
     """Page of the reference.
 
-    It has a title, a subject that the index repeats, a longer description, and the function that returns its
-    parts.
+    A page has a title, a subject that the index repeats, a longer description, and a function that returns
+    the parts of the page.
     """
 
     title: str

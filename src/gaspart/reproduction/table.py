@@ -65,7 +65,7 @@ class Row(_Columns):
 
 
 class Table(_Columns):
-    """Rows of a data set along its dimension `over`; empty without this dimension.
+    """Rows of a data set along its dimension `over`; empty if it has no such dimension.
 
     A column is an attribute: `table.Z` is an Estimate of all rows if there is a variable Z_error, otherwise
     an array (rows, ...). Other variables and attributes are as in the data set. `table[condition]` contains

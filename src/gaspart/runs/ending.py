@@ -87,7 +87,8 @@ class Accuracy(Requirement):
         Parameters
         ----------
         name : str
-            The name: "Z", or with a face "pressure:x low".
+            Name of the observable, such as "Z"; to select a face, a colon and the face follow, as in
+            "pressure:x low".
         accuracy : float, [1]
             Requested relative standard error.
         start : float, [time], optional

@@ -1,6 +1,6 @@
 """The functions `gaspart.run` and `gaspart.resume`.
 
-They run scenes for a duration or until observables are accurate, also as replicas.
+Both functions run scenes for a duration or until observables are accurate, also as replicas.
 """
 
 from __future__ import annotations
@@ -347,7 +347,7 @@ def resume(
 
 
 def _replica(path: str | Path) -> tuple[Path, Recipe] | None:
-    """Return a file of the replicas at a path, and its recipe; None without replicas."""
+    """Return a file of the replicas at a path, and its recipe, or None."""
     with suppress(SceneError):
         file, recipe = find_run(path)
         return (file, recipe) if recipe.replica else None

@@ -110,7 +110,8 @@ def _carry_out(
 ) -> None:
     """Call a function for all replicas.
 
-    Its arguments are `send`, those in `calls`, the options, and True if it must report progress.
+    The arguments of the function are `send`, the arguments in `calls`, the options, and True if the function
+    must report progress.
     """
     reached: dict[int, tuple[float, float, int]] = {}
 

@@ -77,7 +77,7 @@ class Surface:
 
     @property
     def temperatures(self) -> tuple[float, ...]:
-        """Temperature of the face, or temperatures of its two ends; () without a temperature."""
+        """Temperature of the face, or temperatures of its two ends; () if it has no temperature."""
         return ()
 
 
@@ -309,7 +309,7 @@ class Well(Surface):
 
     @property
     def temperatures(self) -> tuple[float, ...]:
-        """Temperature of the wall behind the well; () without one.
+        """Temperature of the wall behind the well; () if this wall has no temperature.
 
         Examples
         --------
@@ -658,7 +658,7 @@ class Open(Surface):
 
     @property
     def temperatures(self) -> tuple[float, ...]:
-        """Temperature of the reservoir; () without one.
+        """Temperature of the reservoir; () if there is no reservoir.
 
         Examples
         --------

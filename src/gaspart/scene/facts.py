@@ -215,7 +215,7 @@ class Facts:
 
     @cached_property
     def largest_moving_radius(self) -> float:
-        """Largest radius of a particle that is not fixed; 0 without such particles."""
+        """Largest radius of a particle that is not fixed; 0 if all particles are fixed."""
         return max((kind.largest_radius for kind in self.moving_kinds), default=0.0)
 
     @cached_property
@@ -236,8 +236,8 @@ class Facts:
     def gas(self: Scene) -> Gas | None:  # type: ignore[misc]
         """Plain gas equivalent to the scene, at the temperature of the initial velocities.
 
-        Its value is absent (None) if the scene is empty, has particles of several sizes or masses, or has any
-        feature except `centres_to_walls`.
+        The property has no value (None) if the scene is empty, has particles of several sizes or masses, or
+        has any feature except `centres_to_walls`.
         """
         kinds = [kind for kind in self.kinds if kind.count]
         if not kinds or not self.alike or self.features - {"centres_to_walls"}:
@@ -253,7 +253,7 @@ class Facts:
     def mixture(self: Scene) -> Mixture | None:  # type: ignore[misc]
         """Mixture of plain gases that is equivalent to the scene.
 
-        Its value is absent (None) if the scene is empty, or has any feature except `polydispersity` and
+        The property has no value (None) if the scene is empty, or has any feature except `polydispersity` and
         `centres_to_walls`.
         """
         if self.features - {"polydispersity", "centres_to_walls"}:
@@ -264,7 +264,7 @@ class Facts:
     def contact_duration(self) -> float:
         """Time after a contact of a particle during which its further contacts are elastic.
 
-        It is 0 if all contacts dissipate energy (`Restitution`). Under gravity g the default is 0.01
+        The time is 0 if all contacts dissipate energy (`Restitution`). Under gravity g the default is 0.01
         sqrt(d/g), where d is the smallest diameter.
         """
         law = self.restitution
@@ -316,7 +316,7 @@ class Facts:
 
     @cached_property
     def load_axis(self) -> int | None:
-        """Axis along which a pressure loads a piston; None without a piston."""
+        """Axis along which a pressure loads a piston; None if there is no such piston."""
         return next((number // 2 for number, face in self.pistons if face.pressure is not None), None)
 
     @cached_property
@@ -327,7 +327,7 @@ class Facts:
 
     @cached_property
     def shear_rate(self) -> float | None:
-        """Gradient du_x / dy between sheared faces (`LeesEdwards`); None without such faces."""
+        """Gradient du_x / dy between sheared faces (`LeesEdwards`); None if there are no such faces."""
         return next((face.shear_rate for _, face in self.faces_of(LeesEdwards)), None)
 
     @cached_property
@@ -340,8 +340,8 @@ class Facts:
     def drags_faces(self) -> bool:
         """True if the momentum along faces is tallied.
 
-        It is tallied for faces that draw tangential velocities, if one of these faces slides, or if a force
-        drives the gas along them.
+        This momentum is tallied for faces that draw tangential velocities, if one of these faces slides, or
+        if a force drives the gas along them.
         """
         rubs = any(not face.smooth for face in self.faces.values())
         return bool(self.sliding_faces) or (rubs and bool(self.driven_axes))
@@ -359,7 +359,7 @@ class Facts:
     def flow_changes(self) -> bool:
         """True if the flow of the gas changes with time.
 
-        It does if faces or walls move along their normal, or if faces are open.
+        The flow changes if faces or walls move along their normal, or if faces are open.
         """
         return bool(self.moving_axes) or self.is_open
 
@@ -390,9 +390,9 @@ class Facts:
     def conserved_axes(self) -> tuple[bool, ...]:
         """True for axes along which the total momentum is conserved, shape (d,).
 
-        They are the periodic axes, if no particle is fixed, and if the container has only smooth faces or a
-        moving wall. Such faces and walls exert only normal forces. In a sheared gas the momentum is relative
-        to the flow.
+        Momentum is conserved along the periodic axes, if no particle is fixed, and if the container has only
+        smooth faces or a moving wall. Such faces and walls exert only normal forces. In a sheared gas the
+        momentum is relative to the flow.
         """
         smooth = all(face.smooth for face in self.faces.values())
         rubbed = not self.is_periodic and (self.rough or not smooth)

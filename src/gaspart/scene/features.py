@@ -19,8 +19,9 @@ if TYPE_CHECKING:
 
 
 class Feature(NamedTuple):
-    """Feature of a scene: its key, and the function value(scene), which returns None without the feature.
+    """Feature of a scene.
 
+    The function value(scene) returns None if the scene does not have the feature.
     A feature that is a kind of face has a `kind`.
     """
 

@@ -55,7 +55,7 @@ def rounding(position: Iterable[float], *lengths: float) -> float:
 def closest_packing(scene: Scene) -> float:
     """Return the highest possible packing fraction.
 
-    It is proven for equal particles, and 1 for others.
+    For equal particles this fraction is proven; for other particles 1 is returned.
     """
     alike = (
         len({kind.radius for kind in scene.species if kind.count} | {it.radius for it in scene.particles}) < 2

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def flow(scene: Scene, positions: np.ndarray) -> np.ndarray:
-    """Return the velocity (..., d) of the flow at positions; 0 without sheared faces."""
+    """Return the velocity (..., d) of the flow at positions; 0 if no faces are sheared."""
     return flow_of_rate(scene.shear_rate, scene.container.lengths[GRADIENT], positions)
 
 

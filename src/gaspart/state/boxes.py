@@ -393,10 +393,10 @@ touch; size of the sample."""
 def _reach_of_deepest(tree: cKDTree, other: cKDTree, reach: float) -> float:
     """Return the largest distance at which two size classes can have their deepest overlap.
 
-    It is `reach` for particles that touch. If many particles lie on top of each other, memory cannot hold all
-    pairs within `reach`. Contact distances in the classes differ by less than a factor of two. If the nearest
-    pair has the distance q, no deeper overlap has a distance above 2 q. The result is 0 if two centres
-    coincide.
+    For particles that touch, this distance is `reach`. If many particles lie on top of each other, memory
+    cannot hold all pairs within `reach`. Contact distances in the classes differ by less than a factor of
+    two. If the nearest pair has the distance q, no deeper overlap has a distance above 2 q. The result is 0
+    if two centres coincide.
     """
     itself = tree is other
     sample = tree.data[:: max(1, tree.n // _SAMPLE)]

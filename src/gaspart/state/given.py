@@ -184,7 +184,7 @@ def _image_displacement(scene: Scene, other: State) -> float | None:
 
 
 def _taken_piston(scene: Scene, other: State) -> np.ndarray | None:
-    """Return position and velocity of the piston in a state, or None without a piston.
+    """Return position and velocity of the piston in a state; None if there is no piston.
 
     Raises SceneError if the piston is another face in the scene.
     """

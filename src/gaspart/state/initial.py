@@ -312,9 +312,9 @@ def in_flow(scene: Scene, masses: np.ndarray, positions: np.ndarray, velocities:
 def _make_exact(scene: Scene, velocities: np.ndarray) -> None:
     """Rescale velocities so that all species with an exact temperature have it together.
 
-    Their mean velocity is 0 along axes with conserved momentum. The mean of m v^2 / kT per degree of freedom
-    is 1. The sums have the same rounding on every machine. Raises SceneError if there is no degree of
-    freedom.
+    The mean velocity of these species is 0 along axes with conserved momentum. The mean of m v^2 / kT per
+    degree of freedom is 1. The sums have the same rounding on every machine. Raises SceneError if there is no
+    degree of freedom.
     """
     first, parts = len(scene.particles), []
     for kind in scene.species:

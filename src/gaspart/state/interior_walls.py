@@ -19,7 +19,7 @@ _SLACK = 1e-9  # relative extension of neighbourhoods, so that rounding removes 
 
 
 def wall_rows(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Return a row for each interior wall and for its images near periodic faces.
+    """Return interior walls and their images near periodic faces as rows of an array.
 
     Parameters
     ----------

@@ -44,13 +44,13 @@ class State:
     moments_of_inertia : ndarray, shape (N,), [mass length^2]
         Moments of inertia.
     gravity : ndarray, shape (d,), optional, [length/time^2]
-        Acceleration. None without gravity.
+        Acceleration. None if there is no gravity.
     well_energies : ndarray, shape (N,), optional, [energy]
-        Potential energy in the wells of the faces. None without wells.
+        Potential energy in the wells of the faces. None if no face has a well.
     vibrations : ndarray, shape (N,), optional, [energy]
         Energy of each particle's vibration. None if no particle vibrates.
     piston : ndarray, shape (2,), optional, [length] and [length/time]
-        Position of the piston along its axis, and its velocity. None without a piston.
+        Position of the piston along its axis, and its velocity. None if there is no piston.
     piston_face : str, optional
         Face of the container or interior wall that is the piston.
     displaced : float, optional, [length]
@@ -397,7 +397,7 @@ def by_number(state: State, values: np.ndarray, capacity: int) -> np.ndarray:
     Returns
     -------
     ndarray, shape (capacity, ...)
-        Values; NaN for a number without a particle. Without open faces, `values` is returned unchanged.
+        Values; NaN if no particle has the number. If no face is open, `values` is returned unchanged.
     """
     if state.numbers is None:
         return values

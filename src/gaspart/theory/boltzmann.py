@@ -116,8 +116,8 @@ def brackets(
 def _contraction(rank: int, v: np.ndarray, w: np.ndarray) -> np.ndarray:
     """Return the contraction of two harmonic tensors of velocities.
 
-    It is v^l w^l P_l of the cosine of their angle, with the magnitudes v and w. In two dimensions cos(l
-    angle) replaces P_l.
+    The contraction is v^l w^l P_l(cos(angle)), where v and w are the magnitudes of the velocities. In two
+    dimensions cos(l angle) replaces P_l.
     """
     from scipy.special import eval_legendre
 
@@ -393,7 +393,7 @@ def _meetings(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Return the collisions in a step.
 
-    They consist of the particles i and j (M,), unit normals (M, d), and speeds of approach (M,).
+    The collisions are arrays: the particles i and j (M,), unit normals (M, d), and speeds of approach (M,).
     """
     step = _step(velocity)
     first, second = rng.permutation(len(velocity))[: len(velocity) // 2 * 2].reshape(2, -1)

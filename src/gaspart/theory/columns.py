@@ -164,7 +164,7 @@ class GravityColumn:
 
 
 def gravity_column(scene: Scene) -> GravityColumn | None:
-    """Return the column of a scene under gravity, or None without a theory.
+    """Return the column of a scene under gravity; None if there is no theory for it.
 
     Theory covers equal-sized particles that lose no energy, between hard walls or walls at one temperature.
     """

@@ -127,7 +127,8 @@ class Conditions:
     def surfaces(self) -> float:
         """Fraction of contacts with a missing neighbour because of a wall, to first order.
 
-        It is the largest diameter divided by the accessible length, summed over the axes with walls.
+        This fraction is the largest diameter divided by the accessible length, summed over the axes with
+        walls.
         """
         sides = np.where(self.scene.container.periodic, math.inf, self.free)
         if self.axis is not None and math.isfinite(sides[self.axis]):

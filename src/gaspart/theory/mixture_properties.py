@@ -1,6 +1,6 @@
 """Chemical potentials of mixtures of additive hard discs and spheres, from equations of state.
 
-They are in units of k_B T, relative to an ideal gas. Arguments are as in `mixtures`.
+The potentials are in units of k_B T, relative to an ideal gas. Arguments are as in `mixtures`.
 """
 
 from __future__ import annotations

@@ -257,7 +257,7 @@ _Pairs: TypeAlias = list[tuple[np.ndarray, np.ndarray]]
 def _viscosity_pairs(eta: float, along: Modes, across: Modes) -> _Pairs:
     """Return weights and decays (n, m, M) of pairs of modes in the stress.
 
-    They are for u_x u_y divided by its mean square, averaged over the directions of k.
+    The weights and decays describe u_x u_y divided by its mean square, averaged over the directions of k.
     """
     longitudinal, transverse = along.amplitude[:, 2], across.amplitude[:, 0]
     return [
@@ -270,7 +270,7 @@ def _viscosity_pairs(eta: float, along: Modes, across: Modes) -> _Pairs:
 def _conductivity_pairs(eta: float, along: Modes, across: Modes) -> _Pairs:
     """Return weights and decays (n, m, M) of pairs of modes in the heat flux.
 
-    They are for (rho T s + p) u, multiplied by the density.
+    The weights and decays describe (rho T s + p) u, multiplied by the density.
     """
     z, capacity = float(compressibility_factor(eta, 2)), heat_capacities(eta, 2)[0]
     slope = float(speed_of_sound(eta, 2)) ** 2 - z**2 / capacity  # dp / d rho
@@ -297,8 +297,8 @@ def _sums(first: Modes, second: Modes) -> np.ndarray:
 def _integrate_delayed(decay: np.ndarray, time: float, relaxation: Relaxation) -> np.ndarray:
     """Return the integrals up to a time of exp(decay t), delayed by both vertices.
 
-    This is the inverse Laplace transform of F(p)^2 / (p - decay) / p, computed from divided differences of
-    (exp(p t) - 1) / p. The result has the shape of `decay`.
+    Each integral is the inverse Laplace transform of F(p)^2 / (p - decay) / p, computed from divided
+    differences of (exp(p t) - 1) / p. The result has the shape of `decay`.
     """
 
     def integral(p: np.ndarray) -> np.ndarray:

@@ -27,7 +27,8 @@ def _shares(per_side: int, side: float, radius: float) -> np.ndarray:
 def _moments(per_side: int, side: float, radius: float) -> np.ndarray:
     """Return three means along an axis for the neighbourhood of a particle.
 
-    They are the number of boxes, a probability, and its square.
+    The returned values are the means of the number of boxes, of a probability, and of the square of the
+    probability.
 
     The means are over the position of the particle. The probability is the probability that another particle
     is in the neighbourhood.

@@ -81,7 +81,7 @@ def rates(scene: Scene, dense: bool, instead: Kinds | None = None) -> Rates:
 def highest_speed(scene: Scene) -> float:
     """Return the highest mean speed that particles can reach with the initial energy.
 
-    It is reached if the energy is distributed such that all particles have momenta of equal magnitude.
+    The mean speed is highest if all particles have momenta of equal magnitude.
     """
     kinds = scene.moving_kinds
     energy = sum(

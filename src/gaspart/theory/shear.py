@@ -24,11 +24,11 @@ NORMAL_STRESSES = (-1.2, 1.6, -0.4)
 """Normal stresses (P_xx / p - 1) / a^2, and the same for yy and zz, in a flow u along y that varies along x;
 a = -P_xy / p.
 
-They follow from moments of the steady Boltzmann equation: (p / mu) (P_ij - p delta_ij) = -dM_ij/dx, with the
-additional term -2 P_xy du/dx for yy. Here mu is the viscosity. The transport of P_ij along x is M = 2/5 q (3,
-1, 1) for xx, yy, zz, with Fourier's heat flux q, and dq/dx = mu (du/dx)^2. The values are correct to second
-order in a, and exact for Maxwell molecules. For spheres, products of stresses and Sonine polynomials beyond
-the first are neglected.
+The stresses follow from moments of the steady Boltzmann equation: (p / mu) (P_ij - p delta_ij) = -dM_ij/dx,
+with the additional term -2 P_xy du/dx for yy. Here mu is the viscosity. The transport of P_ij along x is M =
+2/5 q (3, 1, 1) for xx, yy, zz, with Fourier's heat flux q, and dq/dx = mu (du/dx)^2. The values are correct
+to second order in a, and exact for Maxwell molecules. For spheres, products of stresses and Sonine
+polynomials beyond the first are neglected.
 """
 
 

@@ -146,9 +146,10 @@ def _circles(eta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def _verlet_weis(eta: float) -> tuple[float, float, float, float]:
     """Return the parameters of the g(r) of Verlet and Weis at a packing fraction.
 
-    They are the packing fraction and the diameter of the Percus-Yevick fluid, and the amplitude and the
-    inverse range of the term that is added to its g(r). With this amplitude and range, the contact value and
-    the compressibility are equal to Carnahan and Starling's. S(0) is 1 + 24 eta times the integral of r^2 (g
+    The parameters are the packing fraction and the diameter of the Percus-Yevick fluid, and the amplitude and
+    the inverse range of the term that is added to its g(r). With this amplitude and range, the contact value
+    and the compressibility are equal to Carnahan and Starling's. S(0) is 1 + 24 eta times the integral of r^2
+    (g
     - 1), to which the added term contributes 12 eta A / mu.
     """
     effective = eta - eta**2 / 16.0

@@ -274,7 +274,7 @@ class _Container:
     def rise(self, eta: float) -> float:
         """Return d eta / d mu multiplied by the volume of a particle.
 
-        It is rho / (dP / d rho) in the bulk fluid.
+        The result is rho / (dP / d rho) in the bulk fluid.
         """
         slope = _slope(lambda x: x * compressibility_factor(x, self.dimension), eta)
         return float(number_density(eta, self.dimension)) / slope

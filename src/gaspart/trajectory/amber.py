@@ -252,7 +252,7 @@ def _value_at(header: bytes | bytearray, name: str) -> int:
 def stored_header(file: BinaryIO) -> bytes:
     """Return the header of a file, with the number of frames set to 0.
 
-    This is the header as `Layout.header` made it.
+    The result is the header that `Layout.header` made.
 
     Raises ValueError, with the violated rule, for a damaged file and for a file of another program.
     """

@@ -113,7 +113,7 @@ def kept_beside(path: Path, header: bytes, otherwise: str) -> Checkpoint | None:
 def _checkpoint(path: Path, header: bytes) -> Checkpoint | None:
     """Read a checkpoint like `read_checkpoint`, but raise SceneError if it is unusable.
 
-    It is unusable if it is damaged, belongs to another run, or is a file of another kind.
+    A checkpoint is unusable if it is damaged, belongs to another run, or is a file of another kind.
     """
     try:
         with open_regular(path) as file:

@@ -102,7 +102,7 @@ def _dispatchers() -> list[Any]:
 
 
 def _stamp(kernels: list[Kernel]) -> Path | None:
-    """Return the path of the file that marks stored native kernels; None without a cache."""
+    """Return the path of the file that marks stored native kernels; None if no cache exists."""
     folders = (function.stats.cache_path for function in _dispatchers())
     folder = next(filter(None, folders), None)
     if folder is None or not kernels:

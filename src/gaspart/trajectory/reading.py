@@ -28,7 +28,7 @@ _REDUCED = {
 _UNUSED = ["spatial", "cell_spatial", "cell_angular", "checksum", *amber.INITIAL]
 """Variables of a file that `open_trajectory` does not read.
 
-These are names of axes, checksums, and variables that belong to the recipe.
+These variables are names of axes, checksums, and variables that belong to the recipe.
 """
 GIVEN_START = "given_start"
 """Attribute of an open trajectory that starts from a given state."""

@@ -62,7 +62,7 @@ def in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
 def differ(scene: Scene, engine: Engine, has_initial: bool = False) -> bool:
     """Return True if runs with different seeds differ.
 
-    They differ if random numbers are drawn for the initial state, or later.
+    Such runs differ if random numbers are drawn for the initial state, or later.
     """
     drawn = not has_initial and (scene.vibrates or any(kind.count for kind in scene.species))
     return drawn or engine.draws(scene)

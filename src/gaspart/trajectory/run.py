@@ -124,7 +124,8 @@ def take_over(path: Path, recipe: Recipe, frames: Frames) -> Checkpoint | None:
 Examiner: TypeAlias = "Callable[[Sequence[xr.Dataset], Until, int], float]"
 """Function that computes the errors in the first frames of a run, or of all its replicas.
 
-It returns the largest error divided by the required error; inf if it is unknown, 0 to end the run.
+The function returns the largest error divided by the required error; inf if the error is unknown, 0 to end
+the run.
 """
 _LOOK = 0.05  # seconds between checks of other replicas
 

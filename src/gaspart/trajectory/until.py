@@ -76,7 +76,7 @@ class Until:
             object.__setattr__(self, "at_most", longest)
 
     def most_frames(self, sample_interval: float) -> int | None:
-        """Return the maximum number of frames, including time 0; None without a limit.
+        """Return the maximum number of frames, including time 0; None if there is no limit.
 
         Raises SceneError if the maximum duration has no frame after time 0.
         """

@@ -80,8 +80,8 @@ class Plates:
     def freedom(self) -> float:
         """Mean free path divided by the flight length between two hits that draw a new velocity.
 
-        It is determined by the plate with the smaller accommodation. It equals the Knudsen number if both
-        plates always draw velocities.
+        The plate with the smaller accommodation determines this ratio. The ratio equals the Knudsen number if
+        both plates draw a new velocity at every hit.
         """
         return self.knudsen * min(self.accommodation)
 
@@ -175,7 +175,7 @@ def plates_of(run: Run, driven: bool = False) -> Plates | None:
 def _free_path(density: float, diameter: float, run: Run) -> float:
     """Return the mean free path of spheres by the equation of the run.
 
-    It is 0 above the density range of the theory.
+    The result is 0 above the density range of the theory.
     """
     if equation_of(run) == BOLTZMANN:
         scaled = density / _POINTS ** (run.dimension - 1)
@@ -318,7 +318,7 @@ def velocity(run: Run, axis: int, positions: np.ndarray) -> Expected | None:
 def _drift(run: Run) -> np.ndarray:
     """Compute the velocity (d, 1) of the centre of mass, relative to a sheared flow.
 
-    It is 0 along axes on which the momentum is not conserved.
+    The velocity is 0 along axes on which the momentum is not conserved.
     """
     velocities = run.velocities
     if run.scene.shear_rate is not None:

@@ -61,8 +61,8 @@ def structure_factor(run: Run, wave_number: np.ndarray) -> Expected | None:
 def partial_structure_factors(run: Run, wave_number: np.ndarray) -> Expected | None:
     """Compute the expected partial structure factors (pair, wave_number).
 
-    They exist for spheres if each species has a single size. For point particles they are 1 for equal species
-    and 0 otherwise.
+    The factors are known for spheres if each species has a single size. For point particles, a factor is 1 if
+    both species are the same and 0 otherwise.
     """
     equation, mixture, species = equation_of(run), run.mixture, run.scene.species
     pairs = pairs_of(run.scene)
@@ -137,7 +137,8 @@ def temperature(run: Run) -> Expected | None:
 def density(run: Run, axis: int, edges: np.ndarray, species: int | None) -> Expected | None:
     """Compute the expected density (bins,) of all particles, if they are equal.
 
-    It is uniform, or hydrostatic along the axis of gravity; for point particles the barometric law holds.
+    The density is uniform, or hydrostatic along the axis of gravity; for point particles the barometric law
+    holds.
     """
     scene, kinds = run.scene, run.scene.kinds
     field = 0.0 if scene.gravity is None else scene.gravity[axis]

@@ -36,7 +36,7 @@ def positive_errors(errors: ArrayLike, size: int) -> np.ndarray:
 def positive_freedoms(freedoms: ArrayLike, size: int) -> np.ndarray:
     """Return degrees of freedom broadcast to (size,); raise ValueError unless positive.
 
-    They may be infinite.
+    The degrees of freedom may be infinite.
     """
     freedoms = np.broadcast_to(np.asarray(freedoms, dtype=float), (size,))
     if not np.all(freedoms > 0.0):

@@ -402,8 +402,8 @@ FLAT = 0.05
 class Optimum:
     """Minimum of a cost: its position, the 95 % interval of the position, and its cost.
 
-    It also states if the minimum lies between the points, and the interval in which the cost exceeds the
-    minimum by less than FLAT.
+    The object also records if the minimum lies between the points, and the interval in which the cost exceeds
+    the minimum by less than FLAT.
     """
 
     location: float

@@ -62,8 +62,8 @@ def may_crowd(scene: Scene) -> bool:
 def crowding(positions: np.ndarray, cells: tuple[int, ...], scene: Scene) -> float:
     """Return the relative density around particles at positions (N, d).
 
-    It is computed from the numbers of pairs in some cells, and is 1 in a uniform gas of the usual number of
-    particles.
+    This density is computed from the numbers of pairs in some cells, and equals 1 in a uniform gas of the
+    usual number of particles.
     """
     lower, upper = accessible(scene)
     coordinates = (positions - lower) / (upper - lower) * cells
@@ -148,8 +148,9 @@ class Resolution:
     def level(self, particles: Particles, position: int, time: float) -> int:
         """Return the level for the next part of a step.
 
-        It is the level for the speeds of the particles. It is higher if the completed fraction of the step is
-        not a multiple of the part. Raises SimulationError if the particles are too fast for every level.
+        The speeds of the particles determine the level. A higher level is returned if the completed fraction
+        of the step is not a multiple of the part. Raises SimulationError if the particles are too fast for
+        every level.
 
         position : position within the step, in parts of the largest level
         """

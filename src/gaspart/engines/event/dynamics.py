@@ -146,7 +146,7 @@ def event_parts(
 def wrap(positions: np.ndarray, images: np.ndarray, space: Space) -> None:
     """Move particles back that are beyond a periodic face because of rounding.
 
-    They reach this face exactly at the present time.
+    These particles reach the face exactly at the present time.
     """
     lengths = np.array(space.lengths)
     outside = ((positions < 0.0) | (positions >= lengths)) & space.periodic

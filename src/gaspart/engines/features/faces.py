@@ -49,7 +49,7 @@ def with_room(scene: Scene, state: State) -> State:
 
 
 def open_of(scene: Scene, state: State) -> kernels.Open | None:
-    """Return the kernels' `Open` for a state with all numbers; None without open faces."""
+    """Return the kernels' `Open` for a state with all numbers; None if no face is open."""
     if not scene.is_open:
         return None
     present = np.isfinite(state.positions[:, 0]).astype(np.uint8)
@@ -254,7 +254,7 @@ def kinds_and_levels(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 
 
 def sliding_velocities(scene: Scene) -> np.ndarray | None:
-    """Return the velocities (2d, d) of the faces, or None without tangential forces."""
+    """Return the velocities (2d, d) of the faces; None if there are no tangential forces."""
     if not scene.drags_faces:
         return None
     velocities = np.zeros((2 * scene.dimension, scene.dimension))

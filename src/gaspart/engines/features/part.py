@@ -212,8 +212,8 @@ def shear_of(scene: Scene) -> Shear | None:
 class ShearPart(Part):
     """Displacement of the periodic images in a sheared scene.
 
-    It is computed from the time and the initial state, so checkpoints do not contain it. At each crossing a
-    particle may gain the velocity of the images.
+    The displacement is computed from the time and the initial state, so checkpoints do not contain it. At
+    each crossing a particle may gain the velocity of the images.
     """
 
     def __init__(self, scene: Scene, state: State, shear: Shear) -> None:
@@ -288,8 +288,8 @@ class Kicks(Part):
     def end_epoch(self, length: float, start: float) -> None:
         """Set the time of the next kick to a multiple of the interval.
 
-        It is rounded once; a sum of intervals would deviate from it by accumulated rounding. The subtraction
-        is exact.
+        The multiple is rounded once; a sum of intervals would deviate from it by accumulated rounding. The
+        subtraction is exact.
         """
         self._next[0] = (int(self._number[0]) + 1) * self._interval - start
 
@@ -309,7 +309,7 @@ class Kicks(Part):
 
 
 def kicks(scene: Scene, seed: int | tuple[int, ...], unit_mass: float) -> Kicks | None:
-    """Return the kicks of a thermostat, or None without a thermostat or moving particles."""
+    """Return the kicks of a thermostat; None if there is no thermostat or no moving particle."""
     if scene.thermostat is None or not any(not kind.fixed for kind in scene.kinds):
         return None
     return Kicks(scene.thermostat, scene.dimension, seed, unit_mass)
@@ -366,7 +366,7 @@ class StepKicks(Part):
 
 
 def step_kicks(scene: Scene, time_step: float, seed: int | tuple[int, ...]) -> StepKicks | None:
-    """Return the kicks of a thermostat for time steps, or None without a thermostat."""
+    """Return the kicks of a thermostat for time steps; None if there is no thermostat."""
     if scene.thermostat is None or not scene.count:
         return None
     return StepKicks(scene.thermostat, scene.dimension, time_step, seed)

@@ -57,10 +57,10 @@ class WarmWallsPart(Part):
 
 
 def moving_wall_of(scene: Scene, state: State, unit_mass: float) -> kernels.MovingWall | None:
-    """Return the moving wall with its state, in units of `unit_mass`, or None.
+    """Return the kernels' moving wall; None if the scene has no moving wall.
 
-    Raises SceneError unless there are particles on both sides, because they keep the wall inside the
-    container.
+    The mass of the wall is in units of `unit_mass`. Raises SceneError unless there are particles on both
+    sides, because they keep the wall inside the container.
     """
     wall = scene.moving_wall
     if wall is None or state.piston is None:

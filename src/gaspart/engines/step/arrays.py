@@ -157,7 +157,7 @@ def rules_for(
 
 
 def parts_for(scene: Scene, rules: Rules | None) -> list[Part]:
-    """Return the parts of a run for these rules; () without rules."""
+    """Return the parts of a run for these rules; () if there are no rules."""
     if rules is None:
         return []
     law, faces = rules.model.law, rules.model.faces
@@ -217,7 +217,7 @@ class ImpulsesPart(TallyPart):
     def _momenta(self) -> np.ndarray:
         """Return the present momenta (rows, bins + 1) of all particles in the impulses' bins.
 
-        They are summed in the order of particle numbers, so that rounding does not depend on the order in
+        Momenta are summed in the order of particle numbers, so that rounding does not depend on the order in
         memory.
         """
         particles = self._particles

@@ -180,8 +180,8 @@ def check_step(engine: TimeStepped, state: State) -> None:
 def check_late(engine: TimeStepped, time: float, met: int, late: int, passed: int) -> None:
     """Raise SimulationError if too many contacts are found a step too late.
 
-    It is also raised if particles pass through each other. In these cases speeds are so high, or gaps so
-    narrow, that the step is too long.
+    The error is also raised if particles pass through each other. In both cases speeds are so high, or gaps
+    so narrow, that the step is too long.
     """
     most = [max(FEW, part * met) for part in (LATE_MOST, PASSED_MOST)]
     if engine.passes > 1 and (late > most[0] or passed > most[1]):

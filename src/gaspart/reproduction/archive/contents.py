@@ -152,7 +152,7 @@ def find_finished(results: str | Path, config: str | Path | None = None) -> Fini
 
 
 def _project_of(folder: Path) -> Path | None:
-    """Return the nearest folder with a workflow, `folder` or a parent; None without one."""
+    """Return the nearest folder with a workflow, `folder` or a parent, or None."""
     for candidate in (folder, *folder.parents):
         if any((candidate / name).is_file() for name in _WORKFLOWS):
             return candidate
@@ -171,7 +171,7 @@ def _select_points(config: dict, planned: dict[str, dict[str, Point]]) -> list[P
 
 
 def _config_of(root: Path, name: str | None) -> Path:
-    """Return the config of the run of this name; None for the run without a name.
+    """Return the config of a run; pass None for the run without a name.
 
     Raises SceneError unless there is exactly one such config.
     """
@@ -237,9 +237,9 @@ _OF_PACKAGE = Path(__file__).parents[4]
 def sources(run: Finished) -> Iterator[str]:
     """Yield the files of the project with which the run can be repeated.
 
-    They are the workflow, its config and scenes, the library, the locked environment. If another workflow
-    uses this one as a module, it has some of these files, and CITATION.cff. Raises SceneError if a necessary
-    file is missing.
+    These files are the workflow, its config and scenes, the library, and the locked environment. If another
+    workflow uses this one as a module, it has some of these files, and CITATION.cff. Raises SceneError if a
+    necessary file is missing.
     """
     required = (run.workflow, CITATION, *(_NEEDED if run.is_copy else ()))
     for name in required:

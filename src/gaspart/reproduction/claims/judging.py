@@ -112,8 +112,8 @@ class Claim:
     def within(cls, *, claim: str, expected: Number, half_width: Number, **others: Any) -> Claim:
         """Return the claim that the measured number lies within `half_width` of `expected`.
 
-        `others` are the remaining fields. The required uncertainty defaults to `half_width` / 2. The 95 %
-        interval of the measurement is then no wider than the interval of the claim.
+        `others` are the remaining fields. If they do not contain the required uncertainty, it is `half_width`
+        / 2. The 95 % interval of the measurement is then no wider than the interval of the claim.
         """
         low, high = expected - half_width, expected + half_width
         text = f"{claim} (within {low:g} to {high:g})"
@@ -173,8 +173,9 @@ class Claim:
     def deviation_sigma(self) -> float:
         """Signed distance from the expected value, in standard deviations; 0 within bounds.
 
-        It is (measured - expected) / sqrt(u1^2 + u2^2) with the uncertainties u1 and u2 of both. For bounds,
-        the nearer bound is the expected value. See `Estimate.deviation` for uncertainties from a few samples.
+        The distance is (measured - expected) / sqrt(u1^2 + u2^2), where u1 and u2 are the uncertainties of
+        the two values. For bounds, the nearer bound is the expected value. See `Estimate.deviation` for
+        uncertainties from a few samples.
         """
         if self.exact_deviation is not None:
             return self.exact_deviation

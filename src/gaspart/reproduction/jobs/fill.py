@@ -46,8 +46,8 @@ def fill(scene: Scene, attempts: int, seeds: list[tuple[int, ...]]) -> PointData
     the count, is reached.
 
     Returns a dataset with ``failures`` (replica, particle), the number of failed attempts before each
-    particle was placed, or -1 if it was never placed; ``placed`` (replica,); and ``attempts`` (replica,).
-    Attributes are packing_fraction_per_particle, side and radius.
+    particle was placed, or -1 if it was never placed; ``placed`` (replica,); and ``attempts`` (replica,). The
+    attributes of the dataset are packing_fraction_per_particle, side and radius.
     """
     import numpy as np
 

@@ -31,8 +31,9 @@ def engine(point: Point) -> Engine:
 def scan_engines(point: Point) -> list[Engine]:
     """Return the engine of a point, or an engine for each value of its scan.
 
-    Scans are over time steps or partitions. Equal partitions are used only once. A fractional step is a
-    fraction of the engine's default step for the scene. Raises SceneError.
+    Scans are over time steps or partitions. If several values of the scan give the same partition, only one
+    engine has it. A fractional step is a fraction of the engine's default step for the scene. Raises
+    SceneError.
     """
     settings = point.settings
     scans = [key for key in SCANS if key in settings]

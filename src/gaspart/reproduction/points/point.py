@@ -133,7 +133,7 @@ class Point:
     def kind_of_job(self) -> Job:
         """Module of the job.
 
-        It is imported by name, so that measurements, which use points too, do not depend on any job.
+        The module is imported by name, so that measurements, which use points too, do not depend on any job.
         """
         return import_module(f"{_JOBS}.{self.job}")
 
@@ -226,7 +226,7 @@ def variant(point: Point) -> str:
 def compiled_features(scene: Scene) -> set[str]:
     """Return the names of features that change the kernels of a scene.
 
-    They include features that every engine models but compiles only if a scene has them.
+    These names include features that every engine models but compiles only if a scene has them.
     """
     names = scene.features - _NUMBERS - {"contact_duration"}
     if names & _LAW:

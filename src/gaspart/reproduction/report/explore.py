@@ -200,7 +200,7 @@ def find_reference(citation: re.Match[str], references: Mapping[str, Reference])
 def cited_references(texts: Iterable[str], references: Mapping[str, Reference]) -> dict[str, Reference]:
     """Return the references that some texts cite, by key.
 
-    Their order is the order of `references`. They are numbered from 1.
+    The references are in the order of `references`, and are numbered from 1.
     """
     matches = (find_reference(citation, references) for text in texts for citation in CITATION.finditer(text))
     keys = {reference.key for reference in matches if reference is not None}

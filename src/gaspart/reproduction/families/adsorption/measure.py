@@ -41,7 +41,7 @@ class Holder:
 
     kind : "ideal" (the gas is dilute even in the well), "layer" (the well is narrower than a particle) or
     "sticky".
-    depth, width : depth and width of the well; 0 without a well.
+    depth, width : depth and width of the well; 0 if there is no well.
     momentum : momentum below which particles stick; 0 if they do not stick.
     outside : length along x that is accessible to the centres of gas particles.
     """
@@ -102,7 +102,8 @@ class Holder:
     def activity(self, density: float | np.ndarray) -> float | np.ndarray:
         """Compute the coverage of a layer of particles without interaction, at the pressure of the gas.
 
-        It is beta P w e^{depth/kT} pi sigma^2 / 4, a packing fraction; 0 without a well.
+        The coverage is the packing fraction beta P w e^{depth/kT} pi sigma^2 / 4; it is 0 if there is no
+        well.
         """
         eta = density * particle_volume(3, 2.0 * self.radius)
         pressure = density * compressibility_factor(eta, 3)
@@ -133,8 +134,8 @@ class Holder:
     def fugacity(self, density: float | np.ndarray) -> float | np.ndarray:
         """Compute `activity` with the activity of the gas instead of its pressure.
 
-        It is rho exp(mu_excess / kT). This would be exact if the gas in front of the layer did not affect the
-        layer.
+        The activity of the gas is rho exp(mu_excess / kT). This would be exact if the gas in front of the
+        layer did not affect the layer.
         """
         eta = density * particle_volume(3, 2.0 * self.radius)
         return density * np.exp(excess_chemical_potential(eta, 3)) * self._hold

@@ -105,8 +105,8 @@ def motion_of(point: Point) -> BrownianMotion:
 def light_paths(point: Point, motion: BrownianMotion) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """Yield groups of paths of the linear Boltzmann equation that start at rest.
 
-    They are sampled like the point's runs: times (T,), displacements and velocities (T, N, 3). A gas of equal
-    speeds relaxes meanwhile, by its own collisions.
+    The paths are sampled like the point's runs: times (T,), displacements and velocities (T, N, 3). A gas of
+    equal speeds relaxes meanwhile, by its own collisions.
     """
     gas, times = point.scene.species[0], point.schedule
     frames = times.equilibration_frames + times.samples

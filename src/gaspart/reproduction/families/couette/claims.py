@@ -28,7 +28,7 @@ differs by less than 1 %."""
 SECOND = 4.0
 """Bound of terms of second order, relative to the square of stress over pressure.
 
-It is 2.5 times `NORMAL_STRESSES`.
+The bound is 2.5 times `NORMAL_STRESSES`.
 """
 
 
@@ -212,7 +212,7 @@ def _heating(flow: Row) -> Claim:
 def _normal(flow: Row) -> list[Claim]:
     """Return the claims on normal stresses, which are of second order in the shear rate.
 
-    They are measured on the walls, and along two axes in the middle.
+    The stresses are measured on the walls, and along two axes in the middle.
     """
     square = flow.reduced_rate.value**2
     across, along, _ = NORMAL_STRESSES

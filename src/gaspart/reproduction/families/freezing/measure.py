@@ -102,7 +102,7 @@ def _disc(point: Point) -> dict[str, Any]:
 def _sphere(point: Point) -> dict[str, Any]:
     """Return the columns of a point of spheres.
 
-    They include Z of the infinite system on the branch of the point, and the reference for Z.
+    The columns include Z of the infinite system on the branch of the point, and the reference for Z.
     """
     row = _state(point, structure.global_steinhardt)
     eta, solid = row["packing_fraction"], row["order"][0] > CRYSTAL_ORDER

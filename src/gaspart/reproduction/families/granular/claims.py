@@ -105,7 +105,7 @@ def _decay(gas: Row) -> list[Claim]:
 def _at_walls(gas: Row) -> list[Claim]:
     """Return the claims on energy exchanged only at rough walls.
 
-    They concern the fraction exchanged per hit, and equipartition at the end.
+    The claims concern the fraction of the energy exchanged per hit, and equipartition at the end.
     """
     which = f"{PARTICLES[gas.wall_dimension]} between rough walls, q = {gas.wall_inertia:g}"
     return [

@@ -125,7 +125,7 @@ def _haff(axis: Axes, gases: Table) -> None:
 def _rates(axis: Axes, gases: Table) -> None:
     """Draw -d ln T / ds divided by (1 - e^2)/d.
 
-    It is 1 for Maxwell's distribution, and 1 + a2/4 for the cooling gas.
+    This ratio is 1 for Maxwell's distribution, and 1 + a2/4 for the cooling gas.
     """
     style.level(axis, 1.0)
     curve = np.linspace(0.55, 1.0, 100)

@@ -247,7 +247,7 @@ def cooling(points: list[Point], settings: dict) -> xr.Dataset:
     cluster_restitution : restitution, over `clusters`
     x, y : positions at the end of one run with the smallest restitution, over `particle`
 
-    Attributes are side and radius.
+    The attributes of the dataset are side and radius.
     """
     apart = [point for point in points if point.experiment in settings["clustering"]]
     dilute = [point for point in points if point not in apart]
@@ -305,7 +305,7 @@ def _clusters(point: Point, cells: int) -> dict[str, Any]:
 def _number_variance(run: Run, cells: int) -> np.ndarray:
     """Compute the variance (T,) of the particle number in a cell, divided by its mean.
 
-    It is 1 for independent particles.
+    The ratio is 1 for independent particles.
     """
     lengths = run.scene.container.lengths
     grid = Grid((0.0,) * len(lengths), lengths, (cells,) * len(lengths))

@@ -224,7 +224,7 @@ class Bins:
     def temperature_gradient(self, energy: np.ndarray, density: np.ndarray) -> float:
         """Compute dT/dz divided by the mean weight of a particle.
 
-        It equals d ln T / dz in units of the inverse scale height.
+        The result equals d ln T / dz in units of the inverse scale height.
         """
         total = density.sum(axis=0)
         return self._slope(energy / total, total) / (self.column.weight / len(self.column.masses))

@@ -155,8 +155,8 @@ def heat_conduction_metal(points: list[Point], settings: dict) -> xr.Dataset:
     slope : dE/dT divided by `expected`, from a line through the points in equilibrium, at least two
     regular : True if scatterers are listed one by one, on a grid, instead of placed at random
 
-    The variance of E is computed about the known mean. It then has no bias for correlated samples. Its
-    logarithm is closer to a Gaussian number.
+    The variance of E is the mean square of the deviation from the known mean of E. Its estimate therefore has
+    no bias, even if samples are correlated. Its logarithm is closer to a Gaussian number.
     """
     ds = table("point", points, _metal, settings, inner=("bin",))
     metals = Table(ds, "point")
@@ -225,7 +225,7 @@ def _metal(point: Point, settings: dict) -> dict[str, Any]:
 def _path(scene: Scene, gap: Gap, fixed: np.ndarray) -> float:
     """Compute the mean free path of electrons among discs.
 
-    It is exactly pi times the free area, divided by the total perimeter of the discs.
+    The mean free path is exactly pi times the free area, divided by the total perimeter of the discs.
     """
     contact = per_particle(scene, "radius")[fixed] + scene.smallest_radius
     return float((gap.length * gap.area - np.pi * np.sum(contact**2)) / (2.0 * np.sum(contact)))

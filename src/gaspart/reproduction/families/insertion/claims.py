@@ -84,7 +84,8 @@ def _approach(fill: Row) -> Claim:
 def _source(fill: Row) -> Claim:
     """Return the claim on source A's single fill, compared with many of our fills.
 
-    It is a sample of the distribution of our fills, if its number of attempts was sufficient.
+    If the number of attempts of the single fill was sufficient, this fill is a sample of the distribution of
+    our fills.
     """
     return Claim(
         claim=f"packing fraction at which insertion ends, {_particles(fill)}, whole spheres counted: "

@@ -93,7 +93,7 @@ def fill_failures(points: list[Point], settings: dict) -> xr.Dataset:
     placed : mean number of placed particles
     final, final_spread : mean and standard deviation of the final packing fraction of a single fill
     last_time : last time, in t
-    failures_per_particle : with error, at `packing_fraction` (container, bin); NaN without attempts
+    failures_per_particle : with error, at `packing_fraction` (container, bin); NaN if there were no attempts
     filled : mean packing fraction at `time`, over (container, sample)
     saturation, slope : fitted saturation with error; slope of the line in t^(-1/d) (container, window)
     approach : exponent p of eta_s - eta ~ t^-p with error; eta_s is from literature
@@ -189,7 +189,7 @@ def failures_by_density(fill: Fill, bins: int) -> tuple[np.ndarray, np.ndarray, 
 def _ratio_error(numerator: np.ndarray, denominator: np.ndarray) -> float:
     """Compute the standard error of sum(numerator) / sum(denominator) over replicas.
 
-    It is 0 if it cannot be determined.
+    The result is 0 if the error cannot be determined.
     """
     if np.any(denominator == denominator.sum()):  # all successes are in one replica, which cannot be left out
         return 0.0

@@ -58,7 +58,7 @@ def infinite(points: Table) -> Estimate:
 def _dilute_limit(dilute: Table) -> Claim:
     """Return the claim on D divided by Enskog's D at the lowest packing fractions.
 
-    It is a mean with weights by the errors.
+    The claim is about the mean of these ratios, weighted by their errors.
     """
     return Claim.within(
         claim=f"D over Enskog's in the dilute limit (packing fraction {ENSKOG_LIMIT:g} and below)",
@@ -107,7 +107,8 @@ def msd_discs(ds: xr.Dataset) -> list[Claim]:
 def _short_times(points: Table) -> list[Claim]:
     """Return the claims from finely sampled runs.
 
-    They are on the ballistic start, and on D(t) by Einstein compared with Green and Kubo.
+    The claims concern the ballistic start, and D(t) from Einstein's relation compared with D(t) from the
+    Green-Kubo relation.
     """
     claims = []
     for run in points[np.isfinite(points.integral_difference.value)]:

@@ -32,8 +32,8 @@ _UNUSED = {
 def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) -> None:
     """Raise SceneError for points or claims that do not fit a figure.
 
-    It rejects experiments without trajectories, points without a number for the horizontal axis, and claims
-    whose keys do not belong together.
+    The function rejects experiments without trajectories, points without a number for the horizontal axis,
+    and claims whose keys do not belong together.
     """
     where = f"figures.{figure}"
     against = settings["against"]

@@ -28,8 +28,8 @@ LESS_CERTAIN = "surfaces and edges are less certain than the measurement, by an 
 def wall_pressure(dataset: xr.Dataset) -> list[Claim]:
     """Return the claims on the wall pressure, with surface terms of the container.
 
-    It equals the bulk pressure with these terms, and is proportional to T. Without these terms the deviation
-    is far larger than the error.
+    The wall pressure equals the bulk pressure with these terms, and is proportional to T. Without these terms
+    the deviation is far larger than the error.
     """
     table = Table(dataset, "point")
     table = table.assign(particles=[PARTICLES[dimension] for dimension in table.dimension])
@@ -190,7 +190,7 @@ def _fluctuation(state: Row) -> Claim:
 def isothermal_variance(packing_fraction: float | np.ndarray, dimension: int) -> np.ndarray:
     """Compute N times the relative variance of the volume at constant temperature.
 
-    It follows from the speed of sound without the adiabatic term.
+    This variance follows from the speed of sound without the adiabatic term.
     """
     adiabatic = theory.speed_of_sound(packing_fraction, dimension) ** 2
     heating = 2.0 / dimension * theory.compressibility_factor(packing_fraction, dimension) ** 2

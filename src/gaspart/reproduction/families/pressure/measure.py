@@ -11,7 +11,7 @@ without a piston.
 The third part measures the density between two walls by counts and by impulses, and the pressure on the
 walls.
 
-It also measures the mixture of both estimators. All estimates are from the same runs.
+The module also measures the mixture of both estimators. All estimates are from the same runs.
 """
 
 from __future__ import annotations
@@ -234,7 +234,8 @@ def estimators(points: list[Point], settings: dict) -> xr.Dataset:
     pressure : squared error of the wall pressure by impulses, divided by the squared error with known means
     pressures_apart : difference of both pressures divided by the latter
 
-    Ratios of variances are means over replicas, each computed from blocks of time.
+    The ratio of variances of each replica is computed from blocks of time. The result is the mean of these
+    ratios over replicas.
     """
     cases = [(point, width) for point in points for width in settings["widths"]]
     return table("case", cases, _estimators_row)

@@ -23,7 +23,7 @@ from gaspart.reproduction.table import Row, Table, each
 def remarks(ds: xr.Dataset) -> list[Claim]:
     """Return the claims on source A's remarks on the cost of a step.
 
-    They concern counted work and time.
+    The claims concern counted operations and time.
     """
     near = Table(ds, "near")
     visits = near.near_box_visits / near.near_expected_visits

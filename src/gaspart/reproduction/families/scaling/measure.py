@@ -82,8 +82,8 @@ def near_boxes(runs: list[xr.Dataset]) -> xr.Dataset:
 def huge_sphere(runs: list[xr.Dataset]) -> dict[str, Any]:
     """Compute the cost of a sphere that is too large for the boxes.
 
-    It follows from jobs with and without the sphere. ``huge_ratio`` is the time of a step with the sphere,
-    divided by the time without it. It has an error and ``_freedom`` from the scatter of the jobs.
+    The cost follows from jobs with and without the sphere. ``huge_ratio`` is the time of a step with the
+    sphere, divided by the time without it. It has an error and ``_freedom`` from the scatter of the jobs.
     ``huge_tests`` is the number of additional pair tests per particle and step, with error.
     """
     ratio = ratio_of_jobs([-log_ratios(run, run.steps.values)[0] for run in runs])

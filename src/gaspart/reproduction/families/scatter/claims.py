@@ -19,7 +19,7 @@ Many small errors of equal sign cause such a mean."""
 def claims_scatter(ds: xr.Dataset) -> list[Claim]:
     """Return the claims that all scattered deviations are standard Gaussian numbers.
 
-    They are signed deviations of values without an allowance.
+    Scattered deviations are the signed deviations of values without an allowance.
     """
     claims, classes = Table(ds, "claim"), Table(ds, "class")
     deviations = claims.deviation[claims.scattered]

@@ -47,7 +47,7 @@ def _distribution(axis: Axes, alone: np.ndarray, mean: Estimate) -> None:
 
 
 def _figures(axis: Axes, claims: Table, figures: Table) -> None:
-    """Draw a row for each figure: deviations, and probability of a smaller chi-square.
+    """Plot the deviations of each figure in a row, with the probability of a smaller chi-square.
 
     Deviations of claims with an allowance are hollow.
     """

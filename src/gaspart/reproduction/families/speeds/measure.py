@@ -49,7 +49,7 @@ class Velocities:
 def read(point: Point, first: int | None = None) -> list[Velocities]:
     """Return the velocities in all replicas of a point.
 
-    They are from frames after equilibration, or from frame `first` on.
+    The velocities are from frames after equilibration; if `first` is passed, from this frame on.
     """
     return [
         Velocities(
@@ -314,7 +314,7 @@ def _distribution(
 def _given_temperature(point: Point) -> float:
     """Return the temperature of a gas whose particles all have the same prescribed speed.
 
-    It has no statistical error.
+    This temperature has no statistical error.
     """
     if "speed" not in point.settings:
         rule = "is required: all particles start with it"

@@ -65,7 +65,7 @@ class MeasuredState:
     def chemical_potential(self, eta: float) -> Estimate:
         """Compute mu_excess / (k_B T) by the Gibbs-Duhem relation.
 
-        It is Z - 1 plus the integral of (Z - 1) / eta.
+        The result is Z - 1 plus the integral of (Z - 1) / eta.
         """
         z = float(theory.compressibility_factor(eta, self.dimension))
         reference = float(theory.excess_chemical_potential(eta, self.dimension))

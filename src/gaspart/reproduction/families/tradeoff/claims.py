@@ -81,7 +81,7 @@ def _dilute(ds: xr.Dataset) -> list[Claim]:
 def _dense(ds: xr.Dataset) -> list[Claim]:
     """Return the claims that the Enskog model costs more than events in a dense gas.
 
-    Its diffusion coefficient D differs from D of hard spheres.
+    The diffusion coefficient D of the Enskog model differs from D of hard spheres.
     """
     claims, gases = [], Table(ds, "fraction")
     for at in gases[gases.fraction >= THICK]:
@@ -166,7 +166,7 @@ def _relaxation(ds: xr.Dataset) -> list[Claim]:
 def relaxation_time(slower: float) -> float:
     """Compute the relaxation time of a gas with collisions rarer by a factor.
 
-    Its speeds follow the homogeneous Boltzmann equation.
+    The speeds of this gas follow the homogeneous Boltzmann equation.
     """
     times = np.linspace(0.0, FREE_TIMES / slower, 251)
     curve = theory.relaxation(3)
@@ -258,7 +258,7 @@ def _orders(errors: Table) -> list[Claim]:
 def _claims_on_misses(errors: Table) -> list[Claim]:
     """Return the claims on the collision rate of a dilute gas, at a long step.
 
-    It is the longest step that loses at most 2 % of the contacts.
+    This step is the longest step that loses at most 2 % of the contacts.
     """
     claims = []
     for row in errors[errors.packing_fraction <= 0.01]:

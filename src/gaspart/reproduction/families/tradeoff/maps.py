@@ -98,9 +98,9 @@ def flux_of(point: Point, blocks: int) -> Flow:
 def relaxation_of(point: Point) -> Flow:
     """Return the time in which equal speeds relax to Maxwell's, over the mean free time.
 
-    It is the integral of (K_end - K) / (K_end - 1) up to `FREE_TIMES`, where K is the kurtosis, averaged over
-    replicas. In a uniform gas, steps and cells of the DSMC engine affect only positions, if all particles are
-    in one cell.
+    The time is the integral of (K_end - K) / (K_end - 1) up to `FREE_TIMES`. Here K is the kurtosis, averaged
+    over replicas. In a uniform gas, steps and cells of the DSMC engine affect only positions, if all
+    particles are in one cell.
     """
     values, contacts, rate = [], 0, float(theory.collision_rate(point.scene.packing_fraction, 3))
     for run in runs(point, first=0):

@@ -209,8 +209,8 @@ def choice_of(gas: Gas, observable: str, candidate: Candidate, each: Estimate, n
 def finite_size(gas: Gas, observable: str) -> float:
     """Compute the relative error that remains after theory's correction for finite size.
 
-    It is the square of a correction of first order in 1/N. For D it is the uncertainty of the viscosity, and
-    the next order of hydrodynamics; see `displacement`.
+    This error is the square of a correction of first order in 1/N. For D it is the uncertainty of the
+    viscosity, and the next order of hydrodynamics; see `displacement`.
     """
     correction = abs(getattr(bulk, f"finite_{declared[observable].bulk}")(gas)[0])
     if observable != "D":

@@ -113,8 +113,8 @@ def coefficient(point: Point, flux: str, enskog: Callable[..., Any]) -> dict[str
 def end(lags: np.ndarray) -> np.ndarray:
     """Compute the time up to which the integral at each lag extends.
 
-    It is half an interval after the lag, because fluxes are averages over intervals. It is computed as the
-    mean of this lag and the next.
+    This time is half an interval after the lag, because fluxes are averages over intervals. The time is
+    computed as the mean of the lag and the next lag.
     """
     return lags + 0.5 * (lags[1] - lags[0])
 
