@@ -136,22 +136,16 @@ def test_simultaneous_contacts_come_in_the_order_of_their_indices():
         assert sim.events["particles"].tolist() == [[4, -2], [0, 3], [1, 2]]
 
 
-@pytest.mark.parametrize("boundary", ["periodic", "wall"])
-def test_a_checkpoint_goes_on_in_other_boxes(boundary):
-    """As when an unfinished run is resumed by a revision that chooses other boxes."""
-    scene = gp.Scene(gp.Container((20.0, 20.0), boundary), [gp.Species(100, 0.5, temperature=1.0)])
-    whole, *others = (gp.Simulation(scene, gp.EventDriven("boxes", n), seed=2) for n in (20, 3, 7))
-    unnamed, named = others
-    for end in (3.0, 3.1, 9.0):
-        whole.advance(until=end)
-        checkpoint = whole.checkpoint()
-        named.restore(checkpoint)
-        del checkpoint["boxes_per_side"]  # which older ones lack
-        unnamed.restore(checkpoint)
-    for sim in (whole, named, unnamed):
+def test_a_checkpoint_that_lacks_its_boxes_goes_on():
+    """As older ones do, when an unfinished run is resumed by a revision that chooses other boxes."""
+    whole, other = (gp.Simulation(gas(2, 100, 0.2, "wall"), gp.EventDriven("boxes", n), 2) for n in (15, 7))
+    whole.advance(until=3.0)
+    checkpoint = whole.checkpoint()
+    del checkpoint["boxes_per_side"]
+    other.restore(checkpoint)
+    for sim in (whole, other):
         sim.advance(until=20.0)
-    for sim in others:
-        check_same(whole, sim, WORK)
+    check_same(whole, other, WORK)
 
 
 def test_clocks_that_start_again_lose_nothing():
