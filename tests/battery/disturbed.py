@@ -105,6 +105,13 @@ RESERVOIRS = {
     "y_low": gp.Thermal(3.0),
     "y_high": gp.Open(),
 }
+IDEAL = {
+    "x_low": gp.Open(0.04, 2.0),
+    "x_high": gp.Open(0.01, 1.0),
+    "y_low": gp.Thermal(3.0, accommodation=0.5),
+    "y_high": gp.Open(),
+}
+"""Openings that DSMC can have: their reservoirs are dilute."""
 
 
 def _all_faces(boundary=WALL):
@@ -312,6 +319,8 @@ ROWS = {
         1.0, 2.0), 2.0, IMPULSE_STEPS, tallies=IMPULSES),
     # DSMC.
     "dsmc, walls": Row(gas(3, 3000, 0.001, WALL), (1.0, 20.0, 40.0), 40.0, DILUTE),
+    "dsmc, open faces": Row(_scene((20.0, 16.0), WALL, _discs(40, 0.25, mass=2.0), faces=IDEAL,
+        centres_to_walls=True), (1.3, 7.0, 30.0), 30.0, DILUTE, sees="entries wall_hits collisions"),
     "dsmc": Row(gas(3, 3000, 0.001), (1.0, 20.0, 40.0), 40.0, DILUTE),
     "dsmc, mirrors": Row(MIRRORS, (4.0, 5.0, 8.0), 8.0, dsmc(threads=(1, 2)), sees="collisions wall_shear"),
     "dsmc, sliding": Row(SLIDING, (1.0, 2.0), 1.0, dsmc(0.25, 1), 4, sees="wall_shear collisions"),

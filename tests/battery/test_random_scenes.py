@@ -20,7 +20,7 @@ ALL = settings.default.max_examples
 class Kind:
     """Random scenes of so many particles at most. searches: which have the first events of a referee, planar:
     further ones, of discs only, so that fewer kernels are compiled; kept: events after which the books of a
-    larger scene are looked at."""
+    larger scene are looked at. rounding: of places, and of energies where it is less than usual."""
 
     scenes: SearchStrategy
     searches: tuple[str, ...] = ("boxes", "direct")
@@ -30,16 +30,17 @@ class Kind:
     may_collapse: bool = False
     larger: SearchStrategy | None = None
     kept: int = 2000
+    rounding: float = 1e-9
     examples: int = ALL
 
 
 KINDS = {
-    "mixtures": Kind(scenes.mixtures(), larger=scenes.mixtures(40), kept=3000),
+    "mixtures": Kind(scenes.mixtures(), larger=scenes.mixtures(40), kept=3000, rounding=1e-12),
     "dense": Kind(scenes.dense(), examples=ALL // 5),
     "listed": Kind(scenes.mixtures(40), ("lists",)),
     "uneven": Kind(scenes.uneven(), ("boxes",), may_collapse=True),
-    "falling": Kind(scenes.falling(), larger=scenes.falling(40), kept=3000),
-    "granular": Kind(scenes.granular(), may_collapse=True, larger=scenes.granular(30)),
+    "falling": Kind(scenes.falling(), larger=scenes.falling(40), kept=3000, rounding=1e-11),
+    "granular": Kind(scenes.granular(), may_collapse=True, larger=scenes.granular(30), rounding=1e-11),
     "piled": Kind(scenes.piled(), events=400),
     "lossy": Kind(scenes.lossy(), ("direct",), "boxes", events=300),
     "kicked": Kind(scenes.kicked(), events=100),
@@ -67,9 +68,8 @@ def test_all_searches_give_the_same_events(name):
 
     def check(scene, seed):
         assume(not {"lists"}.intersection(kind.searches) or obstacle_to_lists(scene) is None)
-        many = (
-            {"boxes_per_side": 8 + seed % 9} if name == "uneven" else {}
-        )  # too many for its large particles
+        # More boxes than the large particles among small ones fit in.
+        many = {"boxes_per_side": 8 + seed % 9} if name == "uneven" else {}
         try:
             referee = events_of(scene, kind.referee, kind.events, seed, kind.may_collapse)
         except gp.SceneError as error:  # a wall may leave no room for large particles
@@ -79,7 +79,7 @@ def test_all_searches_give_the_same_events(name):
             other = events_of(scene, search, kind.events, seed, kind.may_collapse, **many)
             assert same_bits(referee, other)
             check_same(referee, other, WORK)
-        check_books(referee)
+        check_books(referee, kind.rounding)
         if name == "cornered":  # each contact gives the faces a part of the energy, so that they end
             assert np.unique(referee.events["time"], return_counts=True)[1].max(initial=0) < kind.events
 
@@ -91,12 +91,12 @@ def test_books_are_kept(name):
     kind = KINDS[name]
 
     def check(scene, seed):
-        check_books(events_of(scene, "automatic", kind.kept, seed, kind.may_collapse))
+        check_books(events_of(scene, "automatic", kind.kept, seed, kind.may_collapse), kind.rounding)
 
     each_random(name, check, kind.larger, ALL)
 
 
-def check_books(sim):
+def check_books(sim, rounding):
     """Energy and momentum are exchanged with what is tallied only; no particle is where it cannot be."""
     sim.check_invariants()
     scene, before, state, tally = sim.scene, sim.initial_state, sim.state, sim.tally
@@ -108,22 +108,24 @@ def check_books(sim):
         else state.masses[np.isfinite(state.masses)].sum() * (abs(state.gravity) @ state.lengths)
     )
     scale = max(before.kinetic_energy, state.kinetic_energy) + exchanged + fall
-    assert before.energy - state.energy == pytest.approx(given_away, abs=1e-11 * scale)
+    assert before.energy - state.energy == pytest.approx(given_away, abs=min(rounding, 1e-11) * scale)
     loaded = [(number // 2, number % 2, face) for number, face in scene.pistons if face.mass]
     for axis, high, piston in loaded:
         enthalpy = [one.energy + energy_of(scene, piston, axis, high, *one.piston) for one in (before, state)]
         assert enthalpy[1] == pytest.approx(enthalpy[0], rel=1e-11)
     moving = np.isfinite(state.masses)
     assert np.array_equal(state.positions[~moving], before.positions[~moving])
-    assert tally.worst_contact < 1e-8
+    assert tally.worst_contact < (1e-9 if rounding < 1e-9 else 1e-8)
     law = scene.restitution
     assert tally.dissipated_energy >= 0.0
     if law is None or (law.normal == 1.0 and abs(law.tangential) == 1.0):
         assert tally.dissipated_energy == 0.0
     if all(scene.container.periodic) and moving.all() and not scene.walls and not state.gravity:
         momentum = (state.masses[:, None] * (np.abs(before.velocities) + np.abs(state.velocities))).sum()
-        assert np.allclose(state.momentum, before.momentum, rtol=0.0, atol=1e-12 * momentum)
-    scenes.check_inside(scene, state, 1e-9)
+        assert np.allclose(
+            state.momentum, before.momentum, rtol=0.0, atol=min(0.1 * rounding, 1e-12) * momentum
+        )
+    scenes.check_inside(scene, state, rounding)
     if scene.walls and state.piston is None:
         scenes.check_outside_walls(scene, state, 1e-8)
     elif scene.walls:
@@ -143,6 +145,7 @@ def check_moving_wall(sim):
     axis = int(wall.start[0] != wall.end[0])
     place, velocity = state.piston
     moving = 0.5 * wall.mass * velocity**2
+    assert state.energy + moving == pytest.approx(start.energy, rel=1e-12)
     assert tally.wall_energy[2 * state.dimension] == pytest.approx(moving, abs=1e-12 * start.energy)
     from_ends = tally.wall_impulse[2 * axis] - tally.wall_impulse[2 * axis + 1]
     gained = state.momentum[axis] + wall.mass * velocity - start.momentum[axis]

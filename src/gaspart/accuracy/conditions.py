@@ -66,32 +66,20 @@ def require_steady(scene: Scene) -> None:
         raise SceneError("count", 0, "advice is for a gas: the scene is empty")
     law = scene.restitution
     loses = law is not None and law.dissipative
-    if law is not None and loses and not is_driven(scene):
+    thermal, kicked = bool(scene.face_temperatures), scene.thermostat is not None
+    driven = thermal or kicked or any(face.moves for face in scene.faces.values())
+    if law is not None and loses and not driven:
         rule = "loses energy that nothing returns: there is no steady state to measure; give a duration"
         raise SceneError("restitution.normal", law.normal, rule)
     moved = any(isinstance(face, Vibrating | LeesEdwards) for face in scene.faces.values())
-    if (moved or scene.thermostat is not None) and not loses and not at_temperature(scene):
+    if (moved or kicked) and not loses and not thermal:
         rule = "nothing takes the energy that the scene is given: there is no steady state; give a duration"
         raise SceneError("restitution", None, rule)
-
-
-def is_driven(scene: Scene) -> bool:
-    """Return True if an external source exchanges energy with the particles.
-
-    The source is a thermostat, a face with a temperature, or a moving face.
-    """
-    moves = any(face.moves for face in scene.faces.values())
-    return scene.thermostat is not None or moves or at_temperature(scene)
-
-
-def at_temperature(scene: Scene) -> bool:
-    """Return True if a face or an interior wall draws velocities from a thermal distribution."""
-    return bool(scene.face_temperatures)
 
 
 def keeps_energy(scene: Scene) -> bool:
     """Return True if a run conserves its initial energy, or its enthalpy under a loaded piston."""
     loaded = [piston for _, piston in scene.pistons if piston.pressure is not None]
     moved = any(face.moves for face in scene.faces.values() if face not in loaded)
-    exchanged = moved or at_temperature(scene) or scene.thermostat is not None or scene.is_open
+    exchanged = moved or scene.face_temperatures or scene.thermostat is not None or scene.is_open
     return not exchanged and not scene.dissipates

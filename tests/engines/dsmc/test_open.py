@@ -1,6 +1,6 @@
-"""Open faces under the DSMC engine: bits, books, and a flow between reservoirs beside the exact one.
+"""Open faces under the DSMC engine: balances, and a flow between reservoirs beside the exact one.
 
-Points without collisions are in `tests/engines/test_open_faces.py`, for both engines.
+Points without collisions are in `tests/engines/test_open_faces.py`, for both engines; bits in `battery`.
 """
 
 import math
@@ -8,38 +8,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from battery.disturbed import ROWS
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from referee import WHOLE_TALLY, check_restored
+from referee import check_same, restored
 from scenes import opened
 
 import gaspart as gp
 from gaspart.errors import SimulationError
 
-PARTS = ("state.numbers", "state.unwrapped", "state.velocities", *WHOLE_TALLY)
-MIXED = gp.Scene(
-    gp.Container((20.0, 16.0)),
-    [gp.Species(40, 0.25, mass=2.0, temperature=1.0)],
-    faces={
-        "x_low": gp.Open(0.04, 2.0),
-        "x_high": gp.Open(0.01, 1.0),
-        "y_low": gp.Thermal(3.0, accommodation=0.5),
-        "y_high": gp.Open(),
-    },
-    centres_to_walls=True,
-)
+MIXED = ROWS["dsmc, open faces"].scene
 """Discs between two reservoirs, a vacuum and a thermal face."""
-
-
-def test_threads_splits_and_checkpoints_change_no_bit():
-    ends = [0.0, 1.3, 7.0, 30.0]
-    sim = check_restored(MIXED, ends, *PARTS, engine=gp.DSMC())
-    assert sim.tally.collisions > 50 and sim.tally.entries[:2].all()
-    for threads in (2, 3):
-        other = gp.Simulation(MIXED, gp.DSMC(threads=threads), seed=3)
-        other.advance(until=ends[-1])
-        assert np.array_equal(other.state.positions, sim.state.positions)
-        assert str(other.tally) == str(sim.tally)
 
 
 def books(sim, begun):
@@ -65,11 +44,14 @@ def test_number_and_energy_are_accounted_for():
 @given(opened(most=0.1), st.integers(0, 1000))
 @pytest.mark.filterwarnings("ignore:gaspart")
 def test_random_open_scenes(scene, seed):
-    sim = gp.Simulation(scene, gp.DSMC(), seed)
+    sim, parts = (gp.Simulation(scene, gp.DSMC(), seed) for _ in range(2))
     begun = sim.state.energy
+    for end in (5.0, 11.0, 20.0):
+        parts.advance(until=end)
+        parts = restored(parts)
     sim.advance(until=20.0)
     books(sim, begun)
-    check_restored(scene, [5.0, 11.0, 20.0], *PARTS, engine=gp.DSMC(), seed=seed)
+    check_same(sim, parts)
 
 
 def between(low, high, length, count=50):
