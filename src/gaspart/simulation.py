@@ -726,7 +726,7 @@ class Simulation:
         return gaspart.view(self, frames)
 
     def checkpoint(self) -> dict[str, np.ndarray]:
-        """Return a checkpoint, from which `restore` continues with identical bits.
+        """Return a checkpoint, from which `restore` continues bitwise identically.
 
         Returns
         -------
@@ -754,7 +754,7 @@ class Simulation:
         )
 
     def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Continue from a checkpoint with identical bits.
+        """Continue bitwise identically from a checkpoint.
 
         Parameters
         ----------

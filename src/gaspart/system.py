@@ -1,8 +1,8 @@
 """Differences between operating systems.
 
 Other modules use this module, and otherwise only Python functions that exist on all systems. The tests
-simulate functions that Windows and macOS lack (`tests/test_system.py`). The code was not run on these
-systems.
+simulate a system without the functions that are missing on Windows and macOS (`tests/test_system.py`). The
+code was not run on these systems.
 """
 
 from __future__ import annotations

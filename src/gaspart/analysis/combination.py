@@ -129,7 +129,7 @@ class _Recipe:
     settings : scene and engine of the run.
     seed : seed of the run.
     draws : True if the run uses random numbers after the start.
-    times : times at which states are known; if `every`, all times up to the last one.
+    times : times at which states are known; if `every` is True, all times up to the last one.
     state : function of a time that returns the bytes of the state as they are in a file.
     tallies : names of the stored optional tallies, with the texts of their options.
     """

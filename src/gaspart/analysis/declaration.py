@@ -58,7 +58,7 @@ class Along:
     units : units of the coordinate.
     names : True if the coordinate consists of names, one for each value.
     exchanged : effect of exchanging axes. "": none. "names": the names follow the axes. "chosen": the values
-        are those along the other axis.
+        belong to the other axis.
     mirrored : effect of a mirror image across an axis. "": none. "ends": the low and the high face are
         exchanged. "reversed": the values along this axis are in reverse order. "signs": a component changes
         its sign once for each occurrence of the axis in its name.
@@ -114,7 +114,8 @@ class Named:
         kinds of particles), or "unless fluxes" (unless the run stores fluxes, which include the temperature).
     varying : True if the observable is defined in scenes with open faces.
     ends : keyword argument of the function for the end of its bins, if this follows from the run.
-    nothing : equations (`Engine.equation`) that do not determine the observable, each with the reason.
+    nothing : equations (`Engine.equation`) that do not determine the observable, with a reason for each
+        equation.
 
     Theory for comparison:
 

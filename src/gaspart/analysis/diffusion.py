@@ -1,7 +1,8 @@
 """Diffusion coefficient from the paths of particles.
 
 The uncertainty is the scatter of groups of particles, which are treated as independent. If there are fewer
-particles than groups, it is the scatter of blocks of the run, as many as groups.
+particles than groups, the run is divided into as many blocks as there would be groups, and the error is the
+scatter of these blocks.
 """
 
 from __future__ import annotations
@@ -397,7 +398,7 @@ def _rises(path: np.ndarray, lags: tuple[int, ...]) -> Iterator[np.ndarray]:
 def _settled_rise(rises: list[np.ndarray]) -> tuple[int, float]:
     """Find the first slope that no longer changes.
 
-    Returns the index of the slope and the estimated size of the neglected tail. The limits are those in
+    Returns the index of the slope and the estimated size of the neglected tail. The limits are the same as in
     `settled_slope`. Raises SceneError if the last slopes change by more than a slow tail explains.
     """
     for k in range(1, len(rises)):

@@ -55,7 +55,8 @@ def field(
     Raises
     ------
     SceneError
-        If the property or an axis is unknown, the file lacks particles, or there are too few frames.
+        If the property or an axis is unknown, the file does not contain all particles, or there are too few
+        frames.
 
     Notes
     -----
@@ -150,8 +151,8 @@ def velocity_profile(
     Raises
     ------
     SceneError
-        If the axis is unknown, the species does not move, the file lacks particles, or there are too few
-        frames.
+        If the axis is unknown, the species does not move, the file does not contain all particles, or there
+        are too few frames.
 
     Notes
     -----

@@ -224,8 +224,8 @@ class Grid:
     def cells(self, positions: np.ndarray, inside: bool = False) -> np.ndarray:
         """Return the cell number of each position (..., A); -1 outside and for NaN.
 
-        The upper end belongs to the last cell. If `inside`, a position that rounding moved outside belongs to
-        the nearest cell.
+        The upper end belongs to the last cell. If `inside` is True, a position that rounding moved outside
+        belongs to the nearest cell.
         """
         shape = np.shape(positions)[:-1]
         index, outside = np.zeros(shape, dtype=np.int64), np.zeros(shape, dtype=bool)
@@ -254,8 +254,8 @@ class Grid:
         weights : array that broadcasts to the shape of `cells`.
         blocks : block number of each row (T,) of cells (T, ...); then the result has one set of sums per
             block, shape (blocks, *numbers).
-        before : sums over earlier frames, of the same shape, to which the new terms are added. The result has
-            the same bits as a single sum over all frames. It has as many blocks as the result.
+        before : sums over earlier frames, of the same shape, to which the new terms are added. The result is
+            then bitwise identical to a single sum over all frames. It has as many blocks as the result.
         """
         number = 1 if blocks is None else int(blocks.max(initial=-1)) + 1
         shape = self.numbers if blocks is None else (number, *self.numbers)
@@ -398,8 +398,8 @@ def mean_motion(
     If the run measures velocities relative to rest, the function returns them unchanged. Otherwise, if the
     gas can flow, velocities are relative to the local mass-weighted flow in cells along `flow_axes`. If it
     cannot flow, they are relative to the centre of mass. `along` maps an axis to its number of cells if this
-    is not the default. If the flow is steady, further axes in `along` are resolved too. If `local`, the
-    motion is always relative to the flow in these cells.
+    is not the default. If the flow is steady, further axes in `along` are resolved too. If `local` is True,
+    the motion is always relative to the flow in these cells.
     """
     across, stated = run.flow_axes, dict(along or {})
     if not across and local:

@@ -194,7 +194,7 @@ def _energies(run: Run) -> list[np.ndarray]:
     """Return the kinetic energy relative to the mean velocity of the faces, and its first moments.
 
     Each result is an array (T,). The energy is translational. The moments are across the faces. The result is
-    empty if the file lacks some particles.
+    empty if the file does not contain all particles.
     """
     if run.is_subset:
         return []
@@ -226,7 +226,7 @@ def _about_faces(run: Run) -> np.ndarray:
 def _with_moments(run: Run, carried: np.ndarray) -> list[np.ndarray]:
     """Sum an amount that particles carry, and its first moments across the thermal faces.
 
-    The amounts are (T, M), each sum is (T,). Moments are relative to the middle.
+    The amounts have the shape (T, M); each sum has the shape (T,). Moments are relative to the middle.
     """
     positions = run.positions[:, run.moving] - 0.5 * np.array(run.scene.container.lengths)
     across = sorted({number // 2 for number in run.scene.thermal_numbers})
@@ -268,7 +268,7 @@ def particle_flux(
     ------
     SceneError
         If the axis is periodic, so that images cross it, or is not the axis of open faces; if the plane is
-        outside the container; if the file lacks particles; or if there are too few frames.
+        outside the container; if the file does not contain all particles; or if there are too few frames.
 
     Notes
     -----

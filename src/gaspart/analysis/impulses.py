@@ -58,7 +58,7 @@ def estimator(
 
     The estimator is `better` if it was `used`, otherwise `usual`. In the latter case, if the scene and the
     engine allow a run to store `tally`, a note recommends the option. If `lacks` is not empty, the note
-    instead states what the existing tally lacks.
+    instead states which data the existing tally does not contain.
     """
     if used:
         return {"estimator": better}
@@ -200,8 +200,8 @@ def numbers_by_impulses(run: Run, axis: int, bins: int, species: int | None) -> 
 def _momentum_flux(run: Run, axis: int, bins: int, row: int) -> MomentumFlux | None:
     """Return the momentum flux in one row of the tally.
 
-    Return None if the result would depend on several masses, or if the file lacks particles that determine
-    the temperature.
+    Return None if the result would depend on several masses, or if the file does not contain the particles
+    that determine the temperature.
     """
     members = run.species == row
     masses = run.masses[members]
@@ -279,8 +279,8 @@ def mixture(counted: np.ndarray, impulses: np.ndarray, periodic: bool) -> np.nda
     """Compute the weights (K, bins) of the impulse estimate in its mixture with counts.
 
     `counted` and `impulses` are the estimates in blocks (K, bins). The weights in each half of the blocks are
-    computed from the other half. They are between 0 and 1. If `periodic`, the first bin is a neighbour of the
-    last one.
+    computed from the other half. They are between 0 and 1. If `periodic` is True, the first bin is a
+    neighbour of the last one.
     """
     half = len(counted) // 2
     first = _weights(counted[:half], impulses[:half], periodic)
@@ -410,8 +410,8 @@ def wall_controls(run: Run, axis: int) -> np.ndarray | None:
 def stores(run: Run) -> np.ndarray:
     """Compute the total momentum and sum m x v of the moving particles along each axis.
 
-    The shape is (d, T, 2), for each frame; x is measured from the middle. It is (d, T, 0) if the file lacks
-    some particles.
+    The shape is (d, T, 2), for each frame; x is measured from the middle. The shape is (d, T, 0) if the file
+    does not contain all particles.
     """
     if not run.has_states:
         return np.zeros((run.dimension, len(run.time), 0))

@@ -65,7 +65,7 @@ def measure(
     ------
     SceneError
         If a name is unknown, if the observable does not accept a selection, if fewer than two frames remain,
-        or if the scene or the run lacks data that the observable needs.
+        or if the scene or the run does not have the data that the observable needs.
 
     Examples
     --------
@@ -97,8 +97,8 @@ def measure(
 def until_time(source: Source, end: float | None, pairs: bool = False) -> Iterator[Source]:
     """Return the frames of a source up to a time; None returns the source itself.
 
-    If `pairs`, the frames of a simulation include the numbers of collisions of each pair of species. Raises
-    SceneError for fewer than two frames.
+    If `pairs` is True, the frames of a simulation include the numbers of collisions of each pair of species.
+    Raises SceneError for fewer than two frames.
     """
     if end is None:
         yield source

@@ -181,8 +181,8 @@ def average_correlations(trajectory: xr.Dataset) -> Curves:
 def accumulated_mean(run: Run, name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
     """Compute the mean of a correlation sum in `SUMS` and its error, by lag.
 
-    Returns the lags, the mean, its standard error, and the degrees of freedom of the error, each of shape
-    (lags,).
+    Returns four arrays of shape (lags,): the lags, the mean, its standard error, and the degrees of freedom
+    of the error.
 
     The mean is over pairs of samples whose later sample is in the measured part. The error is the scatter of
     16 to 32 consecutive parts; in a long run, each part is at least four times the longest lag. The result

@@ -156,7 +156,7 @@ _ALIKE = 1e-9
 def read_pair_impulses(run: Run) -> PairImpulseTally | None:
     """Return the stored pair impulses of a run, or None.
 
-    None is also returned if the file lacks particles, because the temperature is then unknown.
+    None is also returned if the file does not contain all particles, because the temperature is then unknown.
     """
     return None if run.is_subset else stored_tally(run.data.attrs, PairImpulseTally)
 

@@ -182,8 +182,8 @@ class Cells:
     def temperature(self, local: bool) -> Means:
         """Compute k_B T, twice the kinetic energy relative to the mean motion per degree of freedom.
 
-        If `local`, the motion is always relative to the flow in these cells; otherwise only if the gas flows,
-        see `flow.about_the_flow`.
+        If `local` is True, the motion is always relative to the flow in these cells; otherwise only if the
+        gas flows, see `flow.about_the_flow`.
         """
         about = mean_motion(self.run, dict(zip(self.axes, self.numbers, strict=True)), local)
         masses = self.run.masses[self.run.moving]

@@ -51,7 +51,7 @@ class Run:
     time : (T,), times of the frames.
     data : frames with cumulative counters (T,) or (T, walls).
     centred : True if the total momentum is known to be zero along the axes on which it is conserved. Then a
-        temperature is defined even if the file lacks particles or their velocities.
+        temperature is defined even if the file does not contain all particles or their velocities.
     about : reference of velocities and displacements (`analysis.flow`): the local "flow" of the gas, or
         "rest".
     """
@@ -204,7 +204,7 @@ class Run:
     def moving(self) -> np.ndarray:
         """Mask (N,) of particles that are not fixed.
 
-        Raises SceneError if the file lacks some particles, unless the run is centred.
+        Raises SceneError if the file does not contain all particles, unless the run is centred.
         """
         if not self.centred:
             self.require_all()
@@ -222,7 +222,7 @@ class Run:
     def accessible(self) -> Accessible:
         """Volume and areas accessible to centres, excluding the fixed particles of the run.
 
-        Raises SceneError if the file lacks fixed species.
+        Raises SceneError if the file does not contain the fixed species.
         """
         if not any(kind.fixed and kind.count for kind in self.scene.species):
             return Accessible(self.scene)
@@ -273,7 +273,8 @@ class Run:
 
         The temperature is twice the translational kinetic energy relative to the mean motion (see `motion`)
         per degree of freedom. It is set to 0 if this energy is only a rounding error of the centre-of-mass
-        velocity. If the file lacks particles, see `_of_all`. Raises SceneError for the reasons of `freedoms`.
+        velocity. If the file does not contain all particles, see `_of_all`. Raises SceneError for the reasons
+        of `freedoms`.
         """
         refuse_open(self.scene, "changes the particles: there is no temperature of the whole run")
         lacking = self.is_subset or "velocities" not in self.data

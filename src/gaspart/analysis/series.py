@@ -43,8 +43,8 @@ def compressibility(run: Run) -> np.ndarray:
 def collisions(run: Run) -> np.ndarray:
     """Compute the collisions of one moving particle in each interval, shape (T - 1,).
 
-    A collision of two moving particles counts for both. Raises SceneError if the file lacks particles, or
-    does not count the collisions with fixed particles.
+    A collision of two moving particles counts for both. Raises SceneError if the file does not contain all
+    particles, or does not count the collisions with fixed particles.
     """
     scene, met, count = run.scene, run.increments("collisions"), int(run.moving.sum())
     if count == 1:

@@ -156,8 +156,8 @@ def _factor_rows(waves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 _HIGHEST = 20.0
 """Maximum wave number of S(k), in units of 1 / diameter; it includes the first three maxima."""
 _WAVES = 24
-"""Maximum number of wave vectors per bin of S(k); they are evenly distributed among those that the container
-permits.
+"""Maximum number of wave vectors per bin of S(k); they are evenly distributed among the wave vectors that the
+container permits.
 """
 _WORK = 2**35
 """Maximum number of terms in all sums over particles; beyond this number fewer frames are used."""

@@ -58,8 +58,8 @@ from gaspart.trajectory.correlator import Correlations
 def conductivity_without_diffusion(run: Run, lag: float) -> Observable:
     """Measure the thermal conductivity of a mixture, from correlations up to a lag in time units.
 
-    Raises SceneError if frames are unevenly spaced, too far apart, or too few, and if the file lacks some
-    particles.
+    Raises SceneError if frames are unevenly spaced, too far apart, or too few, and if the file does not
+    contain all particles.
     """
     steps = np.diff(run.time)
     if np.ptp(steps) > 1e-6 * steps.mean():

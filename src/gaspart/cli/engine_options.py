@@ -68,7 +68,7 @@ def as_option(error: SceneError, engine: str) -> str:
 
 
 def changed_options(kinds: Mapping[str, Kind], settings: Mapping[str, Any]) -> list[str]:
-    """Return the options for those settings that differ from their defaults.
+    """Return the options for all settings that differ from their defaults.
 
     `kinds` are the kinds of the settings. Settings without a default have options too.
     """

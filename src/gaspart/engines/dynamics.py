@@ -206,8 +206,8 @@ class Dynamics(ABC):
     def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
         """Continue bitwise identically from a checkpoint of the same scene and engine.
 
-        Settings that do not change results may differ. Raises SceneError for a checkpoint that lacks an
-        array; nothing is then changed.
+        Settings that do not change results may differ. Raises SceneError if an array is missing in the
+        checkpoint; nothing is then changed.
         """
         required = self._required_arrays(checkpoint)
         check_parts(checkpoint, required)

@@ -196,8 +196,8 @@ def _join_items(items: Iterable[str], count: int, depth: int) -> str:
 def visible(text: object, longest: int | None = None, names: bool = False) -> str:
     """Return a text as one line without characters that a terminal would interpret or hide.
 
-    Line breaks, control characters and formatting characters are escaped, including those that reverse the
-    writing direction. All printed text passes through this function, because files may contain text from
+    Line breaks, control characters and formatting characters are escaped, including characters that reverse
+    the writing direction. All printed text passes through this function, because files may contain text from
     unknown sources.
 
     longest : maximum number of characters; the middle of a longer text is omitted.

@@ -161,7 +161,8 @@ def continuous(frames: Frames, doubt: str | None, identified: bool) -> Frames:
 def _are_copied(frames: Frames, doubtful: bool) -> bool:
     """Return True if all frames have the same velocities, and particles do not move by them.
 
-    If `doubtful`, equal velocities count as copies unless the times are known and all particles move by them.
+    If `doubtful` is True, equal velocities count as copies unless the times are known and all particles move
+    by them.
     """
     velocities = frames.velocities
     assert velocities is not None, "see `continuous`"

@@ -77,7 +77,7 @@ class Contents:
 class Overrides:
     """Values passed by the user, which take precedence over the file; see `readers.read_frames`.
 
-    If `last`, only the last frame of a GSD or XYZ file is read. This frame must be complete.
+    If `last` is True, only the last frame of a GSD or XYZ file is read. This frame must be complete.
     """
 
     radius: float | None = None

@@ -143,7 +143,7 @@ def from_mapping(cls: type[T], mapping: object, where: str) -> T:
     Raises
     ------
     SceneError
-        If `mapping` is no mapping, has an unknown key, lacks a required key, or has an invalid value.
+        If `mapping` is no mapping, has an unknown key or an invalid value, or does not have a required key.
     """
     if not isinstance(mapping, dict):
         raise SceneError(where, mapping, "must be a mapping of keys to values")

@@ -1,4 +1,4 @@
-"""Kinds of values, each a JSON schema with a check for fields of classes."""
+"""Kinds of values. A kind is a JSON schema with a check for fields of classes."""
 
 from __future__ import annotations
 

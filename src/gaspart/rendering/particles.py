@@ -176,7 +176,7 @@ def colours_of(
 _PART = 0.035
 """Height of the letters divided by the height of the picture; the minimum is 10 pixels.
 
-If 1.5 times the width is less than the height, the former is used instead of the height.
+If the height exceeds 1.5 times the width, 1.5 times the width is used instead of the height.
 """
 _LINE = 1.5
 """Height of a line divided by the height of its letters."""
@@ -329,7 +329,7 @@ class Labels:
         return np.asarray(paper)
 
     def _draw_surfaces(self, draw: ImageDraw, row: list[DrawnSurface], base: float) -> None:
-        """Draw a row of the legend of surfaces: the line of each surface, and its meaning."""
+        """Draw the lines of some surfaces and their meanings side by side in the legend."""
         x, y, thick = self.letters / 2, base - 0.3 * self.letters, max(3, self.letters // 5)
         for surface in row:
             count = 5 if surface.dashed else len(surface.colours)

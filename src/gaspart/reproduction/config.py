@@ -121,7 +121,7 @@ def schema(installed: tuple[tuple[str, str], ...] = ()) -> Kind:
     """Return the JSON schema of a config.
 
     Scenes and engines are not part of the schema: they are validated when the points are made. `installed`
-    has the figures whose kind another installed package defines, each with its kind.
+    maps each figure whose kind another installed package defines to this kind.
     """
     figures = {
         figure: record({"experiments": _EXPERIMENTS, **settings})

@@ -64,7 +64,7 @@ def _scene_keys() -> list[str]:
 
 
 def _experiment_keys() -> list[str]:
-    """Describe the keys of a config, except those for figures."""
+    """Describe the keys of a config, except the keys for figures."""
     parts = [_KEYS, "## Config\n", _table(_outline(schema()["properties"]))]
     for title, table in {
         "Experiment": _outline(config_keys.EXPERIMENT),

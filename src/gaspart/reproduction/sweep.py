@@ -444,7 +444,7 @@ def _make_in_process(tell: Callable[[Any], None], values: dict, path: str, overw
 
 
 def _make(point: Point, overwrite: bool) -> str:
-    """Make the trajectories of a point, or check those in its folder.
+    """Make the trajectories of a point, or check existing trajectories in its folder.
 
     Returns the reason for a failure, or "". The failure does not affect other points. Raises SceneError for
     files.

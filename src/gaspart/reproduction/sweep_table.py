@@ -53,7 +53,7 @@ class SweepTable(ByFace):
         Raises
         ------
         SceneError
-            For names that the table lacks.
+            For names that are not in the table.
         """
         import matplotlib.pyplot as plt
 

@@ -116,7 +116,10 @@ class Table(_Columns):
         return Table(part, self._over)
 
     def assign(self, **columns: Any) -> Table:
-        """Return the table with further columns, each (rows,), or one value for all rows."""
+        """Return the table with further columns.
+
+        A column is an array (rows,), or a value for all rows.
+        """
         filled = {
             name: (self._over, values if np.ndim(values) else [values] * len(self))
             for name, values in _spread(columns).items()

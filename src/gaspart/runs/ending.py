@@ -135,7 +135,7 @@ def require_measurable(requirement: Requirement, scene: Scene, engine: Engine, c
     """Raise SceneError for an accuracy of an observable that this run cannot measure.
 
     There are three reasons: the scene does not have the observable for a run of any length; runs of the
-    engine do not determine it; or the file lacks its data.
+    engine do not determine it; or the data of the observable are not in the file.
     """
     walls = walls_of(requirement.observable, scene)
     try:

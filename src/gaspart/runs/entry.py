@@ -77,7 +77,7 @@ def run(
     seed : int or tuple of int, default 0
         Seed of the initial state and of all random numbers of the run.
     duration : float, [time], optional
-        Length of the run, an integer multiple of `sample_interval`. Cannot be combined with `until`.
+        Length of the run; must be an integer multiple of `sample_interval`. Cannot be combined with `until`.
     sample_interval : float, [time], optional
         Time between frames; the first frame is at time 0. Default with `until`: the mean time between
         collisions of a particle.

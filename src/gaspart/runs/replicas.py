@@ -1,4 +1,4 @@
-"""Replicas of a run, each in a separate process.
+"""Replicas of a run in separate processes.
 
 The processes of the replicas exchange all information through their files (`gaspart.trajectory.replicas`).
 This module starts the processes and collects their progress.

@@ -1,4 +1,4 @@
-"""Features of a scene, each with a name.
+"""Features of a scene, and their names.
 
 A scene without features has smooth, elastic particles in a hard or periodic container. `FEATURES` is the
 table of all features. `EXCLUDED` is the table of pairs of features that exclude each other. An engine lists

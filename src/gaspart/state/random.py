@@ -1,4 +1,4 @@
-"""Random streams, directions and velocities, with the same bits on every machine.
+"""Random streams, directions and velocities, bitwise identical on all machines.
 
 Uniform numbers are from numpy's PCG64. All other random numbers are computed from these, only by +, -, x, /
 and the square root. IEEE 754 defines these operations to the last bit. Logarithms of libraries differ between

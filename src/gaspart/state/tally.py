@@ -1,4 +1,4 @@
-"""Counters and sums of an engine, and the optional tallies, each declared once.
+"""Counters and sums of an engine, and the optional tallies. All are declared only here.
 
 The planning of a workflow imports this module, so numpy is imported inside functions.
 """

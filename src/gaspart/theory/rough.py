@@ -93,7 +93,7 @@ def rough_temperatures(
     Returns
     -------
     ndarray, shape (2, ...), [energy]
-        T_tr and T_rot, each with the shape of `collisions`.
+        T_tr and T_rot; both have the shape of `collisions`.
 
     Raises
     ------

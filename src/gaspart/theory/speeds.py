@@ -117,8 +117,8 @@ def maxwell_pdf(speed: Numbers, dimension: int, temperature: float = 1.0, mass: 
 
     Notes
     -----
-    With u = v sqrt(m / k_B T): u exp(-u^2/2) in 2D and sqrt(2/pi) u^2 exp(-u^2/2) in 3D, each multiplied by
-    sqrt(m / k_B T) (exact).
+    Let u = v sqrt(m / k_B T). The density is sqrt(m / k_B T) times u exp(-u^2/2) in 2D, and sqrt(m / k_B T)
+    times sqrt(2/pi) u^2 exp(-u^2/2) in 3D (exact).
 
     Examples
     --------

@@ -58,7 +58,7 @@ class Correlations:
     lags : int
         Largest lag, in intervals.
     start : float, default 0.0, [time]
-        Time of the first sample, an integer multiple of `interval`.
+        Time of the first sample; must be an integer multiple of `interval`.
     stress : bool, default False
         Correlate the stress tensor and the heat flux, not the velocities.
 
@@ -251,7 +251,7 @@ class _Correlator:
         self._samples += 1
 
     def checkpoint(self) -> dict[str, Any]:
-        """Return arrays from which `restore` continues with identical bits."""
+        """Return arrays from which `restore` continues bitwise identically."""
         arrays = {"samples": np.array(self._samples), "earlier": self._earlier, "sums": self._sums}
         return {_PREFIX + name: values for name, values in arrays.items()}
 
@@ -350,7 +350,7 @@ def _scale(weights: np.ndarray, conserved: np.ndarray) -> np.ndarray:
 
 
 class StressCorrelator(_Correlator):
-    """Correlations of the stress tensor and the heat flux, each averaged over an interval.
+    """Correlations of the stress tensor and the heat flux, after both are averaged over an interval.
 
     Impulses are instantaneous, but their mean over an interval is finite. The first sample has no preceding
     interval, and is not counted.
@@ -399,7 +399,7 @@ class StressCorrelator(_Correlator):
         return {"correlated_samples": float(self._samples), **named}
 
     def checkpoint(self) -> dict[str, Any]:
-        """Return arrays from which `restore` continues with identical bits."""
+        """Return arrays from which `restore` continues bitwise identically."""
         begun = {_PREFIX + "latest": self._latest, _PREFIX + "begun": np.array(self._begun)}
         return {**super().checkpoint(), **begun}
 

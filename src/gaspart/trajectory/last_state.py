@@ -40,8 +40,8 @@ def last_state(path: str | Path) -> State:
     ------
     SceneError
         If `open_trajectory` rejects the file, or if a stored checkpoint is damaged or belongs to another run.
-        If there is no checkpoint, also if the last frame lacks particles (`follow`) or properties of
-        particles (`keep`), or if it does not determine the state (a scene with sticky faces).
+        If there is no checkpoint, also if the last frame does not contain all particles (`follow`) or all
+        properties (`keep`), or if it does not determine the state (a scene with sticky faces).
 
     Notes
     -----

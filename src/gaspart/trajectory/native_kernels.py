@@ -1,9 +1,9 @@
 """Kernels compiled for this processor, instead of the kernels in the package.
 
 The kernels of a wheel run on every processor of the level x86-64-v3. On a processor with AVX-512, kernels
-compiled for this processor are faster, with the same bits. They are compiled at the end of a long run, if a
-similar run would save more time than the compilation costs. The kernels are stored in the user's kernel
-cache. This cache has precedence over the kernels of the package, so the next process uses them.
+compiled for this processor are faster, and their results are bitwise identical. They are compiled at the end
+of a long run, if a similar run would save more time than the compilation costs. The kernels are stored in the
+user's kernel cache. This cache has precedence over the kernels of the package, so the next process uses them.
 """
 
 from __future__ import annotations

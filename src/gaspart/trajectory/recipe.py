@@ -56,8 +56,9 @@ class Recipe(Contents):
 
     Attributes
     ----------
-    duration, sample_interval : in the scene's time. The duration is an integer multiple of sample_interval.
-        With the time-stepped engine, sample_interval is an integer multiple of time_step.
+    duration, sample_interval : in the scene's time. The duration must be an integer multiple of
+        sample_interval. With the time-stepped engine, sample_interval must be an integer multiple of
+        time_step.
     until : criterion that ends the run instead of a duration; the duration is then None.
     initial : state at time 0, if scene and seed do not determine it. The file contains this state.
     replica : number of the replica, from 1, and number of replicas of the run, if there are several.
@@ -187,7 +188,7 @@ class Recipe(Contents):
         return amber.Layout(count, dimension, extra, walls, counters, sums, axes, self.keep)
 
     def require_all(self, path: Path) -> None:
-        """Raise SceneError if the trajectory at `path` lacks positions or velocities."""
+        """Raise SceneError unless the trajectory at `path` has positions and velocities."""
         if self.keep is not None:
             raise SceneError("keep", self.keep, f"{path} holds nothing else of its particles")
 

@@ -181,7 +181,7 @@ class Recording:
             self._save()
 
     def _save(self) -> None:
-        """Write a checkpoint, from which the run can continue with identical bits."""
+        """Write a checkpoint, from which the run can continue bitwise identically."""
         self._simulation.check_invariants()
         self._frames.sync()  # before the checkpoint, which stores their number
         write_checkpoint(checkpoint_path(self._path), self._frames.header, self._frames.count, self._arrays())

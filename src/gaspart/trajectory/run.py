@@ -1,7 +1,7 @@
 """Trajectories: written during the run, continued after an interruption.
 
 A run writes `path.partial`, and regularly the checkpoint `path.checkpoint.npz`, from which it can continue
-with identical bits. When the run is complete, the file is renamed to `path`. The content of the file does not
+bitwise identically. When the run is complete, the file is renamed to `path`. The content of the file does not
 depend on the time or the machine of the run. If the last checkpoint is stored with the file, it is the final
 state, from which a longer run can continue (`extend`).
 """

@@ -1,4 +1,4 @@
-"""Options of a run that determine the contents of its file, each declared once.
+"""Options of a run that determine the contents of its file.
 
 A field of `Contents` states the type, meaning and default of an option, its attribute in the file, and the
 reasons that exclude it. The following are derived from this declaration: the checks and attributes of a

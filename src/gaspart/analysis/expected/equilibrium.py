@@ -255,8 +255,8 @@ def pressure_tensor(run: Run, temperature: float) -> Expected | None:
 def speeds(run: Run, edges: np.ndarray, mass: float | None, fixed: bool) -> Expected | None:
     """Compute Maxwell's density (bins,) of speeds between edges; None unless all particles have one mass.
 
-    If `fixed`, the kinetic energy is constant, and the exact distribution for this number of particles is
-    used.
+    If `fixed` is True, the kinetic energy is constant, and the exact distribution for this number of
+    particles is used.
     """
     if mass is None:
         return None

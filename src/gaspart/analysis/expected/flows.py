@@ -139,7 +139,7 @@ def wall_shear(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None
 def plates_of(run: Run, driven: bool = False) -> Plates | None:
     """Return the plates of a run; None for any other scene.
 
-    If `driven`, return the plates of a gas that a force drives along them.
+    If `driven` is True, return the plates of a gas that a force drives along them.
     """
     scene, thermal = run.scene, run.scene.faces_of(Thermal)
     numbers = [number for number, _ in thermal]

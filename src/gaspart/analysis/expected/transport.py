@@ -33,7 +33,7 @@ _WINDOW = 12.0, 24.0
 def mean_squared_displacement(run: Run, time: np.ndarray, axes: bool = False) -> Expected | None:
     """Compute the expected displacement (lag,) from the linear Boltzmann equation.
 
-    If `axes`, it is the displacement along each axis.
+    If `axes` is True, the result is the displacement along each axis.
     """
     gas = None if run.is_subset else run.moving_fluid
     if gas is None:

@@ -418,12 +418,12 @@ class Optimum:
 def optimum(x: ArrayLike, cost: ArrayLike, within: float = 3.0) -> Optimum:
     """Find the minimum sqrt(b / c) of a cost a + b/x + c x.
 
-    Such a cost falls steeply and rises slowly. The three terms are fitted to the points near the minimum:
-    those with a cost below `within` times the smallest cost, at least the four cheapest points. The interval
-    is computed for the logarithm of the position, by error propagation from the relative scatter about the
-    curve. `interior` is True if b and c are positive and the minimum lies between the points. Otherwise the
-    position is the cheapest point and the intervals are from 0 to inf, because no minimum was
-    measured.
+    Such a cost falls steeply and rises slowly. The three terms are fitted to the points near the minimum.
+    These are the points with a cost below `within` times the smallest cost, and at least the four cheapest
+    points. The interval is computed for the logarithm of the position, by error propagation from the relative
+    scatter about the curve. `interior` is True if b and c are positive and the minimum lies between the
+    points. Otherwise the position is the cheapest point and the intervals are from 0 to inf, because no
+    minimum was measured.
     """
     x = series_of("x", x, 4)
     cost = series_of("cost", cost, 4)

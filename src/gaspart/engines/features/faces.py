@@ -240,7 +240,7 @@ class VibratingPart(Part):
 
 
 WALL_DRAWS = 2
-"""Stream number of the random numbers of thermal walls, after those of the initial state."""
+"""Stream number of the random numbers of thermal walls; lower numbers belong to the initial state."""
 
 
 def kinds_and_levels(scene: Scene) -> tuple[np.ndarray, np.ndarray]:

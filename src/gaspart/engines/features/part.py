@@ -1,8 +1,8 @@
 """Part of a run that implements one feature of a scene.
 
 A module of this package contains all that engines need for a feature: the form of the feature in the kernel
-model (None if the scene lacks the feature), and a `Part`. An engine iterates over the parts of a scene and
-does not name them.
+model (None if the scene does not have the feature), and a `Part`. An engine iterates over the parts of a
+scene and does not name them.
 """
 
 from __future__ import annotations

@@ -34,7 +34,7 @@ def tallied_fluxes(sums: np.ndarray, drift: np.ndarray) -> dict[str, np.ndarray]
     Parameters
     ----------
     sums : ndarray, shape (2 d^2 + d,)
-        Sums of the stress tensor and of its collisional part, each by rows, and of the heat flux.
+        Sums of the stress tensor by rows, of its collisional part by rows, and of the heat flux.
     drift : ndarray, shape (d,), [length/time]
         Velocity to which the sums are relative.
 
@@ -153,7 +153,7 @@ class ImpulsesPart(TallyPart):
 
     When the tally is read, the present momentum below each plane is subtracted.
 
-    flights : (N,), particles, each at the time of its last event
+    flights : (N,), particles at the times of their last events
     """
 
     kernel: kernels.Impulses

@@ -36,7 +36,7 @@ class Citation(NamedTuple):
 def read_citation(path: Path) -> Citation:
     """Read a CITATION.cff, version 1.2.0.
 
-    Raises SceneError if the file cannot be read, or lacks a key that an archive needs.
+    Raises SceneError if the file cannot be read, or does not have a key that an archive needs.
     """
     content = read_yaml(path)
     for key in ("title", "authors", "license"):

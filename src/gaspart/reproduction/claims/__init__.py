@@ -3,8 +3,8 @@
 A test or identity agrees, disagrees, or is inconclusive. It is inconclusive in three cases: its uncertainty
 is larger than required; it does not exclude the competing theory; or the number violates a bound, but not
 significantly. Inconclusive is not a pass. A reproduction repeats a published result. Its verdict is
-"reproduced" or "source in error"; the latter states the reason. A number whose reference has not been
-verified has no verdict.
+"reproduced" or "source in error". The verdict "source in error" states the reason. A number whose reference
+has not been verified has no verdict.
 
 Among hundreds of claims, some deviate by more than 3 sigma by chance. Therefore the claims of one figure are
 tested as a family. A family rejects at least one true claim with the same probability as a single 3-sigma

@@ -234,8 +234,9 @@ VERDICTS = ("agrees", "disagrees", "inconclusive", "reproduced", "source in erro
 error, if an error is known; or it disagrees for an unknown reason; or it is inconclusive. With "no verdict"
 the number is only reported."""
 FAMILY_LEVEL = math.erfc(3.0 / math.sqrt(2.0))
-"""Probability that a family of true claims has at least one "disagrees": 0.0027, that of one two-sided
-3-sigma test."""
+"""Probability that a family of true claims has at least one "disagrees". This is 0.0027, the probability that
+a two-sided 3-sigma test rejects a true claim.
+"""
 
 
 def holm(p_values: Sequence[float], level: float = FAMILY_LEVEL) -> list[bool]:

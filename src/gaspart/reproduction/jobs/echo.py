@@ -149,7 +149,7 @@ def _displace(state: State, seed: tuple[int, ...]) -> State:
 def _distance(state: State, other: State) -> float:
     """Compute the root-mean-square distance between two states, in diameters.
 
-    Positions are those between walls, not periodic.
+    Positions are between walls, and not periodic.
     """
     import numpy as np
 

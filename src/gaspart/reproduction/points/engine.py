@@ -163,8 +163,8 @@ def schedule(point: Point) -> Schedule:
     """Return duration and sampling of a point's runs, in the scene's time.
 
     The length is divided into ``samples`` intervals. With the step engine, an interval has a whole number of
-    time steps. The equilibration, rounded up to complete intervals, precedes it. If ``frames`` is set,
-    intervals are those between frames.
+    time steps. The equilibration, rounded up to complete intervals, precedes it. If ``frames`` is set, the
+    intervals are the intervals between frames.
     """
     settings = point.settings
     lengths = [key for key in LENGTHS if key in settings]

@@ -1,4 +1,4 @@
-"""Kinds of jobs, each a module of `reproduction.jobs`.
+"""Kinds of jobs. A kind is a module of `reproduction.jobs`.
 
 A job runs again when its module changes, or its arguments as plain values.
 """

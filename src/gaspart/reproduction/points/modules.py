@@ -95,7 +95,7 @@ def digest(*roots: str | Path, others: tuple[Path, ...] = ()) -> str:
 
 @cache
 def kernel_digest(*roots: str | Path) -> str:
-    """Return a short digest of those modules in a closure that `warm` may compile.
+    """Return a short digest of the modules in a closure that `warm` may compile.
 
     Jobs that need equal modules share their stamps.
     """

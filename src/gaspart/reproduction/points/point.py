@@ -44,7 +44,7 @@ class Job(Protocol):
     RESULT: str
     """Description of the result of the job."""
     KEYS: dict[str, Kind]
-    """Keys that have a meaning for this job, in addition to those for scene, engine and length."""
+    """Keys that have a meaning for this job, in addition to the keys for scene, engine and length."""
 
     def engines(self, point: Point) -> list[Engine]:
         """Return the engines whose kernels the job compiles; none if particles are only placed."""

@@ -202,7 +202,7 @@ def _file(path: str, changed: int) -> tuple[Any, Scene]:
 
 
 def _replace(content: dict, key: str, point: Point) -> None:
-    """Replace the value at a dotted key; add the key if a mapping lacks it.
+    """Replace the value at a dotted key; add the key if it is missing.
 
     The key is `scene.`, followed by names in mappings and indices in lists.
     """

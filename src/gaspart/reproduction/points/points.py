@@ -65,7 +65,7 @@ def scale_length(job: str, settings: Mapping[str, Any], multiple: float) -> dict
 def _resample(settings: Mapping[str, Any], multiple: float, least: int, even: bool) -> dict[str, Any]:
     """Return the length and the samples of a run that is `multiple` times as long.
 
-    If `even`, all intervals between samples are kept, for example between lags and in timings.
+    If `even` is True, all intervals between samples are kept, for example between lags and in timings.
     """
     changes: dict[str, Any] = {}
     samples = settings.get("samples", 1)

@@ -312,7 +312,7 @@ def _size(path: Path) -> tuple[int, int]:
 def address(path: Path, one_file: bool = False) -> str:
     """Return the address of a file in results/, relative to the page.
 
-    If `one_file`, the address contains the data of the file.
+    If `one_file` is True, the address contains the data of the file.
     """
     if one_file:
         return _data(mimetypes.guess_type(path.name)[0] or "", path.read_bytes())

@@ -15,8 +15,8 @@ _REORDERED = 1e-3  # fraction of all instructions, since the compiler may order 
 def price_of_features(ds: xr.Dataset) -> list[Claim]:
     """Return the claims on kernels without and with features.
 
-    A compiled kernel without a feature equals a kernel whose source lacks the feature. A kernel with a
-    feature is not much slower.
+    If a kernel is compiled without a feature, it equals a kernel whose source does not have the feature. A
+    kernel with a feature is not much slower.
     """
     kernels, timed = Table(ds, "kernel"), Table(ds, "point")
     plain, present = timed[timed.feature == "plain"], timed[timed.feature != "plain"]

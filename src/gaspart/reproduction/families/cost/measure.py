@@ -50,14 +50,14 @@ def price_of_features(points: list[Point], settings: dict) -> xr.Dataset:
     Variables over point (a feature with an engine):
 
     engine : name of the engine
-    feature : feature that the other scene lacks
+    feature : feature that the other scene does not have
     seconds : time per event
     ratio : time divided by the time of the other scene in the same jobs, with error and degrees of freedom
     pair_tests, box_visits, crossings : counts per event
 
     The error of the ratio is the scatter of the jobs. A plain scene compared with itself has the ratio 1. If
     a point counts instructions, there are variables over kernel: the name of the engine, `instructions`, and
-    `stripped`. The latter is the number of instructions of a kernel whose source lacks the features.
+    `stripped`. `stripped` is the number of instructions of a kernel whose source does not have the features.
     """
     groups: dict[tuple, list[dict]] = {}
     for job in (_job(point) for point in points if point.job == "measure_cost"):
@@ -101,7 +101,7 @@ def _job(point: Point) -> dict:
 
 
 def _feature(scene: Scene, extras: list[str]) -> str:
-    """Return the feature of a scene that a plain periodic gas of equal spheres lacks."""
+    """Return the feature that distinguishes a scene from a plain periodic gas of equal spheres."""
     has = {
         "recording": "record_events" in extras,
         "stress": "stress" in extras,

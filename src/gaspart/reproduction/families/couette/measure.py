@@ -172,7 +172,7 @@ def _speed(scene: Scene) -> float:
 
 
 def _path(density: float, diameter: float, dilute: bool) -> float:
-    """Compute the mean free path; if `dilute`, the spheres occupy no volume."""
+    """Compute the mean free path; if `dilute` is True, the spheres occupy no volume."""
     eta = float(theory.packing_fraction(density, 3, diameter))
     return float(theory.mean_free_path(eta, 3, diameter, contact=1.0 if dilute else None))
 
@@ -215,7 +215,7 @@ class Averages:
 
 
 def _gap_blocks(point: Point, gap: Gap, blocks: int, bins: int) -> Averages:
-    """Return averages over the measured part of all replicas, each cut into `blocks`."""
+    """Return averages over the measured part of all replicas. Each replica is divided into `blocks`."""
     replicas = [_blocks_of(run, gap, blocks, bins) for run in runs(point)]
     return Averages(
         *(np.concatenate([getattr(replica, key) for replica in replicas]) for key in vars(replicas[0]))

@@ -21,7 +21,7 @@ SEEN = 0.02
 """Smallest relative change of a transport coefficient with which a point tests the coefficient of the change.
 """
 SONINE = {"viscosity": 1.0160, "conductivity": 1.0252, "diffusion": 1.01895}
-"""Exact coefficients of dilute spheres divided by those in the first Sonine approximation."""
+"""Exact coefficients of dilute spheres divided by their first Sonine approximation."""
 WIDE = 1.5
 """Width of cells, in mean free paths, in which the diffusion coefficient is tested."""
 POINTLIKE = 0.003

@@ -1,9 +1,8 @@
 """Errors of cells, steps and models of DSMC, relative to theory and the event-driven engine.
 
-Units are those in which the literature states discretisation errors. Widths of cells are in mean free paths l
-of the dilute gas, 1 / (sqrt 2 pi n sigma^2). Steps are in l / c with c = sqrt(2 k_B T / m). Transport
-coefficients are divided by the Chapman-Enskog values. The effect of the finite number of particles is
-removed.
+The literature states discretisation errors in the same units. Widths of cells are in mean free paths l of the
+dilute gas, 1 / (sqrt 2 pi n sigma^2). Steps are in l / c with c = sqrt(2 k_B T / m). Transport coefficients
+are divided by the Chapman-Enskog values. The effect of the finite number of particles is removed.
 """
 
 from __future__ import annotations

@@ -216,7 +216,7 @@ SOURCES = {
 
 
 def literature(dataset: xr.Dataset) -> list[Claim]:
-    """Return the claims that our values agree with published ones, each and all together."""
+    """Return the claims that our values agree with published values, singly and all together."""
     values = Table(dataset, "value")
     named = values.assign(
         name=[NAMES[quantity] for quantity in values.quantity],

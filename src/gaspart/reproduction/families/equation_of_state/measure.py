@@ -159,9 +159,9 @@ def fit_coefficients(
 ) -> tuple[Fit, np.ndarray]:
     """Fit (Z-1)/eta = b_2 + b_3 eta + ... with weights; b_2 ... b_free are free.
 
-    If `held`, the higher coefficients up to B10 have their literature values, and the remaining terms are
-    `theory.linear_tail`. Otherwise the higher coefficients are zero: the truncated series shows the effect of
-    these terms.
+    If `held` is True, the higher coefficients up to B10 have their literature values, and the remaining terms
+    are `theory.linear_tail`. Otherwise the higher coefficients are zero: the truncated series shows the
+    effect of these terms.
 
     Returns the Fit (values b_2 ... b_free), and held_error (free - 1,). The latter are standard errors due to
     the uncertainty of the held coefficients. The errors of the fit do not include them.

@@ -56,7 +56,7 @@ def thin_film(points: list[Point], settings: dict) -> xr.Dataset:
 
     Variables over `width`, the distance between the surfaces of the walls in diameters:
 
-    pressure, contact : pressure, and density rho(0) at contact (k_B T = 1), each with _error
+    pressure, contact : pressure, and density rho(0) at contact (k_B T = 1); both have _error
     truncation : error of the cubic, for the contact value of the density functional
     chemical_potential : chemical potential with _error
     at_bulk : pressure at exactly the chemical potential of the bulk, to first order, with _error

@@ -167,8 +167,8 @@ def _states(points: list[Point], row: Callable[[Point], dict[str, Any]]) -> xr.D
     density : number density in 1 / sigma^d, over `packing_fraction`
     disagreement : largest deviation between the starts or between halves of a run, in standard errors
 
-    Pressure and order are over `start` and `packing_fraction`. The deviations are those in pressure and
-    order. A disagreement above 3 shows that the runs are not in equilibrium.
+    Pressure and order are over `start` and `packing_fraction`. The deviations are in pressure and in order. A
+    disagreement above 3 shows that the runs are not in equilibrium.
     """
     chosen = [point for start in STARTS.values() for point in _of_start(points, start).values()]
     dataset = table("point", chosen, row).set_index(point=["start", "packing_fraction"]).unstack("point")

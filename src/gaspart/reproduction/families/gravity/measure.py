@@ -230,7 +230,7 @@ class Bins:
         return self._slope(energy / total, total) / (self.column.weight / len(self.column.masses))
 
     def mean_height_ratio(self, height: np.ndarray, temperature: float) -> np.ndarray:
-        """Compute mean heights (S,) divided by those in ideal gases."""
+        """Compute mean heights (S,) divided by the mean heights in ideal gases."""
         return height / ideal_mean_height(
             self.column.height, self.masses * self.column.strength / temperature
         )

@@ -59,7 +59,7 @@ class Averages:
     heat_in, heat_out : (K,), heat flux out of the hot wall, and heat flux into the cold wall.
     density : (K, B), particles in bins, per volume.
     energy : (K, B), energy of the particles per volume, as a temperature.
-    imbalance : largest difference between supplied energy and gained energy, over the conducted heat.
+    imbalance : largest difference between supplied energy and gained energy, divided by the conducted heat.
     stored : (R, K/R + 1, 2), particles' energy and its first moment about the middle, at ends of blocks.
     heat : total conducted heat.
     """

@@ -34,7 +34,7 @@ def observable(points: list[Point], settings: dict) -> xr.Dataset:
 
     against : value of the key
     series : other varying settings, as text
-    value, theory : value and theory (or NaN), each with its `_error`, in the units of the observable
+    value, theory : value and theory (or NaN), in the units of the observable; both have an `_error`
     value_freedom : degrees of freedom of the error
 
     Some observables have several named values, such as one for each face; then each name is a series. For a

@@ -114,7 +114,7 @@ def piston(points: list[Point], settings: dict) -> xr.Dataset:
 
     density : packing fraction in the middle half of the volume
     factor : external pressure divided by this density and the temperature
-    fluctuation : particle number times variance of the volume, over the squared volume at this density
+    fluctuation : particle number times variance of the volume, divided by the squared volume at this density
     energy : twice the kinetic energy of the piston, divided by the temperature
 
     Variables over `state` are dimension and count.
@@ -229,10 +229,10 @@ def estimators(points: list[Point], settings: dict) -> xr.Dataset:
     packing_fraction, width : packing fraction, and width in diameters
     mixture, impulses : variance of counts divided by the variance of these estimators, median of all bins
     at_walls : `mixture` in the two bins at the walls
-    mean_square : mean square of (counts - impulses) / error, over the value for Student's distribution
+    mean_square : mean square of (counts - impulses) / error, divided by the value for Student's distribution
     additions : additions to the tally per tested pair of particles
     pressure : squared error of the wall pressure by impulses, divided by the squared error with known means
-    pressures_apart : difference of both pressures divided by the latter
+    pressures_apart : pressure by impulses minus pressure with known means, divided by the latter pressure
 
     The ratio of variances of each replica is computed from blocks of time. The result is the mean of these
     ratios over replicas.

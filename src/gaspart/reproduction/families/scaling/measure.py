@@ -40,7 +40,7 @@ from gaspart.theory.partition import boxes_in_reach, share_of_contacts_in_a_box
 def near_boxes(runs: list[xr.Dataset]) -> xr.Dataset:
     """Compare the search of boxes within contact range with a search of all neighbours.
 
-    `runs` are jobs of one gas, each with the same partitions. Variables over ``near`` (the partitions):
+    `runs` are jobs of one gas. All jobs have the same partitions. Variables over ``near`` (the partitions):
 
     near_boxes_per_side : number of boxes
     near_seconds : time per particle and step with boxes within range only; error from the scatter of jobs

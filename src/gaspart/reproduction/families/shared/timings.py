@@ -40,7 +40,7 @@ def median(seconds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def per_particle(run: xr.Dataset) -> xr.Dataset:
-    """Return the costs per particle and step, over the partitions of a time-stepped gas.
+    """Return the costs per particle and step, for each partition of a time-stepped gas.
 
     The variables are ``boxes_per_side``, ``boxes_per_particle``, ``seconds`` with ``seconds_error``,
     ``pair_tests``, ``box_visits`` and ``boxes_emptied``.
@@ -61,7 +61,7 @@ def per_particle(run: xr.Dataset) -> xr.Dataset:
 
 
 def per_event(run: xr.Dataset) -> xr.Dataset:
-    """Compute the costs per event (collision or wall hit), over the partitions.
+    """Compute the costs per event (collision or wall hit) for each partition.
 
     The gas is event-driven. The variables are ``boxes_per_side``, ``boxes_per_particle``, ``events``,
     ``seconds`` with ``seconds_error``, ``pair_tests``, ``box_visits``, and ``crossings`` of box boundaries.
@@ -183,8 +183,8 @@ def _near(seconds: np.ndarray) -> np.ndarray:
 def log_ratios(run: xr.Dataset, work: np.ndarray) -> np.ndarray:
     """Compute ln of the time per unit of work (partitions,) relative to a rival.
 
-    The first half of the runs has the settings `without`; the second half, the rivals, lacks them. Both are
-    timed alternately. The result is the median over repeats.
+    The first half of the runs has the settings `without`. The second half, the rivals, does not have them.
+    Both are timed alternately. The result is the median over repeats.
     """
     own, beside = np.split(np.log(run.seconds.values / work[:, None]), 2)
     return np.median(own - beside, axis=1)

@@ -289,7 +289,7 @@ def reversibility(points: list[Point], settings: dict) -> xr.Dataset:
     are `echo` jobs. Over (``row``, ``sample``) are ``collisions`` (mean) and ``echo`` (median over seeds, in
     diameters).
 
-    Variables over ``row``; those from growth to memory have an ``_error`` over seeds:
+    Variables over ``row``; the variables from growth to memory have an ``_error`` over seeds:
 
     dimension, packing_fraction, count, side : gas, with the side in diameters
     engine, precision : engine and its precision

@@ -44,7 +44,7 @@ def structure(ds: xr.Dataset) -> Figure:
 
 
 def _spheres_and_discs(ds: xr.Dataset) -> list[Table]:
-    """Return the spheres and the discs, each by ascending packing fraction."""
+    """Return the spheres and the discs, both in order of ascending packing fraction."""
     fluids = Table(ds, "point")
     return [fluids[fluids.dimension == dimension].sorted_by("packing_fraction") for dimension in (3, 2)]
 

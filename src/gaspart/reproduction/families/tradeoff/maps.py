@@ -96,7 +96,7 @@ def flux_of(point: Point, blocks: int) -> Flow:
 
 
 def relaxation_of(point: Point) -> Flow:
-    """Return the time in which equal speeds relax to Maxwell's, over the mean free time.
+    """Return the time in which equal speeds relax to Maxwell's, in mean free times.
 
     The time is the integral of (K_end - K) / (K_end - 1) up to `FREE_TIMES`. Here K is the kurtosis, averaged
     over replicas. In a uniform gas, steps and cells of the DSMC engine affect only positions, if all

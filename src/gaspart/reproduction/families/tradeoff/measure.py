@@ -95,7 +95,7 @@ def time_to_accuracy(points: list[Point], settings: dict) -> xr.Dataset:
     The first part is for all gases; see `maps`. The second part compares measured costs with the model's
     predictions, in gases that were not used to fit the model.
 
-    The points are those for `speed_accuracy`. The gases outside the model's table are the experiments
+    The points are the same as for `speed_accuracy`. The gases outside the model's table are the experiments
     ``elsewhere`` in settings. Timings of the model's reference gas scale the table's times to this machine.
     The settings are ``counts`` of particles, ``accuracies``, and the settings of `maps`.
 

@@ -1,9 +1,9 @@
 """Choices for a gas in equilibrium: its collision rate, compressibility factor Z, and D.
 
 The event-driven engine has only a statistical error. Errors of time steps are measured; see `errors`. Errors
-of the DSMC engine follow from theory. Its model lacks the contact value, the virial or the memory of
-collisions. Its steps change D by a law that `dsmc_convergence` confirms. Only one of its errors is measured:
-the effect of the few particles per cell on the collisions of the Enskog model.
+of the DSMC engine follow from theory. Its model does not include the contact value, the virial or the memory
+of collisions. Its steps change D by a law that `dsmc_convergence` confirms. Its only measured error is the
+effect of the few particles per cell on the collisions of the Enskog model.
 """
 
 from __future__ import annotations
