@@ -50,7 +50,7 @@ OTHER = "?", "another reason, in the data"
 
 
 def stability_extremes(dataset: xr.Dataset) -> Figure:
-    """Draw a table with a row for each scene; each block has a column for each engine.
+    """Draw a table with a row for each scene and a column for each engine.
 
     A cell has an error, or the letter of a rejection.
     """
