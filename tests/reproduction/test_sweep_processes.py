@@ -76,15 +76,15 @@ def test_no_process_outlives_the_caller_and_no_bit_changes(tmp_path, whole, numb
     folder = tmp_path / "run"
     first = begun(folder, 2)
     assert until(lambda: under_way(folder))
-    assert len(processes_of(folder)) == 3
+    assert len(processes_of(folder)) > 1
     first.send_signal(number)
     output, errors = first.communicate()
     assert first.returncode == -number and output == ""
-    # On a busy machine a point may be done before the other one is under way.
+    # On a busy machine a point may be done before the signal comes.
     assert re.fullmatch(r"(\d of 3 points: .*\n)*", errors)
     assert until(lambda: not processes_of(folder))
     saved = len(list(folder.rglob("*.checkpoint.npz")))
-    assert saved == 2 or number == signal.SIGKILL
+    assert saved > 0 or number == signal.SIGKILL
     output, errors = begun(folder, 2).communicate()
     assert output == "{''}\n" and errors.count("\n") == 3
     assert made(folder) == whole

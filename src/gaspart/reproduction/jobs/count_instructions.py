@@ -30,7 +30,7 @@ KEYS: dict[str, Kind] = {}
 FEATURES = {
     "accommodation", "collapse", "duration", "faces", "fixed", "gravity", "impulses", "law",
     "masses", "motion", "moving", "opened", "oversized", "pace", "pairs", "per_area", "piston",
-    "ramp", "record", "reservoirs", "row", "rules", "shear", "sliding", "sticky", "stress",
+    "present", "ramp", "record", "reservoirs", "row", "rules", "shear", "sliding", "sticky", "stress",
     "support", "velocity", "vibrations", "viscous", "walls", "warm",
 }  # fmt: skip
 """Arguments of the kernels that are None for a plain gas."""
