@@ -92,8 +92,8 @@ class Target:
     def start(self) -> State | None:
         """State from which pilots start; None for the default initial state.
 
-        Pilots start from a settled state. If particles are compressed, pilots start from the state at time 0,
-        because the compression takes long.
+        A state other than the default is a settled state. If particles are compressed and no settled state is
+        known, the state at time 0 is stored, because the compression takes long.
         """
         if self.settled is not None:
             return self.settled

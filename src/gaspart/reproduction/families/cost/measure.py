@@ -57,7 +57,8 @@ def price_of_features(points: list[Point], settings: dict) -> xr.Dataset:
 
     The error of the ratio is the scatter of the jobs. A plain scene compared with itself has the ratio 1. If
     a point counts instructions, there are variables over kernel: the name of the engine, `instructions`, and
-    `stripped`. `stripped` is the number of instructions of a kernel whose source does not have the features.
+    `stripped`. The last variable is the number of instructions of a kernel whose source does not have the
+    features.
     """
     groups: dict[tuple, list[dict]] = {}
     for job in (_job(point) for point in points if point.job == "measure_cost"):
