@@ -203,7 +203,7 @@ def require_particles(scene: Scene, selection: Selection) -> None:
     """Raise SceneError if too few particles move.
 
     Without a selection, at least 16 particles must move. Of a selected species, at least one particle must
-    move. Selected numbers of particles must exist.
+    move. Selected numbers of particles must exist. A species and particles cannot be selected together.
     """
     chosen = {key: selection.get(key) for key in ("species", "particles")}
     if all(value is None for value in chosen.values()):

@@ -135,8 +135,8 @@ class Engine:
     def for_scene(self, scene: Scene, interval: float | None = None) -> Engine:
         """Return a copy with settings completed for a scene.
 
-        If `interval` is passed, it must be an integer multiple of the time step of the returned engine.
-        Raises SceneError if the settings do not fit the scene.
+        If `interval` is passed, a time step that the engine chooses divides it into equal steps. Raises
+        SceneError if the settings do not fit the scene.
         """
         return self
 
