@@ -309,7 +309,7 @@ class Simulation:
         until: float | None = None,
         max_work: int | None = None,
     ) -> None:
-        """Advance by a duration, to a time, or by a number of events, whichever is reached first.
+        """Advance by a duration, to a time, or by some events, whichever is reached first.
 
         Parameters
         ----------

@@ -288,7 +288,7 @@ def _write_data(path: Path, snapshots: Iterator[Snapshot]) -> None:
 
 
 def _rows(template: str, *columns: np.ndarray) -> Iterator[str]:
-    """Yield the text of a table in blocks of rows, which is faster than row by row."""
+    """Yield the text of a table in blocks of rows, which are fast to format."""
     for first in range(0, len(columns[0]), _ROWS):
         block = [column[first : first + _ROWS].tolist() for column in columns]
         yield template * len(block[0]) % tuple(chain.from_iterable(zip(*block, strict=True)))

@@ -16,7 +16,8 @@ _ACCURACIES = 1e-8, 1.0
 _FIRST = 64, 96
 """Numbers of frames at the first two tests.
 
-The number at each later test is twice the number two tests before. The ratios of successive numbers are 3/2 and 4/3.
+The number at each later test is twice the number two tests before. The ratios of successive numbers are 3/2
+and 4/3.
 """
 _ROUNDING = 1e-9
 
