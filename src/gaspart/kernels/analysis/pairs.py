@@ -2,9 +2,10 @@
 
 The container is divided into columns along its last axis, and columns are divided into boxes. Particles are
 sorted by box, so all particles of a column between two heights are adjacent in memory. Each particle is
-compared with such a range in half of the neighbouring columns. So each pair is found once, with every image
-that can be near. Distances are computed for vectors of `WIDTH` particles. Distances beyond the end of a range
-are also computed, and overwritten later. Counts are integers, which do not depend on the order of the pairs.
+compared with such a range in half of the neighbouring columns. In this way each pair is found exactly once
+for each image that can be close enough. Distances are computed for vectors of `WIDTH` particles. Distances
+beyond the end of a range are also computed, and overwritten later. Counts are integers, which do not depend
+on the order of the pairs.
 """
 
 from math import floor, sqrt
@@ -65,7 +66,7 @@ def sort_by_box(coordinates, lengths, numbers, start, boxes):
 
 @inner_helper
 def add_to_tables(indices, number, tables):
-    """Count the first `number` of the bins.
+    """Add 1 to the counts of the first `number` bins in `indices`.
 
     Parameters
     ----------

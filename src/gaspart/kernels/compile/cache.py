@@ -82,7 +82,7 @@ def obstacle(directory: Path) -> str:
 def _is_private(status: os.stat_result) -> bool:
     """Return True if a path is a folder that only this user can write to.
 
-    Then other users cannot place machine code in it.
+    This test ensures that no other user can place machine code in the folder.
     """
     return stat.S_ISDIR(status.st_mode) and is_private(status)
 

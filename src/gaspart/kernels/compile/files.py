@@ -1,10 +1,10 @@
 """Files of compiled kernels: one file per function and types of arguments.
 
-numba names its files by the folder of the source and lists them in an index. So two copies of a project never
-share a file. Processes that compile at the same time overwrite this index, so two kernels may get the same
-file. Here the name of a file depends only on what was compiled. The file begins with a checksum; a damaged
-file is compiled and written again. If a file cannot be written, other processes only lose time. If this user
-has not compiled a kernel, it may have been shipped with the package (`shipped_content`).
+numba names its files by the folder of the source and lists them in an index. Therefore two copies of a
+project never share a file. Processes that compile at the same time overwrite this index, so that two kernels
+may get the same file name. Here the name of a file depends only on what was compiled. The file begins with a
+checksum; a damaged file is compiled and written again. If a file cannot be written, other processes only lose
+time. If this user has not compiled a kernel, it may have been shipped with the package (`shipped_content`).
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Contact times of falling particles, which are roots for flights under a uniform acceleration.
 
-Two particles that fall with the same acceleration move uniformly relative to each other. So these roots are
-needed only if the second object does not fall: a wall, a face of a box, a fixed particle, or a particle on a
-floor. As in `contact`, the contact time of a touching and approaching particle is 0, and every root is
-computed without cancellation.
+Two particles that fall with the same acceleration move uniformly relative to each other. Therefore these
+roots are needed only if the second object does not fall: a wall, a face of a box, a fixed particle, or a
+particle on a floor. As in `contact`, the contact time is 0 for objects that touch and approach, and every
+root is computed without cancellation.
 """
 
 from math import inf, sqrt
@@ -24,7 +24,7 @@ def time_against(gap, speed, pull):
     """Return the time to cross `gap` at `speed` >= 0 against a deceleration `pull` > 0.
 
     This is the smaller root of pull t^2 / 2 - speed t + gap = 0 (Spencer 2022, Eqs. 12 and 14); inf if the
-    particle turns before.
+    particle turns before it has crossed the gap.
     """
     if gap <= 0.0:
         return 0.0

@@ -1,8 +1,8 @@
 """Transfer of momentum between two touching particles, or between a particle and a wall.
 
 Smooth elastic particles exchange only momentum. A `ContactLaw` adds restitution, spins and fixed particles
-(Spencer 2022, section 2.2). It uses three components. In two dimensions the third component of a velocity and
-the first two of a spin are 0.
+(Spencer 2022, section 2.2). Its vectors have three components. In two dimensions the third component of a
+velocity and the first two components of a spin are 0.
 """
 
 from math import sqrt
@@ -73,9 +73,9 @@ def fastest_component(flights, i, space):
 def least_speed(flights, i, space):
     """Return the minimum separation speed of a particle from a wall.
 
-    It is the speed of the particle multiplied by the rounding error of the direction to the wall, which is
-    the rounding error of positions divided by the radius. With a smaller speed the particle would hit the
-    wall forever.
+    This speed is the speed of the particle multiplied by the rounding error of the direction to the wall. The
+    error of the direction is the rounding error of positions divided by the radius. With a lower separation
+    speed the particle would hit the wall forever.
     """
     longest = flights[i].radius
     for k in range(len(space.lengths)):
@@ -165,8 +165,9 @@ def add_spin(flights, i, normal, impulse, law):
 def exchange_with_vibration(i, j, approach, mobility, vibrations):
     """Exchange the normal energy of two particles with the energy of a vibrational mode.
 
-    The mode belongs to one of the particles. The exchange conserves the measure v dv dE and is reversible in
-    time. Returns the separation speed, or -1 if neither particle has a mode.
+    The mode belongs to one of the particles. The exchange conserves the measure v dv dE, where v is the
+    normal speed and E the vibrational energy, and is reversible in time. Returns the separation speed, or -1
+    if neither particle has a mode.
     """
     if vibrations is None:
         return -1.0

@@ -20,8 +20,8 @@ def contact_root(rr, rv, vv, ss):
     """Return the time of first touch for a pair on a collision course (rv < 0).
 
     This is the smaller root of vv t^2 + 2 rv t + (rr - ss) = 0, in the form without cancellation t = c/(-b +
-    sqrt(b^2 - ac)) (Spencer 2022, Eq. 21). For a pair that already overlaps it is negative, the time since
-    the touch; the time-stepped engine rewinds by this time.
+    sqrt(b^2 - ac)) (Spencer 2022, Eq. 21). For a pair that already overlaps, the root is negative: its
+    absolute value is the time since the pair touched, by which the time-stepped engine moves the pair back.
     """
     c = rr - ss
     return c / (sqrt(rv * rv - vv * c) - rv)
@@ -31,9 +31,9 @@ def contact_root(rr, rv, vv, ss):
 def time_to_contact(rr, rv, vv, ss):
     """Return the time until a pair touches; inf if it never does.
 
-    For a pair that touches or overlaps and approaches it is 0. Overlap due to rounding must never grow. So a
-    touching, approaching pair collides immediately (Bannerman, Strobl, Formella & Poeschel, Comput. Part.
-    Mech. 1, 191 (2014)).
+    For a pair that touches or overlaps, and approaches, the result is 0. Such a pair must collide
+    immediately, because overlap due to rounding must never grow (Bannerman, Strobl, Formella & Poeschel,
+    Comput. Part. Mech. 1, 191 (2014)).
     """
     c = rr - ss
     if not ((rv < 0.0) & (rv * rv >= vv * c)):  # a single branch, which is nearly always taken
@@ -69,8 +69,8 @@ def exchange(rr, rv, mass1, mass2):
 def normal_change(approach, restitution, least):
     """Return the change of the normal relative velocity in a collision.
 
-    `approach` becomes -restitution * approach (Spencer 2022, Eq. 35), or -least if this is a higher
-    separation speed.
+    The collision changes the normal velocity from `approach` to -restitution * approach (Spencer 2022, Eq.
+    35), or to -least if this is a higher separation speed.
     """
     return approach + max(restitution * approach, least)
 

@@ -3,7 +3,7 @@
 A sum is a row of integers, the digits of a number in base 2^32 (Kulisch, Computer Arithmetic and Validity
 (2013), ch. 8). Digit n counts units of 2^(32 n - 1074), so the digits can represent every float64. Each term
 is added to three of the digits, without carries. The last integer of a row counts the terms since the last
-carry. Carries are performed in time, so nothing overflows and nothing is rounded. Sums of threads are added
+carry. Carries are performed before a digit can overflow, and nothing is rounded. Sums of threads are added
 digit by digit.
 """
 

@@ -43,8 +43,8 @@ def remaining_pull(support, i, axis):
 def acceleration_of(flights, i, axis, space, gravity):
     """Return the acceleration of a particle along an axis.
 
-    It is 0 if the particle is fixed, or lies at rest on the face below. On walls it is the part of gravity
-    that they do not support.
+    The acceleration is 0 if the particle is fixed, or lies at rest on the face below. For a particle on
+    walls, it is the part of gravity that the walls do not support.
     """
     if is_supported(gravity.support, i) and not gravity.fixed[i]:
         return remaining_pull(gravity.support, i, axis)
@@ -182,8 +182,8 @@ def row_of(i, row):
 def bin_at(position, bins):
     """Return the bin of a position, and the fraction of the bin below the position.
 
-    The position is in units of bins. A position outside belongs to the last bin on that side, with the same
-    linear formula.
+    The position is in units of bins. A position outside the range of the bins is assigned to the nearest bin,
+    and the fraction is computed by the same linear formula.
     """
     bin_ = min(max(np.int64(position), 0), bins - 1)
     return bin_, position - bin_

@@ -1,4 +1,4 @@
-"""Gas whose periodic images slide (Lees & Edwards, J. Phys. C 5, 1921 (1972)).
+"""Sheared gas with sliding periodic images (Lees & Edwards, J. Phys. C 5, 1921 (1972)).
 
 Images above the container are displaced along the flow, axis 0, by the distance that a flow of constant shear
 rate has moved them since time 0. Images below are displaced by the same distance in the opposite direction.
@@ -37,7 +37,7 @@ def flow_at(y, space, shear):
 def cross_sheared(particles, i, upper, mass, space, tally, shear):
     """Give a particle at a sheared face the position and velocity of its image that enters.
 
-    The energy that it loses is the energy that the face receives.
+    The energy that the particle loses is tallied as energy given to the face.
     """
     flights, side, length = particles.flights, 1.0 if upper else -1.0, space.lengths[FLOW]
     x = flights[i].position[FLOW] - side * displacement(flights[i].clock, shear)

@@ -5,7 +5,7 @@ from gaspart.kernels.compile.policy import inner_helper
 
 @inner_helper
 def box_coordinate(x, width, per_side):
-    """Return the index along an axis of the box that contains x; outside, the outermost."""
+    """Return the index along an axis of the box that contains or is nearest to x."""
     c = int(x / width)
     return min(max(c, 0), per_side - 1)
 

@@ -1,7 +1,7 @@
-"""Random numbers in kernels, functions of a key, a particle and a count per particle.
+"""Random numbers in kernels, from a key, a particle and its number of draws.
 
-So they do not depend on the order in which events are found, or on anything else. All numbers are computed
-from the random words with only +, -, x, / and the square root, as in `random`.
+Therefore they do not depend on the order of events, or on anything else. All numbers are computed from the
+random words with only +, -, x, / and the square root, as in `random`.
 """
 
 from math import frexp, sqrt

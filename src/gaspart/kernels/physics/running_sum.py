@@ -1,10 +1,10 @@
-"""Running sums of the counters, which are as accurate after 1e10 events as after 1e6.
+"""Sums of counters that are as accurate after 1e10 events as after 1e6.
 
 A plain float64 sum loses digits as it grows. The event-driven engine adds in a fixed order. It stores the
 rounding errors of the additions in a second number (Neumaier, ZAMM 54, 39 (1974)). The time-stepped engine
-adds in an order that depends on slots and threads. So it sums integers, for which the order does not matter.
-In both cases a sum consists of two numbers. Both are in checkpoints, and do not depend on where a run is
-split.
+adds in an order that depends on slots and threads. Therefore it sums integers, for which the order does not
+matter. In both cases a sum consists of two numbers. Checkpoints contain both numbers, so that the sum does
+not depend on interruptions of a run.
 """
 
 import math

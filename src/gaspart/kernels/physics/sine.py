@@ -1,6 +1,6 @@
 """Sine and cosine with the same bits on every machine.
 
-They are computed with only +, -, x and /.
+Both functions are computed with only +, -, x and /.
 """
 
 from math import floor
