@@ -61,8 +61,8 @@ def kinetic_viscosity(packing_fraction: Numbers, dimension: int, contact: Number
     dimension : {2, 3}
         Discs or spheres.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
-        state, or 1 in a gas of points.
+        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
+        points. Default: `contact_value`.
 
     Returns
     -------
@@ -91,8 +91,8 @@ def kinetic_conductivity(packing_fraction: Numbers, dimension: int, contact: Num
     dimension : {2, 3}
         Discs or spheres.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
-        state, or 1 in a gas of points.
+        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
+        points. Default: `contact_value`.
 
     Returns
     -------
@@ -135,8 +135,8 @@ def collision_rate(
     mass : float, default 1.0, [mass]
         Mass of a particle.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
-        state, or 1 in a gas of points.
+        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
+        points. Default: `contact_value`.
 
     Returns
     -------
@@ -249,8 +249,8 @@ def mean_free_path(
     diameter : float, default 1.0, [length]
         Diameter sigma of a particle.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
-        state, or 1 in a gas of points.
+        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
+        points. Default: `contact_value`.
 
     Returns
     -------
@@ -302,8 +302,8 @@ def enskog_diffusion(
     mass : float, default 1.0, [mass]
         Mass of a particle.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
-        state, or 1 in a gas of points.
+        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
+        points. Default: `contact_value`.
 
     Returns
     -------
@@ -360,8 +360,8 @@ def enskog_bulk_viscosity(
     mass : float, default 1.0, [mass]
         Mass of a particle.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
-        state, or 1 in a gas of points.
+        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
+        points. Default: `contact_value`.
 
     Returns
     -------
@@ -415,8 +415,8 @@ def enskog_viscosity(
     mass : float, default 1.0, [mass]
         Mass of a particle.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
-        state, or 1 in a gas of points.
+        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
+        points. Default: `contact_value`.
 
     Returns
     -------
@@ -520,8 +520,8 @@ def enskog_conductivity(
     mass : float, default 1.0, [mass]
         Mass of a particle.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
-        state, or 1 in a gas of points.
+        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
+        points. Default: `contact_value`.
 
     Returns
     -------
