@@ -60,7 +60,7 @@ def well_ratio(depth: Numbers, width: Numbers, outside: Numbers) -> Values:
 
 @check_ranges
 def excess_in_well(held: Numbers, free: Numbers, diameter: float, width: float, outside: float) -> Values:
-    """Compute ln of the ratio N_ads / N_gas of spheres divided by the ratio of an ideal gas.
+    """Compute ln of the ratio N_ads / N_gas of spheres, relative to an ideal gas.
 
     Parameters
     ----------
@@ -297,7 +297,7 @@ def layer_activity(activity: Numbers, packing_fraction: float, gas_density: floa
 
 
 def excess_of_few(activity: float, held: float, others: float) -> float:
-    """Compute the relative excess of discs in a layer due to the finite number of gas particles.
+    """Compute the relative excess of discs in a layer next to a small gas.
 
     Parameters
     ----------

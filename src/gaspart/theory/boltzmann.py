@@ -2,8 +2,8 @@
 
 Chapman and Cowling, The Mathematical Theory of Non-uniform Gases (1970). Velocities are in units of sqrt(k_B
 T / m). Frequencies are in units of n sigma^(d-1) times this velocity unless noted. The collision integrals
-are computed by exact quadratures. So the only error of a result is that of a finite number of polynomials. In
-the Enskog equation, a homogeneous gas relaxes by the same operator multiplied by the contact value. So
+are computed by exact quadratures. So the only error of a result is due to the finite number of polynomials.
+In the Enskog equation, a homogeneous gas relaxes by the same operator multiplied by the contact value. So
 relaxation rates per collision of a particle do not depend on density.
 """
 
@@ -187,7 +187,7 @@ a particle within a step are neglected; they would be 0.2 % of all collisions.
 
 @dataclass(frozen=True)
 class Homogeneous:
-    """Evolution of a homogeneous gas: values at the start and after each of S - 1 steps.
+    """Evolution of a homogeneous gas: values at the start and after S - 1 steps.
 
     Parameters
     ----------

@@ -1,10 +1,10 @@
 """Theory of an infinite gas of equal particles, for the equation that an engine solves.
 
-The equation is that of `Engine.equation`: "exact" is the dynamics of particles that collide when they touch,
-"boltzmann" is the equation of a gas of point particles, and "enskog" is a model of collisions at a distance
-of one diameter. In this model, collisions occur at a rate proportional to the contact value of the engine,
-and correlations between collisions are neglected. Each function takes a `Gas` and an equation, and returns
-NaN if the value is unknown.
+The equation is named as in `Engine.equation`: "exact" is the dynamics of particles that collide when they
+touch, "boltzmann" is the equation of a gas of point particles, and "enskog" is a model of collisions at a
+distance of one diameter. In this model, collisions occur at a rate proportional to the contact value of the
+engine, and correlations between collisions are neglected. Each function takes a `Gas` and an equation, and
+returns NaN if the value is unknown.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def collision_rate(gas: Gas, equation: str) -> float:
 def diffusion(gas: Gas, equation: str) -> float:
     """Compute the coefficient of self-diffusion of spheres; NaN for discs.
 
-    For the exact dynamics the result is that of Erpenbeck and Wood. For the other equations it is the
+    For the exact dynamics D is the result of Erpenbeck and Wood. For the other equations it is the
     coefficient of the kinetic equation.
     """
     if gas.dimension == 2 or (equation == EXACT and not _fluid(gas)):

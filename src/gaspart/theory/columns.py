@@ -159,7 +159,7 @@ class GravityColumn:
     def equilibrate(self, energy: float, heat: float | None, ideal: bool) -> Column:
         """Compute the equilibrium column from the temperature of its faces or from its energy.
 
-        `heat` is the temperature of the faces. If it is None, the energy determines the column. Raises
+        `heat` is the temperature of the faces. Without `heat`, the energy determines the column. Raises
         ValueError under the conditions of `of_energy`.
         """
         return self.column(heat, ideal) if heat else self.of_energy(energy, ideal)

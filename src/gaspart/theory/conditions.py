@@ -118,9 +118,7 @@ class Conditions:
 
     @property
     def contrast(self) -> float:
-        """Shortest mean free path in a homogeneous gas divided by the shortest mean free path in the
-        layers.
-        """
+        """Shortest mean free path in a homogeneous gas divided by the shortest in the layers."""
         radii, _, numbers = self._kinds
         even = float(contact_values(numbers, radii, self.scene.dimension).max())
         return float((self.crowding * self.contact).max() / even)
