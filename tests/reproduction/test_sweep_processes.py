@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -43,8 +44,12 @@ def processes_of(folder):
 
 
 def under_way(folder):
-    """Whether two points have several frames."""
-    return sum(path.stat().st_size > 100_000 for path in folder.rglob("*.nc.partial")) == 2
+    """Whether a point has several frames. On a busy machine the other one may begin when it is done."""
+    for path in folder.rglob("*.nc.partial"):
+        with suppress(FileNotFoundError):  # renamed meanwhile: the point is done
+            if path.stat().st_size > 100_000:
+                return True
+    return False
 
 
 def made(folder):
@@ -80,7 +85,6 @@ def test_no_process_outlives_the_caller_and_no_bit_changes(tmp_path, whole, numb
     first.send_signal(number)
     output, errors = first.communicate()
     assert first.returncode == -number and output == ""
-    # On a busy machine a point may be done before the signal comes.
     assert re.fullmatch(r"(\d of 3 points: .*\n)*", errors)
     assert until(lambda: not processes_of(folder))
     saved = len(list(folder.rglob("*.checkpoint.npz")))

@@ -204,7 +204,8 @@ def require_particles(scene: Scene, selection: Selection) -> None:
     """Raise SceneError if too few particles are free to move.
 
     Without a selection, at least 16 particles must move. If a species is selected, at least one particle of
-    the species must move. If particle numbers are selected, these particles must exist.
+    the species must move. If particle numbers are selected, these particles must exist. A species and
+    particles cannot be selected together.
     """
     chosen = {key: selection.get(key) for key in ("species", "particles")}
     if all(value is None for value in chosen.values()):

@@ -1,4 +1,4 @@
-"""Interface of a running scene, and code shared by all engines: events, checkpoints, optional tallies."""
+"""Interface of a running scene, and code for all engines: events, checkpoints, optional tallies."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _ROOM = 4096  # capacity of the record in events
 
 
 class EventLog:
-    """Record of events: particles, with positions, velocities and optionally spins after the event."""
+    """Record of events: their times, particles, and positions, velocities and spins after the event."""
 
     def __init__(self, dimension: int, spins: bool = False) -> None:
         from gaspart.kernels.event.pair_contact import Record
@@ -43,14 +43,14 @@ class EventLog:
         )
 
     def _copy(self, count: int) -> tuple[np.ndarray, ...]:
-        """Copy the first events of the kernel's record. In 2D, spins have only a normal component."""
+        """Copy the first `count` events of the kernel's record; in 2D, only normal components of spins."""
         record = {key: getattr(self.room, key)[:count] for key in self._keys}
         if "spins" in record and self._dimension == 2:
             record["spins"] = record["spins"][..., 2]
         return tuple(array.copy() for array in record.values())
 
     def take(self, start: float) -> None:
-        """Empty the kernel's record, whose times are relative to `start`."""
+        """Move the events out of the kernel's record, whose times are relative to `start`."""
         n = int(self.room.filled[0])
         self.room.filled[0] = 0
         if n:
@@ -59,7 +59,7 @@ class EventLog:
 
     @property
     def events(self) -> dict[str, np.ndarray]:
-        """Recorded events as arrays, by name.
+        """Recorded events as arrays, by name, for M events.
 
         time : (M,)
         particles : (M, 2); for a wall hit the second entry is -1 - face
@@ -78,9 +78,9 @@ class EventLog:
 def checkpoint_identity(
     scene: Scene, engine: Engine, seed: int | tuple[int, ...], initial: State | None = None
 ) -> dict[str, np.ndarray]:
-    """Return texts of everything that determines the results of a simulation, by checkpoint keys.
+    """Return texts that identify all input of a simulation, by their keys in a checkpoint.
 
-    initial : initial state, unless it follows from the scene and the seed
+    initial : initial state; None if it follows from the scene and the seed
     """
     settings = {key: x for key, x in engine_to_dict(engine).items() if key not in engine.neutral_settings}
     texts = {
@@ -107,7 +107,7 @@ def _text(value: object) -> str:
 
 
 def check_identity(checkpoint: Any, identity: Mapping[str, np.ndarray]) -> None:
-    """Raise SceneError, naming the difference, unless a checkpoint has this `identity`."""
+    """Raise SceneError, and name the difference, unless a checkpoint has this `identity`."""
     if not isinstance(checkpoint, Mapping) or not all(key in checkpoint for key in identity):
         raise SceneError("checkpoint", checkpoint, "must be what Simulation.checkpoint has returned")
     for key, text in identity.items():
@@ -133,8 +133,8 @@ def check_parts(parts: Mapping[str, np.ndarray], expected: Mapping[str, np.ndarr
 class Dynamics(ABC):
     """Running scene under an engine.
 
-    numbers : names of the scalar attributes in a checkpoint; the attributes themselves begin with an
-        underscore
+    numbers : names in a checkpoint of scalar attributes; the names of the attributes have an underscore in
+        front
     """
 
     numbers: ClassVar[tuple[str, ...]]
@@ -164,7 +164,7 @@ class Dynamics(ABC):
     @property
     @abstractmethod
     def exchanged(self) -> float:
-        """Sum of the absolute energies exchanged by contacts and by each face since time 0."""
+        """Sum of the absolute energies that contacts and each face have exchanged since time 0."""
 
     @abstractmethod
     def advance(
@@ -174,10 +174,10 @@ class Dynamics(ABC):
         log: EventLog | None = None,
         max_work: int | None = None,
     ) -> None:
-        """Advance to the time `until`, or by a number of events or an amount of work.
+        """Advance to the time `until`, but by at most `max_events` events or `max_work` work.
 
         Events are recorded in `log`. Raises SceneError for a limit that the engine does not support. Raises
-        SimulationError, with the state saved, for a run that cannot continue.
+        SimulationError if the run cannot continue; the state then remains usable.
         """
 
     @abstractmethod
@@ -207,7 +207,7 @@ class Dynamics(ABC):
         """Continue bitwise identically from a checkpoint of the same scene and engine.
 
         Settings that do not change results may differ. Raises SceneError if an array is missing in the
-        checkpoint; nothing is then changed.
+        checkpoint; in this case nothing changes.
         """
         required = self._required_arrays(checkpoint)
         check_parts(checkpoint, required)
@@ -219,7 +219,7 @@ class Dynamics(ABC):
         self._go_on(checkpoint)
 
     def _arrays(self) -> dict[str, np.ndarray]:
-        """Return the arrays, by name, that change during a run and are stored as they are."""
+        """Return the arrays, by name, that change during a run and are stored without conversion."""
         return arrays_of(self._parts)
 
     def _checkpoint_data(self) -> dict[str, Any]:
@@ -235,7 +235,7 @@ class Dynamics(ABC):
 
     @abstractmethod
     def _go_on(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Restore all data that follow from the arrays and numbers of a checkpoint.
+        """Compute all data that follow from the restored arrays and numbers of a checkpoint.
 
-        The arrays and numbers have been restored before.
+        The caller has already restored these arrays and numbers.
         """

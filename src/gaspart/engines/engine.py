@@ -1,4 +1,4 @@
-"""Engines: settings with which a scene is started, and the running scene that results.
+"""Engines: classes with the settings of a method of simulation.
 
 An engine is a frozen dataclass derived from `Engine`. Each field defines its type and its description
 (`gaspart.keys`). Command-line options, config keys and the reference page are derived from the fields.
@@ -31,13 +31,13 @@ if TYPE_CHECKING:
 class AccuracyRequest:
     """Observable of a steady scene, and its requested relative accuracy.
 
-    The relative accuracy combines the standard error and the bias.
+    The requested accuracy is for the standard error and the bias together.
 
     Attributes
     ----------
     conditions : local conditions of the scene
-    face : wall on which a pressure acts
-    transported : True if the observable depends on transport coefficients
+    face : wall at which the observable, a pressure, is measured
+    transported : True if the observable depends on transport coefficients of the gas
     initial : initial state, or None if only the errors of models are requested
     """
 
@@ -61,7 +61,7 @@ class Candidate:
     Attributes
     ----------
     engine : engine with its settings
-    model : bound on the error of the kinetic equation that it solves
+    model : bound on the error of the kinetic equation that the engine solves
     discretisation : bound on the error due to time steps and cells
     """
 
@@ -71,7 +71,7 @@ class Candidate:
 
     @property
     def bias(self) -> float:
-        """Bound on the total systematic error."""
+        """Bound on the total systematic error: the sum of both bounds."""
         return self.model + self.discretisation
 
 
@@ -86,18 +86,17 @@ class Engine:
     ----------
     name : name in files, configs and on the command line
     title : name in messages and captions
-    records_events : True if its events can be recorded and counted
-    counters : fields of `Tally` that only this engine fills
+    records_events : True if events of the engine can be recorded and counted
+    counters : fields of `Tally` to which only this engine assigns values
     models : names of the `scene.features` that it supports
     excludes : pairs of features that it does not support together
-    neutral_settings : settings that do not change its results
+    neutral_settings : settings that do not change the results
     forbids_overlap : True if particles never overlap
     tallies : names of the optional tallies (`state.tally`) that it supports
     first_segment : work, in events or steps, before the first check of the wall-clock time
     reference : True if the engine has no systematic error and is the reference for other engines
-    timed_at : packing fraction and time step in the table of costs, with which its times are converted to
-        another
-    machine
+    timed_at : packing fraction and time step of the entry in the table of costs that is timed to convert the
+        table to another machine
     advised : settings that `engine: auto` in a config may specify
     """
 
@@ -122,30 +121,30 @@ class Engine:
     def equation(self) -> str:
         """Dynamics that the engine simulates: "exact" for hard particles, or a kinetic equation.
 
-        The kinetic equation is "boltzmann" or "enskog". It determines how collision partners are drawn. A run
-        is compared with the theory for this equation.
+        The kinetic equation is "boltzmann" or "enskog". Results of a run are compared with the theory for
+        this equation.
         """
         return "exact"
 
     @property
     def quantum(self) -> float | None:
-        """Time step, of which all times are multiples; None if the engine has no time steps."""
+        """Time step; all times are multiples of it. None if the engine has no time steps."""
         return None
 
     def for_scene(self, scene: Scene, interval: float | None = None) -> Engine:
-        """Return a copy with settings completed for a scene.
+        """Return a copy in which default settings are replaced by values for a scene.
 
-        If `interval` is passed, it must be an integer multiple of the time step of the returned engine.
-        Raises SceneError if the settings do not fit the scene.
+        If `interval` is passed, a time step that the engine chooses divides it into equal steps. Raises
+        SceneError if the settings do not fit the scene.
         """
         return self
 
     def predictions(self, scene: Scene) -> dict[str, float]:
-        """Return errors that are known in advance, by name."""
+        """Return relative errors that are known before a run, by name."""
         return {}
 
     def bias(self, scene: Scene, kind: str) -> float:
-        """Bound the known relative error of a quantity due to the settings.
+        """Return an upper bound of the relative error of a quantity due to the settings.
 
         kind : kind of quantity: "rates" of collisions, "paths" of particles, or "fluxes" of momentum and heat
         """
@@ -153,11 +152,11 @@ class Engine:
 
     @classmethod
     def variants(cls) -> tuple[Engine, ...]:
-        """Return the candidates of a plan for this engine, one per model."""
+        """Return the candidates of a plan for this engine: one engine per collision model."""
         return (cls(),)
 
     def candidate(self, request: AccuracyRequest) -> Candidate:
-        """Return the engine with settings that fit a request, and bounds on its errors.
+        """Return the engine with settings for a requested accuracy, and bounds on its errors.
 
         Raises SceneError if the engine is not suitable.
         """
@@ -205,7 +204,7 @@ class Engine:
         return {}
 
     def cells_along(self, scene: Scene) -> int:
-        """Return the largest number of cells along an axis in which partners are drawn, or 0."""
+        """Return the largest number of DSMC cells along an axis; 0 for other engines."""
         return 0
 
     def check_features(self, scene: Scene) -> None:
@@ -232,8 +231,8 @@ class Engine:
     def draws(self, scene: Scene) -> bool:
         """Return True if a run uses random numbers after the start.
 
-        Random numbers are used by the kinetic equation, by faces or by the thermostat. Without random
-        numbers, all runs from one state are identical, whatever their seeds.
+        Kinetic equations, thermal faces and the thermostat use random numbers. Without random numbers, all
+        runs that start from the same state are identical, even if their seeds differ.
         """
         return self.equation != "exact" or bool(scene.face_temperatures) or scene.thermostat is not None
 
@@ -245,7 +244,7 @@ class Engine:
         raise NotImplementedError
 
     def for_small_scene(self, scene: Scene) -> Engine:
-        """Return settings with which a scene of few particles uses the same kernels as this scene."""
+        """Return settings with which a small scene uses the same kernels as this scene."""
         return self
 
     def check_tally(self, tally: OptionalTally, scene: Scene) -> None:
@@ -290,10 +289,10 @@ def reference_engine() -> Engine:
 
 
 def resolve_engine(engine: Engine | str | None) -> Engine:
-    """Return the engine that a user passes, or the reference engine for None.
+    """Return the engine that an argument of a user means; the reference engine for None.
 
-    A name gives the engine with default settings. Raises SceneError for other values, and for the name of an
-    engine with required settings.
+    The argument is an engine, or the name of an engine, which means default settings. Raises SceneError for
+    other values, and for the name of an engine that has required settings.
     """
     if engine is None:
         return reference_engine()
@@ -305,7 +304,7 @@ def resolve_engine(engine: Engine | str | None) -> Engine:
 
 
 def candidate_engines() -> list[Engine]:
-    """Return the candidate engines of a plan, the reference first."""
+    """Return the candidate engines of a plan, beginning with the reference engine."""
     return sorted(
         (variant for engine in ENGINES.values() for variant in engine.variants()),
         key=lambda variant: not variant.reference,
@@ -320,7 +319,7 @@ def required_settings(engine: type[Engine]) -> list[str]:
 def constructors() -> str:
     """Return constructor calls of all engines, for messages.
 
-    The calls include settings without a default.
+    The calls include all settings that have no default.
     """
     *others, last = (
         f"{engine.__name__}({', '.join(required_settings(engine))})" for engine in ENGINES.values()

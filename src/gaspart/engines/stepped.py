@@ -1,4 +1,4 @@
-"""Base of engines with time steps: particles in slots, counters per thread, whole steps."""
+"""Base of engines with time steps: particles in slots, counters for each thread."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ _PLACED = ("slots", "positions", "velocities", "images")
 class SteppedDynamics(Dynamics):
     """Running scene under an engine with time steps.
 
-    A *slot* is the present position of a particle in memory. A subclass also sets `_parts`, and places the
-    particles into their slots before the first step.
+    A *slot* is the place of a particle's data in memory, which may change during a run. A subclass also sets
+    `_parts`, and places the particles into their slots before the first step.
 
     time_step : length of a step
-    reference : initial state of the same particles
-    unit_mass : unit of mass in sums of energies
+    reference : initial state of the particles
+    unit_mass : unit of mass in which sums of energies are expressed
     """
 
     numbers: ClassVar[tuple[str, ...]] = ("steps", "since")
@@ -62,21 +62,21 @@ class SteppedDynamics(Dynamics):
     @property
     @abstractmethod
     def _positions(self) -> np.ndarray:
-        """Positions by slot, shape (d, N)."""
+        """Positions in the order of slots, shape (d, N)."""
 
     @property
     @abstractmethod
     def _velocities(self) -> np.ndarray:
-        """Velocities by slot, shape (d, N)."""
+        """Velocities in the order of slots, shape (d, N)."""
 
     @property
     @abstractmethod
     def _images(self) -> np.ndarray:
-        """Periodic images by particle, shape (d, N)."""
+        """Numbers of crossings of periodic faces in the order of particles, shape (d, N)."""
 
     @abstractmethod
     def _advance_to(self, step: int) -> None:
-        """Perform and count all steps up to this one, at least one.
+        """Perform and count the steps up to the step with this number, at least one step.
 
         Raises SimulationError if the run cannot continue.
         """
@@ -87,7 +87,7 @@ class SteppedDynamics(Dynamics):
 
     @abstractmethod
     def _counts(self) -> dict[str, Any]:
-        """Return the values of these counters under the names of fields of `Tally`.
+        """Return the values of the counters by the names of their fields in `Tally`.
 
         Time, steps and the energy of faces are not included.
         """
@@ -95,15 +95,15 @@ class SteppedDynamics(Dynamics):
     @property
     @abstractmethod
     def _loss(self) -> np.ndarray:
-        """Energy removed by contacts since the last reset, in parts (K, 2).
+        """Energy removed by contacts since the last reset, as terms (K, 2) of a sum.
 
-        The unit includes the unit of mass.
+        The terms are in units that contain `unit_mass`.
         """
 
     @property
     @abstractmethod
     def _heat(self) -> np.ndarray:
-        """Energy given to each face by particles that left it thermally, shape (2d, 2).
+        """Energy given to each face by particles whose velocities it draws, as terms (2d, 2).
 
         The unit is the same as for `_loss`.
         """
@@ -115,18 +115,18 @@ class SteppedDynamics(Dynamics):
 
     @property
     def _progress(self) -> float:
-        """Number of completed steps, including parts of a step."""
+        """Number of completed steps, including the completed fraction of a step."""
         return self._steps
 
     def _by_particle(self, values: np.ndarray, dtype: DTypeLike | None = None) -> np.ndarray:
-        """Convert values (d, N) by slot to values (N, d) in the order of the particles."""
+        """Convert values (d, N), ordered by slots, to values (N, d), ordered by particles."""
         result = np.empty(values.shape[::-1], dtype or values.dtype)
         result[self._slots] = values.T
         return result
 
     @property
     def time(self) -> float:
-        """Time reached, at the end of a step."""
+        """Time at the end of the last completed step."""
         return self._start + self._progress * self.time_step
 
     def advance(
@@ -136,10 +136,11 @@ class SteppedDynamics(Dynamics):
         log: EventLog | None = None,
         max_work: int | None = None,
     ) -> None:
-        """Advance to the last complete step not after `until` (within 1e-9 of a step).
+        """Advance to the last step that ends by `until`, with a tolerance of 1e-9 steps.
 
-        Raises SceneError for a time beyond 2^53 steps, and for limits or records of events, which require the
-        event-driven engine. Raises SimulationError if the particles are too fast for a step.
+        Raises SceneError for a time beyond 2^53 steps. Raises it also for a limit or a record of events,
+        which require the event-driven engine. Raises SimulationError if the particles are too fast for a
+        step.
         """
         limits = {
             "max_events": max_events,
@@ -177,13 +178,13 @@ class SteppedDynamics(Dynamics):
 
     @property
     def exchanged(self) -> float:
-        """Sum of the absolute energies exchanged by contacts and by each face since time 0."""
+        """Sum of the absolute energies that contacts and each face have exchanged since time 0."""
         gross = net(self._loss) + float(np.abs(self._heat.sum(axis=1)).sum())
         return float(self._lost[1]) + gross * self._unit_mass + abs(net(self._given)) * self._unit_mass
 
     @property
     def state(self) -> State:
-        """State of all particles at the present time, in float64 for either precision."""
+        """State of all particles at the present time, in float64 even if the engine uses float32."""
         state = replace(
             self._reference,
             time=self.time,

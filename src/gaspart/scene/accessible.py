@@ -1,15 +1,16 @@
 """Accessible volume and areas: the positions that particle centres can reach.
 
 A point is accessible to the centre of a particle if the particle would overlap no wall of the container, no
-interior wall and no fixed particle there. Other moving particles are ignored. The point need not be connected
-to other accessible points.
+interior wall and no fixed particle there. Other moving particles are ignored. An accessible point counts even
+if no path of accessible points connects it to the rest.
 
-Obstacles are represented by bodies. A body is a ball, a segment or a rectangle, grown by the radius of the
-particle. It is convex, and covers one interval of a line. On a face of a two-dimensional container, the
-accessible length is the length of the line without these intervals; this is exact. In other cases the volume
-is exact in regions without bodies, and in regions where bodies overlap neither each other nor the border.
-Elsewhere it is the mean over `SETS` sets of `LINES` parallel lines, which are shifted at random. The error is
-computed from the scatter of the sets.
+Obstacles are represented by bodies. A body is the set of points within one radius of the particle from a
+ball, a segment or a rectangle. Every body is convex, so that a line intersects it in at most one interval. On
+a face of a two-dimensional container, the accessible length is the length of the face outside these
+intervals, which is exact. In other cases the volume is exact in regions without bodies, and in regions where
+bodies overlap neither each other nor the border. In all other regions the volume is a mean over `SETS` sets
+of `LINES` parallel lines. Each set is shifted at random, and the error is computed from the scatter of the
+sets.
 """
 
 from __future__ import annotations
@@ -27,13 +28,13 @@ if TYPE_CHECKING:
     from gaspart.scene.walls import Plate, Wall
 
 LINES, SETS = 8192, 8
-"""Number of lines in a set, and number of sets."""
+"""Number of lines in a set, and number of sets, for the numerical integration."""
 SPREADING = {1: 1.61803398874989484820, 2: 1.32471795724474602596}
 """Numbers whose powers spread points evenly along one or two axes: x^(d + 1) = x + 1 (Roberts 2018)."""
 
 
 class Measure(NamedTuple):
-    """Volume or area, and the estimated error of its numerical integration; 0 if exact."""
+    """Volume or area, and the estimated error of its numerical integration (0 for an exact value)."""
 
     value: float
     error: float
@@ -55,9 +56,9 @@ class Ball(NamedTuple):
         return Ball(self.centre + shift, self.radius)
 
     def interval(self, points: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return the ends of the covered interval on each line through points (M, d).
+        """Return the ends of the interval inside the ball on each line through points (M, d).
 
-        The lines are along an axis. If a line has no covered interval, the ends are inf and -inf.
+        The lines are parallel to an axis. If a line misses the ball, its ends are inf and -inf.
         """
         away = np.delete(points - self.centre, axis, axis=1)
         square = self.radius**2 - (away**2).sum(axis=1)
@@ -70,10 +71,10 @@ class Ball(NamedTuple):
 
 
 class Slab(NamedTuple):
-    """Points within a distance of the inside of a segment or a rectangle.
+    """Segment or rectangle, thickened by `distance` in the directions perpendicular to it.
 
-    The segment or rectangle is given by `start` (d,) and its orthogonal `edges` (K, d). Points on its rim are
-    outside.
+    The segment or rectangle has the corner `start` (d,) and the orthogonal `edges` (K, d) from this corner.
+    It is not extended beyond its ends or edges.
     """
 
     start: np.ndarray
@@ -82,7 +83,7 @@ class Slab(NamedTuple):
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Lowest and highest coordinates, (d,) each, or slightly beyond."""
+        """Lower and upper bounds of the coordinates, (d,) each, close to the extreme values."""
         sums = np.array(
             [np.sum(part, axis=0) for part in product(*((0.0 * edge, edge) for edge in self.edges))]
         )
@@ -93,10 +94,11 @@ class Slab(NamedTuple):
         return Slab(self.start + shift, self.edges, self.distance)
 
     def interval(self, points: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return the ends of the covered intervals like `Ball.interval`.
+        """Return the ends of the interval inside the slab on each line, like `Ball.interval`.
 
-        A point p + t e is inside if two conditions hold. Its component along each edge is between 0 and 1,
-        and its distance from the span of the edges, a quadratic function of t, is small enough.
+        A point p + t e of the line is inside if two conditions hold. Relative to `start`, its component along
+        each edge, in units of the edge, is between 0 and 1. Its distance from the line or plane of the edges,
+        whose square is a quadratic function of t, is less than `distance`.
         """
         from_start = np.array(points)
         from_start[:, axis] = 0.0
@@ -133,7 +135,7 @@ def _interval(part: np.ndarray, slope: float, low: float, high: float) -> tuple[
 
 
 class Body(NamedTuple):
-    """Fixed particle or interior wall, grown: parts that form the body, and volume."""
+    """Fixed particle or interior wall, grown by a radius: its parts and its volume."""
 
     parts: list[Ball | Slab]
     volume: float
@@ -145,7 +147,7 @@ class Body(NamedTuple):
         return np.min(lower, axis=0), np.max(upper, axis=0)
 
     def is_apart(self, other: Body) -> bool:
-        """Return True if it certainly has no point in common with another body."""
+        """Return True only if the body certainly has no point in common with another body."""
         first, second = self.parts[0], other.parts[0]
         if isinstance(first, Ball) and isinstance(second, Ball):
             return bool(((first.centre - second.centre) ** 2).sum() >= (first.radius + second.radius) ** 2)
@@ -154,7 +156,7 @@ class Body(NamedTuple):
 
 
 def grown_wall(wall: Wall | Plate, radius: float) -> Body:
-    """Return an interior wall grown by a radius, with its volume by Steiner's formula."""
+    """Return the body of a wall grown by a radius, with its volume from Steiner's formula."""
     corners = [np.array(corner, float) for corner in wall.corners.values()]
     edges = np.array([corner - corners[0] for corner in corners[1:3]])
     sides, d = np.sqrt((edges**2).sum(axis=1)), len(corners[0])
@@ -171,10 +173,11 @@ def grown_wall(wall: Wall | Plate, radius: float) -> Body:
 class Accessible:
     """Accessible volume and areas of a scene, computed once for each radius.
 
-    If the scene has fixed species, `fixed` is required; otherwise SceneError is raised. Positions of a
-    species are known only in a run.
+    A scene with fixed species requires `fixed`, because positions of a species are known only in a run.
+    Without `fixed` SceneError is raised.
 
-    fixed : positions (F, d) and radii (F,) of the fixed particles. Default: the fixed single particles.
+    fixed : positions (F, d) and radii (F,) of all fixed particles. Default: the fixed single particles of the
+        scene.
     """
 
     def __init__(self, scene: Scene, fixed: tuple[np.ndarray, np.ndarray] | None = None) -> None:
@@ -192,11 +195,11 @@ class Accessible:
         self._found: dict[tuple[float, int | None], Measure] = {}
 
     def volume(self, radius: float) -> Measure:
-        """Return the volume (2D: area) that is accessible to particles of a radius."""
+        """Return the volume (2D: area) that is accessible to centres of particles of this radius."""
         return self._measure(radius, None)
 
     def areas(self, radii: np.ndarray) -> np.ndarray:
-        """Return the accessible areas (2D: lengths) of faces, for particle centres.
+        """Return the areas (2D: lengths) of faces that are accessible to particle centres.
 
         radii : radii of particles, shape (K,). The result has the shape (K, 2d).
         """
@@ -251,15 +254,15 @@ class Accessible:
 
 
 def _meets(body: Body, lower: np.ndarray, upper: np.ndarray) -> bool:
-    """Return True if the bounds of a body have points inside a box."""
+    """Return True if the bounding box of a body overlaps a given box."""
     low, high = body.bounds
     return bool((high > lower).all() and (low < upper).all())
 
 
 def _apart(bodies: list[Body], lower: np.ndarray, upper: np.ndarray, scene: Scene) -> float | None:
-    """Return the total volume of bodies inside a box that do not overlap; else None.
+    """Return the total volume of bodies, or None if bodies overlap or leave the box.
 
-    Images beyond periodic faces may be outside the box.
+    A body may extend beyond a periodic face. Each set of periodic images contributes one volume.
     """
     periodic, lengths = np.array(scene.container.periodic), np.array(scene.container.lengths)
     total = 0.0
@@ -277,9 +280,10 @@ def _apart(bodies: list[Body], lower: np.ndarray, upper: np.ndarray, scene: Scen
 def free_fraction(
     parts: list[Ball | Slab], axes: list[int], ends: tuple[np.ndarray, np.ndarray], shift: int
 ) -> float:
-    """Return the mean free fraction of `LINES` lines along the first of some axes.
+    """Return the mean fraction of the length of `LINES` lines that is outside all bodies.
 
-    The lines are evenly spread over the other axes and shifted at random.
+    The lines are parallel to the first of the `axes`. They are evenly spread over the other axes, and shifted
+    at random.
 
     shift : index of the random shift.
     """
@@ -295,10 +299,9 @@ def free_fraction(
 def free_lengths(
     parts: list[Ball | Slab], points: np.ndarray, axis: int, ends: tuple[np.ndarray, np.ndarray]
 ) -> np.ndarray:
-    """Return the free length of each line along an axis through points (M, d).
+    """Return the length outside all bodies of each line through points (M, d).
 
-    The lines extend between the coordinates `ends`, (d,) each. The free length excludes the parts of lines
-    inside bodies.
+    The lines are parallel to an axis, and extend between the coordinates `ends`, (d,) each.
     """
     low, high = (float(end[axis]) for end in ends)
     lines, starts, stops = [], [], []

@@ -34,7 +34,7 @@ class Container:
     lengths : sequence of float, shape (d,), [length]
         Side lengths. Their number, 2 or 3, is the dimension.
     boundary : {"wall", "periodic"} or sequence of these, shape (d,), default "wall"
-        Boundary condition of all axes, or of each axis.
+        One boundary condition for all axes, or one for each axis.
 
     Raises
     ------

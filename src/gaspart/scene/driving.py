@@ -21,9 +21,9 @@ _ENERGY = "inelastic contacts, or faces or walls at a temperature"
 
 
 def check_driven(scene: Scene) -> None:
-    """Raise SceneError for a force along a periodic axis without a sink.
+    """Raise SceneError if a force along a periodic axis would accelerate the gas forever.
 
-    The scene must have a sink for the momentum of the force, and a sink for its energy.
+    The scene must have a sink for the momentum that the force adds, and a sink for the energy that it adds.
     """
     for axis in scene.driven_axes:
         for has_sink, quantity, by in (
@@ -41,7 +41,7 @@ def check_driven(scene: Scene) -> None:
 def _takes_momentum(scene: Scene, axis: int) -> bool:
     """Return True if particles exchange momentum along a periodic axis with other objects.
 
-    Other objects are fixed particles, walls and faces.
+    The other objects are fixed particles, interior walls and faces of the container.
     """
     if scene.has_fixed:
         return True
@@ -53,7 +53,7 @@ def _takes_momentum(scene: Scene, axis: int) -> bool:
 
 
 def _takes_energy(scene: Scene) -> bool:
-    """Return True if contacts lose energy, or faces at a temperature exchange it."""
+    """Return True if contacts lose energy, or faces or walls at a temperature exchange energy."""
     return scene.dissipates or bool(scene.face_temperatures)
 
 
@@ -75,14 +75,14 @@ def _spans(wall: Wall | Plate, axis: int, length: float) -> bool:
 class Thermostat:
     """Random kicks of all particles at regular times.
 
-    With the kicks a dissipative gas can reach a steady state [1]_.
+    The kicks add energy, so that a dissipative gas can reach a steady state [1]_.
 
     Parameters
     ----------
     power : float, [energy/time]
-        Mean energy per time that each particle receives.
+        Mean energy that each particle receives per unit of time.
     interval : float, [time]
-        Time between kicks: short compared with the time between contacts.
+        Time between kicks. It should be short compared with the time between contacts.
 
     Raises
     ------

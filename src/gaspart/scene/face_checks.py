@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def check_faces(scene: Scene) -> None:
-    """Raise SceneError for faces that are impossible in this scene."""
+    """Raise SceneError for faces that this scene cannot have."""
     if not isinstance(scene.faces, dict):
         raise SceneError("faces", scene.faces, "must be a mapping of faces to their kinds")
     names = FACES[: 2 * scene.dimension]
@@ -64,7 +64,7 @@ def check_faces(scene: Scene) -> None:
 
 
 def _check_sheared(scene: Scene, name: str, surface: LeesEdwards) -> None:
-    """Raise SceneError for a sheared face other than y_high, or a container with walls."""
+    """Raise SceneError if a sheared face is not y_high, or the container has walls."""
     if name != FACES[2 * GRADIENT + 1]:
         rule = (
             "must be stated for y_high, which includes y_low; the flow is along x, with its gradient along y"
@@ -76,7 +76,7 @@ def _check_sheared(scene: Scene, name: str, surface: LeesEdwards) -> None:
 
 
 def _check_velocity(scene: Scene, name: str, velocity: tuple[float, ...]) -> None:
-    """Raise SceneError for a velocity that is not along the face."""
+    """Raise SceneError for a velocity that is not parallel to the face."""
     finite_vector(f"faces.{name}.velocity", velocity, scene.dimension)
     if velocity[FACES.index(name) // 2] != 0.0:
         rule = "must have no component across the face, which stays in its place"
@@ -84,7 +84,7 @@ def _check_velocity(scene: Scene, name: str, velocity: tuple[float, ...]) -> Non
 
 
 def _check_ramp(scene: Scene, name: str, surface: Thermal, axis: int) -> None:
-    """Raise SceneError for a temperature that varies across the face, or along an axis without ends."""
+    """Raise SceneError if a temperature varies along the face's normal or along a periodic axis."""
     key = f"faces.{name}.temperature"
     if axis == FACES.index(name) // 2:
         raise SceneError(key, surface.temperature, "must vary along the face, not across it")
@@ -95,7 +95,7 @@ def _check_ramp(scene: Scene, name: str, surface: Thermal, axis: int) -> None:
 def _check_piston(scene: Scene, name: str, surface: Piston) -> None:
     """Raise SceneError for a second piston, or a piston that moves too fast.
 
-    The speed may be due to its load, or prescribed.
+    The speed may be prescribed, or result from the external pressure.
     """
     if len(scene.pistons) > 1:
         raise SceneError("faces", [FACES[n] for n, _ in scene.pistons], "must include at most one piston")
@@ -104,9 +104,9 @@ def _check_piston(scene: Scene, name: str, surface: Piston) -> None:
 
 
 def piston_end(scene: Scene, position: float | None = None) -> float:
-    """Return the time at which a piston of prescribed speed reaches closest packing.
+    """Return the time at which a piston of prescribed speed compresses the particles to closest packing.
 
-    The time is infinite without such a piston.
+    The result is infinite if the scene has no such piston.
 
     position : position along the axis of the piston at time 0. Default: the side of the container.
     """
@@ -122,9 +122,9 @@ def piston_end(scene: Scene, position: float | None = None) -> float:
 
 
 def check_piston_end(scene: Scene, key: str, until: float, position: float | None = None) -> None:
-    """Raise SceneError if the end `until` of a run is after `piston_end`.
+    """Raise SceneError if a run would end, at `until`, later than `piston_end`.
 
-    `key` is the key of this end.
+    `key` names the setting of this end in the message.
     """
     end = piston_end(scene, position)
     if end < until:
@@ -133,7 +133,7 @@ def check_piston_end(scene: Scene, key: str, until: float, position: float | Non
 
 
 def _check_vibrating(scene: Scene, name: str, surface: Vibrating) -> None:
-    """Raise SceneError for obstacles that a vibrating face would press against a particle."""
+    """Raise SceneError for obstacles against which a vibrating face would squeeze a particle."""
     axis, upper = FACES.index(name) // 2, FACES.index(name) % 2 == 1
     length = scene.container.lengths[axis]
     clear = 2.0 * (surface.amplitude + scene.largest_radius)
@@ -191,7 +191,7 @@ _SIGMAS = 10.0  # allowance for the number of an ideal gas, in standard deviatio
 
 
 def check_open_faces(scene: Scene) -> None:
-    """Raise SceneError if entry or exit of particles is not defined in a scene.
+    """Raise SceneError if a scene with open faces has a feature that open faces exclude.
 
     Only scenes with open faces are checked.
     """
@@ -205,9 +205,9 @@ def check_open_faces(scene: Scene) -> None:
 
 
 def _check_attempts(scene: Scene, number: int, face: Open) -> None:
-    """Raise SceneError for a reservoir with too many attempts to enter.
+    """Raise SceneError for a reservoir whose particles attempt too often to enter.
 
-    Simulated time would not advance.
+    Above this number of attempts, simulated time would practically not advance.
     """
     speed = math.sqrt((face.temperature or 0.0) / scene.species[0].mass)
     if speed:
@@ -221,13 +221,13 @@ def _check_attempts(scene: Scene, number: int, face: Open) -> None:
 
 
 def refuse_open(scene: Scene, rule: str) -> None:
-    """Raise SceneError, with a rule, for a scene with open faces."""
+    """Raise SceneError, with `rule` in its message, for a scene with open faces."""
     for number, face in scene.faces_of(Open):
         raise SceneError(f"faces.{FACES[number]}", face.kind, rule)
 
 
 def number_density(scene: Scene, face: Open) -> float:
-    """Return the number density of the ideal gas in equilibrium with a reservoir.
+    """Return the number density of an ideal gas that would be in equilibrium with a reservoir.
 
     The density is 0 for a vacuum.
     """
@@ -237,7 +237,8 @@ def number_density(scene: Scene, face: Open) -> float:
 def attempt_rate(scene: Scene, number: int, face: Open) -> float:
     """Return the number of particles per time that try to enter through a face.
 
-    The rate through an open face of area A is z A (k_B T / 2 pi m)^(1/2), where z is the `number` density.
+    The rate through an open face of area A is z A (k_B T / 2 pi m)^(1/2), where z is the number density of
+    the reservoir as an ideal gas. The argument `number` is the index of the face.
     """
     area = scene.container.volume / scene.container.lengths[number // 2]
     width = math.sqrt((face.temperature or 0.0) / scene.species[0].mass)
@@ -247,9 +248,10 @@ def attempt_rate(scene: Scene, number: int, face: Open) -> float:
 def mean_count(scene: Scene) -> float:
     """Return an upper bound of the mean number of particles between reservoirs.
 
-    The bound is the number of an ideal gas at the same activity, and 0 with a vacuum outside. Particles that
-    repel each other are fewer. The pressure in the container is at most the pressure of the strongest
-    reservoir. The gas is at least as hot as the coldest face or wall.
+    The bound is the mean number for an ideal gas at the same activity, or 0 if there is a vacuum behind every
+    open face. Particles that repel each other are fewer than particles of an ideal gas. The pressure in the
+    container is at most the pressure of the strongest reservoir. The gas is at least as hot as the coldest
+    face or wall.
     """
     reservoirs = [face for _, face in scene.faces_of(Open) if face.temperature is not None]
     if not reservoirs:
@@ -259,11 +261,11 @@ def mean_count(scene: Scene) -> float:
 
 
 def capacity(scene: Scene) -> int:
-    """Return the maximum number of particles.
+    """Return the largest number of particles that the program provides for.
 
     Without open faces this is the number at the start. With reservoirs it is the mean number in equilibrium
-    plus 10 standard deviations: the number of an ideal gas has the distribution of Poisson. The number is
-    never higher than the number that fits.
+    plus 10 standard deviations; the number of particles of an ideal gas has a Poisson distribution. The
+    result never exceeds the number of particles that fit into the container.
     """
     mean = mean_count(scene)
     if mean == 0.0:

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
 
 FACES = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
-"""Keys of faces. In results, faces are named as walls, such as `x low`. Users may write either form."""
+"""Keys of faces. In results a face has the name of a wall, such as `x low`. Users may write either form."""
 COMPONENTS = ("all", "normal")
 WAVEFORMS = ("sine", "sawtooth")
 FLOW, GRADIENT = 0, 1
@@ -43,14 +43,14 @@ FLOW, GRADIENT = 0, 1
 
 
 FACE_KINDS: dict[str, type[Surface]] = {}
-"""All kinds of faces, by name; the class `Surface` registers each kind."""
+"""All kinds of faces by name. The class `Surface` registers every derived class here."""
 
 
 @dataclass(frozen=True)
 class Surface:
     """Kind of face. A derived class is registered by its `kind`.
 
-    `moves` is True if the face moves by itself. Only the event-driven engine has such faces.
+    `moves` is True if the face moves along its normal. Only the event-driven engine simulates such faces.
     """
 
     kind: ClassVar[str]
@@ -66,7 +66,7 @@ class Surface:
     def rule(self) -> tuple[str, float]:
         """Name and parameter of the wall's effect on particles, for the kernels (`kernels.obstacles`).
 
-        The parameter is the only number on which the effect may depend. It is an energy or a momentum.
+        The effect may depend on this one number only, which is an energy or a momentum.
         """
         return self.kind, 0.0
 
@@ -77,12 +77,12 @@ class Surface:
 
     @property
     def temperatures(self) -> tuple[float, ...]:
-        """Temperature of the face, or temperatures of its two ends; () if it has no temperature."""
+        """Temperature of the face, or the temperatures of its two ends; () without a temperature."""
         return ()
 
 
 def _check_temperature(key: str, value: Any) -> float | dict[str, float]:
-    """Return a temperature, or the temperatures at two opposite faces, the low face first."""
+    """Return a checked temperature, or the temperatures at two opposite faces, the low face first."""
     if not isinstance(value, Mapping):
         return positive_number(key, value)
     ends = {
@@ -107,22 +107,23 @@ _TEMPERATURE = Kind({"anyOf": [POSITIVE, _ENDS]}, _check_temperature)
 @with_guidance
 @dataclass(frozen=True)
 class Thermal(Surface):
-    """A wall at a temperature, from whose distribution the velocity of a leaving particle is drawn.
+    """A wall at a temperature; velocities of particles that leave it are drawn for this temperature.
 
     Parameters
     ----------
     temperature : float or dict of str to float, [energy]
-        Temperature k_B T of the wall. If values at two opposite faces are given, as in {"y_low": 1.0,
-        "y_high": 2.0}, the temperature is linear between them.
+        Temperature k_B T of the wall. With one value at each of two opposite faces, as in {"y_low": 1.0,
+        "y_high": 2.0}, the temperature varies linearly between these faces.
     components : {"all", "normal"}, default "all"
-        Velocity components that are drawn at random. "all": the tangential components and, with rough
-        particles, the spins are Maxwellian, too (a diffuse wall with full accommodation). "normal": the
+        Velocity components that are drawn at random. "all": all components are drawn, and the spins of rough
+        particles (a diffuse wall with full accommodation). "normal": only the normal component is drawn; the
         tangential components and the spins are unchanged [1]_.
     velocity : sequence of float, shape (d,), [length/time], optional
-        Velocity of the wall along itself. The distribution is about this velocity. Default: at rest.
+        Velocity of the wall parallel to its surface. This velocity is the mean of the drawn tangential
+        velocities. Default: the wall is at rest.
     accommodation : float, [1], optional
-        Fraction of hits after which velocities are drawn. After the others the particle is reflected as from
-        a mirror [2]_. Default: 1.
+        Fraction of hits after which velocities are drawn. In the other hits the particle is reflected
+        specularly [2]_. Default: 1.
 
     Raises
     ------
@@ -131,8 +132,9 @@ class Thermal(Surface):
 
     Notes
     -----
-    The normal velocity is drawn from the distribution weighted by the flux, v = sqrt(-2 kT/m ln U). If the
-    temperature varies along the face, the temperature at the point of the hit is used.
+    The normal velocity v is drawn from the flux-weighted distribution: v = sqrt(-2 kT/m ln U), where U is
+    uniform in (0, 1). If the temperature varies along the face, the temperature at the point of the hit is
+    used.
 
     References
     ----------
@@ -180,7 +182,7 @@ class Thermal(Surface):
 
     @property
     def slides(self) -> bool:
-        """True if the wall moves along itself.
+        """True if the wall moves parallel to its surface.
 
         Examples
         --------
@@ -218,7 +220,7 @@ class Thermal(Surface):
 
     @property
     def temperatures(self) -> tuple[float, ...]:
-        """The temperature, or the temperatures of the low and the high end.
+        """Temperature of the wall, or the temperatures of its low end and its high end.
 
         Examples
         --------
@@ -244,14 +246,14 @@ class Thermal(Surface):
 @with_guidance
 @dataclass(frozen=True)
 class Well(Surface):
-    """A wall with an attractive square well of energy -`depth` within `width` of the face.
+    """A wall with an attractive square well: the energy is -`depth` closer than `width` to it.
 
     Parameters
     ----------
     depth : float, [energy]
         Depth of the well.
     width : float, [length]
-        Width of the well: largest distance of a particle's surface from the wall inside the well.
+        Width of the well. A particle is in the well if its surface is at most this far from the wall.
     temperature : float, [energy], optional
         Temperature of the wall behind the well, see `Thermal`. Default: the wall is hard.
 
@@ -262,7 +264,8 @@ class Well(Surface):
 
     Notes
     -----
-    A particle leaves the well if m v_n^2 / 2 > depth, and is reflected otherwise.
+    A particle leaves the well if the energy of its normal velocity, m v_n^2 / 2, exceeds `depth`. Otherwise
+    it is reflected back into the well.
 
     Examples
     --------
@@ -285,7 +288,7 @@ class Well(Surface):
 
     @property
     def rule(self) -> tuple[str, float]:
-        """Kernel name of the wall's effect behind the well, and temperature of the wall.
+        """Name in the kernels of the effect of the wall behind the well, and its temperature.
 
         Examples
         --------
@@ -323,12 +326,12 @@ class Well(Surface):
 @with_guidance
 @dataclass(frozen=True)
 class Sticky(Surface):
-    """A wall to which slow particles stick (Frederickx & Meerts 2010, section 4.5, made definite).
+    """A wall to which slow particles stick, after Frederickx & Meerts (2010), section 4.5.
 
     Parameters
     ----------
     momentum : float, [mass length/time]
-        Normal momentum p below which an arriving particle stays.
+        Normal momentum p below which an arriving particle sticks to the wall.
 
     Raises
     ------
@@ -337,10 +340,11 @@ class Sticky(Surface):
 
     Notes
     -----
-    The normal energy of a particle that stays becomes energy of a vibration, and the particle slides along
-    the wall. If a contact with another particle gives it a normal velocity, that energy is added. Once the
-    sum reaches p^2 / 2m, the particle leaves the wall with this energy. No potential binds the particle, so
-    that particles that stick are not balanced by particles that leave: detailed balance is broken.
+    The normal kinetic energy of a particle that sticks becomes energy of its vibration, and the particle
+    slides along the wall. If a contact with another particle gives it a normal velocity, the energy of this
+    velocity is added to the vibration. Once the energy of the vibration reaches p^2 / 2m, the particle leaves
+    the wall with this energy. No potential binds the particle, so that sticking is not the exact reverse of
+    leaving: detailed balance is broken.
 
     Examples
     --------
@@ -369,12 +373,12 @@ class Sticky(Surface):
 @with_guidance
 @dataclass(frozen=True)
 class Vibrating(Surface):
-    """A hard wall with a prescribed motion, independent of hits, which gives or takes energy.
+    """A hard wall with a prescribed vibration, which gives energy to particles or takes it.
 
     Parameters
     ----------
     amplitude : float, [length]
-        Half the distance that the wall moves, A.
+        Amplitude A: half of the distance between the two turning points of the wall.
     period : float, [time]
         Duration of one vibration.
     waveform : {"sine", "sawtooth"}, default "sine"
@@ -388,9 +392,9 @@ class Vibrating(Surface):
     Notes
     -----
     The wall is at the side of the container at time 0, and moves inwards from this side by at most 2 A. The
-    sine is at A (1 - cos(2 pi t / period)). The sawtooth moves inwards at the speed 2 A / period. At the end
-    of each period it returns instantaneously. Contacts follow the collision law of the scene in the frame of
-    the wall.
+    sine has the inward displacement A (1 - cos(2 pi t / period)). The sawtooth moves inwards at the speed 2 A
+    / period. At the end of each period it returns instantaneously. Contacts follow the collision law of the
+    scene in the frame of the wall.
 
     Examples
     --------
@@ -466,23 +470,24 @@ class Vibrating(Surface):
 @with_guidance
 @dataclass(frozen=True)
 class Piston(Surface):
-    """A smooth wall that moves by its mass and an external pressure, or at constant speed.
+    """A smooth wall that particles and an external pressure move, or that has a constant speed.
 
-    Particles are smooth and elastic, and the container has only particles inside.
+    In a scene with a piston, all particles must be smooth and elastic, and there must be no fixed particles
+    or interior walls.
 
     Parameters
     ----------
     mass : float, [mass], optional
         Mass of the piston. Requires `pressure`.
     pressure : float, [energy/length^d], optional
-        Constant external pressure, which pushes the piston inwards: force divided by area. Requires `mass`.
+        Constant external pressure (force divided by area), which pushes the piston inwards. Requires `mass`.
     speed : float, [length/time], optional
-        Prescribed inward speed, which hits do not change. Excludes `mass` and `pressure`.
+        Prescribed inward speed, which hits do not change. Cannot be combined with `mass` and `pressure`.
 
     Raises
     ------
     SceneError
-        Unless exactly one of these is given: both mass and pressure, or the speed.
+        Unless the piston has either both `mass` and `pressure`, or only `speed`.
 
     Notes
     -----
@@ -491,7 +496,7 @@ class Piston(Surface):
     kinetic energy of the piston, `pressure` times the volume, and the energy of the particles. A light piston
     samples the ensemble of constant pressure and enthalpy [1]_, and a heavy one compresses a gas
     adiabatically. A piston with a prescribed speed compresses a gas if it is slow and drives a shock if it is
-    fast. The particles gain its work.
+    fast. The work of the piston becomes energy of the particles.
 
     References
     ----------
@@ -529,7 +534,7 @@ class Piston(Surface):
             raise SceneError("speed", stated, "must be mass and pressure, or speed alone")
 
     def acceleration(self, scene: Scene, axis: int) -> float:
-        """Return the inward acceleration due to the load, or 0 if the speed is prescribed.
+        """Return the inward acceleration due to the external pressure, or 0 for a prescribed speed.
 
         Parameters
         ----------
@@ -556,12 +561,12 @@ class Piston(Surface):
         return self.pressure / self.mass * (container.volume / container.lengths[axis])
 
     def initial_velocity(self, number: int) -> float:
-        """Return the initial velocity along the axis of the piston.
+        """Return the velocity of the piston along its axis at time 0.
 
         Parameters
         ----------
         number : int
-            Number of the face: 2 axis for a low face, 2 axis + 1 for a high face.
+            Index of the face: 2 * axis for a low face, 2 * axis + 1 for a high face.
 
         Returns
         -------
@@ -589,8 +594,8 @@ class Open(Surface):
     Parameters
     ----------
     activity : float, [1], optional
-        Activity eta exp(mu_excess / k_B T) of the reservoir outside; eta is its packing fraction. Requires
-        `temperature`. Default: a vacuum.
+        Activity eta exp(mu_excess / k_B T) of the reservoir; eta is its packing fraction, and mu_excess its
+        excess chemical potential. Requires `temperature`. Default: a vacuum.
     temperature : float, [energy], optional
         Temperature k_B T of the reservoir. Requires `activity`.
 
@@ -607,14 +612,15 @@ class Open(Surface):
     -----
     The reservoir is a gas at rest. In the dilute limit its activity is eta. Let z be the number density that
     is equivalent to the activity. The reservoir sends z (k_B T / 2 pi m)^(1/2) particles per area and time,
-    uniformly over the face, with the velocities of particles that pass a plane in one direction. A particle
-    that would overlap a particle inside is rejected. With equal reservoirs the container in equilibrium is
-    then exactly a grand-canonical ensemble of centres between its faces. The reason is detailed balance: an
-    entry is the reversal of an exit, and the weight is z^N exp(-E / k_B T). The density equals the density of
-    the reservoir only at some diameters from a face.
+    uniformly over the face, with the velocities of particles that pass a plane in one direction. An arriving
+    particle that would overlap a particle inside is rejected. If all reservoirs are identical, the particles
+    in equilibrium are therefore exactly a grand-canonical ensemble of centres between the faces. The reason
+    is detailed balance: an entry is the time reversal of an exit, and a state with N particles and energy E
+    has the weight z^N exp(-E / k_B T). The density equals the density of the reservoir only at distances of
+    several diameters from a face.
 
-    The Boltzmann model of the DSMC engine has no excluded volume, so that no particle is rejected: its
-    reservoir is an ideal gas with the packing fraction `activity`.
+    The Boltzmann model of the DSMC engine has no excluded volume, so that it rejects no particle: in this
+    model the reservoir is an ideal gas with the packing fraction `activity`.
 
     Examples
     --------
@@ -646,7 +652,7 @@ class Open(Surface):
 
     @property
     def smooth(self) -> bool:
-        """False: particles that leave and enter have momentum along the face.
+        """False, because particles that leave and enter carry momentum parallel to the face.
 
         Examples
         --------
@@ -672,7 +678,7 @@ class Open(Surface):
 @with_guidance
 @dataclass(frozen=True)
 class LeesEdwards(Surface):
-    """Periodic faces whose images slide, for shear flow without walls.
+    """Pair of periodic faces whose images slide, for shear flow without walls.
 
     The mean velocity of the gas is u_x = shear_rate (y - L_y / 2).
 
@@ -684,15 +690,15 @@ class LeesEdwards(Surface):
     Raises
     ------
     SceneError
-        If the shear rate is no finite number.
+        If the shear rate is not a finite number.
 
     Notes
     -----
-    The boundary condition is by Lees and Edwards [1]_. The face must be y_high of a container that is
-    periodic along all axes; the flow also applies at y_low. A particle that leaves at y_high enters at y_low.
-    Its x is then displaced by -shear_rate L_y t, and its v_x is reduced by shear_rate L_y. In the other
-    direction the signs are reversed. The initial velocities are drawn about this flow, with mean 0. The faces
-    do work, which heats an elastic gas.
+    The boundary condition was introduced by Lees and Edwards [1]_. It must be set for y_high of a container
+    that is periodic along all axes, and then applies to y_low, too. A particle that leaves at y_high at time
+    t enters at y_low. Its x is then displaced by -shear_rate L_y t, and its v_x is reduced by shear_rate L_y.
+    For a particle that leaves at y_low the signs are reversed. The initial velocities are the sum of the
+    velocity of the flow and random velocities with mean 0. The faces do work, which heats an elastic gas.
 
     References
     ----------
@@ -769,9 +775,9 @@ def surface_to_dict(surface: Surface) -> dict:
 
 
 def key_of(face: Any) -> Any:
-    """Return the key of a face, which may be given by its wall name.
+    """Return the key of a face for its key or its name as a wall.
 
-    Other values are unchanged.
+    Other values are returned unchanged.
 
     Parameters
     ----------
@@ -805,7 +811,7 @@ def wall_of(face: Any) -> Any:
 
 
 def thermal_face(scene: Scene, name: str) -> Thermal:
-    """Return the face of a name, which must be thermal with a uniform temperature.
+    """Return the face with a name; raise SceneError unless it is thermal with a uniform temperature.
 
     Parameters
     ----------

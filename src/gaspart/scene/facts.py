@@ -1,7 +1,7 @@
 """Facts of a scene: properties that follow from the keys of a `Scene`.
 
 Each fact has one definition, and is computed once. Observables, theory, tallies, rejections and advice read
-these properties by name, and do not compute them. They are attributes of a `Scene`:
+these properties by name, and do not compute them again. All facts are attributes of a `Scene`:
 
 - faces: `numbered_faces`, `faces_of(kind)`, `pistons`, `sliding_faces`, `partial_faces`, `ramps`,
   `thermal_numbers`, `drawing_numbers`, `face_temperatures`;
@@ -54,7 +54,7 @@ _CONTACT = 0.01
 
 
 class Facts:
-    """Facts of a scene as attributes of a `Scene`; d is the dimension."""
+    """Base class of `Scene` with the facts of a scene as attributes; d is the dimension."""
 
     container: Container
     species: Sequence[Species]
@@ -83,15 +83,15 @@ class Facts:
 
     @cached_property
     def walled_axes(self) -> tuple[int, ...]:
-        """Axes that are not periodic: these have a face at both ends."""
+        """Axes that are not periodic, and therefore have a face at each end."""
         return tuple(axis for axis, around in enumerate(self.container.periodic) if not around)
 
     @cached_property
     def image_axes(self) -> tuple[bool, ...]:
-        """True for axes with fixed periodic images, shape (d,).
+        """Flags (d,) of the axes whose periodic images are at fixed distances.
 
-        Fixed images are displaced by exactly the length of the container. All periodic axes have fixed
-        images, with one exception: in a sheared gas, the images along the gradient move.
+        Such images are displaced by exactly the length of the container. All periodic axes have fixed images,
+        with one exception: in a sheared gas, the images along the gradient move.
         """
         sheared = self.shear_rate is not None
         return tuple(
@@ -163,7 +163,7 @@ class Facts:
 
     @cached_property
     def moving_kinds(self) -> tuple[Species | Particle, ...]:
-        """Kinds that have particles and are not fixed."""
+        """Elements of `kinds` that have at least one particle and are not fixed."""
         return tuple(kind for kind in self.kinds if kind.count and not kind.fixed)
 
     @cached_property
@@ -193,7 +193,7 @@ class Facts:
 
     @cached_property
     def number_density(self) -> float:
-        """Particles per volume (area) of the container."""
+        """Number of particles divided by the volume (2D: area) of the container."""
         return self.count / self.container.volume
 
     @cached_property
@@ -220,7 +220,7 @@ class Facts:
 
     @cached_property
     def has_unequal_areas(self) -> bool:
-        """True if moving particles have several sizes, with different accessible areas of faces."""
+        """True if moving particles of different sizes can reach different areas of faces."""
         many = len({kind.radius for kind in self.moving_kinds}) > 1
         sizes = many or not all(kind.alike for kind in self.moving_kinds)
         beside = len(self.walled_axes) > 1 and not self.centres_to_walls
@@ -228,7 +228,7 @@ class Facts:
 
     @cached_property
     def alike(self) -> bool:
-        """True if all particles have equal radii and equal masses."""
+        """True if all particles have the same radius and the same mass."""
         kinds = [kind for kind in self.kinds if kind.count]
         return len({(kind.radius, kind.mass) for kind in kinds}) < 2 and all(kind.alike for kind in kinds)
 
@@ -288,9 +288,9 @@ class Facts:
 
     @cached_property
     def vibrates(self) -> bool:
-        """True if any particle may store energy in a vibration.
+        """True if a particle may store energy in a vibration.
 
-        Such a particle is fixed, or sticks to a face.
+        Only fixed particles, and particles that stick to a face, can vibrate.
         """
         return bool(self.faces_of(Sticky)) or any(kind.vibrates for kind in self.kinds)
 
@@ -311,12 +311,12 @@ class Facts:
 
     @cached_property
     def has_piston(self) -> bool:
-        """True if particles and a load move a face or an interior wall."""
+        """True if a face is a piston, or an interior wall can move."""
         return bool(self.pistons) or self.moving_wall is not None
 
     @cached_property
     def load_axis(self) -> int | None:
-        """Axis along which a pressure loads a piston; None if there is no such piston."""
+        """Axis of the piston with an external pressure; None if there is no such piston."""
         return next((number // 2 for number, face in self.pistons if face.pressure is not None), None)
 
     @cached_property
@@ -332,13 +332,13 @@ class Facts:
 
     @cached_property
     def driven_axes(self) -> tuple[int, ...]:
-        """Periodic axes along which a force acts on all particles, and drives a flow."""
+        """Periodic axes along which gravity acts on all particles and drives a flow."""
         pulls = zip(self.gravity or (), self.container.periodic, strict=False)
         return tuple(axis for axis, (pull, around) in enumerate(pulls) if pull != 0.0 and around)
 
     @cached_property
     def drags_faces(self) -> bool:
-        """True if the momentum along faces is tallied.
+        """True if runs tally the momentum that particles transfer parallel to faces.
 
         This momentum is tallied for faces that draw tangential velocities, if one of these faces slides, or
         if a force drives the gas along them.
@@ -348,7 +348,7 @@ class Facts:
 
     @cached_property
     def frame_velocity(self) -> tuple[float, ...]:
-        """Mean velocity (d,) of the faces that drag particles along; 0 unless a face slides."""
+        """Mean velocity (d,) of the faces that drag particles along; 0 if no face slides."""
         dragging = [face.velocity for _, face in self.faces_of(Thermal) if not face.smooth]
         if not any(any(velocity or ()) for velocity in dragging):
             return (0.0,) * self.dimension
@@ -359,7 +359,7 @@ class Facts:
     def flow_changes(self) -> bool:
         """True if the flow of the gas changes with time.
 
-        The flow changes if faces or walls move along their normal, or if faces are open.
+        The flow changes if a face or an interior wall moves along its normal, or if faces are open.
         """
         return bool(self.moving_axes) or self.is_open
 
@@ -367,8 +367,8 @@ class Facts:
     def flow_axes(self) -> tuple[int, ...]:
         """Axes along which the velocity of the gas may vary.
 
-        If the gas moves only as a whole, there are no such axes. `analysis.flow` adds a mean velocity of the
-        whole gas, because it depends on the run and not on a key of the scene.
+        If all of the gas moves with one velocity, there are no such axes. The function `analysis.flow` adds
+        this common velocity, because it depends on the run and not on a key of the scene.
         """
         if self.flow_changes:
             return self.moving_axes or self.open_axes
@@ -388,11 +388,11 @@ class Facts:
 
     @cached_property
     def conserved_axes(self) -> tuple[bool, ...]:
-        """True for axes along which the total momentum is conserved, shape (d,).
+        """Flags (d,) of the axes along which the total momentum is conserved.
 
-        Momentum is conserved along the periodic axes, if no particle is fixed, and if the container has only
-        smooth faces or a moving wall. Such faces and walls exert only normal forces. In a sheared gas the
-        momentum is relative to the flow.
+        Momentum is conserved along the periodic axes if no particle is fixed, and if all faces are smooth and
+        the only interior wall, if any, is a moving wall. Such faces and walls exert only normal forces. In a
+        sheared gas the momentum is relative to the flow.
         """
         smooth = all(face.smooth for face in self.faces.values())
         rubbed = not self.is_periodic and (self.rough or not smooth)

@@ -1,9 +1,9 @@
 """Features of a scene, and their names.
 
 A scene without features has smooth, elastic particles in a hard or periodic container. `FEATURES` is the
-table of all features. `EXCLUDED` is the table of pairs of features that exclude each other. An engine lists
-the features that it models (`Engine.models`). Its rejections, and the table in the documentation, are derived
-from this list.
+table of all features. `EXCLUDED` is the table of pairs of features that exclude each other. Each engine has a
+list of the features that it models (`Engine.models`). The scenes that an engine rejects, and the table of
+features in the documentation, follow from this list.
 """
 
 from __future__ import annotations
@@ -167,7 +167,7 @@ EXCLUDED: dict[tuple[str, str], str] = {
 
 
 def check_features(scene: Scene) -> None:
-    """Raise SceneError for two features that exclude each other."""
+    """Raise SceneError if two features of a scene exclude each other."""
     present = scene.features
     for (name, other), reason in EXCLUDED.items():
         if name in present and other in present:
@@ -175,11 +175,11 @@ def check_features(scene: Scene) -> None:
 
 
 _STEADY = frozenset(("walls", "polydispersity", "centres_to_walls"))
-"""Features with which the kinetic energy of flight keeps its initial value."""
+"""Features that leave the total kinetic energy of flight at its initial value."""
 
 
 def shares_energy_evenly(scene: Scene) -> bool:
-    """Return True if the kinetic energy of flight is constant, and equal for all directions.
+    """Return True if the kinetic energy of flight is constant, with equal parts in all directions.
 
     This holds in equilibrium for smooth, elastic particles without a potential or a source of heat.
     """

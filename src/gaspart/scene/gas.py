@@ -1,4 +1,4 @@
-"""Plain gas: the scene for most formulas of kinetic theory."""
+"""Plain gas, to which most formulas of kinetic theory apply."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Gas:
-    """Equal, smooth and elastic particles that are deflected only by each other and hard faces.
+    """Identical, smooth and elastic particles that collide only with each other and with hard faces.
 
     Attributes
     ----------
     dimension : 2 or 3
     packing_fraction : volume (area) of the particles divided by the volume of the container
-    count, diameter, mass : of the particles
+    count, diameter, mass : number of particles, diameter and mass of each particle
     temperature : k_B T
     """
 
@@ -49,14 +49,14 @@ class Gas:
 
 @dataclass(frozen=True)
 class Mixture:
-    """Smooth, elastic particles of any sizes and masses, deflected only by each other and hard faces.
+    """Smooth, elastic particles of any sizes and masses that hit each other and hard faces only.
 
     Attributes
     ----------
     dimension : 2 or 3
     packing_fraction : volume (area) of the particles divided by the volume of the container
-    counts, diameters, masses : Array of shape (S,), for S sizes; each particle of a polydisperse species is
-        one size
+    counts, diameters, masses : arrays of shape (S,), for S sizes; each particle of a polydisperse species has
+        its own size
     temperature : k_B T of the initial velocities
     """
 
@@ -69,11 +69,11 @@ class Mixture:
 
     @property
     def sizes(self) -> tuple[float, int, tuple[float, ...], tuple[int, ...]]:
-        """Packing fraction, dimension, diameters and numbers for functions in `gaspart.theory`."""
+        """Packing fraction, dimension, diameters and counts as arguments of `gaspart.theory`."""
         return self.packing_fraction, self.dimension, self.diameters, self.counts
 
     def thin(self, most: int) -> Mixture:
-        """Return the mixture with only every k-th size, at most `most` sizes.
+        """Return a mixture with every k-th size only, so that at most `most` sizes remain.
 
         This approximation is valid for the sizes of one species.
         """
@@ -100,7 +100,7 @@ def mixture_of(scene: Scene) -> Mixture | None:
 
 
 def plain_gas(scene: Scene) -> Gas:
-    """Return `Scene.gas`, or raise SceneError with the features that it excludes."""
+    """Return `Scene.gas`; raise SceneError, with the reason, if the scene is not a plain gas."""
     if scene.gas is not None:
         return scene.gas
     rule = "a gas of equal, smooth and elastic particles alone is needed"
@@ -109,7 +109,7 @@ def plain_gas(scene: Scene) -> Gas:
 
 
 def plain_mixture(scene: Scene) -> Mixture:
-    """Return `Scene.mixture`, or raise SceneError with the features that it excludes."""
+    """Return `Scene.mixture`; raise SceneError, with the reason, if the scene is not a plain mixture."""
     if scene.mixture is None:
         rule = "smooth and elastic particles alone are needed"
         _refuse_others(scene, rule, {"polydispersity", "centres_to_walls"})
@@ -118,7 +118,7 @@ def plain_mixture(scene: Scene) -> Mixture:
 
 
 def _refuse_others(scene: Scene, rule: str, allowed: set[str]) -> None:
-    """Raise SceneError for an empty scene, or one with other features than the allowed ones."""
+    """Raise SceneError if a scene is empty, or has a feature that is not allowed."""
     from gaspart.scene.features import FEATURES
 
     if not scene.count:

@@ -31,7 +31,7 @@ _UNIT_BALL = {2: math.pi, 3: 4.0 / 3.0 * math.pi}
 def ball_volume(dimension: int, radius: float = 1.0) -> float:
     """Return the area of a disc or the volume of a sphere.
 
-    The volumes are pi r^2 and 4 pi r^3 / 3.
+    The area is pi r^2, and the volume is 4 pi r^3 / 3.
     """
     return _UNIT_BALL[dimension] * radius**dimension
 
@@ -47,7 +47,7 @@ def rounding(position: Iterable[float], *lengths: float) -> float:
     """Return the tolerance of prescribed positions.
 
     Particles and walls that touch in decimal numbers may overlap in binary numbers, because 0.6 - 0.5 < 0.1
-    after rounding. The tolerance is some units in the last place of the largest number.
+    after rounding. The tolerance is a few units in the last place of the largest coordinate.
     """
     return _UNITS * max(*map(abs, position), *lengths)
 
@@ -55,7 +55,7 @@ def rounding(position: Iterable[float], *lengths: float) -> float:
 def closest_packing(scene: Scene) -> float:
     """Return the highest possible packing fraction.
 
-    For equal particles this fraction is proven; for other particles 1 is returned.
+    For particles of one size the fraction is known exactly; otherwise the upper bound 1 is returned.
     """
     alike = (
         len({kind.radius for kind in scene.species if kind.count} | {it.radius for it in scene.particles}) < 2
@@ -72,8 +72,8 @@ def check_packing(scene: Scene) -> None:
 def check_room(container: Container, centres_to_walls: bool, key: str, particle: Particle | Species) -> None:
     """Raise SceneError, with `key`, if a particle does not fit into the container.
 
-    SceneError is also raised for a particle that is not fixed but cannot move, and for a particle so small
-    that its contacts are lost in rounding.
+    SceneError is also raised for a particle that is not fixed but has no room to move, and for a particle so
+    small that rounding would hide its contacts.
     """
     radius = particle.largest_radius
     shortest, longest = min(container.lengths), max(container.lengths)
@@ -131,7 +131,7 @@ class Nearby:
         self._members.setdefault(self._cell(position), []).append(n)
 
     def neighbours(self, position: tuple[float, ...]) -> list[int]:
-        """Return the indices within `reach` of a position, and some others, in ascending order."""
+        """Return the indices of all positions within `reach`, and of some others, in ascending order."""
         axes = []
         for at, side, periodic in zip(
             self._cell(position), self._sides, self._container.periodic, strict=True

@@ -17,23 +17,24 @@ class Restitution:
     Parameters
     ----------
     normal : float, default 1.0, [1]
-        Coefficient of normal restitution: the normal part is multiplied by minus this, from 0 (the particles
-        stick) to 1 (elastic).
+        Coefficient of normal restitution e_n, from 0 (no rebound) to 1 (elastic). A contact multiplies the
+        normal component of the relative velocity by -e_n.
     tangential : float, default -1.0, [1]
-        Coefficient of tangential restitution: the tangential part is multiplied by minus this, from -1
-        (perfectly smooth) to 1 (perfectly rough).
+        Coefficient of tangential restitution e_t, from -1 (perfectly smooth) to 1 (perfectly rough). A
+        contact multiplies the tangential components of the relative velocity by -e_t.
     contact_duration : float, [time], optional
-        Duration t_c of a contact. A contact of a particle within this time after its last contact is elastic;
-        with 0 no contact becomes elastic. Default: under gravity 0.01 of the time scale of a fall through the
-        smallest diameter, otherwise 0.
+        Duration t_c of a contact. A contact of a particle less than t_c after its last contact is elastic.
+        With t_c = 0 no contact becomes elastic. Default: under gravity 0.01 times the time scale of a fall
+        through the smallest diameter; without gravity 0.
     reference_speed : float, [length/time], optional
-        Particles are viscoelastic: `normal` is the restitution of two particles of the first species that
-        approach each other at this normal speed. Slower contacts take less energy.
+        Makes the particles viscoelastic: `normal` is then the coefficient for two particles of the first
+        species that approach each other at this normal speed. Slower contacts lose a smaller fraction of
+        their energy.
 
     Raises
     ------
     SceneError
-        If a value is invalid, or if a `reference_speed` is given with a `normal` of 0 or 1.
+        If a value is invalid, or if a `reference_speed` is set and `normal` is 0 or 1.
 
     Examples
     --------

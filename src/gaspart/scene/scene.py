@@ -47,7 +47,7 @@ from gaspart.yaml_text import read_yaml, write_yaml
 THUMBNAIL = (480, 360)
 """Size in pixels of the picture of a scene in a notebook."""
 DRAWN = 20_000
-"""Maximum number of particles in such a picture, because all particles must be placed for it."""
+"""Maximum number of particles for which this picture is drawn, because all particles must first be placed."""
 # keys that are written to a file only if they are present
 _ABSENT = ("fixed", "exact_temperature", "walls", "faces")
 
@@ -220,7 +220,7 @@ class Scene(Facts):
         return None
 
     def _fits(self, key: str, particle: Particle | Species) -> None:
-        """Raise SceneError if particles do not fit into the container."""
+        """Raise SceneError if a single particle or a species does not fit into the container."""
         check_room(self.container, self.centres_to_walls, key, particle)
 
     def _check_particle(self, n: int, particle: Particle, earlier: Nearby) -> None:
@@ -503,7 +503,7 @@ class Scene(Facts):
         Raises
         ------
         SceneError
-            If the file cannot be read, or describes no scene.
+            If the file cannot be read, or does not describe a scene.
 
         Examples
         --------
@@ -538,7 +538,7 @@ class Scene(Facts):
 
 
 def require_scene(value: object) -> None:
-    """Raise SceneError for a value that is no scene, such as the path of its file.
+    """Raise SceneError for a value that is not a `Scene`, such as a file's path.
 
     Parameters
     ----------
@@ -548,7 +548,7 @@ def require_scene(value: object) -> None:
     Raises
     ------
     SceneError
-        If the value is no scene.
+        If the value is not a scene.
     """
     if not isinstance(value, Scene):
         raise SceneError("scene", value, "must be a Scene, such as Scene.from_file(path)")

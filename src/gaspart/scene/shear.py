@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def flow(scene: Scene, positions: np.ndarray) -> np.ndarray:
-    """Return the velocity (..., d) of the flow at positions; 0 if no faces are sheared."""
+    """Return the velocity (..., d) of the flow at positions; 0 without shear."""
     return flow_of_rate(scene.shear_rate, scene.container.lengths[GRADIENT], positions)
 
 
@@ -34,7 +34,7 @@ def flow_of_rate(rate: float | None, height: float, positions: np.ndarray) -> np
 
 
 def refuse_sheared(scene: Scene, rule: str) -> None:
-    """Raise SceneError, with a rule, for a scene with sheared faces."""
+    """Raise SceneError, with `rule` in its message, for a scene with sheared faces."""
     for name, face in scene.faces.items():
         if isinstance(face, LeesEdwards):
             raise SceneError(f"faces.{name}", face.kind, rule)

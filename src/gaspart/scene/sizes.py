@@ -1,8 +1,8 @@
 """Radii of a polydisperse species: equally probable quantiles of a distribution.
 
 Radii follow from the scene alone, without a seed. Therefore the packing fraction and the moments of the radii
-are exact, and identical in all runs. Only +, -, x, / and the square root are used, which have the same bits
-on every machine.
+are exact, and identical in all runs. Only +, -, x, / and the square root are used; their results have the
+same bits on every machine.
 """
 
 from __future__ import annotations

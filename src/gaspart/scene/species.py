@@ -48,7 +48,7 @@ _SPIN: dict = {"type": ["number", "array"], "items": {"type": "number"}, "minIte
 
 
 def _check_matter(particle: Species | Particle) -> None:
-    """Check rules on several keys that species and single particles have in common."""
+    """Check the rules that combine several keys, and that apply to species and single particles."""
     if particle.moment_of_inertia is not None:
         if not SMALLEST <= particle.moment_of_inertia / particle.mass / particle.radius**2 <= LARGEST:
             rule = f"must be from {SMALLEST:g} to {LARGEST:g} times the mass times the radius squared"
@@ -62,8 +62,9 @@ def _check_matter(particle: Species | Particle) -> None:
 class Species:
     """Particles of one kind, whose positions the program chooses.
 
-    Without a `polydispersity` the particles are identical. Velocities have random directions. Their speeds
-    are all equal to `speed`, or Maxwellian at `temperature`. Without both keys the particles start at rest.
+    Without a `polydispersity` the particles are identical. Velocities have random directions. All particles
+    have the same `speed`, or a Maxwellian distribution at `temperature`. If neither key is set, the particles
+    start at rest.
 
     Parameters
     ----------
@@ -72,11 +73,12 @@ class Species:
     radius : float, [length]
         Radius; with a `polydispersity`, the mean radius.
     mass : float, default 1.0, [mass]
-        Mass of each particle, also if the radii differ.
+        Mass of each particle. It is the same for all particles, even if their radii differ.
     speed : float, [length/time], optional
         Initial speed of every particle. Cannot be combined with `temperature`.
     temperature : float, [energy], optional
-        Temperature k_B T of the initial velocities. For `fixed` particles: temperature of their vibrations.
+        Temperature k_B T of the initial velocities. For `fixed` particles it is the temperature of their
+        vibrations.
     exact_temperature : bool, default False
         Rescale the initial velocities to exactly `temperature`, after the mean velocity is subtracted along
         axes on which momentum is conserved. All species with an exact temperature are rescaled by one factor.
@@ -94,9 +96,9 @@ class Species:
     vibration : float, [energy], optional
         Initial vibrational energy of fixed particles. Cannot be combined with `temperature`.
     polydispersity : float, [1], optional
-        Standard deviation of the radii divided by their mean. Default: all radii are equal.
+        Standard deviation of the radii, divided by their mean. Default: all particles have the same radius.
     radius_distribution : {"lognormal", "uniform"}, optional
-        Distribution of the radii, with a `polydispersity`. Default: "lognormal".
+        Distribution of the radii if there is a `polydispersity`. Default: "lognormal".
 
     Raises
     ------
@@ -112,8 +114,8 @@ class Species:
     Initial velocities are random: the kinetic temperature of N particles in d dimensions fluctuates about
     `temperature` with the relative standard deviation sqrt(2 / (d N)), unless `exact_temperature` is set.
 
-    A fixed particle with a `vibration` or a `temperature` has one mode of vibration. A contact exchanges its
-    energy with the normal energy of the other particle.
+    A fixed particle with a `vibration` or a `temperature` has one mode of vibration. A contact exchanges
+    energy between this mode and the normal motion of the other particle.
 
     The N radii of a polydisperse species are the quantiles of the distribution at N equally spaced
     probabilities, in descending order. The radii do not depend on the seed, so every run has the same packing

@@ -42,7 +42,7 @@ def moving_wall_among(walls: Sequence[Wall | Plate], lengths: tuple[float, ...])
 
 
 def crossed_axis(wall: Wall | Plate, lengths: tuple[float, ...]) -> int:
-    """Return the axis perpendicular to a wall that spans a container; -1 for other walls."""
+    """Return the axis perpendicular to a wall across the whole container, or -1 for other walls."""
     for axis, _ in enumerate(lengths):
         coordinates = [{corner[k] for corner in wall.corners.values()} for k in range(len(lengths))]
         is_spanning = all(coordinates[k] == {0.0, length} for k, length in enumerate(lengths) if k != axis)
@@ -52,7 +52,7 @@ def crossed_axis(wall: Wall | Plate, lengths: tuple[float, ...]) -> int:
 
 
 def check_moving_wall(scene: Scene) -> None:
-    """Raise SceneError for a moving wall with other walls, or not across the container."""
+    """Raise SceneError unless a moving wall spans the container and is the only wall."""
     for n, wall in enumerate(scene.walls):
         if wall.mass is None:
             continue
@@ -127,7 +127,7 @@ class Wall:
 
     @property
     def corners(self) -> dict[str, tuple[float, ...]]:
-        """Both ends of the wall by their keys.
+        """Coordinates of both ends of the wall, by their keys.
 
         Examples
         --------
@@ -193,9 +193,10 @@ class Plate:
     Notes
     -----
     A plate with a `mass` must extend across the whole container, perpendicular to an axis. It starts at rest.
-    Only particles move the plate, along this axis. It exchanges momentum with each particle without loss of
-    energy [1]_. It conducts no heat except by its own motion. There must be no other interior wall. Both
-    sides must have particles, which are smooth and elastic.
+    Only hits of particles change the velocity of the plate, which is along this axis. In each hit the plate
+    and the particle exchange momentum without loss of energy [1]_. The plate conducts heat only by its
+    motion. There must be no other interior wall. There must be particles on both sides, and all particles
+    must be smooth and elastic.
 
     References
     ----------
@@ -229,7 +230,7 @@ class Plate:
 
     @property
     def corners(self) -> dict[str, tuple[float, ...]]:
-        """The four corners by the keys that determine them.
+        """Coordinates of the four corners, by the keys that determine them.
 
         Examples
         --------
@@ -300,7 +301,7 @@ def box_of_walls(lower: tuple[float, ...], upper: tuple[float, ...]) -> tuple[Wa
 
 
 def wall_kind(container: Container) -> type[Wall] | type[Plate]:
-    """Return the class of the interior walls that a container may have.
+    """Return the class of interior walls for the dimension of a container.
 
     Parameters
     ----------
@@ -316,7 +317,7 @@ def wall_kind(container: Container) -> type[Wall] | type[Plate]:
 
 
 def check_walls(scene: Scene) -> None:
-    """Raise SceneError for a wall that does not fit into the scene.
+    """Raise SceneError for an interior wall that does not fit into the scene.
 
     Parameters
     ----------
@@ -326,7 +327,7 @@ def check_walls(scene: Scene) -> None:
     Raises
     ------
     SceneError
-        With the key of the wall.
+        If a wall does not fit; the message names the key of the wall.
     """
     for n, wall in enumerate(scene.walls):
         if not isinstance(wall, wall_kind(scene.container)):

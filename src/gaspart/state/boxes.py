@@ -1,8 +1,8 @@
 """Partition of space into equal boxes on a grid.
 
-Each axis is divided separately, and may have a single box. Box coordinates have three axes in two dimensions,
-too; the third axis has one box and no neighbours. For each axis a table contains the neighbours of each box.
-Therefore walls, periodic faces and axes of one or two boxes need no special code.
+Each axis is divided separately, and may have a single box. Box coordinates have three components even in two
+dimensions; the third axis then has one box and no neighbours. For each axis a table contains the neighbours
+of each box coordinate. Therefore walls, periodic faces and axes of one or two boxes need no special code.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Boxes:
     neighbour : ndarray of int, shape (3, most, 3)
         Change of the linear index for a step of -1, 0, +1 from a box coordinate; NOWHERE if there is no box.
     shift : ndarray of int, shape (3, most, 3)
-        Number of container lengths that this step crosses on a periodic axis.
+        Number of container lengths by which this step crosses the periodic boundary.
     """
 
     per_side: np.ndarray
@@ -59,12 +59,13 @@ class Boxes:
         Parameters
         ----------
         positions : ndarray, shape (N, d), [length]
-            Positions. NaN means no position.
+            Positions; NaN for a particle that has no position.
 
         Returns
         -------
         ndarray of int, shape (N, 3)
-            Coordinates: the outermost box for a position outside, and the first box for no position.
+            Box coordinates. A position outside the container belongs to the outermost box, NaN to the first
+            box.
         """
         boxes, positions = np.zeros((len(positions), 3), dtype=np.int64), np.nan_to_num(positions)
         for k in range(positions.shape[1]):
@@ -83,7 +84,7 @@ class Boxes:
         Returns
         -------
         Boxes
-            Grid, which is otherwise equal.
+            Copy of the grid with this one difference.
         """
         neighbour, last = self.neighbour.copy(), self.per_side[axis] - 1
         neighbour[axis, 0, 0] = neighbour[axis, last, 2] = NOWHERE
@@ -133,7 +134,7 @@ def sides_for(scene: Scene, narrowest: float | None = None, per_particle: float 
     narrowest : float, optional, [length]
         Smallest side of a box if larger particles are not put into boxes. Default: the largest diameter.
     per_particle : float, default 1.0
-        Number of boxes per particle, which is reached approximately.
+        Wanted number of boxes per particle; the result comes close to it.
 
     Returns
     -------
@@ -147,15 +148,15 @@ def sides_for(scene: Scene, narrowest: float | None = None, per_particle: float 
 
 
 def cube_side(lengths: tuple[float, ...], number: float) -> float:
-    """Return the side of a cube, so that about `number` cubes fill a container.
+    """Return the side of a cube such that about `number` cubes fill a container.
 
     Parameters
     ----------
     lengths : tuple of float, shape (d,), [length]
-        Sides of the container. A side shorter than the cube has one cube; the number then applies to the
-        other sides.
+        Sides of the container. Along a side shorter than the cube there is one cube, and the number is
+        reached by the other sides alone.
     number : float
-        Number of cubes; at least 1 is used.
+        Number of cubes. Numbers below 1 count as 1.
 
     Returns
     -------
@@ -181,10 +182,10 @@ def make_boxes(
     scene : Scene
         Scene of the particles.
     boxes_per_side : int or tuple of int, shape (d,)
-        Boxes per side: one number, or one for each axis.
+        Boxes per side: one number for all axes, or one for each axis.
     images : bool
-        On a periodic axis of fewer than three boxes, the same box is a neighbour on both sides. If True, the
-        table has this box twice, with different shifts. If False, the table has it once.
+        On a periodic axis with fewer than three boxes, the same box is the neighbour on both sides. True: the
+        table has this box twice, with different shifts. False: the table has it once.
     narrowest : float, optional, [length]
         Smallest side of a box if some particles are not put into boxes. Default: the largest diameter.
 
@@ -243,7 +244,7 @@ _BOXES = {2: (0.53, 0.5, 0.8), 3: (1.0, 3.0, 1.5)}
 
 
 def boxes_per_particle(scene: Scene) -> float:
-    """Return the number of boxes for each particle.
+    """Return the number of boxes per particle for which searches are fastest.
 
     Parameters
     ----------
@@ -253,13 +254,14 @@ def boxes_per_particle(scene: Scene) -> float:
     Returns
     -------
     float
-        Number of boxes. It is at least 1 if gravity collects the particles, or if most searches find no new
-        contact because of kicks.
+        Number of boxes. The number is at least 1 if gravity makes the gas denser in one part, or if random
+        kicks cause most searches.
 
     Notes
     -----
-    Eight particles are tested at once. In a dilute gas of discs, particles cross many boxes between contacts.
-    Therefore wide boxes are best, as measured with 10^4 particles at packing fractions of 0.01 to 0.4.
+    A search tests eight particles at once, so that several particles per box cost little. In a dilute gas of
+    discs, particles would cross many narrow boxes between contacts. Therefore wide boxes are best. The values
+    were measured with 10^4 particles at packing fractions of 0.01 to 0.4.
     """
     dilute, by_density, limit = _BOXES[scene.dimension]
     best = min(dilute + by_density * scene.packing_fraction, limit)
@@ -267,7 +269,7 @@ def boxes_per_particle(scene: Scene) -> float:
 
 
 def largest_in_boxes(scene: Scene) -> float:
-    """Return the largest radius that the boxes are made for.
+    """Return the largest radius of particles that are put into boxes.
 
     Parameters
     ----------
@@ -297,7 +299,7 @@ def boxes_and_largest(scene: Scene, boxes_per_side: int | tuple[int, ...] | None
     scene : Scene
         Scene of the particles.
     boxes_per_side : int or tuple of int or None
-        Boxes per side. None: the value of `largest_in_boxes`.
+        Boxes per side. None: as many as suit the radius from `largest_in_boxes`.
 
     Returns
     -------
@@ -330,15 +332,15 @@ def sizes(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     Parameters
     ----------
     scene : Scene
-        Scene of the particles. All particles of a polydisperse species count as its largest particle. Boxes
-        wide enough for this particle are faster than a long list of oversized particles.
+        Scene of the particles. All particles of a polydisperse species count as particles of its largest
+        radius, because boxes wide enough for this radius are faster than a long list of oversized particles.
 
     Returns
     -------
     radii : ndarray, shape (K,), [length]
-        Different radii in ascending order.
+        Distinct radii in ascending order.
     counts : ndarray of int, shape (K,)
-        Numbers of particles.
+        Number of particles with each radius.
     """
     kinds = [kind for kind in scene.kinds if kind.count]
     largest = np.array([kind.largest_radius for kind in kinds], float)
@@ -347,7 +349,7 @@ def sizes(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 
 
 def work(scene: Scene, largest: float) -> float:
-    """Return the number of visited boxes and particles per unit of path length of each particle.
+    """Return the number of boxes and particles visited per unit of path length of a particle.
 
     Parameters
     ----------
@@ -386,17 +388,16 @@ def work(scene: Scene, largest: float) -> float:
 
 
 _CROWD, _SAMPLE = 32.0, 256
-"""Mean number of neighbours of a sample of particles, above which the search is limited to particles that
-touch; size of the sample."""
+"""Mean number of neighbours above which the search is limited; number of sampled particles."""
 
 
 def _reach_of_deepest(tree: cKDTree, other: cKDTree, reach: float) -> float:
-    """Return the largest distance at which two size classes can have their deepest overlap.
+    """Return a distance within which the deepest overlap of two size classes is found.
 
-    For particles that touch, this distance is `reach`. If many particles lie on top of each other, memory
-    cannot hold all pairs within `reach`. Contact distances in the classes differ by less than a factor of
-    two. If the nearest pair has the distance q, no deeper overlap has a distance above 2 q. The result is 0
-    if two centres coincide.
+    In usual states this distance is `reach`. If many particles lie on top of each other, memory cannot hold
+    all pairs within `reach`. The distance is then smaller: contact distances in the classes differ by less
+    than a factor of two, so that the pair of deepest overlap has at most twice the distance q of the nearest
+    pair. The result is 0 if two centres coincide.
     """
     itself = tree is other
     sample = tree.data[:: max(1, tree.n // _SAMPLE)]
@@ -411,7 +412,7 @@ def _reach_of_deepest(tree: cKDTree, other: cKDTree, reach: float) -> float:
 def deepest_overlap(
     positions: np.ndarray, radii: np.ndarray, lengths: np.ndarray, periodic: tuple[bool, ...]
 ) -> float:
-    """Return the largest relative overlap of a pair of particles, by nearest images.
+    """Return the largest relative overlap of two particles; on periodic axes, of their nearest images.
 
     Parameters
     ----------
@@ -427,8 +428,8 @@ def deepest_overlap(
     Returns
     -------
     float, [1]
-        1 - distance / contact distance, or 0 without an overlap. A particle wider than a periodic side
-        overlaps its own image.
+        Largest value of 1 - distance / contact distance, or 0 if no particles overlap. A particle wider than
+        a periodic side overlaps its own image.
 
     Notes
     -----

@@ -1,7 +1,7 @@
 """Random packings that are denser than insertion can reach, by growing particles.
 
-The particles move, collide and grow until they have their final size, or jam (Lubachevsky & Stillinger, J.
-Stat. Phys. 60, 561 (1990)). All particles grow in proportion, and diameters grow at a constant rate. During
+The particles move, collide and grow until they reach their final size, or jam (Lubachevsky & Stillinger, J.
+Stat. Phys. 60, 561 (1990)). All diameters grow at constant rates, in proportion to their final values. During
 growth all particles have mass 1, and their temperature is reset to 1 every few collisions. The final density
 depends on the growth rate. If growth is fast, spheres jam at a packing fraction of about 0.64, and discs at
 0.84. If it is slow, they crystallise.
@@ -25,10 +25,12 @@ from gaspart.state.insertion import per_particle, random_insertion
 from gaspart.state.random import normals, stream
 
 JAMMED = 1e6
-"""Reduced pressure PV/(N k_B T) above which particles count as jammed."""
+"""Reduced pressure PV/(N k_B T) above which the particles are assumed to be jammed."""
 RATES = (2.0**-4, 2.0**-7, 2.0**-10)
-"""Growth rates of the largest diameter, divided by the thermal speed, which `compress_positions` tries in
-this order."""
+"""Growth rates of the largest diameter, divided by the thermal speed.
+
+The function `compress_positions` tries them in this order.
+"""
 
 _START = {2: 0.3, 3: 0.2}  # packing fraction at which growth begins; insertion easily reaches it
 _SPARE = 2.0**-36  # relative excess of the final size, so that rounding leaves no overlap
@@ -38,14 +40,14 @@ _POSITIONS, _MOTION = 0, 4
 
 @dataclass(frozen=True)
 class Packing:
-    """Packing of particles made by `compress`.
+    """Result of `compress`: a packing of particles.
 
     Parameters
     ----------
     positions : ndarray, shape (N, d), [length]
         Positions.
     scale : float, [1]
-        Radii divided by the radii of the scene.
+        Ratio of the radii in the packing to the radii of the scene.
     packing_fraction : float, [1]
         Packing fraction.
     pressure : float, [1]
@@ -82,7 +84,7 @@ def compress(
         Packing fraction at which growth ends, or "jammed" for growth until the particles jam. Default: the
         packing fraction of the scene.
     jammed : float, default 1e6, [1]
-        Reduced pressure at which the growth ends in any case.
+        Reduced pressure at which growth ends for any value of `until`.
 
     Returns
     -------
@@ -92,8 +94,8 @@ def compress(
     Raises
     ------
     SceneError
-        If the scene has single particles, interior walls or fixed particles, or if particles jam before they
-        reach the requested density.
+        If the scene has single particles, interior walls or fixed particles, or if the particles jam before
+        the requested packing fraction.
 
     Notes
     -----
@@ -138,14 +140,14 @@ def compress(
 
 
 def compress_positions(scene: Scene, seed: int | tuple[int, ...]) -> np.ndarray:
-    """Return positions for a scene, grown at the fastest sufficient rate of `RATES`.
+    """Return positions for a scene from compression at the fastest sufficient rate of `RATES`.
 
-    The rate is sufficient if growth reaches the packing fraction of the scene.
+    A growth rate is sufficient if the particles reach the packing fraction of the scene before they jam.
 
     Parameters
     ----------
     scene : Scene
-        Scene, as for `compress`.
+        Scene that meets the conditions of `compress`.
     seed : int or tuple of int
         Seed of the random start.
 
@@ -166,7 +168,7 @@ def compress_positions(scene: Scene, seed: int | tuple[int, ...]) -> np.ndarray:
 
 
 def _root(value: float, dimension: int) -> float:
-    """Return the square or cube root by bisection, because library roots differ between machines."""
+    """Return the square or cube root by bisection, because roots of libraries differ between machines."""
     low, high = 0.0, max(1.0, value)
     for _ in range(200):
         middle = 0.5 * (low + high)
@@ -213,7 +215,7 @@ class _Growing:
         self._queue = empty_queue(n)
 
     def grow(self, rate: float, end: float) -> None:
-        """Simulate some collisions per particle at this growth rate, or until the scale is `end`."""
+        """Simulate a block of collisions with this growth rate; stop if the scale reaches `end`."""
         d, n = self._scene.dimension, self._scene.count
         rate /= 2.0 * self._scene.largest_radius * self.scale
         remaining = (end / self.scale - 1.0) / rate

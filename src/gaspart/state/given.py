@@ -1,6 +1,6 @@
-"""Initial states that the caller supplies.
+"""Initial states from arrays or from another state.
 
-Such a state contains the positions and motions of the particles, of the piston and of the sheared images of
+The positions and velocities of particles and piston, and the displacement of sheared images, may come from
 another run.
 """
 
@@ -42,18 +42,19 @@ def state_from_arrays(
     scene : Scene
         Scene.
     positions : ndarray, shape (N, d), [length]
-        Positions. Positions beyond a wall or the piston by no more than the rounding of single precision are
+        Positions. A position that is beyond a wall or the piston only by rounding in single precision is
         moved to the wall or piston.
     velocities : ndarray, shape (N, d), [length/time]
         Velocities; in a sheared gas they include the flow.
     spins : ndarray, shape (N,) in 2D or (N, 3) in 3D, optional, [1/time]
         Spins of rough particles. Default: 0.
     piston : ndarray, shape (2,), optional, [length] and [length/time]
-        Position of the piston along its axis, and its velocity. Default: at rest at its side.
+        Position of the piston along its axis, and its velocity. Default: at rest at its side of the
+        container.
     displaced : float, optional, [length]
-        Displacement of the images above a sheared gas. Default: 0.
+        Displacement along x of the images above a sheared gas. Default: 0.
     vibrations : ndarray, shape (N,), optional, [energy]
-        Vibrational energies, for a scene whose particles have them.
+        Vibrational energies, if particles of the scene can vibrate.
 
     Returns
     -------
@@ -63,7 +64,7 @@ def state_from_arrays(
     Raises
     ------
     SceneError
-        If the state of the scene contains more than these values; if numbers are not finite or too few; if
+        If a state of the scene requires other values than these; if values are missing or not finite; if
         particles are outside the container, beyond the piston or in an interior wall.
     """
     if "sticky" in scene.features:
@@ -118,15 +119,17 @@ def state_at_time_zero(scene: Scene, other: State) -> State:
     Raises
     ------
     SceneError
-        If `state_from_arrays` raises it. Also if particles or container differ, if the piston is another
-        face, or if the state has displaced images and the scene has no sheared face.
+        Under the same conditions as in `state_from_arrays`. Also if the particles or the container of the two
+        scenes differ, if another face is the piston, or if `other` has displaced images and the scene has no
+        sheared face.
 
     Notes
     -----
-    Position and velocity of a piston are retained for any mass and load. If `other` has no piston, the piston
-    is at rest at its side. The displacement of sheared images is retained, and velocities are retained if
-    both shear rates are equal. If the shear rates differ, the flow of the state is subtracted from the
-    velocities, and the flow of the scene is added. The vibration of faces begins anew.
+    The piston keeps its position and velocity, even if its mass or the external pressure differs. If `other`
+    has no piston, the piston is at rest at its side. The images of a sheared gas keep their displacement.
+    Velocities are unchanged if both shear rates are the same. If the shear rates differ, the flow of `other`
+    is subtracted from the velocities, and the flow of the scene is added. Vibrating faces start again at
+    their initial position.
     """
     if not isinstance(other, State):
         raise SceneError("initial", type(other).__name__, "must be a State, as of Simulation.state")
@@ -167,9 +170,9 @@ def _in_flow(scene: Scene, other: State) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _image_displacement(scene: Scene, other: State) -> float | None:
-    """Return the displacement of images; raise SceneError if the scene has no sheared images.
+    """Return the displacement of a state's images; raise SceneError if the scene lacks shear.
 
-    Complete lengths of the container are subtracted, which is exact.
+    Multiples of the length of the container are subtracted without rounding.
     """
     here = math.fmod(other.displaced or 0.0, scene.container.lengths[FLOW])
     if scene.shear_rate is not None:
@@ -186,7 +189,7 @@ def _image_displacement(scene: Scene, other: State) -> float | None:
 def _taken_piston(scene: Scene, other: State) -> np.ndarray | None:
     """Return position and velocity of the piston in a state; None if there is no piston.
 
-    Raises SceneError if the piston is another face in the scene.
+    Raises SceneError if another face is the piston in the scene.
     """
     if other.piston is None:
         return None
@@ -242,9 +245,9 @@ def check_apart(scene: Scene, state: State) -> None:
 
 
 def _with_images(state: State) -> tuple[np.ndarray, np.ndarray]:
-    """Return positions (M, d) and radii (M,) of a sheared gas and its images.
+    """Return positions (M, d) and radii (M,) of a sheared gas's particles and images.
 
-    The images lie below the gas. Only images that particles of the gas may touch are included.
+    The result includes only images below the gas, and of these only the images that particles may touch.
     """
     near = state.lengths[GRADIENT] - state.positions[:, GRADIENT] <= 2.0 * state.radii.max()
     images = state.positions[near]
@@ -254,7 +257,7 @@ def _with_images(state: State) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _wrap_coordinates(values: np.ndarray, lengths: np.ndarray | float) -> np.ndarray:
-    """Return the coordinates in [0, L) of the equivalent periodic images."""
+    """Return the coordinates of the periodic images inside the container, in [0, L)."""
     placed = values - lengths * np.floor(values / lengths)
     return np.where(placed >= lengths, 0.0, placed)  # rounding may give L itself
 
@@ -262,7 +265,8 @@ def _wrap_coordinates(values: np.ndarray, lengths: np.ndarray | float) -> np.nda
 def _inside(scene: Scene, positions: np.ndarray, radii: np.ndarray, piston: np.ndarray | None) -> np.ndarray:
     """Return positions (N, d) inside the container; raise SceneError for a particle outside.
 
-    On axes with fixed images they are in [0, L). On other axes they are between the walls and the piston.
+    On periodic axes with images at fixed distances, the returned positions are in [0, L). On other axes they
+    are between the walls or the piston.
     """
     lengths, periodic = np.array(scene.container.lengths), np.array(scene.image_axes)
     slack = _SINGLE * lengths
@@ -285,8 +289,9 @@ def _bounds(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the lowest and highest coordinates, (N, d) each, that particles may have.
 
-    The bounds are the walls and a piston. For a moving interior wall, the bounds depend on the particle's
-    side of the wall. A centre crosses a sheared face when it reaches the face.
+    The bounds follow from the walls and the piston. With a moving interior wall, the bounds of a particle
+    depend on the side of the wall where it is. A particle passes through a sheared face when its centre
+    reaches the face.
     """
     walled = ~np.array(scene.container.periodic)
     margins = np.where(walled & (not scene.centres_to_walls), radii[:, None], 0.0)

@@ -32,9 +32,9 @@ def wells_of(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     Returns
     -------
     depths : ndarray, shape (2d,), [energy]
-        Depth of the well at each face, 0 without a well.
+        Depth of the well at each face; 0 for a face without a well.
     widths : ndarray, shape (2d,), [length]
-        Width of the well at each face, 0 without a well.
+        Width of the well at each face; 0 for a face without a well.
     """
     faces = (scene.faces.get(name) for name in FACES[: 2 * scene.dimension])
     wells = [(face.depth, face.width) if isinstance(face, Well) else (0.0, 0.0) for face in faces]
@@ -43,7 +43,7 @@ def wells_of(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 
 
 def places_in_wells(scene: Scene, positions: np.ndarray, radii: np.ndarray) -> np.ndarray:
-    """Return the wells that contain particles.
+    """Return for each particle the wells of faces in which it is.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def places_in_wells(scene: Scene, positions: np.ndarray, radii: np.ndarray) -> n
     Returns
     -------
     ndarray of int8, shape (N, d)
-        Index for each axis: -1 in the well of the low face, 1 in the well of the high face, otherwise 0.
+        Value for each axis: -1 in the well of the low face, 1 in the well of the high face, otherwise 0.
     """
     margins = 0.0 if scene.centres_to_walls else radii[:, None]
     _, widths = wells_of(scene)
@@ -67,14 +67,14 @@ def places_in_wells(scene: Scene, positions: np.ndarray, radii: np.ndarray) -> n
 
 
 def well_energies(scene: Scene, wells: np.ndarray) -> np.ndarray:
-    """Return the potential energy of particles in wells.
+    """Return the potential energy of each particle in wells.
 
     Parameters
     ----------
     scene : Scene
         Scene of the faces.
     wells : ndarray of int8, shape (N, d)
-        Wells of the particles, by `places_in_wells`.
+        Wells of the particles, as returned by `places_in_wells`.
 
     Returns
     -------
@@ -96,7 +96,7 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
     scene : Scene
         Scene.
     seed : int or tuple of int
-        Seed. Positions and velocities have separate random streams under the same seed.
+        Seed. Positions and velocities use separate random streams that both depend on this seed.
 
     Returns
     -------
@@ -173,8 +173,8 @@ def assemble_state(scene: Scene, positions: np.ndarray, velocities: np.ndarray, 
     Returns
     -------
     State
-        State. A piston is at its initial position, at rest or at its prescribed speed. Images of a sheared
-        gas are not displaced.
+        State. A piston is at its initial position, and moves at its prescribed speed or is at rest. Images of
+        a sheared gas are not displaced.
     """
     radii, masses = per_particle(scene, "radius").astype(float), per_particle(scene, "mass").astype(float)
     # moment of inertia divided by m r^2, for uniform density
@@ -205,9 +205,10 @@ def assemble_state(scene: Scene, positions: np.ndarray, velocities: np.ndarray, 
 
 
 def _piston(scene: Scene) -> tuple[str | None, np.ndarray | None]:
-    """Return the name of the face or interior wall that is a piston, and its motion.
+    """Return the name of the face or wall that is a piston, and its motion.
 
-    The motion, (2,), has position and velocity at time 0.
+    The motion is an array (2,) of position and velocity at time 0. Without a piston, the function returns
+    (None, None).
     """
     for n, face in scene.pistons:
         start = scene.container.lengths[n // 2] if n % 2 else 0.0
@@ -219,7 +220,8 @@ def _piston(scene: Scene) -> tuple[str | None, np.ndarray | None]:
 def _on_lattice(scene: Scene, rng: np.random.Generator, arrangement: str) -> np.ndarray:
     """Return the positions (N, d) of the arrangement "lattice" or "slab".
 
-    Raises SceneError like `lattice`, and if a particle would overlap an interior wall.
+    Raises SceneError under the same conditions as `lattice`, and if a particle would overlap an interior
+    wall.
     """
     positions = lattice(scene, rng, slab=arrangement == "slab")
     radii = per_particle(scene, "radius").astype(float)
@@ -230,7 +232,7 @@ def _on_lattice(scene: Scene, rng: np.random.Generator, arrangement: str) -> np.
 
 
 def _instead_of_random(scene: Scene, seed: int | tuple[int, ...]) -> str:
-    """Return advice for particles that cannot be placed by random insertion.
+    """Return advice for a scene whose particles cannot be placed by random insertion.
 
     The advice names an arrangement only if the particles fit into the container in this arrangement.
     """
@@ -245,7 +247,8 @@ def _instead_of_random(scene: Scene, seed: int | tuple[int, ...]) -> str:
 def _vibrations(scene: Scene, rng: np.random.Generator) -> np.ndarray:
     """Return the energies (N,) of the vibrations.
 
-    Energies are values of the scene, or drawn from exp(-E/kT)/kT. Without a vibration they are 0.
+    An energy is the `vibration` of the scene, or is drawn from the distribution exp(-E/kT)/kT. It is 0 for
+    particles that do not vibrate.
     """
     parts = [np.array([particle.vibration or 0.0 for particle in scene.particles])]
     for kind in scene.species:
@@ -257,7 +260,7 @@ def _vibrations(scene: Scene, rng: np.random.Generator) -> np.ndarray:
 
 
 def _velocities(scene: Scene, rng: np.random.Generator) -> np.ndarray:
-    """Return the velocities (N, d): from the scene, of equal speeds, Maxwellian, or 0."""
+    """Return the initial velocities (N, d), which the scene states or which are random."""
     parts = [
         np.array([particle.velocity for particle in scene.particles], dtype=float).reshape(
             -1, scene.dimension
@@ -301,7 +304,8 @@ def in_flow(scene: Scene, masses: np.ndarray, positions: np.ndarray, velocities:
     Returns
     -------
     ndarray, shape (N, d), [length/time]
-        Velocities. If a gas had a mean velocity across the flow, the flow would accelerate it without limit.
+        Velocities. Their mean is subtracted because a mean velocity along the gradient of the flow would make
+        the gas accelerate without limit.
     """
     peculiar = velocities.copy()
     for k in range(scene.dimension):
@@ -310,11 +314,11 @@ def in_flow(scene: Scene, masses: np.ndarray, positions: np.ndarray, velocities:
 
 
 def _make_exact(scene: Scene, velocities: np.ndarray) -> None:
-    """Rescale velocities so that all species with an exact temperature have it together.
+    """Rescale velocities of the species with `exact_temperature` by one common factor.
 
-    The mean velocity of these species is 0 along axes with conserved momentum. The mean of m v^2 / kT per
-    degree of freedom is 1. The sums have the same rounding on every machine. Raises SceneError if there is no
-    degree of freedom.
+    First, their mean velocity is subtracted along axes with conserved momentum. The factor makes the mean of
+    m v^2 / kT per degree of freedom of all these species together equal to 1. The sums have the same rounding
+    on every machine. Raises SceneError if there is no degree of freedom.
     """
     first, parts = len(scene.particles), []
     for kind in scene.species:
@@ -346,12 +350,12 @@ def lattice(scene: Scene, rng: np.random.Generator, slab: bool = False) -> np.nd
     scene : Scene
         Scene. The lattice is stretched to fill its container.
     rng : numpy.random.Generator
-        Generator of random numbers. If there are more sites than particles, the empty sites are random. The
-        order of species in a mixture is random, too.
+        Generator of random numbers. If there are more sites than particles, the vacant sites are chosen at
+        random. The species of a mixture are distributed over the sites at random, too.
     slab : bool, default False
-        If True, sites are empty only in the upper half of the longest side. This half melts at densities at
-        which a complete crystal would not melt. The result is an initial state for coexistence of crystal and
-        fluid.
+        If True, all vacant sites are in the upper half of the container along its longest side. This half
+        melts at densities at which a crystal without vacancies would not melt. The result is an initial state
+        for coexistence of crystal and fluid.
 
     Returns
     -------
@@ -400,7 +404,7 @@ _FCC = np.array([[0.0, 0, 0], [0, 0.5, 0.5], [0.5, 0, 0.5], [0.5, 0.5, 0]])
 def _periods(cells: np.ndarray, walled: np.ndarray, basis: np.ndarray) -> np.ndarray:
     """Return the number of lattice cells (d,) that fill the container.
 
-    Between walls the last half cell is empty, and not counted.
+    On an axis with walls, the last half cell contains no particles and is not counted.
     """
     return np.where(walled, np.maximum(cells - 1 + basis.max(axis=0), 0.5), cells)
 
@@ -415,7 +419,7 @@ def _spacing(lengths: np.ndarray, cells: np.ndarray, walled: np.ndarray, basis: 
 def _cell_counts(
     lengths: np.ndarray, shape: np.ndarray, walled: np.ndarray, count: int, per_cell: int
 ) -> list[np.ndarray]:
-    """Return numbers of cells (d,) with nearly ideal shape, and at least `count` sites."""
+    """Return possible numbers of cells (d,) with nearly ideal shape and at least `count` sites."""
     ideal = (lengths / shape) * (count / per_cell / np.prod(lengths / shape)) ** (1.0 / len(lengths))
     reach = np.stack(np.meshgrid(*([np.arange(-2, 4)] * len(lengths)), indexing="ij"), axis=-1)
     options = np.floor(ideal).astype(int) + reach.reshape(-1, len(lengths))

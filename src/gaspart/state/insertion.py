@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
 
 PATIENCE = 2_000_000
-"""Number of failed attempts to place one particle, after which a container counts as full."""
+"""Number of failed attempts to place one particle after which the container is considered full."""
 
 
 def per_particle(scene: Scene, attribute: str) -> np.ndarray:
-    """Return an attribute of all particles.
+    """Return the values of an attribute for all particles.
 
     Parameters
     ----------
@@ -51,8 +51,8 @@ def range_of_centres(scene: Scene, kind: Species) -> tuple[tuple[float, ...], tu
     scene : Scene
         Scene of the species.
     kind : Species
-        Species. The centres of all its particles are as far from walls as the centre of its largest particle
-        must be.
+        Species. The distance of all its particles' centres from walls is at least the radius of its largest
+        particle.
 
     Returns
     -------
@@ -78,7 +78,7 @@ def empty_arrays(scene: Scene, boxes: Boxes, radii: np.ndarray) -> tuple[Placed,
     boxes : Boxes
         Partition of the container.
     radii : ndarray, shape (N,), [length]
-        Radii of the particles; no particle is placed yet.
+        Radii of the particles, none of which is placed yet.
 
     Returns
     -------
@@ -117,14 +117,14 @@ def random_insertion(
     rng : numpy.random.Generator
         Generator of the attempts.
     patience : int, default 2_000_000
-        Number of failed attempts for one particle, after which the container counts as full.
+        Number of failed attempts for one particle after which the container is considered full.
 
     Returns
     -------
     positions : ndarray, shape (N, d), [length]
         Positions.
     failures : ndarray of int, shape (N,)
-        Failed attempts before each particle was placed.
+        Number of failed attempts before each particle was placed.
 
     Raises
     ------

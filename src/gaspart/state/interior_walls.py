@@ -1,8 +1,9 @@
 """Interior walls as arrays, with images of walls near periodic faces.
 
-There is a row for each wall, and for each periodic image of a wall that particles can touch. Rows of segments
-and plates are described in `kernels.obstacles.distance`. Particles also hit a wall across a periodic face.
-Therefore a wall has all periodic images whose distance from the container is at most a particle radius.
+An array has a row for each wall, and for each periodic image of a wall that particles can touch. The numbers
+in the rows of segments and plates are described in `kernels.obstacles.distance`. Particles near a periodic
+face can touch a wall beyond this face. Therefore the array includes all images whose distance from the
+container is at most a particle radius.
 """
 
 from __future__ import annotations
@@ -55,14 +56,14 @@ def wall_rows(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _segment(wall: Wall) -> np.ndarray:
-    """Return the numbers of the row of a segment."""
+    """Return the row of a segment."""
     start, end = np.array(wall.start), np.array(wall.end)
     length = float(np.hypot(*(end - start)))
     return np.array([*start, *((end - start) / length), length])
 
 
 def _plate(wall: Plate) -> np.ndarray:
-    """Return the numbers of the row of a plate."""
+    """Return the row of a plate."""
     edges = np.array(wall.edges)
     sizes = np.sqrt((edges**2).sum(axis=1, keepdims=True))
     return np.concatenate([np.array(wall.corner), np.hstack([edges / sizes, sizes]).ravel()])
@@ -96,10 +97,11 @@ def walls_near(rows: np.ndarray, boxes: Boxes, reach: float) -> tuple[np.ndarray
     Returns
     -------
     first : ndarray of int, shape (boxes + 2,)
-        Index of the first entry of each box: box b has the walls listed[first[b] : first[b + 1]].
+        Index in `listed` of the first entry of each box: near box b are the walls listed[first[b] : first[b +
+        1]].
     listed : ndarray of int
-        Rows of the walls. The list of the last box is followed by a list of all walls, for particles that
-        reach beyond the neighbouring boxes.
+        Indices of the rows. The entries of the last box are followed by the indices of all rows, for
+        particles that reach beyond the neighbouring boxes.
     """
     reach *= 1 + _SLACK
     numbers = rows.view(float).reshape(len(rows), rows.itemsize // 8)

@@ -1,8 +1,8 @@
 """Base class of optional tallies, which are declared in `state.tally`.
 
-A run requests a tally by an instance of its class, with its settings. On the command line and in configs, the
-settings are text. An engine that can make the tally has the tally's name in `Engine.tallies`. It has a part
-(`engines.features.part.TallyPart`) of the same name.
+A run requests a tally with an instance of its class, which contains the settings of the tally. On the command
+line and in configs, the settings are text. `Engine.tallies` contains the names of the tallies that an engine
+supports. Such an engine has a part (`engines.features.part.TallyPart`) with the name of the tally.
 """
 
 from __future__ import annotations
@@ -18,18 +18,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class OptionalTally:
-    """Tally that not every run has.
+    """Base class of tallies that only some runs have.
 
     Attributes
     ----------
     name : str
-        Name in messages, in files, and as `only` in the metadata of its fields of `Tally`.
+        Name of the tally in messages and files, and value of `only` in the metadata of its fields in `Tally`
     meaning, form : str
-        Description of the option of a run that requests the tally, and the form of its text: the settings in
-        their order, separated by colons. Both are "" without such an option.
+        Description of the option that requests the tally, and form of the text of this option: the settings
+        in their order, separated by colons. Both are "" for a tally that has no option.
     fact : str
-        Name of a property of scenes. If it is true, all runs of the scene have the tally. It is "" if the
-        tally must be requested.
+        Name of a property of scenes: if the property is true, all runs of the scene have the tally. The name
+        is "" for a tally that must be requested.
     """
 
     name: ClassVar[str]
@@ -39,7 +39,7 @@ class OptionalTally:
 
     @classmethod
     def from_text(cls, text: str) -> Self:
-        """Make the tally from the text of its option.
+        """Return the tally that the text of its option describes.
 
         Parameters
         ----------
@@ -77,7 +77,7 @@ class OptionalTally:
         return f"--{self.name.replace('_', '-')} {self.to_text()}"
 
     def check(self, scene: Scene) -> None:
-        """Raise SceneError if no engine can make the tally for a scene.
+        """Raise SceneError if the tally is not defined for a scene.
 
         Parameters
         ----------
@@ -87,4 +87,4 @@ class OptionalTally:
         self._require(scene)
 
     def _require(self, scene: Scene) -> None:
-        """Raise SceneError for such a scene; every class implements its own rule here."""
+        """Raise SceneError under the conditions of `check`, by the rule of this class."""

@@ -1,4 +1,4 @@
-"""Random streams, directions and velocities, bitwise identical on all machines.
+"""Random streams, directions and normal random numbers, with the same bits on all machines.
 
 Uniform numbers are from numpy's PCG64. All other random numbers are computed from these, only by +, -, x, /
 and the square root. IEEE 754 defines these operations to the last bit. Logarithms of libraries differ between
@@ -99,7 +99,7 @@ def natural_log(x: np.ndarray) -> np.ndarray:
 
 
 def _disc(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return `count` points (u, v) uniform in the unit disc, and s = u^2 + v^2.
+    """Return uniform random points (u, v) in the unit disc, and s = u^2 + v^2.
 
     The centre of the disc is excluded.
     """

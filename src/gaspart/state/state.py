@@ -26,17 +26,18 @@ class State:
     time : float, [time]
         Time.
     positions : ndarray, shape (N, d), [length]
-        Positions, inside the container on periodic axes.
+        Positions of the centres; on periodic axes, of the images inside the container.
     velocities : ndarray, shape (N, d), [length/time]
         Velocities.
     images : ndarray of int, shape (N, d)
-        How often each particle has crossed the container on periodic axes.
+        Net number of times that each particle has crossed the container along each periodic axis.
     radii : ndarray, shape (N,), [length]
         Radii.
     masses : ndarray, shape (N,), [mass]
         Masses.
     species : ndarray of int, shape (N,)
-        Index of the particle's species. Single particles form one more species after the others.
+        Index of the species of each particle. All single particles together form an additional species, the
+        last.
     lengths : ndarray, shape (d,), [length]
         Lengths of the container.
     spins : ndarray, shape (N,) in 2D or (N, 3) in 3D, [1/time]
@@ -46,19 +47,19 @@ class State:
     gravity : ndarray, shape (d,), optional, [length/time^2]
         Acceleration. None if there is no gravity.
     well_energies : ndarray, shape (N,), optional, [energy]
-        Potential energy in the wells of the faces. None if no face has a well.
+        Potential energy of each particle in the wells of the faces. None if no face has a well.
     vibrations : ndarray, shape (N,), optional, [energy]
         Energy of each particle's vibration. None if no particle vibrates.
     piston : ndarray, shape (2,), optional, [length] and [length/time]
         Position of the piston along its axis, and its velocity. None if there is no piston.
     piston_face : str, optional
-        Face of the container or interior wall that is the piston.
+        Name of the face or interior wall that is the piston. None if there is no piston.
     displaced : float, optional, [length]
-        Displacement along x of images above the container. None unless the gas is sheared.
+        Displacement along x of the periodic images above the container. None if the gas is not sheared.
     shear_rate : float, optional, [1/time]
-        Shear rate du_x / dy of the flow that the velocities include. None unless the gas is sheared.
+        Shear rate du_x / dy of the flow, which is included in the velocities. None if the gas is not sheared.
     numbers : ndarray of int, shape (N,), optional
-        Numbers of the particles inside among all particles of the run. None unless faces are open.
+        Number in the run of each particle that is inside. None if no face is open.
 
     See Also
     --------
@@ -130,7 +131,7 @@ class State:
 
     @property
     def unwrapped(self) -> np.ndarray:
-        """Positions continued across periodic faces, shape (N, d), [length].
+        """Positions that continue beyond periodic faces without jumps, shape (N, d), [length].
 
         Examples
         --------
@@ -164,7 +165,7 @@ class State:
 
     @property
     def kinetic_energies(self) -> np.ndarray:
-        """Sums of translational and rotational energy, shape (N,), [energy]; 0 for fixed particles.
+        """Translational plus rotational energy of each particle, (N,), [energy]; 0 for fixed particles.
 
         Examples
         --------
@@ -195,7 +196,7 @@ class State:
 
     @property
     def angular_momentum(self) -> np.ndarray | float:
-        """Total angular momentum about the container's origin with spins, [mass length^2/time].
+        """Total angular momentum about the origin, including spins, [mass length^2/time].
 
         The result is a number in 2D and has the shape (3,) in 3D.
 
@@ -245,10 +246,10 @@ class State:
 
     @property
     def temperature(self) -> float:
-        """Temperature k_B T of a gas without walls, [energy].
+        """Temperature k_B T from velocities relative to the centre of mass, [energy].
 
-        The temperature is 2 E / (d (N - 1)), where E is the energy of translation relative to the centre of
-        mass.
+        The temperature of N particles is 2 E / (d (N - 1)), where E is the translational energy relative to
+        the centre of mass. This is correct for a gas without walls.
 
         Raises
         ------
@@ -286,8 +287,8 @@ class State:
     def potential_energy(self) -> float:
         """Energy of all particles in wells and under gravity, [energy].
 
-        The energy under gravity is 0 for centres at the origin. On periodic axes it continues to decrease
-        from image to image.
+        The energy under gravity is 0 for a centre at the origin. On periodic axes it is computed from
+        positions that continue beyond the faces (`unwrapped`).
 
         Examples
         --------
@@ -338,7 +339,7 @@ class State:
         Returns
         -------
         State
-            Copy, which may be changed and passed to another simulation.
+            Copy, which may be changed and may start another simulation.
 
         Examples
         --------
@@ -362,7 +363,8 @@ class State:
         Returns
         -------
         State
-            State with read-only views of the same arrays, because a change would not affect the simulation.
+            State with read-only views of the same arrays. They are read-only because a change would not
+            affect the simulation.
 
         Examples
         --------
@@ -383,7 +385,7 @@ class State:
 
 
 def by_number(state: State, values: np.ndarray, capacity: int) -> np.ndarray:
-    """Return values of the particles of a state, ordered by their numbers in the run.
+    """Return values of the particles of a state, ordered by the numbers of the particles.
 
     Parameters
     ----------
@@ -397,7 +399,8 @@ def by_number(state: State, values: np.ndarray, capacity: int) -> np.ndarray:
     Returns
     -------
     ndarray, shape (capacity, ...)
-        Values; NaN if no particle has the number. If no face is open, `values` is returned unchanged.
+        Values; NaN for numbers that no particle inside has. If no face is open, `values` is returned
+        unchanged.
     """
     if state.numbers is None:
         return values
@@ -407,12 +410,12 @@ def by_number(state: State, values: np.ndarray, capacity: int) -> np.ndarray:
 
 
 def _finite(values: np.ndarray) -> np.ndarray:
-    """Return values in which infinity is replaced by 0."""
+    """Return an array in which infinite values are replaced by 0."""
     return np.where(np.isinf(values), 0.0, values)
 
 
 def _cross(state: State) -> np.ndarray:
-    """Return r x v of each particle in 2D, (N,)."""
+    """Return the cross product r x v of each particle in 2D, shape (N,)."""
     r, v = state.unwrapped, state.velocities
     return r[:, 0] * v[:, 1] - r[:, 1] * v[:, 0]
 
@@ -436,7 +439,7 @@ def drift_of(scene: Scene, state: State) -> np.ndarray:
     Returns
     -------
     ndarray, shape (d,), [length/time]
-        Velocity; 0 if it is due to rounding only.
+        Velocity; 0 if it is not larger than rounding errors.
     """
     velocities = state.velocities - flow(scene, state.positions)
     shares = (state.masses / state.masses.sum())[:, None] if state.count else np.zeros((0, 1))

@@ -1,6 +1,6 @@
-"""Counters and sums of an engine, and the optional tallies. All are declared only here.
+"""Declarations of all counters and sums of engines, and of the optional tallies.
 
-The planning of a workflow imports this module, so numpy is imported inside functions.
+Planning a workflow imports this module. To keep planning fast, functions import numpy only when they run.
 """
 
 from __future__ import annotations
@@ -30,7 +30,8 @@ SPEED, PRESSED, HEATED = "length/time", "mass length^(2-d)/time", "mass length^(
 class Tally:
     """Counters and sums of a simulation since the last reset.
 
-    F faces: the 2 d faces of the container (x low, x high, y low, ...), then the interior walls.
+    In the shapes, F is the number of faces: the 2 d faces of the container (x low, x high, y low, ...), then
+    the interior walls.
 
     Parameters
     ----------
@@ -39,13 +40,14 @@ class Tally:
     collisions : int
         Collisions of pairs.
     wall_hits : ndarray of int, shape (F,)
-        Particles that hit each face. With open faces: number of particles that have left through each face.
+        Number of hits of particles on each face. If faces are open: number of particles that have left
+        through each face.
     wall_impulse : ndarray, shape (F,), [mass length/time]
-        Momentum given to each face. With open faces: the normal momentum of particles that leave and enter.
+        Momentum given to each face. If faces are open: normal momentum of the particles that leave and enter.
     wall_energy : ndarray, shape (F,), [energy]
-        Heat given to each face by particles that the face re-emitted thermally. If there is a `wall_shear`,
-        the heat includes the work of the face. If faces are open: the energy of particles that have left less
-        the energy of particles that have entered.
+        Heat given to each face by particles whose velocities the face draws. If there is a `wall_shear`, this
+        value includes the work of the face. If faces are open: energy of the particles that have left minus
+        the energy of the particles that have entered.
     virial_sum : float, [mass length^2/time]
         Sum of abs(dr.dp) over collisions.
     pair_tests : int
@@ -53,7 +55,7 @@ class Tally:
     box_visits : int
         Boxes searched.
     fixed_collisions : int, default 0
-        Collisions with fixed particles, which are also among `collisions`.
+        Collisions with fixed particles; `collisions` includes them.
     crossings : int, default 0
         Crossings of box boundaries.
     worst_contact : float, default 0.0, [1]
@@ -79,9 +81,8 @@ class Tally:
     rebuilds : int, default 0
         Rebuilds of the neighbour list of the time-stepped engine.
     wall_shear : ndarray, shape (F, d), optional, [mass length/time]
-        Momentum along each axis given to each thermal face by particles whose velocity components are all
-        drawn when they leave. None unless a thermal face moves, or a force drives the gas along a thermal
-        face.
+        Momentum along each axis given to each thermal face that draws all velocity components. None unless
+        such a face slides, or a force drives the gas along such a face.
     entries : ndarray of int, shape (F,), optional
         Particles that have entered through each face. None unless faces are open.
     momentum_per_area : ndarray, shape (F, d), optional, [mass length^(2-d)/time]
@@ -91,26 +92,28 @@ class Tally:
         walls and for faces that an engine does not tally. None unless particles of different sizes can reach
         different areas of faces.
     heat_per_area : ndarray, shape (F,), optional, [mass length^(3-d)/time^2]
-        Energy of `wall_energy`, divided in the same way, with 0 for the same faces. None without
-        `momentum_per_area`.
+        Energy as in `wall_energy`, divided by the area in the same way as `momentum_per_area`, and 0 for the
+        same faces. None if there is no `momentum_per_area`.
     stress_sum : ndarray, shape (d, d), optional, [mass length^2/time]
-        Time integral of the stress tensor times the volume: of m v v and, at a collision, of r dp. Here r is
-        the vector from the second particle to the first, and dp is the momentum that the first particle
-        gains. None unless requested.
+        Time integral of the stress tensor times the volume: the integral of m v v over all particles, plus r
+        dp for each collision. Here r is the vector from the second particle to the first, and dp is the
+        momentum that the first particle gains. None unless requested.
     collisional_stress_sum : ndarray, shape (d, d), optional, [mass length^2/time]
         Collisional part of `stress_sum`.
     heat_sum : ndarray, shape (d,), optional, [mass length^3/time^2]
-        Time integral of the heat flux times the volume: of E v and r dE [1]_.
+        Time integral of the heat flux times the volume [1]_: the integral of E v over all particles, plus r
+        dE for each collision, where dE is the energy that the first particle gains.
     flux_velocity : ndarray, shape (d,), optional, [length/time]
-        Velocity of the centre of mass; all velocities in the fluxes are relative to it. In a sheared gas they
-        are relative to the flow, and this is the velocity at time 0.
+        Velocity of the centre of mass, from which all velocities in `stress_sum` and `heat_sum` are measured.
+        In a sheared gas these velocities are relative to the flow, and `flux_velocity` is the value at time
+        0.
     momentum_flux_sum : ndarray, shape (species, bins), optional, [mass length/time]
-        Momentum of each species (single particles last) along an axis, transported through planes across the
-        axis by the particles themselves: m v^2 of the particles that cross, times the time. Each value is the
-        mean over the planes in a bin. Under gravity, the momentum that gravity has given to the particles
-        below the plane is subtracted (`analysis.impulses`). None unless requested.
+        Momentum along an axis that particles of each species (single particles last) carry through planes
+        perpendicular to this axis. Each value is the mean over the planes in a bin. Under gravity, the
+        momentum that gravity has given to the particles below the plane is subtracted (`analysis.impulses`).
+        None unless requested.
     contact_impulse_sum : ndarray, shape (shells,), optional, [mass length^2/time]
-        Mean over each shell of k_B T g(r) times the time, from the pairs that collide
+        Contribution of colliding pairs to the mean of k_B T g(r) over each shell, times the time
         (`analysis.pairs`). None unless requested.
     other_impulse_sum : ndarray, shape (shells,), optional, [mass length^2/time]
         Contribution of all other pairs to the same mean.
@@ -189,7 +192,7 @@ class Tally:
 def compressibility_factor(
     virial: np.ndarray | float, count: int, dimension: int, temperature: float, time: np.ndarray | float
 ) -> np.ndarray:
-    """Compute the compressibility factor of particles without walls from their virial sum.
+    """Compute the compressibility factor of a gas without walls from its virial sum.
 
     Parameters
     ----------
@@ -220,7 +223,7 @@ def compressibility_factor(
 _WITH_STRESS = frozenset(
     ("restitution", "roughness", "viscoelasticity", "contact_duration", "polydispersity", "lees_edwards")
 )
-"""Features with which velocities change only at contacts."""
+"""Features that a scene with this tally may have: velocities still change only at contacts."""
 
 
 @with_guidance
@@ -261,11 +264,11 @@ _DISTURBING = (
     "sliding",
     "open",
 )
-"""Features that prevent equilibrium at one temperature, or place fixed particles between the others."""
+"""Features that prevent equilibrium at one temperature, or add fixed particles."""
 _MOST = 100_000
 """Largest number of bins or shells."""
 FURTHEST = 0.499
-"""Largest distance of a pair, divided by the shortest side of a periodic container."""
+"""Largest allowed distance of a pair, divided by the shortest side of a periodic container."""
 
 
 @with_guidance
@@ -280,7 +283,7 @@ class ImpulseTally(OptionalTally):
     axis : {"x", "y", "z"}
         Axis.
     bins : int
-        Number of equal bins of the container, from 2 to 100000.
+        Number of bins of equal width along the container, from 2 to 100000.
 
     Raises
     ------
@@ -312,16 +315,16 @@ class ImpulseTally(OptionalTally):
         count_of("impulses.bins", self.bins, least=2, most=_MOST)
 
     def _require(self, scene: Scene) -> None:
-        """Raise SceneError unless the scene has the axis and is in equilibrium at one temperature."""
+        """Raise SceneError unless a scene has this axis and is in equilibrium at one temperature."""
         one_of("impulses.axis", self.axis, tuple("xyz"[: scene.dimension]))
         _require_equilibrium(scene)
 
 
 def _require_equilibrium(scene: Scene) -> None:
-    """Raise SceneError if impulses do not determine the density in a scene.
+    """Raise SceneError if the tallied momentum does not determine the density in a scene.
 
-    The message states the reason. Velocities must be independent of positions. This holds only in equilibrium
-    at one temperature.
+    The message states the reason. The velocities of particles must be independent of their positions, which
+    holds only in equilibrium at one temperature.
     """
     if len({particle.mass for particle in scene.particles}) > 1:
         rule = "must have one mass for an impulse tally, which sums over all single particles"
@@ -353,11 +356,12 @@ class PairImpulseTally(OptionalTally):
     Parameters
     ----------
     furthest : float, [length]
-        Largest distance, above 0.
+        Largest distance of a pair; a positive number.
     shells : int
         Number of shells, from 2 to 100000.
     share : float, default 1.0, [1]
-        Fraction of contacts at which pairs with all other particles are searched, in (0, 1].
+        Fraction of contacts, in (0, 1], at which pairs with all other particles are searched and tallied,
+        too.
 
     Raises
     ------

@@ -1,9 +1,9 @@
 """Bounds on the errors of the DSMC engine in a steady scene, from local conditions.
 
-The Boltzmann model neglects the excluded volume: in the contact value, in the virial, and in the distance
-between collision partners. The Enskog model uses the contact value of the local density. It neglects
-correlated collisions, the effect of a finite number of particles on the contact value, and the layers of
-particles at walls. In both models, cells average over variations within them.
+The Boltzmann model neglects the excluded volume: it sets the contact value to 1, and the virial and the
+distance between collision partners to 0. The Enskog model uses the contact value at the local density. It
+neglects correlations between collisions, the effect of a finite number of particles on the contact value, and
+the layers of particles at walls. Both models average over the variations of the gas within a cell.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from gaspart.theory.conditions import Conditions
 
 DENSEST = 0.4
-"""Maximum packing fraction at which the errors of the Enskog model are known."""
+"""Maximum packing fraction up to which the errors of the Enskog model are known."""
 _STATIC = 3e-3
 """Bound on the error of the Enskog model in Z, the collision rate and the pressures of a homogeneous gas
 (`dsmc_convergence`).
@@ -29,15 +29,16 @@ _STATIC = 3e-3
 _NORMAL = {2: 2.0 / math.pi, 3: 0.5}
 """Mean of |e_z| for the unit vector e of a contact, by dimension."""
 _AT_WALLS = 2.5
-"""Error of the collision rate of the Enskog model between two walls, in units of a product.
+"""Error of the Enskog model's collision rate between two walls, divided by a product.
 
-The product is the packing fraction times the diameter divided by the distance between the walls. The largest
-measured value is 2.1, in slits of 4, 8 and 16 diameters at packing fractions of 0.05 to 0.3.
+This product is the packing fraction times the ratio of the diameter to the distance between the walls. The
+largest measured value is 2.1, in slits of 4, 8 and 16 diameters at packing fractions of 0.05 to 0.3.
 """
 _ON_PROFILES = 2.0
-"""Maximum ratio of the effects of cells on the collision rates of the Enskog model and the Boltzmann model.
+"""Maximum error of collision rates due to cells in the Enskog model, divided by the Boltzmann model's error.
 
-In the Enskog model the contact value is also evaluated at the mean density of a cell.
+The error is larger in the Enskog model, because it also evaluates the contact value at the mean density of a
+cell.
 """
 
 
@@ -79,10 +80,10 @@ def boltzmann_error(request: AccuracyRequest) -> float:
 def enskog_error(request: AccuracyRequest, cells: tuple[int, ...] | None = None) -> float:
     """Bound the relative error of the Enskog equation.
 
-    In this equation, pairs collide at a distance of one diameter, with the contact value of the local
-    density.
+    In this equation, the centres of a colliding pair are one diameter apart, and the contact value is the
+    value at the local density.
 
-    cells : number of cells along each axis; by default cells are narrow
+    cells : number of cells along each axis. Default: cells so narrow that they cause no error
     """
     conditions = request.conditions
     error = _STATIC + _layers(request)
@@ -102,9 +103,9 @@ def cell_error(engine: DSMC, request: AccuracyRequest) -> float:
     """Bound the relative error due to cells and steps.
 
     The error of the viscosity, and of observables that depend on it, is computed for the shortest mean free
-    path. The error of a rate follows from a density that changes by a factor e over the shortest length scale
-    and is averaged over a cell. In the Enskog model, the loss of collisions in cells with few particles is
-    added.
+    path. The error of a rate is the error of averaging over a cell for a density that changes by a factor e
+    over the shortest length scale. For the Enskog model, the fraction of collisions lost in cells with few
+    particles is added.
     """
     conditions, error = request.conditions, 0.0
     if request.transported:
@@ -118,7 +119,7 @@ def cell_error(engine: DSMC, request: AccuracyRequest) -> float:
 
 
 def require_resolved(engine: DSMC, conditions: Conditions) -> None:
-    """Raise SceneError for cells or steps that do not resolve an inhomogeneous gas.
+    """Raise SceneError if cells or steps are too coarse for an inhomogeneous gas.
 
     Cells and steps must not exceed the length or time over which the gas changes, the shortest mean free
     path, or the shortest mean free time. In a homogeneous gas the state does not depend on cells and steps.
@@ -145,7 +146,7 @@ def require_resolved(engine: DSMC, conditions: Conditions) -> None:
 def cell_widths(engine: DSMC, conditions: Conditions) -> np.ndarray:
     """Return the side lengths (d,) of a cell, with 0 for an axis without a profile.
 
-    Such an axis has periodic faces and a single cell.
+    An axis without a profile has periodic faces and a single cell.
     """
     cells = np.array(cells_of(engine, conditions))
     around = np.array(conditions.scene.container.periodic)
@@ -156,14 +157,14 @@ def cell_widths(engine: DSMC, conditions: Conditions) -> np.ndarray:
 
 
 def cells_of(engine: DSMC, conditions: Conditions) -> tuple[int, ...]:
-    """Return the number of cells along each axis (d,); 1 by default."""
+    """Return the number of cells along each axis (d,); 1 if cells are not prescribed."""
     return tuple(np.broadcast_to(np.array(engine.cells_per_side or 1), conditions.free.shape).tolist())
 
 
 def _layers(request: AccuracyRequest) -> float:
     """Return the relative error of a density due to layers of particles at walls.
 
-    In these layers, about a diameter thick, the density is Z times the density in the middle.
+    In these layers, which are about a diameter thick, the density is Z times the density in the middle.
     """
     conditions, scene = request.conditions, request.scene
     if request.observable != "density" or scene.container.periodic[-1]:
@@ -174,9 +175,10 @@ def _layers(request: AccuracyRequest) -> float:
 
 
 def _lost(engine: DSMC, conditions: Conditions) -> float:
-    """Return the fraction of collisions that the engine misses, weighted by collisions.
+    """Return the fraction of all collisions that the engine misses.
 
-    Collisions are missed in cells with fewer particles than the mean.
+    More collisions are missed where cells contain fewer particles. The local fraction is weighted by the
+    collision rate.
     """
     weights = conditions.share * conditions.contact
     fewer = float(weights.sum() / (weights * conditions.crowding).sum())

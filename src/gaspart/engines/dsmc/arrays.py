@@ -45,7 +45,7 @@ def empty_particles(state: State) -> Particles:
 def grid_for(scene: Scene, state: State, cells: tuple[int, ...], threads: int) -> Grid:
     """Return a grid with a number of cells along each axis, over the accessible volume.
 
-    Between open faces, one more count is for the slots without a particle.
+    With open faces, the grid has an additional counter for slots without a particle.
     """
     lower, upper = accessible(scene)
     per_side = np.array(cells, dtype=np.int64)
@@ -67,8 +67,8 @@ def grid_for(scene: Scene, state: State, cells: tuple[int, ...], threads: int) -
 def kinds_of(state: State) -> tuple[np.ndarray, np.ndarray]:
     """Return the kinds of particles, and the kind number (N,) of each particle.
 
-    A kind is a row of radius, mass and moment of inertia in an array (K, 3). If all particles are equal, the
-    array of kinds has the shape (0,).
+    The array of kinds has the shape (K, 3); each row contains radius, mass and moment of inertia. If all
+    particles are identical, this array has the shape (0,).
     """
     properties = np.stack([state.radii, state.masses, state.moments_of_inertia], axis=1)
     if not len(properties) or (properties == properties[0]).all():
@@ -117,11 +117,11 @@ def workspace_for(
 
 
 TALLY = ("counts", "virial", "loss", "wall_hits", "wall_impulse", "wall_heat")
-"""Arrays of `Workspace` with counters, by thread."""
+"""Names of the arrays in `Workspace` that contain counters for each thread."""
 
 
 def faces_for(scene: Scene, threads: int, opened: Open | None) -> Faces | None:
-    """Return the kinds of the container's faces, or None if all are hard or periodic."""
+    """Return the container's faces for the kernels, or None if all are hard or periodic."""
     if not scene.faces:
         return None
     velocities = sliding_velocities(scene)
@@ -131,7 +131,7 @@ def faces_for(scene: Scene, threads: int, opened: Open | None) -> Faces | None:
 
 
 def law_for(law: ContactLaw | None) -> Law | None:
-    """Convert the collision law for the kernels; None if collisions are elastic and smooth."""
+    """Return the collision law for the kernels; None if collisions are elastic and smooth."""
     return None if law is None else Law(law.normal, law.tangential, law.spins, law.viscous)
 
 
@@ -139,13 +139,9 @@ def law_for(law: ContactLaw | None) -> Law | None:
 
 
 _SAMPLES = 4000.0
-"""Number of particles that are averaged for the density of a cell; with fewer particles per cell, more steps
-are averaged.
-"""
+"""Number of particles from which the density of a cell is averaged, over one or more steps."""
 _MOST_DENSE_KINDS = 16
-"""Maximum number of kinds of particles in a dense gas. A trial draws the kind of the partner at random, and
-most trials fail if there are many kinds.
-"""
+"""Maximum number of kinds of particles in a dense gas. With many kinds most trials fail."""
 
 _FEWEST_CELLS = 64
 """Minimum number of cells for several threads. Fewer cells form a single slab and are processed one after
@@ -154,7 +150,7 @@ another.
 
 
 def is_uniform(scene: Scene) -> bool:
-    """Return True if the density is uniform at all times, and hence known."""
+    """Return True if the density is uniform at all times, and therefore known."""
     return scene.is_periodic and spreads(scene)
 
 
@@ -166,7 +162,7 @@ def spreads(scene: Scene) -> bool:
 
 
 def moved_fields(fields: np.ndarray, before: Grid, after: Grid) -> np.ndarray:
-    """Return the fields (2, cells) of one grid on another grid, evaluated at its cell centres."""
+    """Return fields (2, cells) of a grid, evaluated at the cell centres of another."""
     per_side = tuple(after.per_side)
     centres = np.stack(np.unravel_index(np.arange(len(after.starts) - 1), per_side)) + 0.5
     ratio = (before.per_side / after.per_side)[:, None]
@@ -177,8 +173,8 @@ def moved_fields(fields: np.ndarray, before: Grid, after: Grid) -> np.ndarray:
 def slabs_of(per_side: np.ndarray, reach: np.ndarray) -> tuple[int, np.ndarray]:
     """Return the axis along which slabs divide the cells, and the first cell of each slab.
 
-    The list also contains the end of the last slab. There is one slab, or an even number of slabs that are
-    each at least two reaches wide.
+    The array also contains the end of the last slab. The result is an even number of slabs, each at least two
+    `reach` wide, or a single slab if this is impossible.
     """
     numbers = 2 * (per_side // (4 * reach))
     axis = int(numbers.argmax())

@@ -48,10 +48,10 @@ FINEST = 40
 ROOM = math.sqrt(2.0)
 """Ratio of a step to the recommended step above which the step is divided."""
 _HOTTER = 2.0
-"""Ratio of initial speeds passed by the caller to the scene's own initial speeds, up to which steps are not
-adapted.
+"""Largest ratio of initial speeds to the scene's own initial speeds at which steps are not adapted.
 
-Steps are then too long by at most this factor, which changes transport coefficients by 1 %.
+Steps that are not adapted are then too long by at most this factor, which changes transport coefficients by 1
+%.
 """
 _KICKED = 0.09
 """Width of the kicks in a step divided by the mean speed, unless a step has at most one kick.
@@ -60,7 +60,7 @@ Kicks are applied at the end of a step. The energy there exceeds its time averag
 kicks, at most 0.35 %.
 """
 _FIRST = 20
-"""Level of the parts for a start from rest, for any number of kicks in a part."""
+"""Level to which steps are divided at a start from rest, even if a part then has several kicks."""
 
 
 @dataclass(frozen=True)
@@ -72,9 +72,9 @@ class Reach:
     path : mean free path
     across : shortest side
     fall : side length between walls along the direction of fall
-    walled : shortest side length between walls
-    pull : acceleration towards walls
-    push : mean width of kicks, divided by the square root of time
+    walled : shortest distance between two opposite walls
+    pull : acceleration by gravity along axes with walls
+    push : mean over particles of the width of kicks, divided by the square root of the time
     interval : time between kicks
     """
 
@@ -101,7 +101,7 @@ class Reach:
         return self.pull == 0.0 and self.push == 0.0
 
     def way(self, speed: float, step: float) -> float:
-        """Return the distance that a particle flies in a step."""
+        """Return an upper estimate of the distance that a particle flies in a step."""
         return (speed + self.pull * step + self.push * math.sqrt(step)) * step
 
     def speed(self, way: float, step: float) -> float:
@@ -118,7 +118,7 @@ class Reach:
 
 
 def reach_of(scene: Scene, path: float) -> Reach:
-    """Return the bounds of a scene for a mean free path."""
+    """Return the bounds on flight distances in a scene, for a mean free path."""
     lengths, periodic = scene.container.lengths, scene.container.periodic
     walled = [length for length, around in zip(lengths, periodic, strict=True) if not around]
     pull = [g for g, around in zip(scene.gravity or (), periodic, strict=False) if not around]
@@ -148,8 +148,8 @@ def may_speed_up(scene: Scene) -> bool:
 def is_hotter(state: State, gas_rates: Rates) -> bool:
     """Return True if the initial state is so fast that steps must be adapted.
 
-    Speeds relative to the mean velocity of the state are compared with the speeds in the scene's own initial
-    state.
+    The speeds relative to the mean velocity of `state` are compared with the speeds in the scene's own
+    initial state.
     """
     velocities = state.velocities[np.isfinite(state.masses)]
     if not len(velocities):
@@ -176,7 +176,7 @@ def levels(reach: Reach, step: float, divided: bool) -> tuple[np.ndarray, np.nda
 def pace_for(
     scene: Scene, reach: Reach, step: float, divided: bool, present: np.ndarray | None = None
 ) -> Pace:
-    """Return the levels of a step in the form of the kernels.
+    """Return the levels of a step as the kernels' `Pace`.
 
     present : see `kernels.dsmc.model.Faces`
     """
@@ -193,8 +193,8 @@ _TOO_LONG = f"lets particles fly more than {MOST:g} mean free paths, or {MOST:g}
 def check_step(reach: Reach, step: float, gas_rates: Rates) -> None:
     """Raise SceneError for a step in which particles fly too far.
 
-    A step is rejected if a particle would collide with more than `MOST` others, or cross the container
-    between walls more often than that.
+    A step is rejected if, during the step, a particle would collide more than `MOST` times, or fly from wall
+    to wall more than `MOST` times.
     """
     if reach.way(gas_rates.speed, step) > reach.most:
         fit = reach.longest(gas_rates.speed, reach.most)
@@ -202,7 +202,7 @@ def check_step(reach: Reach, step: float, gas_rates: Rates) -> None:
 
 
 def too_fast(time: float, step: float, reach: Reach, pace: Pace) -> SimulationError:
-    """Return the error for particles that have become too fast for all levels."""
+    """Return the error for particles that are too fast for all levels."""
     if len(pace.low) > 1:
         rule = f"at time {time:g} the speeds have risen so much that a step needs more than 2^{FINEST} parts"
         return SimulationError(f"{rule}: give a shorter time_step")
@@ -218,28 +218,29 @@ WIDEST = 1.0 / 3.0
 FEWEST = {"boltzmann": 8.0, "enskog": 64.0}
 """Minimum number of particles per cell, even if the cell then becomes wider.
 
-After a collision in a dense gas the pair separates. In a cell with few other particles, approaching pairs
-then become rare. With 8 particles per cell a gas at a packing fraction of 0.4 has 6 % too few collisions.
+After a collision in a dense gas the two particles move apart. If the cell contains few other particles, few
+pairs that approach remain. With 8 particles per cell a gas at a packing fraction of 0.4 has 6 % too few
+collisions.
 """
 USUAL = 16.0
-"""Sufficient number of particles per cell. Above it, cells become narrower than recommended."""
+"""Sufficient number of particles per cell. If there are more, cells become narrower than recommended."""
 LAYERS = 8
-"""Minimum number of cells along the fall of particles between walls: their speeds depend on the height."""
+"""Minimum number of cells along gravity between walls, because speeds depend on the height."""
 _DIGITS = 2.0**10  # parts to which a step is rounded, so that it does not depend on the rounding of sums
 CELL_LOSS = 0.5
 """Maximum fraction of collisions that the Enskog model misses, multiplied by the number of particles per
 cell.
 
-Particles separate after a collision. In a cell with few other particles, approaching pairs then become rare
-(docs/dsmc.md: with 8 particles per cell 3 % of the collisions are missing at a packing fraction of 0.1, 6 %
-at 0.4).
+The two particles move apart after a collision. If the cell contains few other particles, few pairs that
+approach remain (docs/dsmc.md: with 8 particles per cell 3 % of the collisions are missing at a packing
+fraction of 0.1, 6 % at 0.4).
 """
 
 
 def cells_for(engine: DSMC, scene: Scene, gas_rates: Rates, crowding: float = 1.0) -> tuple[int, ...]:
     """Return the prescribed or recommended number of cells along each axis (d,).
 
-    crowding : ratio of the density around the particles to the mean density
+    crowding : density around a particle, averaged over particles, divided by the mean density
     """
     prescribed, d = engine.cells_per_side, scene.dimension
     if prescribed is not None and not (engine.adapts_cells and crowding > 1.0):
@@ -269,7 +270,7 @@ def recommended_cells(model: str, scene: Scene, gas_rates: Rates, number: float)
 
 
 def _fitting(lengths: tuple[float, ...], gas_rates: Rates, number: float, model: str) -> tuple[int, ...]:
-    """Return the cells along axes of these lengths for a number of particles."""
+    """Return the number of cells along each axis that suits a number of particles."""
     width = min(WIDEST * gas_rates.path, cube_side(lengths, number / USUAL))
     width = max(width, cube_side(lengths, number / FEWEST[model]))
     return tuple(max(1, math.floor(length / width + 1e-9)) for length in lengths)
@@ -304,10 +305,10 @@ def widths_of(cells: tuple[int, ...], scene: Scene) -> np.ndarray:
 def predicted_error(cells: tuple[int, ...], step: float, scene: Scene, gas_rates: Rates) -> float:
     """Return the relative error of the shear viscosity due to cells and step.
 
-    The viscosity is too high. The error is a (w/l)^2 + b (c dt/l)^2, with a of `CELL_VISCOSITY` and b of
-    `STEP_COEFFICIENTS`, where w is the side of a cell, l the mean free path and c = sqrt(2 kT/m). For discs b
-    is the value for spheres, an estimate. An axis with one cell between periodic faces has no profile to
-    distort.
+    The error makes the viscosity too high. It is a (w/l)^2 + b (c dt/l)^2, where w is the side of a cell, l
+    the mean free path and c = sqrt(2 kT/m); a is from `CELL_VISCOSITY` and b from `STEP_COEFFICIENTS`. The
+    value of b for discs is an estimate, the value for spheres. A periodic axis with a single cell does not
+    contribute, because the gas has no profile along it.
     """
     if not gas_rates.path < math.inf:
         return 0.0
@@ -321,10 +322,10 @@ def predicted_error(cells: tuple[int, ...], step: float, scene: Scene, gas_rates
 
 
 def diffusion_error(step: float, scene: Scene, gas_rates: Rates) -> float:
-    """Return the relative error of the diffusion coefficient due to a step; it is positive.
+    """Return the positive relative error of the diffusion coefficient due to a step.
 
-    For spheres the error is b (c dt/l)^2, see `predicted_error`. The same value is an estimate for discs.
-    Cells have no effect.
+    For spheres the error is b (c dt/l)^2, with the quantities of `predicted_error`. For discs the same value
+    is an estimate. Cells do not affect the diffusion coefficient.
     """
     return (
         STEP_COEFFICIENTS["diffusion"] * _thermal_step(step, scene.dimension, gas_rates) ** 2
@@ -334,13 +335,13 @@ def diffusion_error(step: float, scene: Scene, gas_rates: Rates) -> float:
 
 
 def lost_collisions(engine: DSMC, cells: tuple[int, ...], scene: Scene) -> float:
-    """Bound the fraction of collisions that the Enskog model misses; 0 for a single cell."""
+    """Return an upper bound of the fraction of collisions that the Enskog model misses."""
     number = math.prod(cells)
     return CELL_LOSS * number / scene.count if engine.model == "enskog" and number > 1 else 0.0
 
 
 def _thermal_step(step: float, dimension: int, gas_rates: Rates) -> float:
-    """Return c dt / l."""
+    """Return the step in thermal units, c dt / l (see `predicted_error`)."""
     return math.sqrt(2.0) * gas_rates.speed / math.sqrt(MEAN_SQUARE[dimension]) * step / gas_rates.path
 
 
@@ -351,7 +352,7 @@ def coarse(
 
     Each warning recommends a value.
 
-    gas_rates : present collision rates
+    gas_rates : collision rates at the present time
     crowding : see `cells_for`
     """
     texts = {}

@@ -45,7 +45,7 @@ _OVERSIZED = (
 
 
 def check_scene(scene: Scene, state: State) -> None:
-    """Raise SceneError for particles that this engine does not model, or for too many of them."""
+    """Raise SceneError if the engine does not model these particles, or if there are too many."""
     if oversized_particles(state).any():
         raise SceneError("radius", scene.largest_radius, _OVERSIZED)
     if state.count > MOST_PARTICLES:
@@ -59,7 +59,7 @@ def check_made(counts: np.ndarray, time: float, most: int) -> None:
     """Raise SimulationError if steps could not be completed.
 
     counts : see `kernels.dsmc.model`
-    most : greatest number of particles
+    most : maximum number of particles
     """
     from gaspart.kernels.dsmc.model import CROWDED, FAR, UNFINISHED
 
@@ -97,7 +97,7 @@ class StressPart(TallyPart):
         return exact_parts(self.kernel.sums)[:, 0]
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the sums under the names of fields of `Tally`."""
+        """Return the sums by the names of their fields in `Tally`."""
         return tallied_fluxes(self.read(clock), self.kernel.drift)
 
 
@@ -111,7 +111,7 @@ class WallShearPart(Part):
         super().__init__({}, sums={"shear": shear})
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the momentum under the name of its field of `Tally`."""
+        """Return the momentum by the name of its field in `Tally`."""
         return {"wall_shear": exact_parts(self.sums["shear"])[..., 0]}
 
 
@@ -130,7 +130,7 @@ def tally_parts(
 
 
 _WHOLE = 2**FINEST
-"""Number of subdivisions of a step that count the position within the step."""
+"""Number of equal subdivisions of a step in which the position within the step is counted."""
 
 
 class DsmcDynamics(SteppedDynamics):
@@ -237,7 +237,7 @@ class DsmcDynamics(SteppedDynamics):
         self._resolution.warn_of_speed(self.time)
 
     def _make(self, stop: int) -> None:
-        """Perform all steps up to a given one."""
+        """Perform all steps up to the step `stop`."""
         while self._steps < stop:
             level = self._resolution.level(self._particles, self._place_in_step, self.time)
             part, at = _WHOLE >> level, self._steps * _WHOLE + self._place_in_step
@@ -253,7 +253,7 @@ class DsmcDynamics(SteppedDynamics):
     def _run(self, level: int, number: int) -> int:
         """Run the kernel for some parts of a step, and return the number of completed parts.
 
-        level : level of the division of the step
+        level : level of the division: the step has 2^level parts
         """
         now = self._resolution
         pace = now.pace and now.pace._replace(level=level)
@@ -303,7 +303,7 @@ class DsmcDynamics(SteppedDynamics):
         return {**super()._arrays(), "clock": self._workspace.clock}
 
     def _checkpoint_data(self) -> dict[str, Any]:
-        """Return the data of a checkpoint, with the density level and a dense gas's fields."""
+        """Return the data of a checkpoint, with the density level and the dense gas's fields."""
         dense = self._resolution.dense
         fields = {"fields": dense.fields} if dense else {}
         return {**super()._checkpoint_data(), "crowded": self._resolution.crowded, **fields}

@@ -48,7 +48,7 @@ HIGHEST = 6
 the particles.
 """
 _CHANGED = 0.75
-"""Difference between the density and the present level, in levels, at which the level changes."""
+"""Difference between the measured density and the present level, in levels, at which the level changes."""
 
 
 def may_crowd(scene: Scene) -> bool:
@@ -62,8 +62,8 @@ def may_crowd(scene: Scene) -> bool:
 def crowding(positions: np.ndarray, cells: tuple[int, ...], scene: Scene) -> float:
     """Return the relative density around particles at positions (N, d).
 
-    This density is computed from the numbers of pairs in some cells, and equals 1 in a uniform gas of the
-    usual number of particles.
+    This density is computed from the numbers of pairs in the cells. In a uniform gas with the usual number of
+    particles it is 1.
     """
     lower, upper = accessible(scene)
     coordinates = (positions - lower) / (upper - lower) * cells
@@ -77,9 +77,9 @@ def crowding(positions: np.ndarray, cells: tuple[int, ...], scene: Scene) -> flo
 
 
 def next_level(level: int, times: float) -> int:
-    """Return the new level for a gas with the relative density `times`.
+    """Return the new density level for a gas with the relative density `times`.
 
-    level : present level
+    level : present density level
     """
     exact = math.log2(max(times, 1.0))
     return level if abs(exact - level) <= _CHANGED else min(round(exact), HIGHEST)
@@ -94,9 +94,10 @@ class Resolution:
     ----------
     step : length of a step
     cells : number of cells along each axis, shape (d,)
-    crowded : density level; the relative density around the particles is 2^crowded
+    crowded : density level: the relative density around the particles is about 2^crowded
     crowds : True if the density level can change
-    grid, dense, pace : arrays for the kernels; `dense` for a dense gas, `pace` if steps follow the speeds
+    grid, dense, pace : arrays for the kernels; there is a `dense` only for a dense gas, and a `pace` only if
+        steps adapt to speeds
     """
 
     def __init__(
@@ -146,13 +147,13 @@ class Resolution:
             self._warn(gas_rates, f" where most particles are at time {time:g}")
 
     def level(self, particles: Particles, position: int, time: float) -> int:
-        """Return the level for the next part of a step.
+        """Return the level of division for the next part of a step.
 
-        The speeds of the particles determine the level. A higher level is returned if the completed fraction
-        of the step is not a multiple of the part. Raises SimulationError if the particles are too fast for
-        every level.
+        The speeds of the particles determine the level. If the completed fraction of the step is not a
+        multiple of a part at this level, a higher level is returned. Raises SimulationError if the particles
+        are too fast for every level.
 
-        position : position within the step, in parts of the largest level
+        position : completed fraction of the step, in units of the shortest part
         """
         if self.pace is None:
             return 0
@@ -162,7 +163,7 @@ class Resolution:
         return max(level, 0 if position == 0 else FINEST + 1 - (position & -position).bit_length())
 
     def warn_of_speed(self, time: float) -> None:
-        """Warn if a step is too long for the highest mean speed so far."""
+        """Warn if a step is too long for the highest mean speed until now."""
         if self.pace is not None:
             speed = float(self.pace.fastest[0])
             gas_rates = Rates(speed / self._reach.path, speed, self._reach.path)
@@ -171,7 +172,7 @@ class Resolution:
     def _warn(self, gas_rates: Rates, when: str) -> None:
         """Warn once about each prescribed setting that is coarser than recommended.
 
-        when : description of the time in the warning
+        when : words that describe the time in the warning
         """
         texts = coarse(self._engine, self.cells, self.step, self._scene, gas_rates, 2.0**self.crowded)
         for key, text in texts.items():

@@ -36,15 +36,17 @@ class DSMC(Engine):
     Parameters
     ----------
     time_step : float, [time], optional
-        Length of a step. Default: at most a fifth of the mean free time of the scene.
+        Length of a step. Default: a step of at most a fifth of the scene's mean free time.
     cells_per_side : int or (d,) sequence of int, optional
-        Number of cells along each axis. Default: cells a third of a mean free path wide.
+        Number of cells along each axis. Default: cells with a width of about a third of a mean free path.
     model : {"boltzmann", "enskog"}, default "boltzmann"
-        Collision model: a dilute gas [1]_ [2]_, or a dense gas [3]_. In the dense gas, collision partners are
-        at a distance of one diameter, and the collision rate is enhanced by the contact value.
+        Collision model. "boltzmann": a dilute gas [1]_ [2]_. "enskog": a dense gas [3]_, in which the centres
+        of collision partners are one diameter apart, and the collision rate is multiplied by the contact
+        value.
     adapt : {"nothing", "steps", "cells", "both"}, optional
-        Settings that the engine adapts during a run: steps are divided if speeds rise, and cells become
-        narrower if particles concentrate. Default: all settings that are not prescribed.
+        Settings that the engine adapts during a run. "steps": steps are divided if speeds rise. "cells":
+        cells become narrower if the gas becomes denser somewhere. Default: all settings that are not
+        prescribed.
     threads : int, default 1
         Number of threads that share the work.
 
@@ -139,7 +141,7 @@ class DSMC(Engine):
 
     @property
     def adapts_cells(self) -> bool:
-        """True if cells become narrower when particles concentrate.
+        """True if cells become narrower when the gas becomes denser somewhere.
 
         Examples
         --------
@@ -151,7 +153,7 @@ class DSMC(Engine):
 
     @property
     def quantum(self) -> float | None:
-        """Length of a step, if it is known.
+        """Length of a step; None if it is not yet known.
 
         Examples
         --------
@@ -162,7 +164,7 @@ class DSMC(Engine):
         return self.time_step
 
     def check_features(self, scene: Scene) -> None:
-        """Check that the engine, with its collision model, has all features of a scene.
+        """Check that the engine supports all features of a scene with its collision model.
 
         Parameters
         ----------
@@ -172,7 +174,7 @@ class DSMC(Engine):
         Raises
         ------
         SceneError
-            If a feature is missing. The message names the engines that have it.
+            If the engine does not support a feature. The message names the engines that support it.
 
         Examples
         --------
@@ -244,9 +246,10 @@ class DSMC(Engine):
         return self._with(time_step=step, adapts=(False, self.adapts_cells))
 
     def _with(self, adapts: tuple[bool, bool], **settings: Any) -> DSMC:
-        """Return a copy with these settings.
+        """Return a copy with these settings changed.
 
-        adapts : True if steps and cells adapt; set `adapt` only if this does not follow from the settings
+        adapts : True if steps and cells are adapted; `adapt` is set only if this does not follow from the
+            other settings
         """
         plain = replace(self, **settings, adapt=None)
         if adapts == (plain.adapts_steps, plain.adapts_cells):
@@ -348,7 +351,7 @@ class DSMC(Engine):
 
     @classmethod
     def variants(cls) -> tuple[DSMC, ...]:
-        """Return one engine for each model, as candidates of a plan.
+        """Return an engine for each collision model, as candidates of a plan.
 
         Returns
         -------
@@ -369,12 +372,12 @@ class DSMC(Engine):
         Parameters
         ----------
         request : AccuracyRequest
-            Observable of a steady scene, and its requested accuracy.
+            Observable of a steady scene, with the requested accuracy.
 
         Returns
         -------
         Candidate
-            The engine, and bounds on its errors.
+            The engine, with bounds on its errors.
 
         Raises
         ------
@@ -399,7 +402,7 @@ class DSMC(Engine):
 
     @property
     def timed_as(self) -> str:
-        """Name in the table of costs; the Enskog model has its own name.
+        """Name in the table of costs; each model has its own name.
 
         Examples
         --------
@@ -432,7 +435,7 @@ class DSMC(Engine):
         return (self.for_scene(scene).time_step or 0.0) / self._own_step(scene)
 
     def at_step(self, scene: Scene, step: float, precision: str) -> DSMC:
-        """Return a copy with a time step of the table of costs.
+        """Return a copy with a time step from the table of costs.
 
         Parameters
         ----------
@@ -463,7 +466,7 @@ class DSMC(Engine):
 
     @property
     def limitations(self) -> str:
-        """Limitations of the model, and of all models that draw collision partners at random.
+        """Limitations of the model, and limitations of all DSMC models, in words.
 
         Examples
         --------
@@ -475,7 +478,7 @@ class DSMC(Engine):
         return f"{lacks[self.model]}, positions of pairs"
 
     def describe(self) -> str:
-        """Return the name with the model, and the step if it is known.
+        """Return the name of the engine with its model, and its step if known.
 
         Returns
         -------
@@ -506,8 +509,8 @@ class DSMC(Engine):
         Returns
         -------
         dict of str to str
-            Remarks by title: the method of finding pairs, and the effect of steps longer than the default
-            (the run prints a warning).
+            Remarks by title: the method of finding pairs, and the effect of steps that are longer than the
+            default. For such steps the run also issues a warning.
 
         Examples
         --------
@@ -535,7 +538,7 @@ class DSMC(Engine):
         Returns
         -------
         str
-            The name depends on the model, on whether steps follow the speeds, and on whether there are
+            The name, which depends on the model, on whether steps adapt to speeds, and on whether there are
             several threads.
 
         Examples
@@ -551,7 +554,7 @@ class DSMC(Engine):
         return self.model + paced + ("-threads" if self.threads > 1 else "")
 
     def for_small_scene(self, scene: Scene) -> DSMC:
-        """Return settings with which a scene of few particles uses the same kernels.
+        """Return settings with which a small scene uses the same kernels as the full scene.
 
         Parameters
         ----------
@@ -561,7 +564,7 @@ class DSMC(Engine):
         Returns
         -------
         DSMC
-            The engine, with one cell and the step for the full scene.
+            The engine with a single cell, and with the step for the full scene.
 
         Examples
         --------

@@ -78,7 +78,7 @@ from gaspart.state.tally import Tally
 
 
 def particles_of(state: State, boxes: Boxes) -> Particles:
-    """Return the particles of a state, without predictions."""
+    """Return the particles of a state as arrays of the kernels, without predictions of events."""
     n = state.count
     particles = Particles(
         flights=aligned_zeros((n,), flight_dtype(state.dimension)),
@@ -95,7 +95,7 @@ def particles_of(state: State, boxes: Boxes) -> Particles:
 def event_model(
     scene: Scene, state: State, seed: int | tuple[int, ...], boxes: Boxes, largest: float
 ) -> tuple[Model, float]:
-    """Return the kernel model of a scene, and its unit of mass.
+    """Return the model of a scene for the kernels, and its unit of mass.
 
     largest : largest radius of the particles that are sorted into boxes
     """
@@ -122,7 +122,7 @@ def event_model(
 def event_parts(
     scene: Scene, state: State, seed: int | tuple[int, ...], model: Model, unit_mass: float
 ) -> list[Part]:
-    """Return the parts of a run, one per feature of the scene."""
+    """Return the parts of a run, one for each feature of the scene."""
     gravity, law, faces, walls = model.gravity, model.law, model.faces, model.walls
     lightest = float(state.masses.min(initial=np.inf))
     parts = (
@@ -144,7 +144,7 @@ def event_parts(
 
 
 def wrap(positions: np.ndarray, images: np.ndarray, space: Space) -> None:
-    """Move particles back that are beyond a periodic face because of rounding.
+    """Move particles to a periodic face if they are beyond it only because of rounding.
 
     These particles reach the face exactly at the present time.
     """
@@ -163,7 +163,8 @@ def wrap(positions: np.ndarray, images: np.ndarray, space: Space) -> None:
 class EventDynamics(Dynamics):
     """Running scene under the event-driven engine.
 
-    Times on the clocks are relative to the start of the current epoch, so that they keep their precision.
+    Each particle has a clock. A run is divided into epochs, and times on the clocks are relative to the start
+    of the current epoch, so that they keep their precision.
     """
 
     numbers = ("start", "epoch", "base", "quiet", "clock", "since")
@@ -207,11 +208,11 @@ class EventDynamics(Dynamics):
         self._predict()
 
     def reset_tally(self) -> None:
-        """Begin to count from zero."""
+        """Reset all counters to zero."""
         self._tally.reset(self.time, self._clock)
 
     def _make_lists(self) -> None:
-        """Make the neighbour lists from the stored centres."""
+        """Make the neighbour lists from the stored centres of the lists."""
         self._boxes = self._boxes._replace(lists=make_lists(self._boxes.lists, self._scene))
 
     def _predict(self) -> None:
@@ -221,7 +222,7 @@ class EventDynamics(Dynamics):
         self._begin(anew=True)
 
     def _begin(self, anew: bool) -> None:
-        """Make the queue. Predict all events if `anew` is True, otherwise keep the predictions."""
+        """Make the queue of events. Predict all events again if `anew` is True."""
         if self._queue:
             free = self._model._replace(masses=None, law=None)  # contacts are not needed here
             scene = self._particles, self._queue, self._boxes, free, self._tally.arrays
@@ -246,8 +247,9 @@ class EventDynamics(Dynamics):
         time. The second is a run without an end time in which no event occurs during a thousand flights
         through the container.
 
-        max_work : maximum number of events, box crossings and predictions at the start of an epoch. At this
-            limit, the call returns at the time reached. The limit is exact within a factor of 2.
+        max_work : maximum work: the sum of the numbers of events, box crossings and predictions at the start
+            of epochs. At this limit, the call returns before the time `until`. The work exceeds the limit by
+            at most a factor of 2.
         """
         remaining, work = (
             np.iinfo(np.int64).max if number is None else number for number in (max_events, max_work)
@@ -301,7 +303,7 @@ class EventDynamics(Dynamics):
         return any(part.at_rest for part in self._parts)
 
     def _stay(self, until: float) -> None:
-        """Advance the time in a scene at rest."""
+        """Advance the time to `until` in a scene whose particles are at rest."""
         if until == np.inf:
             raise SimulationError(
                 f"at time {self.time:g} all particles are at rest: there are no more events"
@@ -344,17 +346,18 @@ class EventDynamics(Dynamics):
         return length
 
     def _base_from(self, present: float) -> float:
-        """Return the length of an epoch, without the extension by `Epochs.quiet`.
+        """Return the length of the next epoch, before `Epochs.quiet` extends it.
 
-        present : the same length for the previous epoch
+        present : length of the previous epoch, also before the extension
         """
         stored = sum(part.stored for part in self._parts)
         return self._epochs.base(self._flights["velocity"], stored, present)
 
     def _renew_epoch(self) -> float:
-        """Start shorter epochs if the particles, all at the present time, have become fast enough.
+        """Start shorter epochs if the particles have become much faster.
 
-        In a gas at rest an epoch has no end. Returns the amount by which the start of the clocks has moved.
+        All particles must be at the present time. The new lengths are needed because an epoch of a gas at
+        rest has no end. Returns the amount by which the start of the epoch has moved.
         """
         base, time = self._base_from(self._base), self.time
         if base >= self._base:
@@ -372,7 +375,7 @@ class EventDynamics(Dynamics):
         return later
 
     def _begin_epoch(self, length: float) -> None:
-        """Set the length of the present epoch, and all times that the clocks cannot resolve."""
+        """Set the length of the present epoch, and all data of parts that depend on it."""
         self._epoch = length
         for part in self._parts:
             self._model = part.begin_epoch(length, self._start, self._model)
@@ -389,11 +392,11 @@ class EventDynamics(Dynamics):
 
     @property
     def exchanged(self) -> float:
-        """Sum of the absolute energies exchanged by contacts and by each face since time 0."""
+        """Sum of the absolute energies that contacts and each face have exchanged since time 0."""
         return self._tally.exchanged
 
     def _present(self) -> np.ndarray:
-        """Return the flights (N,) at the present time."""
+        """Return the particles' flights (N,), moved to the present time."""
         flights = self._flights.copy()
         if not self._at_rest:
             advance_all(flights, self._clock, self._model.space, self._model.gravity)
@@ -432,10 +435,10 @@ class EventDynamics(Dynamics):
         return arrays
 
     def _checkpoint_data(self) -> dict[str, Any]:
-        """Return particles at their own times, predictions, counters, and the search.
+        """Return the data of a checkpoint: particles at their own times, predictions, counters, search.
 
-        For neighbour lists, only their capacity `room` is stored. If it does not suffice, all lists are made
-        again; counters of work then differ.
+        Neighbour lists are not stored, but only their capacity `room`. If the capacity does not suffice after
+        the restart, all lists are made again; the counters of work then differ.
         """
         lists = self._boxes.lists
         room = {"room": (lists.room, lists.per_cell)} if lists else {}
@@ -453,7 +456,7 @@ class EventDynamics(Dynamics):
     def _required_arrays(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         """Return the arrays required from a checkpoint, except the arrays of the search.
 
-        If the checkpoint has another search, the centres of neighbour lists are not required.
+        If the checkpoint is from a different search, the centres of neighbour lists are not required.
         """
         spared = {
             *self._search_settings(),

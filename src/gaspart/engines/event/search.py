@@ -1,4 +1,4 @@
-"""Search of the event-driven engine: choice by density, and neighbour lists for a scene."""
+"""Search of the event-driven engine: its automatic choice, and neighbour lists for a scene."""
 
 from __future__ import annotations
 
@@ -25,9 +25,10 @@ _SMALLEST, _LARGEST = 1e-12, 1e12  # radii whose squares are float32 numbers
 
 
 def distances(scene: Scene) -> tuple[float, float]:
-    """Return the displacement at which a list is renewed, and the reach of the list.
+    """Return the displacement of a particle at which its list is renewed, and the list's reach.
 
-    The reach includes a margin for the rounding of centres to single precision, so no contact is missed.
+    The reach includes a margin for the rounding of list centres to single precision, so that no contact is
+    missed.
     """
     d, diameter, lengths = scene.dimension, 2.0 * scene.largest_radius, scene.container.lengths
     rounding = 16.0 * float(np.finfo(np.float32).eps) * max(lengths)
@@ -44,7 +45,7 @@ def distances(scene: Scene) -> tuple[float, float]:
 
 
 def obstacle_to_lists(scene: Scene) -> str | None:
-    """Return the reason why a scene does not support neighbour lists, or None."""
+    """Return the reason why a scene excludes neighbour lists; None if there is no reason."""
     if scene.gravity is not None:
         return "gravity"
     if scene.walls:
@@ -63,7 +64,7 @@ def obstacle_to_lists(scene: Scene) -> str | None:
 
 
 def chosen_search(scene: Scene, search: str, boxes_given: bool) -> str:
-    """Return the search for a scene; if the engine chooses, "boxes" or "lists".
+    """Return the search for a scene; replace "automatic" by "boxes" or "lists".
 
     Raises SceneError if lists are requested but a feature of the scene does not support them, and if there
     are more particles than a search can number.

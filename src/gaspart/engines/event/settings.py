@@ -28,15 +28,16 @@ SEARCHES = ("automatic", "boxes", "lists", "direct", "pairs")
 class EventDriven(Engine):
     """Event-driven engine: exact collisions of hard particles, from one event to the next.
 
-    All searches give bitwise identical results. The method is described in [1]_ and [2]_.
+    The results of all searches are bitwise identical. The method is described in [1]_ and [2]_.
 
     Parameters
     ----------
     search : {"automatic", "boxes", "lists", "direct", "pairs"}, default "automatic"
-        Method of finding the next event. "boxes": a queue with one next event per particle. "lists": the
-        same, with neighbour lists. "automatic": the faster of these two at the density of the scene.
-        "direct": a single box, so that each search tests all particles. "pairs": all pairs before every event
-        ([1]_, section 3.1), as a reference.
+        Method of finding the next event. "boxes": a queue contains the next event of each particle, which is
+        searched in neighbouring boxes. "lists": the same queue, but with searches in neighbour lists.
+        "automatic": the faster of these two at the density of the scene. "direct": a single box, so that each
+        search tests all particles. "pairs": before every event all pairs are tested ([1]_, section 3.1), as a
+        reference.
     boxes_per_side : int or (d,) sequence of int, optional
         Number of boxes along each axis. Default: 0.5 to 1.5 boxes per particle.
 
@@ -53,10 +54,10 @@ class EventDriven(Engine):
     Notes
     -----
     A box is at least as wide as the diameter of the largest particle in the boxes. A few oversized particles
-    can be excluded from the boxes. Then every small particle near an oversized particle tests it. By default
-    the largest particles are excluded if this reduces the number of particles examined in a search by a
-    quarter (`state.boxes`). With `boxes_per_side`, particles wider than a box are excluded; they must be
-    fewer than the other particles.
+    can be excluded from the boxes. The search of a small particle near an oversized particle then tests this
+    particle separately. By default the largest particles are excluded if this reduces the number of particles
+    examined in a search by a quarter (`state.boxes`). With `boxes_per_side`, particles wider than a box are
+    excluded; they must be fewer than the other particles.
 
     References
     ----------
@@ -150,7 +151,7 @@ class EventDriven(Engine):
         Returns
         -------
         str
-            Name of the search. For "direct", which has a single box, it is also "boxes".
+            Name of the search; "boxes" also for the search "direct", which has a single box.
 
         Examples
         --------
@@ -173,7 +174,8 @@ class EventDriven(Engine):
         Returns
         -------
         EventDriven
-            The engine, with the search chosen for the full scene, and with a single box if it uses boxes.
+            The engine with the search that is chosen for the full scene, and with a single box if the search
+            uses boxes.
 
         Examples
         --------

@@ -1,4 +1,4 @@
-"""Counters of the event-driven engine, and the energy that leaves and enters a scene."""
+"""Counters of the event-driven engine, energies that leave or enter a scene, and epochs."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def tally_parts(
 ) -> list[TallyPart]:
     """Return the parts for optional tallies.
 
-    flights : (N,), particles
+    flights : (N,), flights of the particles
     state : initial state
     """
     return [PARTS[tally.name](tally, flights, model, unit_mass, scene, state) for tally in tallies]
@@ -46,7 +46,7 @@ class EventTally:
     ----------
     arrays : arrays to which the kernels add
     since : time of the last reset
-    lost : (2,), net and absolute energy removed before the reset, see `dissipated` and `exchanged`
+    lost : (2,), values of `dissipated` and `exchanged` at the last reset
     """
 
     def __init__(self, scene: Scene, unit_mass: float, parts: Sequence[Part]) -> None:
@@ -56,15 +56,15 @@ class EventTally:
         self.lost = np.zeros(2)
 
     def reset(self, time: float, clock: float) -> None:
-        """Reset the counters at a time, and store the energies removed before.
+        """Reset the counters at a time, after the energies removed so far are stored.
 
-        clock : the same time on the clocks of the epoch
+        clock : this time on the clocks of the epoch
         """
         self.lost = np.array([self.dissipated, self.exchanged])
         self.begin(time, clock)
 
     def begin(self, time: float, clock: float) -> None:
-        """Reset the counters, and discard all earlier counts."""
+        """Reset the counters, without storing the energies that have been removed so far."""
         self.arrays = kernels.empty_tally(self._surfaces)._replace(**self._optional)
         for part in self._parts:
             part.reset(clock)
@@ -72,7 +72,7 @@ class EventTally:
 
     @property
     def changing(self) -> dict[str, np.ndarray]:
-        """Changing arrays by name, without the arrays of parts."""
+        """Arrays of counters that change during a run, by name, except the arrays of parts."""
         return {key: array for key, array in self.arrays._asdict().items() if key not in _OPTIONAL}
 
     def read(self, time: float, clock: float) -> Tally:
@@ -102,7 +102,7 @@ class EventTally:
 
     @property
     def exchanged(self) -> float:
-        """Sum of the absolute energies exchanged by contacts and by each face since time 0."""
+        """Sum of the absolute energies that contacts and each face have exchanged since time 0."""
         gross = net(self.arrays.sums[kernels.LOSS]) + float(np.abs(values(self.arrays.wall_energy)).sum())
         return float(self.lost[1]) + gross * self._unit_mass + self._given
 
@@ -126,7 +126,8 @@ QUIET = 64
 class Epochs:
     """Epoch lengths of a scene.
 
-    The speed for times of flight is the rms speed plus the largest gain due to gravity and faces.
+    The length follows from a time of flight. The speed in this time is the rms speed plus the largest gain of
+    speed due to gravity and faces.
 
     masses : (N,), masses, infinite for fixed particles
     gained : square of the largest speed that the scene can give a particle
@@ -140,17 +141,17 @@ class Epochs:
         self._masses = masses[self._moving]
 
     def speed(self, velocities: np.ndarray) -> float:
-        """Return the speed for times of flight, with velocities (N, d)."""
+        """Return the speed from which times of flight follow, for velocities (N, d)."""
         square = float((velocities**2).sum(axis=1).mean()) if len(velocities) else 0.0
         return math.sqrt(square + self._gained)
 
     def _equipartition_speed(self, velocities: np.ndarray, stored: float) -> float:
         """Return the rms speed after equipartition of the energy.
 
-        In a gas at rest, a few heavy or spinning particles transfer their energy to the others within an
-        epoch.
+        The present rms speed would be too low: in a gas at rest, a few heavy or spinning particles can
+        transfer their energy to all others within an epoch.
 
-        stored : energy of the particles without translational energy
+        stored : energy of the particles in other forms than translation
         """
         if not len(self._masses):
             return 0.0
@@ -161,17 +162,17 @@ class Epochs:
     def base(self, velocities: np.ndarray, stored: float, present: float = 0.0) -> float:
         """Return the epoch length for velocities (N, d) and a `stored` energy.
 
-        The stored energy is added to the translational energy. The length `present` is kept under the
-        condition of `length`.
+        The stored energy is added to the translational energy. The length `present` is retained under the
+        condition in `length`.
         """
         length = self.length(self.speed(velocities), present)
         return min(length, self.length(self._equipartition_speed(velocities, stored), length))
 
     def flights(self, velocities: np.ndarray, length: float) -> float:
-        """Return the number of relative flights through the container in an epoch.
+        """Return the number of flights through the container in an epoch at the mean relative speed.
 
-        The particles have velocities (N, d). The result is 0 if the relative motion is below rounding.
-        Particles that move together do not collide, although no collision is missed.
+        Velocities (N, d) are relative to the motion of the whole gas, because particles that move together do
+        not collide. The result is 0 if the relative velocities are due to rounding only.
         """
         relative = self.speed(velocities - velocities.mean(axis=0))
         return relative * length / self._across if relative > _RESOLVED * self.speed(velocities) else 0.0
@@ -180,8 +181,8 @@ class Epochs:
         """Return the time after which clocks restart from zero.
 
         The length is a power of two, so that results scale exactly with the units. The length `present` is
-        kept until speeds have changed by a factor of 2^10. A cooling gas needs longer epochs, because the
-        cost of an epoch does not depend on its length.
+        retained until speeds have changed by a factor of 2^10. In a cooling gas epochs become longer, because
+        each epoch has the same cost.
         """
         length = _power_of_two(self._diameter / speed, _LENGTH) if speed > 0.0 else _AT_REST
         return present if present / _OTHER < length < present * _OTHER else length
@@ -189,8 +190,8 @@ class Epochs:
     def quiet(self, speed: float, length: float, number: int) -> float:
         """Return the epoch length after a `number` of epochs without an event.
 
-        The length is twice the previous one, up to a time of flight through the container. The clocks are
-        then as precise as the positions.
+        The length is twice the previous length, but at most a time of flight through the container. Up to
+        this length the clocks are as precise as the positions.
         """
         most = _power_of_two(self._across / speed, 0) if speed > 0.0 else length
         doublings = min(max(number - QUIET, 0), max(0, math.frexp(most)[1] - math.frexp(length)[1]))
@@ -198,7 +199,7 @@ class Epochs:
 
 
 def _power_of_two(time: float, more: int) -> float:
-    """Return the next power of two above a time, multiplied by 2^more, at most `_AT_REST`."""
+    """Return 2^more times the next power of two above a time, but at most `_AT_REST`."""
     _, exponent = math.frexp(time)
     return min(math.ldexp(1.0, exponent + more), _AT_REST) if time < _AT_REST else _AT_REST
 
@@ -207,7 +208,7 @@ def _power_of_two(time: float, more: int) -> float:
 
 
 MANY = 1 << 18
-"""Number of events during which time must advance by more than the clock resolution of each event."""
+"""Number of events in which time must advance by more than the sum of their clock resolutions."""
 # A run without an end time is stopped after this number of epochs without an event, and as many flights
 # through the container. If particles move almost uniformly, so that flights take longer, it is stopped after
 # more epochs.
@@ -226,7 +227,7 @@ _COLLAPSE = "an inelastic collapse, or a stack at rest, which a contact_duration
 
 
 def check_progress(time: float, spent: float, epoch: float) -> None:
-    """Raise SimulationError if `MANY` events took less time than the clocks can resolve.
+    """Raise SimulationError if `MANY` events span less time than the clocks can resolve.
 
     The order of such events would depend only on rounding.
 
@@ -262,7 +263,7 @@ def check_events(time: float, quiet: int, flights: float) -> None:
 
 
 class CollapsePart(Part):
-    """Detection of a collapse of `count` particles.
+    """Detection of an inelastic collapse in a scene of `count` particles.
 
     watch : counters of the kernels; None if no collapse is possible
     """
@@ -283,7 +284,7 @@ class CollapsePart(Part):
         self.watch = CollapseWatch(since, contacts, 0.0, most)
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
-        """Set the time in which too many contacts count as a collapse."""
+        """Set the time interval in which too many contacts of a particle mean a collapse."""
         self.watch = self.watch and self.watch._replace(interval=self._interval * length)
         return model
 

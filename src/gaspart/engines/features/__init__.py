@@ -1,1 +1,1 @@
-"""Optional features of a scene in the form of the engines, see `part`."""
+"""Optional features of a scene as engines represent them, see `part`."""

@@ -32,10 +32,10 @@ _ARRAYS = "positions", "velocities", "images", "radii", "masses", "species", "sp
 
 
 def with_room(scene: Scene, state: State) -> State:
-    """Return a state with entries for all possible particle numbers.
+    """Return a state whose arrays have an entry for every possible particle number.
 
-    Unused numbers have no position (NaN) and zero velocity. Without open faces the state is returned
-    unchanged.
+    Entries of unused numbers have the position NaN and the velocity 0. Without open faces the state is
+    returned unchanged.
     """
     free = scene.capacity - state.count
     if free == 0:
@@ -60,7 +60,7 @@ def open_of(scene: Scene, state: State) -> kernels.Open | None:
 def reservoirs_of(
     scene: Scene, seed: int | tuple[int, ...], inside: kernels.Open
 ) -> kernels.Reservoirs | None:
-    """Return the gases behind open faces; None if all of them open to a vacuum."""
+    """Return the reservoirs behind open faces; None if there is a vacuum behind all of them."""
     rates, widths = np.zeros((2, 2 * scene.dimension))
     for number, face in scene.faces_of(Open):
         if face.temperature is not None:
@@ -77,15 +77,15 @@ def reservoirs_of(
 
 
 def crowded_error(time: float, most: int) -> SimulationError:
-    """Return the error for a run with more than `most` particles in the container."""
+    """Return the error for a run in which the container has more than `most` particles."""
     return SimulationError(f"at time {time:g} there is no room for more than {most} particles")
 
 
 class OpenPart(Part):
     """Open faces of a scene.
 
-    The arrays are the particles in the container, the number of entries since the counters were reset, and
-    the number and the time of the next attempted entry. The time is on the clocks of the epoch.
+    The arrays contain the particles in the container, the number of entries since the counters were reset,
+    and the number and the time of the next attempted entry. This time is on the clocks of the epoch.
     """
 
     def __init__(self, scene: Scene, inside: kernels.Open, reservoirs: kernels.Reservoirs | None) -> None:
@@ -118,7 +118,7 @@ class OpenPart(Part):
         self._inside.entries[:] = 0
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the number of particles that entered through each face, under its field of `Tally`."""
+        """Return the numbers of particles that entered, by the name of their field in `Tally`."""
         return {"entries": np.pad(self._inside.entries, (0, len(self._scene.walls)))}
 
 
@@ -130,7 +130,7 @@ _OF_EPOCH = 2.0**-24  # time to the next collision with a resting particle, in e
 
 
 def piston_of(scene: Scene, state: State, unit_mass: float) -> kernels.Piston | None:
-    """Return the piston of a state, in units of `unit_mass`, or None."""
+    """Return the piston of a state, its mass in units of `unit_mass`; None without a piston."""
     if not scene.pistons or state.piston is None:
         return None
     ((n, face),) = scene.pistons
@@ -144,7 +144,8 @@ def piston_of(scene: Scene, state: State, unit_mass: float) -> kernels.Piston | 
 class PistonPart(Part):
     """Piston of a scene.
 
-    A piston can accelerate a particle to twice its own speed, which is prescribed or due to its load.
+    A hit on a piston can add at most twice the piston's speed to the speed of a particle. The piston's speed
+    is prescribed or results from the external pressure.
     """
 
     def __init__(self, piston: kernels.Piston, scene: Scene) -> None:
@@ -155,7 +156,7 @@ class PistonPart(Part):
         self.gained = 4.0 * (fallen if face.speed is None else face.speed**2)
 
     def set_clock(self, clock: float) -> None:
-        """Set the time of the present motion."""
+        """Set the time to which the stored position and velocity apply."""
         self._piston.motion[kernels.PISTON_CLOCK] = clock
 
     def begin_epoch(self, length: float, start: float, model: kernels.Model) -> kernels.Model:
@@ -169,7 +170,7 @@ class PistonPart(Part):
         self.set_clock(0.0)
 
     def write(self, state: State, clock: float) -> None:
-        """Write the position along its axis and the velocity of the piston."""
+        """Write the piston's position along its axis and its velocity into the state."""
         piston, motion = self._piston, self._piston.motion.copy()
         advance_piston(motion, piston.push, clock)
         position, velocity = motion[kernels.PISTON_PLACE], motion[kernels.PISTON_VELOCITY]
@@ -190,7 +191,7 @@ _OF_SPEED = 2.0**-48  # minimum separation speed divided by the speed of the fac
 
 
 def motion_of(scene: Scene) -> Motion | None:
-    """Return the motion of the faces before the first epoch; None if no face vibrates."""
+    """Return the motion of vibrating faces before the first epoch; None if no face vibrates."""
     moving = scene.faces_of(Vibrating)
     if not moving:
         return None
@@ -212,7 +213,7 @@ def motion_of(scene: Scene) -> Motion | None:
 class VibratingPart(Part):
     """Faces with a prescribed vibration.
 
-    Particles leave such a face with at most twice the speed of the face.
+    A hit on such a face adds at most twice the speed of the face to the speed of a particle.
     """
 
     def __init__(self, scene: Scene, motion: Motion) -> None:
@@ -223,7 +224,7 @@ class VibratingPart(Part):
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
         """Continue the oscillation at time 0 of the clocks.
 
-        The remainder of a division is exact, so phases do not drift.
+        The phase is computed as the remainder of a division, which is exact, so that it does not drift.
         """
         scene, motion = self._scene, self._motion
         motion.epoch[0] = length
@@ -240,13 +241,13 @@ class VibratingPart(Part):
 
 
 WALL_DRAWS = 2
-"""Stream number of the random numbers of thermal walls; lower numbers belong to the initial state."""
+"""Stream number of the random numbers of thermal walls; the initial state uses lower numbers."""
 
 
 def kinds_and_levels(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Return kind (2d,) and level (2d,) of the faces in the form of the kernels.
+    """Return the kinds (2d,) and levels (2d,) of the faces for the kernels.
 
-    A level is a temperature or a momentum.
+    The level is the temperature of a thermal face, or the momentum of a sticky face.
     """
     surfaces = (scene.faces.get(name) for name in FACES[: 2 * scene.dimension])
     names, levels = zip(*(surface.rule if surface else ("hard", 0.0) for surface in surfaces), strict=True)
@@ -264,7 +265,7 @@ def sliding_velocities(scene: Scene) -> np.ndarray | None:
 
 
 def accommodations(scene: Scene) -> np.ndarray | None:
-    """Return the fractions (2d,) of hits that draw new velocities, or None if all hits do."""
+    """Return the fractions (2d,) of hits that draw velocities; None if all hits do."""
     if not scene.partial_faces:
         return None
     fractions = np.ones(2 * scene.dimension)
@@ -274,7 +275,7 @@ def accommodations(scene: Scene) -> np.ndarray | None:
 
 
 def ramp_of(scene: Scene) -> Ramp | None:
-    """Return the temperatures that vary along faces, or None."""
+    """Return the temperatures that vary along faces; None if no temperature varies."""
     if not scene.ramps:
         return None
     axes, high = np.full(2 * scene.dimension, NONE), np.zeros(2 * scene.dimension)
@@ -284,14 +285,14 @@ def ramp_of(scene: Scene) -> Ramp | None:
 
 
 def has_special_faces(scene: Scene) -> bool:
-    """Return True if particles hit a special face; periodic faces do not count."""
+    """Return True if a face that particles hit has a kind; sheared faces do not count."""
     return bool(scene.faces) and scene.shear_rate is None
 
 
 def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float) -> Faces:
     """Return the special faces as the kernels' `Faces`.
 
-    `unit_mass` is the unit of mass.
+    Masses and energies are in the unit that `unit_mass` defines.
     """
     kind, level = kinds_and_levels(scene)
     depths, widths = wells_of(scene)
@@ -316,9 +317,9 @@ def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_
 
 
 def face_energy(scene: Scene) -> float:
-    """Return an upper estimate of the energy that a face or wall gives a particle.
+    """Return an upper estimate of the energy that a face or wall gives to a particle.
 
-    This is the largest energy from a thermal face, a thermal wall or a well.
+    The estimate is the largest energy that a particle gains from a thermal face, a thermal wall or a well.
     """
     hottest = max(scene.face_temperatures, default=0.0)
     deepest = max((getattr(face, "depth", 0.0) for face in scene.faces.values()), default=0.0)
@@ -328,12 +329,12 @@ def face_energy(scene: Scene) -> float:
 
 
 class FacesPart(Part):
-    """Special faces, in units of `unit_mass`.
+    """Special faces of a scene; masses are in units of `unit_mass`.
 
-    The arrays are the particles in a well or stuck to a face, their energies, the numbers of random draws,
-    and the tangential momentum given to faces.
+    The arrays contain which particles are in a well or stuck to a face, their energies, the numbers of random
+    draws, and the tangential momentum given to faces.
 
-    lightest : smallest mass of a particle
+    lightest : mass of the lightest particle
     """
 
     def __init__(self, scene: Scene, faces: Faces, unit_mass: float, lightest: float = np.inf) -> None:
@@ -360,7 +361,7 @@ class FacesPart(Part):
             self._shear[...] = 0.0
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the tangential momentum given to faces, under its field of `Tally`."""
+        """Return the tangential momentum given to faces, by the name of its field in `Tally`."""
         if self._shear is None:
             return {}
         shear = values(self._shear).reshape(-1, self._scene.dimension) * self._unit_mass

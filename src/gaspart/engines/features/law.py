@@ -24,7 +24,7 @@ _BISECTIONS = 100  # until adjacent floating-point numbers enclose the damping o
 
 
 def contact_law(scene: Scene, state: State) -> ContactLaw | None:
-    """Return the collision law, or None for elastic, smooth collisions.
+    """Return the collision law for the kernels; None for elastic, smooth collisions.
 
     If particles are fixed, a law is always returned.
     """
@@ -47,8 +47,8 @@ def contact_law(scene: Scene, state: State) -> ContactLaw | None:
 def _viscous(scene: Scene) -> float | None:
     """Return the damping constant of viscoelastic particles, or None for a constant restitution.
 
-    The constant is computed from the restitution of two particles of the first species, or two copies of the
-    first particle if there are no species.
+    The constant follows from the coefficient of restitution for two particles of the first species. If there
+    are no species, it follows from the coefficient for two copies of the first particle.
     """
     rule = scene.restitution
     if rule is None or rule.reference_speed is None:
@@ -66,7 +66,7 @@ def _viscous(scene: Scene) -> float | None:
 
 
 class LawPart(Part):
-    """Particles with a collision law: spins (N, 3), and energies (N,) of vibrating particles."""
+    """State of particles under a collision law: spins (N, 3), and energies (N,) of vibrations."""
 
     def __init__(self, law: ContactLaw) -> None:
         super().__init__({"spins": law.spins})
@@ -76,7 +76,7 @@ class LawPart(Part):
 
     @property
     def stored(self) -> float:
-        """Energy of spins and of vibrations."""
+        """Total energy of spins and of vibrations."""
         squares = (self.arrays["spins"] ** 2).sum(axis=1)
         turning = squares > 0.0  # excludes smooth particles, whose moment of inertia may be infinite
         spins = 0.5 * float((squares[turning] / self._inverse_inertia[turning]).sum())
@@ -84,7 +84,7 @@ class LawPart(Part):
         return spins + (0.0 if vibrations is None else float(np.maximum(vibrations, 0.0).sum()))
 
     def write(self, state: State, clock: float) -> None:
-        """Write the spins, and add the energies of fixed particles that vibrate."""
+        """Write the spins into a state, and add the vibrational energies of fixed particles."""
         spins = self.arrays["spins"]
         state.spins = (spins[:, 2] if state.dimension == 2 else spins).copy()
         if state.vibrations is not None and "vibrations" in self.arrays:
@@ -96,9 +96,10 @@ class LawPart(Part):
 
 
 def scaled_masses(masses: np.ndarray) -> tuple[float, np.ndarray | None]:
-    """Return the unit of mass, and the masses in this unit (None if all are equal).
+    """Return the unit of mass, and masses in this unit (None if all are identical).
 
-    If all masses are equal, the kernel model contains none, and its sums are multiplied by the unit.
+    If all particles have the same mass, the kernel model contains no masses, and its sums are later
+    multiplied by the unit.
     """
     if len(masses) == 0:
         return 1.0, None
@@ -106,10 +107,10 @@ def scaled_masses(masses: np.ndarray) -> tuple[float, np.ndarray | None]:
 
 
 def largest_terms(scene: Scene, state: State, unit_mass: float) -> tuple[float, float]:
-    """Return a momentum and an energy that only few particles exceed.
+    """Return bounds of momentum and energy that few particles exceed.
 
-    Each is a power of two in units of `unit_mass`. Sums over threads are multiples of fractions of these
-    values.
+    Each bound is a power of two in units that contain `unit_mass`. Sums over threads are integer multiples of
+    small fractions of these bounds.
     """
     moving = np.isfinite(state.masses)
     if not moving.any():
@@ -143,7 +144,7 @@ _PLANES = 24  # maximum number of planes per particle; further planes are ignore
 
 
 def slowest_that_moves(scene: Scene) -> float:
-    """Return the minimum speed that frees a particle from a jam; infinite without gravity."""
+    """Return the lowest impact speed that frees a particle from a jam; infinite without gravity."""
     gravity = math.hypot(*(scene.gravity or ()))
     if gravity == 0.0:
         return math.inf
@@ -153,7 +154,7 @@ def slowest_that_moves(scene: Scene) -> float:
 def _tilt(gravity: tuple[float, ...]) -> np.ndarray:
     """Return the accelerations (2, 3) or (4, 3) of gravity, tilted in all directions.
 
-    A particle is supported against gravity if it is supported against all of them.
+    A particle counts as supported if it is supported against each of these accelerations.
     """
     acceleration = np.zeros(3)
     acceleration[: len(gravity)] = gravity
@@ -166,10 +167,10 @@ def _tilt(gravity: tuple[float, ...]) -> np.ndarray:
 
 
 class Jams:
-    """Search for jams in a scene, repeated after each time interval `window`.
+    """Search for jams in a scene, which is repeated after each time interval `window`.
 
-    axis : nonperiodic axis of gravity
-    reach : largest gap between particles that count as touching
+    axis : axis with walls along which gravity acts
+    reach : largest gap between two particles at which they are treated as touching
     """
 
     def __init__(self, scene: Scene, axis: int, reach: float, window: float) -> None:
@@ -192,7 +193,7 @@ class Jams:
         tally: Tally,
         time: float,
     ) -> bool:
-        """Fix the particles at positions (N, d) that belong to a jam at this time.
+        """Fix the particles that belong to a jam at this time, for positions (N, d).
 
         Returns True if events must be predicted again.
 
@@ -240,7 +241,7 @@ _ARRAYS = ("latest", "met", "island", "contacts", "elastic", "kept")
 
 
 def contact_duration(scene: Scene, law: ContactLaw) -> ContactDuration | None:
-    """Return the kernels' initial contact-duration rule for a collision law, or None.
+    """Return the initial data for the rule of lasting contacts; None without this rule.
 
     Without this rule every contact dissipates.
     """
@@ -261,9 +262,10 @@ def contact_duration(scene: Scene, law: ContactLaw) -> ContactDuration | None:
 
 
 class DurationPart(Part):
-    """Lasting contacts, and islands and jams under gravity.
+    """State of lasting contacts, and of islands and jams under gravity.
 
-    Islands are groups of particles at rest that gravity does not move. Jams are not moved by contacts either.
+    An island is a group of particles at rest that gravity does not move. A jam is a group that contacts do
+    not move either.
     """
 
     def __init__(self, law: ContactLaw, duration: ContactDuration, gravity: Gravity | None) -> None:
@@ -297,8 +299,8 @@ class DurationPart(Part):
 class RestWatch(Part):
     """Test at regular times whether all particles rest.
 
-    The times do not depend on where a run is split. The arrays are the positions (N, d) at the last test, the
-    time of the next test on the clocks of the epoch, and the result.
+    The times do not depend on whether a run is interrupted and continued. The arrays contain the positions
+    (N, d) at the last test, the time of the next test on the clocks of the epoch, and the result of the test.
     """
 
     def __init__(self, scene: Scene, state: State) -> None:
@@ -320,7 +322,7 @@ class RestWatch(Part):
         return bool(self._rests[0])
 
     def set_clock(self, clock: float) -> None:
-        """Schedule the first test after the time of a fall."""
+        """Schedule the first test after the duration of a fall through the container."""
         self._next[0] = clock + self._window
 
     def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
@@ -361,7 +363,7 @@ class RestWatch(Part):
 def rest_watch(scene: Scene, state: State) -> RestWatch | None:
     """Return the test for a scene in which all particles may come to rest, or None.
 
-    Such a scene has lasting contacts, gravity that drives no flow, and no face or wall that adds energy.
+    Such a scene has lasting contacts and gravity without a flow, and no face or wall of it adds energy.
     """
     falls = scene.gravity is not None and not scene.driven_axes
     still = not (scene.faces or scene.face_temperatures)

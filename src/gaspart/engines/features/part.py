@@ -1,8 +1,8 @@
-"""Part of a run that implements one feature of a scene.
+"""Parts of a run; each part implements one feature of a scene.
 
-A module of this package contains all that engines need for a feature: the form of the feature in the kernel
-model (None if the scene does not have the feature), and a `Part`. An engine iterates over the parts of a
-scene and does not name them.
+A module of this package contains all that engines need for a feature: the data of the feature in the kernel
+model (None if the scene does not have the feature), and a `Part`. An engine calls the same methods of all
+parts of a scene, and does not depend on any particular feature.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ class Part:
     Attributes
     ----------
     arrays : arrays that change during a run, by their names in a checkpoint
-    sums : arrays (threads, ...) to which several threads add, by name; a checkpoint contains the sum over
-        threads
-    times : the names in `arrays` that are times on the clocks of the epoch
+    sums : arrays (threads, ...) by name, in which each thread adds to its own row; a checkpoint contains
+        their sum over threads
+    times : names of the `arrays` that contain times on the clocks of the epoch
     scheduled : (1,), time of the next event scheduled by the part
     gained : square of the largest speed that the part can give a particle
     """
@@ -51,7 +51,7 @@ class Part:
 
     @property
     def next(self) -> float:
-        """Time of the next scheduled event on the clocks of the epoch, or infinity."""
+        """Time of the next scheduled event on the clocks of the epoch; infinite without an event."""
         return math.inf if self._scheduled is None else float(self._scheduled[0])
 
     @property
@@ -70,10 +70,10 @@ class Part:
         return 0.0
 
     def set_clock(self, clock: float) -> None:
-        """Begin at this time on the clocks of the epoch."""
+        """Set the present time, on the clocks of the epoch, at the start of a run."""
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
-        """Set all data that depend on the epoch, and return the kernel model of the part.
+        """Set the data that depend on the epoch, and return the kernel model with these data.
 
         length : length of the epoch
         start : time at which it starts
@@ -89,8 +89,8 @@ class Part:
     def end_epoch(self, length: float, start: float) -> None:
         """Shift the times of the part to a new origin of the clocks.
 
-        The clocks restart from zero at the time `start`, after an epoch with this `length`. Within an epoch,
-        the origin of the clocks moves to `start`.
+        At the end of an epoch with this `length`, the clocks restart from zero at the time `start`. If epochs
+        become shorter within an epoch, the clocks continue with the new origin `start`.
         """
         for times in self._times:
             times -= length
@@ -110,7 +110,7 @@ class Part:
             sums[...] = 0
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the counters since the last `reset`, under the names of fields of `state.tally.Tally`.
+        """Return the counters since the last `reset`, by their names in `state.tally.Tally`.
 
         clock : present time on the clocks of the epoch
         """
@@ -127,7 +127,7 @@ class TallyPart(Part):
     """Optional tally during a run (`state.tally`).
 
     name : name of the tally
-    kernel : data for the kernels, which add to the field of this name in their own tally
+    kernel : data to which the kernels add: the field `name` of the kernels' tally
     """
 
     def __init__(
@@ -154,7 +154,7 @@ def arrays_of(parts: Iterable[Part]) -> dict[str, np.ndarray]:
 
 
 def sums_of(parts: Iterable[Part]) -> dict[str, np.ndarray]:
-    """Return the arrays to which threads add, for several parts, by name."""
+    """Return the arrays `sums` of several parts, by name."""
     return {key: array for part in parts for key, array in part.sums.items()}
 
 
@@ -174,7 +174,7 @@ _LOWEST = 2.0**-44  # highest bounce on an interior wall that counts as rest, in
 
 
 def gravity_of(scene: Scene, state: State) -> Gravity | None:
-    """Return the kernels' initial gravity, or None."""
+    """Return the initial data of gravity for the kernels; None without gravity."""
     if scene.gravity is None:
         return None
     height = _LOWEST * max(scene.container.lengths)
@@ -183,7 +183,7 @@ def gravity_of(scene: Scene, state: State) -> Gravity | None:
 
 
 class GravityPart(Part):
-    """Falling particles in a container with side lengths `lengths`, and their support at interior walls."""
+    """Gravity in a container with sides `lengths`, and support of particles at interior walls."""
 
     def __init__(self, gravity: Gravity, lengths: tuple[float, ...]) -> None:
         support = gravity.support._asdict() if gravity.support else {}
@@ -192,7 +192,7 @@ class GravityPart(Part):
         self.gained = 2.0 * sum(falls)
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
-        """Set the longest bounce that the epoch's clocks do not resolve; it is rest."""
+        """Set the duration below which a bounce means rest, because clocks do not resolve it."""
         assert model.gravity is not None  # otherwise this part would not exist
         return model._replace(gravity=model.gravity._replace(shortest_bounce=_SHORTEST_BOUNCE * length))
 
@@ -212,8 +212,8 @@ def shear_of(scene: Scene) -> Shear | None:
 class ShearPart(Part):
     """Displacement of the periodic images in a sheared scene.
 
-    The displacement is computed from the time and the initial state, so checkpoints do not contain it. At
-    each crossing a particle may gain the velocity of the images.
+    The displacement follows from the time and the initial state, so that checkpoints need not contain it. At
+    each crossing of a sheared face, a particle may gain the velocity of the images.
     """
 
     def __init__(self, scene: Scene, state: State, shear: Shear) -> None:
@@ -225,7 +225,8 @@ class ShearPart(Part):
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
         """Continue the displacement at time 0 of the clocks.
 
-        The remainder of a division is exact, so the displacement does not drift.
+        The displacement is computed as the remainder of a division, which is exact, so that it does not
+        drift.
         """
         shear = self._shear
         period = self._length / abs(shear.velocity) if shear.velocity else math.inf
@@ -255,15 +256,15 @@ _KICK_DRAWS = 3  # stream number of these random numbers, after those of thermal
 
 
 def _width(thermostat: Thermostat, dimension: int, unit_mass: float) -> float:
-    """Return the standard deviation of the velocity components of a kick, for the unit of mass."""
+    """Return the standard deviation of a kick's velocity components for a particle of unit mass."""
     return math.sqrt(2.0 * thermostat.power * thermostat.interval / (dimension * unit_mass))
 
 
 class Kicks(Part):
     """Thermostat of a scene under the event-driven engine.
 
-    The arrays are the time of the next kick on the clocks of the epoch, the number of kicks, and the energy
-    added since the last reset.
+    The arrays contain the time of the next kick on the clocks of the epoch, the number of kicks, and the
+    energy added since the last reset.
     """
 
     def __init__(
@@ -288,8 +289,8 @@ class Kicks(Part):
     def end_epoch(self, length: float, start: float) -> None:
         """Set the time of the next kick to a multiple of the interval.
 
-        The multiple is rounded once; a sum of intervals would deviate from it by accumulated rounding. The
-        subtraction is exact.
+        The multiple has a single rounding error, while a sum of intervals would accumulate errors. The
+        subtraction of the start of the epoch is exact.
         """
         self._next[0] = (int(self._number[0]) + 1) * self._interval - start
 
@@ -298,7 +299,7 @@ class Kicks(Part):
         self._given[:] = 0.0
 
     def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
-        """Kick all particles; return True, because their velocities have changed."""
+        """Kick all particles, and return True, because all events must be predicted again."""
         from gaspart.kernels.event.pair_contact import kick_all
 
         counter = self._key, int(self._number[0])
@@ -320,7 +321,7 @@ class StepKicks(Part):
 
     If several kicks are due in a step, a single kick of the same total strength is applied at its end.
 
-    given_terms : (1, 2), energy added since the last reset, see `physics.running_sum.add`
+    given_terms : (1, 2), energy added since the last reset, as two terms (see `physics.running_sum.add`)
     """
 
     def __init__(
@@ -341,7 +342,7 @@ class StepKicks(Part):
         return math.floor(steps * self._per_step * (1.0 + 4e-16) + 1e-9)
 
     def until(self, steps: float, part: float) -> int:
-        """Return the number of parts of a step until the next kick.
+        """Return the number of parts of a step from now until the next kick.
 
         The kick is at the end of the last of these parts.
 
@@ -354,7 +355,7 @@ class StepKicks(Part):
         return number
 
     def due(self, steps: float, part: float) -> tuple[float, tuple[np.ndarray, int]] | None:
-        """Return the width and number of the kick due after a number of steps, or None.
+        """Return the width and number of the kick that is due after these steps, or None.
 
         part : length of the part that has just been completed
         """

@@ -1,4 +1,4 @@
-"""Sums of stress, heat flux and impulses, and sums per area of a face."""
+"""Tallies of stress, heat flux and impulses, and of sums per area of a face."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ from gaspart.state.tally import ImpulseTally, PairImpulseTally, PerAreaTally
 
 
 def tallied_fluxes(sums: np.ndarray, drift: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the fields of `Tally` for the fluxes of momentum and heat.
+    """Return the sums of the fluxes of momentum and heat as fields of `Tally`.
 
     Parameters
     ----------
     sums : ndarray, shape (2 d^2 + d,)
         Sums of the stress tensor by rows, of its collisional part by rows, and of the heat flux.
     drift : ndarray, shape (d,), [length/time]
-        Velocity to which the sums are relative.
+        Velocity from which all velocities in the sums are measured.
 
     Returns
     -------
@@ -53,7 +53,7 @@ def tallied_fluxes(sums: np.ndarray, drift: np.ndarray) -> dict[str, np.ndarray]
 class StressPart(TallyPart):
     """Stress tensor and heat flux of a gas without walls.
 
-    flights : (N,), particles, whose velocities are constant until the next contact
+    flights : (N,), flights of the particles; velocities are constant until the next contact
     drift : (d,), velocity of the centre of mass
     """
 
@@ -67,7 +67,7 @@ class StressPart(TallyPart):
         super().__init__("stress", Stress(sums, np.zeros((2, d + 1)), drift.copy()), {"stress": sums})
 
     def end_epoch(self, length: float, start: float) -> None:
-        """Add the transport by flights during the epoch."""
+        """Add the transport by the free motion of particles during the epoch."""
         add_flights(self._flights, length, *self._masses, self.kernel)
 
     def reset(self, clock: float) -> None:
@@ -89,7 +89,8 @@ class StressPart(TallyPart):
 class ShearedStressPart(StressPart):
     """Stress tensor and heat flux of a sheared gas.
 
-    Velocities relative to the flow change in flight, so each flight counts from the time of its last event.
+    Velocities relative to the flow change during a flight. Therefore the contribution of each flight is
+    computed from the time of its last event.
     """
 
     def __init__(self, flights: np.ndarray, model: Model, unit_mass: float, drift: np.ndarray) -> None:
@@ -99,7 +100,8 @@ class ShearedStressPart(StressPart):
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
         """Set the velocity of the centre of mass relative to the flow.
 
-        The component across the flow is constant, so the component along the flow decreases linearly in time.
+        The component along the gradient of the flow is constant. Therefore the component along the flow
+        decreases linearly with time.
         """
         assert model.shear is not None  # otherwise this part would not exist
         across = self._drift[GRADIENT]
@@ -107,7 +109,7 @@ class ShearedStressPart(StressPart):
         return model
 
     def close_epoch(self, length: float) -> None:
-        """Add the transport by flights up to the end of the epoch."""
+        """Add the transport by the free motion of particles up to the end of the epoch."""
         add_sheared_flights(self._flights, length, 1.0, self._model, self.kernel)
 
     def end_epoch(self, length: float, start: float) -> None:
@@ -128,7 +130,7 @@ class ShearedStressPart(StressPart):
 def stress_part(
     tally: OptionalTally, flights: np.ndarray, model: Model, unit_mass: float, scene: Scene, state: State
 ) -> StressPart:
-    """Return the stress part for a gas, sheared or not.
+    """Return the stress part for a gas with or without shear.
 
     state : initial state
     """
@@ -140,18 +142,20 @@ def stress_part(
 
 
 def rows_of(scene: Scene) -> np.ndarray:
-    """Return the row (N,) of each particle, its species number.
+    """Return the row (N,) of each particle in sums by species.
 
-    Single particles are the first particles, but have the last row.
+    The row is the index of the species. Single particles come first among the particles, but have the last
+    row.
     """
     counts = [len(scene.particles), *(kind.count for kind in scene.species)]
     return np.repeat([len(scene.species), *range(len(scene.species))], counts)
 
 
 class ImpulsesPart(TallyPart):
-    """Momentum below each plane at the last reset, plus all impulses since then.
+    """Momentum that particles transport through planes across an axis.
 
-    When the tally is read, the present momentum below each plane is subtracted.
+    The sums contain the momentum below each plane at the last reset, plus all impulses since then. When the
+    tally is read, the present momentum below each plane is subtracted.
 
     flights : (N,), particles at the times of their last events
     """
@@ -205,16 +209,17 @@ def impulses_part(
 
 
 _FINEST = 2.0**-27
-"""Unit of the integer sums, as a fraction of the contribution of a pair at contact with a thermal momentum.
+"""Unit of the integer sums, divided by the contribution of a contact with a thermal momentum.
 
-The contact distance is the smallest diameter. A sum can hold 2^36 of these contributions.
+The distance in this contribution is the smallest diameter. A sum does not overflow for up to 2^36 of these
+contributions.
 """
 
 
 class PairImpulsesPart(TallyPart):
-    """Impulses of pairs as integers.
+    """Sums over pairs of particles for g(r), stored as integers.
 
-    unit : unit of these integers in the units of `Tally`
+    unit : value of the integer 1 in the units of `Tally`
     """
 
     kernel: PairImpulses
@@ -272,9 +277,9 @@ PARTS = {"stress": stress_part, "impulses": impulses_part, "pair_impulses": pair
 
 
 def inverse_areas(scene: Scene, state: State) -> tuple[np.ndarray, np.ndarray]:
-    """Return the inverse accessible areas (sizes, 2d) of faces, and the particles' size numbers (N,).
+    """Return inverse accessible areas (sizes, 2d) of faces, and each particle's index of size.
 
-    The inverse is 0 for faces that no centre reaches. Fixed particles have the first size number.
+    The inverse is 0 for faces that no centre can reach. Fixed particles have the index 0.
     """
     fixed = ~np.isfinite(state.masses)
     sizes, size = np.unique(state.radii[~fixed], return_inverse=True)
@@ -296,7 +301,7 @@ def per_area_fields(momentum: np.ndarray, heat: np.ndarray, walls: int) -> dict[
 
 
 class EventPerAreaPart(TallyPart):
-    """Sums in the event-driven engine, with masses in units of `unit_mass`."""
+    """Momentum and heat per accessible area, for the event-driven engine."""
 
     kernel: PerArea
 
@@ -318,7 +323,7 @@ class EventPerAreaPart(TallyPart):
 
 
 class ThreadedPerAreaPart(Part):
-    """Sums in an engine with several threads.
+    """Momentum and heat per accessible area, for engines with several threads.
 
     read : function that returns the sums, shape (2d, d + 1)
     """

@@ -1,4 +1,4 @@
-"""Interior walls in the form of the kernels, and the state of thermal or moving walls."""
+"""Interior walls as arrays of the kernels, and the state of thermal or moving walls."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ def interior_walls(
 ) -> InteriorWalls:
     """Return the interior walls, with a list of the walls near each box.
 
-    The list is valid for radii up to `largest_radius`. A moving wall is not in the list of any box.
+    The list can be used for particles with radii up to `largest_radius`. A moving wall is not in the list of
+    any box.
     """
     rows, wall = wall_rows(scene)
     if moving:
@@ -34,7 +35,7 @@ def interior_walls(
 
 
 def warm_walls(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float) -> WarmWalls | None:
-    """Return the thermal walls, in units of `unit_mass`, or None if all walls are hard."""
+    """Return the thermal walls, with masses in units of `unit_mass`; None if all are hard."""
     level = np.array([wall.temperature or 0.0 for wall in scene.walls])
     if not level.any():
         return None
@@ -43,9 +44,9 @@ def warm_walls(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mas
 
 
 class WarmWallsPart(Part):
-    """Number of random draws of each particle at interior walls.
+    """State of thermal interior walls: the number of random draws of each particle.
 
-    lightest : smallest mass of a particle
+    lightest : mass of the lightest particle
     """
 
     def __init__(self, scene: Scene, warm: WarmWalls, lightest: float) -> None:
@@ -60,7 +61,7 @@ def moving_wall_of(scene: Scene, state: State, unit_mass: float) -> kernels.Movi
     """Return the kernels' moving wall; None if the scene has no moving wall.
 
     The mass of the wall is in units of `unit_mass`. Raises SceneError unless there are particles on both
-    sides, because they keep the wall inside the container.
+    sides, because otherwise the wall would leave the container.
     """
     wall = scene.moving_wall
     if wall is None or state.piston is None:
@@ -73,7 +74,7 @@ def moving_wall_of(scene: Scene, state: State, unit_mass: float) -> kernels.Movi
 
 
 class MovingWallPart(Part):
-    """Motion and energy of the wall, in units of `unit_mass`."""
+    """Motion and energy of the moving wall; masses are in units of `unit_mass`."""
 
     def __init__(self, wall: kernels.MovingWall, unit_mass: float) -> None:
         super().__init__({"piston": wall.motion})
@@ -81,11 +82,11 @@ class MovingWallPart(Part):
 
     @property
     def stored(self) -> float:
-        """Energy of the wall."""
+        """Kinetic energy of the wall."""
         return 0.5 * self._mass * float(self._motion[kernels.PISTON_VELOCITY]) ** 2
 
     def set_clock(self, clock: float) -> None:
-        """Set the time of the present motion."""
+        """Set the time to which the stored position and velocity apply."""
         self._motion[kernels.PISTON_CLOCK] = clock
 
     def end_epoch(self, length: float, start: float) -> None:
@@ -94,7 +95,7 @@ class MovingWallPart(Part):
         self.set_clock(0.0)
 
     def write(self, state: State, clock: float) -> None:
-        """Write the position along its axis and the velocity of the wall."""
+        """Write the wall's position along its axis and its velocity into the state."""
         motion = self._motion.copy()
         advance_wall(motion, clock)
         state.piston = motion[[kernels.PISTON_PLACE, kernels.PISTON_VELOCITY]]

@@ -91,11 +91,11 @@ def step_tally(
     areas: tuple[np.ndarray, np.ndarray] | None,
     fixed: bool,
 ) -> StepTally:
-    """Return counters at zero, for a number of faces.
+    """Return a tally for a number of faces, with all counters at zero.
 
     largest : see `largest_terms`
     parts : parts for optional tallies
-    areas : `inverse_areas` if they differ between sizes
+    areas : result of `inverse_areas` if the areas differ between particle sizes, otherwise None
     fixed : True if there are fixed particles
     """
     tally = StepTally(
@@ -124,7 +124,7 @@ def rules_for(
 ) -> Rules | None:
     """Return the kernels' `Rules` for special faces or collision laws, or None.
 
-    Such faces and laws change more than momenta.
+    These faces and laws change more than the momenta of particles, for example spins.
 
     space : space in the form of the kernels of this engine
     """
@@ -157,7 +157,7 @@ def rules_for(
 
 
 def parts_for(scene: Scene, rules: Rules | None) -> list[Part]:
-    """Return the parts of a run for these rules; () if there are no rules."""
+    """Return the parts of a run that these rules need; () without rules."""
     if rules is None:
         return []
     law, faces = rules.model.law, rules.model.faces
@@ -167,7 +167,7 @@ def parts_for(scene: Scene, rules: Rules | None) -> list[Part]:
 
 
 def needs_rules(scene: Scene) -> bool:
-    """Return True if faces or collisions of a scene change more than momenta."""
+    """Return True if faces or collisions of a scene change more than momenta, for example spins."""
     return bool(scene.faces) or scene.rough or scene.vibrates
 
 
@@ -182,7 +182,7 @@ class ImpulsesPart(TallyPart):
     name.
 
     particles : particles of the kernels
-    units : unit of mass of the particles, and the bound of a momentum in this unit
+    units : unit of mass, and the bound of a particle's momentum in this unit
     """
 
     kernel: dict[str, Any]
@@ -261,7 +261,7 @@ def tally_parts(
 ) -> list[TallyPart]:
     """Return the parts for optional tallies.
 
-    particles : particles in their slots at time 0
+    particles : arrays of the particles, in their slots at time 0
     units : see `ImpulsesPart`
     """
     return [PARTS[tally.name](tally, particles, model, scene, threads, units) for tally in tallies]
@@ -334,7 +334,7 @@ def _width(scene: Scene, count: int) -> float:
 def _skin(engine: TimeStepped, scene: Scene, state: State, contact: float) -> float:
     """Return the skin thickness with the lowest cost.
 
-    A thin skin is used up quickly; a thick skin lists many pairs.
+    With a thin skin, lists must be made often; with a thick skin, they contain many pairs.
     """
     dimension, density = scene.dimension, state.count / scene.container.volume
     squares = (state.velocities**2).sum(axis=1)

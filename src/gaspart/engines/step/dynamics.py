@@ -137,7 +137,7 @@ class StepDynamics(SteppedDynamics):
         self._search = self._search._replace(pairs=pairs)
 
     def _sums(self) -> dict[str, np.ndarray]:
-        """Return the arrays of counters. Arrays that all threads share have a single row."""
+        """Return the arrays of counters by name; arrays that all threads share have a single row."""
         common = {key: getattr(self._tally, key)[np.newaxis] for key in _OF_ALL}
         return common | {key: getattr(self._tally, key) for key in _BY_THREAD}
 
@@ -173,7 +173,7 @@ class StepDynamics(SteppedDynamics):
     def _required_arrays(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         """Return the arrays required from a checkpoint, except the origin of the neighbour list.
 
-        The list may belong to another search.
+        The origin is not required because the checkpoint may be from another search.
         """
         spared = self._list_parts()
         return {key: array for key, array in self.checkpoint().items() if key not in spared}
@@ -197,7 +197,7 @@ class StepDynamics(SteppedDynamics):
         return {"origin": self._search.cells.origin, "threads": np.array(self._engine.threads), **settings}
 
     def _has_list_of(self, checkpoint: dict[str, np.ndarray]) -> bool:
-        """Return True if a checkpoint has a neighbour list with this engine's settings."""
+        """Return True if a checkpoint contains a neighbour list for this engine's settings."""
         own = self._list_parts()
         if not own or not checkpoint["reach"][layout.DISPLACEMENT] < np.inf:
             return False
@@ -205,7 +205,7 @@ class StepDynamics(SteppedDynamics):
         return origin and all(np.array_equal(checkpoint.get(key, ()), value) for key, value in own.items())
 
     def _list_from(self, origin: np.ndarray) -> None:
-        """Remake the neighbour list that was made with particles at `origin` (d, N), by slot."""
+        """Make the neighbour list again from positions `origin` (d, N) of the particles by slot."""
         particles = self._particles
         now = particles.positions.copy()
         particles.positions[...] = origin

@@ -33,8 +33,9 @@ See `kernels.step.neighbour_list`.
 MISSED, MISSED_MOST = 0.01, 0.1
 """Fraction of missed contacts above which the engine warns, and above which it rejects the step."""
 CONTACTS, CONTACTS_MOST = {True: 2.5, False: 0.5}, {True: 5.0, False: 1.0}
-"""Contacts of a particle per step, with several passes or with one, above which the engine warns, and above
-which it rejects the step.
+"""Contacts of a particle per step above which the engine warns, and above which it rejects the step.
+
+The keys are True for several passes, and False for a single pass.
 
 Below the first limit the pressure is correct to about 1 % (measured: docs/time-stepped.md).
 """
@@ -51,7 +52,7 @@ which the engine warns.
 def oversized_particles(state: State) -> np.ndarray:
     """Return a mask (N,) of the particles that are too large for boxes and cells.
 
-    Such particles are few and much larger than all other particles.
+    There are only a few such particles, and they are much larger than all other particles.
     """
     order = np.argsort(state.radii, kind="stable")
     sizes = state.radii[order]
@@ -63,7 +64,7 @@ def oversized_particles(state: State) -> np.ndarray:
 
 
 def check_scene(scene: Scene, state: State, oversized: np.ndarray) -> None:
-    """Raise SceneError for too many particles, or for a container that is too short."""
+    """Raise SceneError if there are too many particles, or if the container is too short."""
     if state.count >= MOST_PARTICLES:
         raise SceneError(
             "count", state.count, f"the time-stepped engine takes {MOST_PARTICLES - 1} particles at most"
@@ -78,7 +79,7 @@ def check_scene(scene: Scene, state: State, oversized: np.ndarray) -> None:
 
 
 def check_precision(engine: TimeStepped, scene: Scene, state: State) -> None:
-    """Raise SceneError for steps or sizes that the floating-point precision does not resolve.
+    """Raise SceneError if the floating-point precision does not resolve steps or sizes.
 
     A step is rejected if particles move by less than the rounding error of their positions, or so far that
     the rounding error is as large as the container. In float32, lengths and speeds are rejected if their
@@ -107,10 +108,11 @@ def check_precision(engine: TimeStepped, scene: Scene, state: State) -> None:
 
 
 def missed_contacts(time_step: float, several: bool, state: State) -> float:
-    """Return the fraction of missed contacts, in which pairs touch and separate within a step.
+    """Return the fraction of contacts that are missed because they begin and end within a step.
 
-    The fraction is that for a dilute gas (`MISSED_CONTACTS`), with several passes or one, at the present
-    thermal speed of each species. The result is the mean over the pairs that collide.
+    The fraction is computed for a dilute gas (`MISSED_CONTACTS`) at the present thermal speed of each
+    species. It depends on whether there are several passes. The result is the mean over all pairs of species,
+    weighted by their collision rates.
     """
     square, radius, number = [], [], []
     for kind in np.unique(state.species):
@@ -125,7 +127,7 @@ def missed_contacts(time_step: float, several: bool, state: State) -> float:
 def bias(engine: TimeStepped, scene: Scene) -> float:
     """Bound the relative error of an observable due to missed contacts.
 
-    The temperature is the initial temperature, or the temperature of the hottest face if it is higher.
+    The bound is for the initial temperature, or for the temperature of the hottest face if this is higher.
     """
     kinds, heat = scene.moving_kinds, max(scene.face_temperatures, default=0.0)
     squares = [max(kind.initial_temperature(scene.dimension), heat) / kind.mass for kind in kinds]
@@ -155,7 +157,7 @@ def _missed_fraction(
 
 
 def check_step(engine: TimeStepped, state: State) -> None:
-    """Raise SceneError for a step with large errors, and warn of errors of a few percent.
+    """Raise SceneError if the step causes large errors; warn of errors of a few percent.
 
     The message recommends a sufficiently short step.
     """
@@ -180,8 +182,8 @@ def check_step(engine: TimeStepped, state: State) -> None:
 def check_late(engine: TimeStepped, time: float, met: int, late: int, passed: int) -> None:
     """Raise SimulationError if too many contacts are found a step too late.
 
-    The error is also raised if particles pass through each other. In both cases speeds are so high, or gaps
-    so narrow, that the step is too long.
+    SimulationError is also raised if particles pass through each other. In both cases the step is too long,
+    because speeds are high or gaps are narrow.
     """
     most = [max(FEW, part * met) for part in (LATE_MOST, PASSED_MOST)]
     if engine.passes > 1 and (late > most[0] or passed > most[1]):
@@ -192,10 +194,11 @@ def check_late(engine: TimeStepped, time: float, met: int, late: int, passed: in
 
 
 def contacts_per_step(time_step: float, state: State) -> float:
-    """Return the number of collisions of a particle in a step.
+    """Return the mean number of collisions of a particle in a step.
 
-    The number is Enskog's collision rate for equal particles with the same packing fraction, times the step.
-    The contact value is from Carnahan & Starling (1969), for discs from Henderson (1975).
+    The number is the step times Enskog's collision rate for particles of one size at the same packing
+    fraction. The contact value is by Carnahan & Starling (1969) for spheres, and by Henderson (1975) for
+    discs.
     """
     spheres = state.dimension == 3
     ball = ball_volume(state.dimension) * float((state.radii**state.dimension).mean())
@@ -212,7 +215,7 @@ def contacts_per_step(time_step: float, state: State) -> float:
 
 
 _SHARE = 0.125
-"""Maximum fraction of the requested accuracy that missed contacts may use."""
+"""Maximum error due to missed contacts, as a fraction of the requested accuracy."""
 _SAFE = 2.0
 """Maximum error of a pressure or a rate, divided by the fraction of missed contacts."""
 _LONGEST = 0.2
@@ -236,7 +239,7 @@ def candidate(engine: TimeStepped, request: AccuracyRequest) -> Candidate:
 
 
 def _as_hot(state: State, temperature: float) -> State:
-    """Return a state whose mean squared velocities correspond to a temperature."""
+    """Return a state in which each velocity component of a moving particle is sqrt(kT/m)."""
     moving = np.isfinite(state.masses)
     mean = np.where(moving, np.sqrt(temperature / np.where(moving, state.masses, 1.0)), 0.0)
     return replace(state, velocities=np.repeat(mean[:, None], state.dimension, axis=1))

@@ -27,34 +27,35 @@ PRECISIONS = ("float64", "float32")
 @register
 @dataclass(frozen=True)
 class TimeStepped(Engine):
-    """Time-stepped engine. Overlapping pairs are moved back to the time of their contact, and collide there.
+    """Time-stepped engine: after each step, pairs that overlap are moved back to their contact, and collide.
 
-    Then the pair moves for the rest of the step. The result is bitwise identical for any `boxes_per_side`,
-    `near_boxes`, `skin` and `threads`.
+    After the collision, the pair moves for the rest of the step. The result is bitwise identical for any
+    `boxes_per_side`, `near_boxes`, `skin` and `threads`.
 
     Parameters
     ----------
     time_step : float, [time]
         Length of a step.
     boxes_per_side : int or (d,) sequence of int, optional
-        Number of boxes along each axis for a search with a grid, down to 1 (all pairs). Default: a neighbour
-        list instead of boxes.
+        Number of boxes along each axis. With boxes, pairs are searched in neighbouring boxes; with 1 box, all
+        pairs are tested. Default: a neighbour list instead of boxes.
     precision : {"float64", "float32"}, default "float64"
         Floating-point type of the state.
     rewind : bool, default True
         Move pairs back to their contact before they collide. If False, pairs collide at their positions after
         the step, which shows the effect of rewinding.
     passes : int, default 4
-        Maximum number of searches for overlaps per step. The step ends after the first search without
-        overlaps. With more than one search, overlaps that grow and shrink within the step are also resolved.
-        A single search is the original method [1]_.
+        Maximum number of searches for overlaps per step. The step ends after the first search that finds no
+        overlap. With more than one search, overlapping pairs that touched within the step but already
+        separate are resolved, too. A single search is the original method [1]_.
     skin : float, [length], optional
-        Reach of the neighbour list beyond the contact distance. Default: chosen by the engine.
+        Distance beyond the contact distance up to which pairs are in the neighbour list. Default: the engine
+        chooses the distance.
     near_boxes : bool, default False
-        Search only boxes within the contact distance.
+        Search only neighbouring boxes that are closer to the particle than the contact distance.
     threads : int, default 1
-        Number of threads that share the work with a neighbour list. Several threads are faster only above
-        about 5e4 particles (docs/performance.md).
+        Number of threads that share the work. Only a search with a neighbour list uses several threads, which
+        are faster only above about 5e4 particles (docs/performance.md).
 
     Raises
     ------
@@ -223,7 +224,7 @@ class TimeStepped(Engine):
         scene : Scene
             The scene.
         kind : {"rates", "paths", "fluxes"}
-            Not used, because no quantity loses more than the fraction of contacts.
+            Not used, because the bound applies to all quantities.
 
         Returns
         -------
@@ -304,7 +305,7 @@ class TimeStepped(Engine):
     def limitations(self) -> str:
         """Limitations of the engine in words.
 
-        Contacts in which a pair touches and separates within a step are missed.
+        The engine misses contacts that begin and end within a step.
 
         Examples
         --------
