@@ -263,8 +263,8 @@ def _diffusion(frames: Frames) -> Check:
 
 
 ENERGY_DRIFT = 1e-9
-"""Maximum drift of the energy, divided by the sum of the initial energy and the energy that particles carried
-through faces.
+"""Maximum drift of the energy, divided by the greatest sum of the kinetic energy and the energy that
+particles carried through faces.
 """
 _CHANGING = "particles come and go: its theory is of those that stay"
 
