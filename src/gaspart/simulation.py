@@ -31,8 +31,7 @@ if TYPE_CHECKING:
 ENERGY_DRIFT = {"float64": 1e-9, "float32": 1e-3}
 """Relative drift of the gas's energy at which a run is stopped, by the engine's precision."""
 EXCHANGE_ERROR = {"float64": 2.0**-52, "float32": 2.0**-23}
-"""Allowed drift for the rounding of energy exchanged with contacts and thermal walls, relative to this
-energy."""
+"""Allowed additional drift due to rounding, relative to the energy exchanged with contacts and walls."""
 PROPERTIES = (
     "positions",
     "unwrapped",
@@ -46,7 +45,7 @@ PROPERTIES = (
     "moments_of_inertia",
     "species",
 )
-"""Properties of each particle that `Simulation.properties` returns; defined in `State`."""
+"""Properties of particles that `Simulation.properties` can return; `State` defines them."""
 
 
 @with_guidance
@@ -58,7 +57,7 @@ class Simulation:
     scene : Scene
         The scene to simulate.
     engine : Engine or {"event", "step", "dsmc"}, optional
-        The engine; a name selects its default settings. Default: event-driven.
+        Engine, or the name of an engine with default settings. Default: event-driven.
     seed : int or tuple of int, default 0
         Seed of the initial state and of the random numbers of thermal walls.
     stress : bool, default False
@@ -68,13 +67,13 @@ class Simulation:
         State with the positions, velocities and spins at time 0, instead of the initial state of the
         scene. Its particles and the size of its container must be the same as in the scene.
     tallies : iterable of OptionalTally, optional
-        Tallies that a run counts only on request: `StressTally`, `ImpulseTally`, `PairImpulseTally`.
+        Tallies that are made only on request: `StressTally`, `ImpulseTally`, `PairImpulseTally`.
 
     Raises
     ------
     SceneError
-        If the scene cannot be set up, the engine cannot model it, or particles of `initial` overlap or are
-        not inside the container.
+        If the scene cannot be set up, if the engine does not support it, or if particles of `initial` overlap
+        or are not inside the container.
 
     See Also
     --------
@@ -83,9 +82,9 @@ class Simulation:
     Notes
     -----
     If the shear rates of `initial` and of the scene differ, the flow of `initial` is subtracted from the
-    velocities, and the flow of the scene is added. Displacements of sheared images and the motion of a piston
-    are taken from the state. If the state has no piston, the piston is at rest at its side. Vibrating faces
-    start at the beginning of a period.
+    velocities, and the flow of the scene is added. The displacement of sheared images, and the position and
+    velocity of a piston, are the values in `initial`. If `initial` has no piston, the piston starts at rest
+    at its side of the container. Vibrating faces start at the beginning of a period.
 
     Examples
     --------
@@ -152,7 +151,7 @@ class Simulation:
         mass: float = 1.0,
         **properties: Any,
     ) -> None:
-        """Add a particle before the first advance; `scene` becomes a new, validated scene.
+        """Add a particle before the first advance; `scene` is replaced by a new, validated scene.
 
         Parameters
         ----------
@@ -289,7 +288,7 @@ class Simulation:
         self._change(self.scene.with_walls(*box_of_walls(tuple(lower), tuple(upper))))
 
     def _change(self, scene: Scene) -> None:
-        """Set up the simulation of another scene; if this fails, the simulation is unchanged."""
+        """Set up the simulation again for another scene; nothing changes if this fails."""
         if self._advanced:
             raise SceneError(
                 "scene", "under way", "particles and walls can only be added before the first advance"
@@ -310,7 +309,7 @@ class Simulation:
         until: float | None = None,
         max_work: int | None = None,
     ) -> None:
-        """Advance by a duration, to a time, or by a number of events, whichever is first.
+        """Advance by a duration, to a time, or by some events, whichever is reached first.
 
         Parameters
         ----------
@@ -321,18 +320,19 @@ class Simulation:
         until : float, [time], optional
             Time to which to advance. It may be infinite together with `max_events`.
         max_work : int, optional
-            Event-driven engine: also stop after about this number of operations: events, crossings of boxes
-            and of periodic faces, and predictions. A call then takes a limited time even if events are rare.
+            Event-driven engine only: also stop after about this number of operations, so that a call takes a
+            limited time even if events are rare. Operations are events, crossings of boxes and of periodic
+            faces, and predictions.
 
         Raises
         ------
         SceneError
-            If no target is given, or the target is in the past or not a number. The simulation is then
-            unchanged.
+            If there is no target, or if the target is in the past or not a number. The simulation is
+            unchanged in this case.
 
         Notes
         -----
-        The time-stepped engine stops at the last complete step that is not after the target.
+        The time-stepped engine stops at the end of the last step that ends by the target time.
 
         Examples
         --------
@@ -374,7 +374,7 @@ class Simulation:
             raise
 
     def _warn_at_rest(self) -> None:
-        """Warn if all particles are at rest, and no feature of the scene can move them."""
+        """Warn if all particles are at rest, and nothing in the scene can move them."""
         scene = self.scene
         moved = any(face.moves for face in scene.faces.values()) or scene.is_open or scene.moving_wall
         if self._moving or not scene.moving_count or scene.gravity or scene.thermostat or moved:
@@ -399,7 +399,7 @@ class Simulation:
 
     @property
     def state(self) -> State:
-        """State of all particles at the present time, read-only; its `copy` can be changed.
+        """Read-only state of all particles at the present time; its `copy` can be changed.
 
         Examples
         --------
@@ -412,7 +412,7 @@ class Simulation:
 
     @property
     def initial_state(self) -> State:
-        """State of all particles at time 0, read-only; its `copy` can be changed.
+        """Read-only state of all particles at time 0; its `copy` can be changed.
 
         Examples
         --------
@@ -439,7 +439,7 @@ class Simulation:
         return self._dynamics.tally
 
     def sums_of(self, tally: str) -> np.ndarray:
-        """Return the sums of an optional tally, faster than by `tally`.
+        """Return the sums of an optional tally; this is faster than reading `tally`.
 
         Parameters
         ----------
@@ -449,8 +449,8 @@ class Simulation:
         Returns
         -------
         ndarray
-            The sums. For "stress", the shape is (2 d^2 + d,). The array has the sums of the stress tensor, of
-            its collisional part and of the heat flux.
+            The sums. For "stress", the array has the shape (2 d^2 + d,), and contains the sums of the stress
+            tensor, of its collisional part and of the heat flux.
 
         Raises
         ------
@@ -508,12 +508,12 @@ class Simulation:
 
     @property
     def events(self) -> dict[str, np.ndarray]:
-        """Recorded events: times, particles, and their positions and velocities after the event.
+        """Recorded events: times, particles, and positions and velocities after the events.
 
-        Arrays of M events: time (M,), particles (M, 2), positions and velocities (M, 2, d). With rough
-        contacts there are also spins, (M, 2) in 2D and (M, 2, 3) in 3D. The second entry of `particles` is -1
-        - face for a hit at a face of the container or at the edge of its well. It is -1 - 2d - n for a hit at
-        interior wall n.
+        The arrays for M events are time (M,), particles (M, 2), positions and velocities (M, 2, d). If
+        contacts are rough, there are also spins, (M, 2) in 2D and (M, 2, 3) in 3D. The second entry of
+        `particles` is negative for hits: -1 - n at face n of the container or at the edge of its well, and -1
+        - 2d - n at interior wall n.
 
         Raises
         ------
@@ -535,7 +535,7 @@ class Simulation:
         return self._log.events
 
     def again(self) -> Simulation:
-        """Return a new simulation of the same run, at its start.
+        """Return a new simulation of the same run at time 0.
 
         Returns
         -------
@@ -554,7 +554,7 @@ class Simulation:
         return Simulation(self.scene, self.engine, self.seed, initial=self._given, tallies=self.tallies)
 
     def replay(self, by: str = "time", interval: float | None = None) -> Iterator[State]:
-        """Run the simulation again from its start and yield states until the present time.
+        """Run the simulation again from time 0, and yield states up to the present time.
 
         Parameters
         ----------
@@ -606,15 +606,15 @@ class Simulation:
             yield again.state
 
     def properties(self, *names: str, at: Iterable[float] | None = None) -> dict[str, np.ndarray]:
-        """Return selected properties of all particles as arrays, now or at given times.
+        """Return selected properties of all particles, at the present time or at the times `at`.
 
         Parameters
         ----------
         *names : str
-            Names of properties, of `PROPERTIES`: "positions", "velocities", "speeds" ...
+            Names of properties from `PROPERTIES`: "positions", "velocities", "speeds" ...
         at : iterable of float, [time], optional
-            Times from the start to the present, in any order. The simulation is run again for them. Default:
-            the present time.
+            Times from 0 to the present time, in any order. The simulation is run again to compute the states
+            at these times. Default: the present time.
 
         Returns
         -------
@@ -624,8 +624,8 @@ class Simulation:
         Raises
         ------
         SceneError
-            If a name is unknown, if a time is outside the run, or if times are given in a scene with open
-            faces, because its particles change.
+            If a name is unknown, if a time is outside the run, or if there are times and faces are open,
+            because the particles in the container then differ between times.
 
         Examples
         --------
@@ -657,12 +657,12 @@ class Simulation:
     def check_invariants(self, state: State | None = None) -> None:
         """Check that the energy does not drift, and that positions and velocities are finite.
 
-        The energy that is exchanged with contacts and walls is taken into account.
+        Energy that contacts and walls add or remove does not count as drift.
 
         Parameters
         ----------
         state : State, optional
-            The present state, if the caller has it.
+            The present state, if the caller has already computed it.
 
         Raises
         ------
@@ -732,7 +732,7 @@ class Simulation:
         -------
         dict of str to ndarray
             Arrays of the present state, and the data that identify the run: scene, seed, engine, version and,
-            if it was given, the initial state.
+            if the caller supplied it, the initial state.
 
         Examples
         --------
@@ -748,7 +748,7 @@ class Simulation:
         return {**self._dynamics.checkpoint(), **self._identity()}
 
     def _identity(self) -> dict[str, np.ndarray]:
-        """Return the arrays that identify the run of a checkpoint."""
+        """Return the arrays of a checkpoint that identify the run."""
         return checkpoint_identity(
             self.scene, self.engine, self.seed, None if self._given is None else self._initial
         )
@@ -759,14 +759,14 @@ class Simulation:
         Parameters
         ----------
         checkpoint : dict of str to ndarray
-            Checkpoint of a simulation of the same scene and seed, with the same engine. Settings of an engine
-            that change no result, such as the search or threads, may differ.
+            Checkpoint of a simulation of the same scene and seed, with the same engine. Settings of the
+            engine that do not affect results, such as the search or the number of threads, may differ.
 
         Raises
         ------
         SceneError
-            If the checkpoint belongs to another simulation, or arrays are missing. The simulation is then
-            unchanged.
+            If the checkpoint belongs to another simulation, or if arrays are missing. The simulation is
+            unchanged in this case.
 
         Examples
         --------

@@ -1,8 +1,8 @@
 """Command line: a module for each command, with its arguments and its function.
 
 A user's mistake is reported by one line on stderr and exit code 2. The exit code is 1 if a run violates an
-invariant, if a file or memory fails, or if `check` finds an error. After an interruption it is 130 (SIGINT)
-or 143 (SIGTERM).
+invariant, if reading or writing a file fails, if memory is insufficient, or if `check` finds an error. After
+an interruption it is 130 (SIGINT) or 143 (SIGTERM).
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ _EXAMPLES = """examples:
 
 
 def lines() -> dict[str, str]:
-    """Return the line of each command in `gaspart --help`."""
+    """Return the description of each command in `gaspart --help`, by its name."""
     return {name: line for name, (_, line) in _COMMANDS.items()}
 
 
@@ -123,7 +123,7 @@ def _scene_keys() -> set[str]:
 
 
 def _complain(text: str, code: int) -> int:
-    """Print one line on stderr, and return the exit code."""
+    """Print a text as one line on stderr, and return the exit code `code`."""
     for stream, line in (
         (sys.stdout, ""),
         (sys.stderr, f"{clear_line()}gaspart: {visible(' '.join(text.split()))}\n"),
@@ -158,7 +158,7 @@ def _discard(stream: TextIO) -> None:
 
 
 def _describe_unrecognised(words: list[str], parser: Parser) -> str:
-    """Return the message about words of a command line that its command does not accept."""
+    """Return the message about words that a command does not accept."""
     options = [argument.partition("=")[0] for argument in words if argument.startswith("-")]
     if options:
         return f"{options[0]}: {unknown_word(options[0], parser.options(), 'option')}"

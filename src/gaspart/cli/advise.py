@@ -118,7 +118,7 @@ def _line(title: str, text: str) -> str:
 
 
 def _run(plan: Plan, file: str) -> list[str]:
-    """Return lines on the recommended run, its cost and its accuracy."""
+    """Describe the recommended run, its cost and its accuracy, in lines."""
     best, recipe, lines = plan.best, plan.recipe, []
     if gas := plan.gas:
         length = f"{plan.collisions_per_particle:.3g} measured collisions per particle"
@@ -159,7 +159,7 @@ def _bulk(plan: Plan, count: int) -> str:
 
 
 def _rarely_visited(plan: Plan) -> list[str]:
-    """Describe the range of a curve for which the accuracy holds."""
+    """Describe the range of a curve in which the required accuracy is reached."""
     visited, total = plan.points
     if visited == total:
         return []
@@ -170,7 +170,7 @@ def _rarely_visited(plan: Plan) -> list[str]:
 
 
 def _energy_scatter(plan: Plan, scatter: Scatter) -> list[str]:
-    """Return lines on the error due to different initial energies."""
+    """Describe the error due to different initial energies of runs, in lines."""
     if not scatter.value:
         return []
     of_mean = f", {scatter.value / math.sqrt(plan.replicas):.2g} of their mean" if plan.replicas > 1 else ""
@@ -187,9 +187,9 @@ def _energy_scatter(plan: Plan, scatter: Scatter) -> list[str]:
 
 
 def _differences(plan: Plan) -> list[str]:
-    """Describe pilot runs that disagree beyond their bounds, and name the exact engine.
+    """Describe pilot runs whose results differ by more than their error bounds.
 
-    The pilot run of the exact engine is used.
+    The lines also name the exact engine, whose pilot run is used.
     """
     lines = []
     for pilot in plan.differing:
@@ -213,7 +213,7 @@ def _extra_cost(plan: Plan) -> str:
 
 
 def _components(option: Option) -> str:
-    """Describe the parts of an option's error."""
+    """Describe the contributions to the error of an option of the plan."""
     noise = option.error - option.bias
     of = option.candidate
     parts = {"noise": noise, "model": of.model, "steps and cells": of.discretisation}
@@ -227,9 +227,9 @@ def _components(option: Option) -> str:
 
 
 def _shortfall(plan: Plan) -> str:
-    """Return the requirements for an accuracy that is out of reach.
+    """Describe what would be required for an accuracy that cannot be reached.
 
-    The limit may be the budget, the single run, or the engines.
+    The reason may be the time budget, the restriction to a single run, or the errors of the engines.
     """
     able = [option for option in plan.options if option.bias < plan.accuracy]
     if not able:

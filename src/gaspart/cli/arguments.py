@@ -1,4 +1,4 @@
-"""Common parts of the commands: the parser, readers of numbers, shared options."""
+"""Common parts of the commands: parser, conversion of numbers, shared options."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ class UsageError(Exception):
 
 
 class CheckFailed(Exception):
-    """Failed check, whose line has already been printed."""
+    """Error for a failed check about which a line has already been printed."""
 
 
 class Suggested(tuple):
-    """Words that a shell completes; other words are accepted, too."""
+    """Words that a shell suggests as completions; other words are accepted, too."""
 
     def __contains__(self, name: object) -> bool:
         return True
@@ -48,7 +48,7 @@ class Parser(argparse.ArgumentParser):
         return [option for action in self._actions for option in action.option_strings]
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
-        """Reject a word that is no choice, and suggest the most similar choice."""
+        """Raise an error that suggests the most similar choice for an unknown word."""
         if action.choices is not None and value not in action.choices:
             kind = "command" if action.nargs == argparse.PARSER else "name"
             option = f"{action.option_strings[0]}: " if action.option_strings else ""
@@ -56,15 +56,15 @@ class Parser(argparse.ArgumentParser):
 
 
 def real(**limits: float) -> Callable[[str], float]:
-    """Return a reader of a finite number within limits.
+    """Return a function that converts text to a finite number within limits.
 
-    The limits above, least and most are explained in `gaspart.keys.values.number`.
+    The limits `above`, `least` and `most` are explained in `gaspart.keys.values.number`.
     """
     return _reader(float, "a finite number", limits)
 
 
 def integer(**limits: float) -> Callable[[str], int]:
-    """Return a reader of an integer within limits, as for `real`."""
+    """Return a function that converts text to an integer within the limits of `real`."""
     return _reader(int, "a whole number", limits)
 
 
@@ -104,7 +104,7 @@ def set_command(
 
 
 def list_names(meanings: dict[str, str]) -> str:
-    """Return a list of names, a line for each, in the layout of options.
+    """Return names with their meanings, a line for each, in the layout of options.
 
     Long lines are wrapped.
     """
@@ -141,7 +141,7 @@ def run_files(name: str) -> list[str]:
 
 
 def config_command(command: str) -> Callable:
-    """Return the function of a command for a config of the workflow, or its results.
+    """Return the function of a command that uses a workflow's config or results.
 
     The function is found by an entry point, because the library does not import the reproduction. Entry
     points of other packages are ignored.
@@ -191,5 +191,5 @@ def several(kind: Callable[[str], T]) -> Callable[[str], tuple[T, ...]]:
 
 
 def alone(numbers: tuple[int, ...]) -> int | tuple[int, ...]:
-    """Return a single number without a tuple, several numbers as a tuple."""
+    """Return the item of a tuple of one number; return a longer tuple unchanged."""
     return numbers[0] if len(numbers) == 1 else numbers

@@ -97,7 +97,7 @@ def _is_healthy(options: argparse.Namespace, file: str) -> bool:
 def _check_frames(file: str, options: argparse.Namespace) -> tuple[str, list]:
     """Check a trajectory.
 
-    Returns a line on its particles, and the checks.
+    Returns a line about its particles, and the list of checks.
     """
     from gaspart.inspection.checks import judge, judge_open
     from gaspart.inspection.readers import is_open_run, read_frames

@@ -1,4 +1,4 @@
-"""Options of the command line for declared settings of engines and of trajectory files."""
+"""Command-line options for declared settings of engines and of trajectory files."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from gaspart.keys import Kind, describe, schema_of
 
 @cache
 def engine_settings() -> dict[str, Kind]:
-    """Return the settings of all engines by name; each description lists the engines."""
+    """Return the settings of all engines by name; descriptions list the engines that have them."""
     settings: dict[str, Kind] = {}
     for name, engine in ENGINES.items():
         for key, kind in schema_of(engine)["properties"].items():
@@ -28,7 +28,7 @@ def engine_settings() -> dict[str, Kind]:
 def add_setting(group: argparse._ArgumentGroup, name: str, kind: Kind) -> None:
     """Add the option of a setting: a number, a word, a text, or a flag.
 
-    A flag inverts the default.
+    The option of a boolean setting is a flag that inverts the default.
     """
     option, meaning, default = name.replace("_", "-"), kind["description"], kind.get("default")
     usual = "" if default is None else f"; default: {default}"
@@ -60,7 +60,7 @@ def one_of(words: Iterable[str]) -> str:
 
 
 def as_option(error: SceneError, engine: str) -> str:
-    """Return an error of the engine's settings, with the options that set them."""
+    """Return the text of an error, with command-line options instead of engine settings."""
     name = error.key.removeprefix("engine.")
     option = {"name": "--engine", "rewind": "--no-rewind"}.get(name, f"--{name.replace('_', '-')}")
     rule = f"has no meaning with --engine {engine}" if "unknown key" in error.rule else error.rule
@@ -70,7 +70,8 @@ def as_option(error: SceneError, engine: str) -> str:
 def changed_options(kinds: Mapping[str, Kind], settings: Mapping[str, Any]) -> list[str]:
     """Return the options for all settings that differ from their defaults.
 
-    `kinds` are the kinds of the settings. Settings without a default have options too.
+    `kinds` contains the kinds of the settings. The result always includes the options of settings without a
+    default.
     """
     options: list[str] = []
     for name, kind in kinds.items():

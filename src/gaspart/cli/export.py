@@ -56,7 +56,7 @@ _SLAB = "g(r) of discs is theirs times 2 r / L_z, that of a slab"
 
 
 def conventions(scene: Scene, suffix: str) -> str:
-    """Return a remark on a scene's file for other programs, or "".
+    """Return a remark for users of a scene's file in other programs; "" without a remark.
 
     The suffix is .nc for a trajectory, or the suffix of an exported file.
     """

@@ -114,7 +114,7 @@ def _measurable(recipe: Recipe) -> list[str]:
 
 
 def _request(recipe: Recipe, path: Path, frames: int) -> list[str]:
-    """Describe the accuracies that end a run, and the accuracies that it has reached."""
+    """Describe the accuracies at which a run ends, and the accuracies that it has reached."""
     from gaspart.cli.stated_run import accuracy_lines
 
     if recipe.until is None:

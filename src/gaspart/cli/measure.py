@@ -33,11 +33,11 @@ if TYPE_CHECKING:
     from gaspart.analysis.observable import Observable
 
 _FIELD = "field"
-"""Word that requests a property in cells; it is not the name of an observable."""
+"""Word on the command line that requests a field (a property in cells) instead of an observable."""
 _SEEDS = "seeds"
-"""Attribute with the remark on the energy of a single run."""
+"""Attribute that contains the remark about the energy of a single run."""
 _DRIFT = "drift"
-"""Attribute with the remark that a single run is not steady."""
+"""Attribute that contains the remark that a single run is not steady."""
 _ROWS = 12  # maximum number of printed points of a curve
 _TITLE = "# gaspart measure"
 _TABLE = FileKind("a table written by gaspart measure", begins_with(_TITLE.encode()))
@@ -97,7 +97,7 @@ def add_measure(parser: Parser) -> None:
 
 
 class _Words(tuple):
-    """Names of observables, which a shell completes; names of files are accepted, too."""
+    """Names of observables as completions for a shell; names of files are accepted, too."""
 
     def __contains__(self, argument: object) -> bool:
         return super().__contains__(argument) or argument in ALIASES or _is_file(str(argument))
@@ -173,8 +173,8 @@ def _measure_each(
 ) -> Iterator[tuple[str, Observable]]:
     """Measure each observable in one file, or as the mean over several files.
 
-    times : start and end of the frames that are used.
-    field : arguments of a field.
+    times : start and end of the time interval whose frames are used.
+    field : arguments of `gaspart.analysis.field`.
     """
     from gaspart.analysis.combination import replicas
     from gaspart.trajectory.reading import open_trajectory
@@ -199,7 +199,7 @@ def _measure_each(
 
 
 def _of_drift(trajectory: Any, name: str, times: tuple[float | None, float | None]) -> dict[str, str]:
-    """Return the remark that the measured part of a run drifts, if it drifts."""
+    """Return a remark if the measured part of a run is not steady."""
     from gaspart.analysis.series import drift_of
 
     with until_time(trajectory, times[1]) as part:
@@ -208,7 +208,7 @@ def _of_drift(trajectory: Any, name: str, times: tuple[float | None, float | Non
 
 
 def _of_seeds(trajectory: Any, name: str) -> dict[str, str]:
-    """Return the remark that runs with other seeds have other energies, if so."""
+    """Return a remark if runs with other seeds have other energies."""
     from gaspart.accuracy.scatter import scatter_of_run
     from gaspart.cli.stated_run import other_seeds
 
@@ -223,7 +223,8 @@ def _measure_field(
 ) -> Observable:
     """Measure a field.
 
-    Raises SceneError for a selection that fields do not have, and like `gaspart.analysis.field`.
+    Raises SceneError for a selection that does not apply to fields, and under the same conditions as
+    `gaspart.analysis.field`.
     """
     from gaspart.analysis.fields import field
 
@@ -234,9 +235,9 @@ def _measure_field(
 
 
 def _print_field(observable: Observable) -> None:
-    """Print a field along one axis as a curve, other fields by their range.
+    """Print a field along one axis as a curve, and the range of any other field.
 
-    The range is the number of cells, the minimum and the maximum.
+    The line for a range contains the number of cells, the minimum and the maximum.
     """
     along = [str(dim) for dim in observable.estimate.dims if dim != "component"]
     name = str(observable.attrs["quantity"])
@@ -290,7 +291,7 @@ def _print_curve(name: str, observable: Observable) -> None:
 
 
 def _parts(observable: Observable) -> list[tuple[str, Observable]]:
-    """Return the curves of an observable with their names; a single curve has no name."""
+    """Return the curves of an observable with their names, "" for a single curve."""
     if observable.estimate.ndim == 1:
         return [("", observable)]
     over = observable.estimate.dims[0]

@@ -1,7 +1,7 @@
 """`gaspart new`: a scene file from a template.
 
-The templates are files of this package. Comments at the start of a template have the title, a description,
-the command that runs the scene, and the figure of the workflow that measures it.
+The templates are files of this package. The comments at the start of a template contain the title, a
+description, the command that runs the scene, and the figure of the workflow with measurements of the scene.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ _CHAPTERS = {
     "Crystals and packings": ("crystal", "melting", "packing"),
     "Grains": ("cooling", "hourglass", "shaken", "sheared", "incline"),
 }
-"""All templates by chapter; in a chapter, simple scenes come first."""
+"""Names of all templates by chapter of the gallery; in a chapter, simple scenes come first."""
 _EXAMPLES = """examples:
   gaspart new gas.yaml
   gaspart new hot.yaml --template heat
@@ -57,8 +57,8 @@ _SCENE = FileKind("a scene file", _is_scene)
 class Template:
     """Template of a scene.
 
-    A template has a name, the chapter of the gallery, a title, a description, the command that runs it, the
-    figure of the workflow (or None), and the text of the file.
+    A template consists of a name, the chapter of the gallery, a title, a description, the command that runs
+    the scene, the figure of the workflow (or None), and the text of the file.
     """
 
     name: str
@@ -116,7 +116,7 @@ def _new(options: argparse.Namespace) -> None:
 
 
 def named_command(template: Template, path: Path) -> str:
-    """Return the command that runs the scene.
+    """Return the command that runs the scene of a template.
 
     The command contains the name of the scene file and the name of the trajectory file.
     """

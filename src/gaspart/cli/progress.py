@@ -1,4 +1,4 @@
-"""Progress on one line of a terminal."""
+"""Display of progress on one line of a terminal."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 
 
 _PATIENCE = 2.0
-"""Seconds without output before `waiting` shows the present work."""
+"""Time in seconds after which `waiting` begins to show the present work."""
 
 
 @contextmanager
 def waiting(text: str, quiet: bool = False) -> Iterator[Callable[[], None]]:
-    """Show `text` and the elapsed time during the `with` block, if it lasts over 2 s.
+    """Show `text` and the elapsed time during a `with` block that lasts over 2 s.
 
     Yields a function that ends the display, for a block that reports its own progress afterwards.
     """

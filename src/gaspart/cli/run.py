@@ -189,7 +189,7 @@ def _values(arguments: argparse.Namespace, names: Iterable[str]) -> dict[str, An
 
 
 def _requests(text: str) -> list[tuple[str, float]]:
-    """Read observable, optional face, and accuracy from each NAME=X, separated by commas."""
+    """Return names (with optional faces) and accuracies from NAME=X,NAME=X."""
     requests = []
     for part in text.split(","):
         name, _, accuracy = part.partition("=")
@@ -233,7 +233,7 @@ def _until(options: argparse.Namespace, scene: Scene) -> list[Accuracy] | None:
 
 
 class _Status:
-    """Last test of a run with --until, for the progress line."""
+    """Result of the last test of a run with --until, for the progress line."""
 
     def __init__(self) -> None:
         self._reached: list[AccuracyStatus] = []
@@ -243,7 +243,7 @@ class _Status:
         self._reached = reached
 
     def remark(self) -> str:
-        """Return the error that is largest relative to the required error."""
+        """Return text about the error that is largest relative to the required error."""
         finite = [status for status in self._reached if status.accuracy < math.inf]
         if not finite:
             return ""

@@ -1,4 +1,4 @@
-"""Description of a run: its accuracies, required and reached, and its options."""
+"""Description of a run: required accuracies, reached accuracies, and options."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def accuracy_lines(path: Path) -> list[str]:
 
 
 def other_seeds(scatter: float) -> str:
-    """Return the remark that the interval of a single run excludes the scatter of initial energies."""
+    """Return the remark that a single run's interval excludes the scatter of energies."""
     return f"for the energy of this run; other seeds scatter by {100.0 * scatter:.2g} %"
 
 

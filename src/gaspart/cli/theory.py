@@ -26,7 +26,7 @@ _FLUID = {2: "the fluid of discs", 3: "the fluid of spheres (metastable from 0.4
 
 @dataclass(frozen=True)
 class _Quantity:
-    """Theoretical value for a `Gas`, by an equation.
+    """Quantity with a theoretical value for a `Gas`.
 
     takes : properties of the particle on which the value depends.
     mixture : function of gaspart.theory for mixtures.
@@ -96,7 +96,7 @@ _QUANTITIES |= {
     ),
     "viscosity": _Quantity(_formula("enskog_viscosity", _PARTICLE), _PARTICLE, "shear viscosity", _ENSKOG),
 }
-"""Observables that have a value in an infinite gas, and formulas."""
+"""Quantities by name: observables with a value in an infinite gas, and formulas."""
 _MIXTURE_SOURCES = {
     "boublik": "Boublik 1970, Mansoori and others 1971",
     "linear": "Santos, Yuste and Lopez de Haro 1999",
@@ -203,7 +203,7 @@ def _of_mixture(options: argparse.Namespace) -> None:
 
 
 def _pairs(value: Any) -> str:
-    """Format a number, or a number for each pair of species, numbered from 1."""
+    """Format a number, or the numbers of all pairs of species, which count from 1."""
     if np.ndim(value) == 0:
         return f"{float(value):.8g}"
     return ", ".join(f"{i + 1}-{j + 1} {number:.8g}" for (i, j), number in np.ndenumerate(value))

@@ -168,7 +168,7 @@ def _picture(trajectory: str, output: Path, options: dict, overwrite: bool) -> N
 
 _SIZE = 1280, 720  # format 16:9 of slides
 _BY_SPECIES = ("separation", "brownian", "hourglass", "shaken", "slit", "packing")
-"""Templates whose species are more instructive than speeds."""
+"""Templates in which colours by species are more instructive than colours by speed."""
 _EXAMPLES_OF_GALLERY = """examples:
   gaspart films slides              # of all scenes of `gaspart new --list`
   gaspart films slides shaken hourglass --gif --size 640x360"""
@@ -189,14 +189,14 @@ def add_films(parser: Parser) -> None:
 
 
 def colour_of(template: Template) -> str:
-    """Return the property that colours the particles of a template."""
+    """Return the property by which particles of a template are coloured."""
     return "species" if template.name in _BY_SPECIES else "speed"
 
 
 def run_template(template: Template, folder: Path) -> Path:
-    """Make the trajectory of a template in a folder by its own command.
+    """Write the trajectory of a template to a folder by the command in the template.
 
-    Raises the errors of `gaspart run`.
+    Raises the same errors as the command `gaspart run`.
     """
     from gaspart.cli import commands
 

@@ -20,7 +20,7 @@ _ITEMS, _DEPTH, _BITS = 12, 4, 256  # limits in messages: items, nesting, bits o
 
 
 class OneLine(Exception):
-    """Exception whose one-line message is complete for its user."""
+    """Exception whose message is one line that tells a user everything about the error."""
 
     def _render_traceback_(self) -> list[str]:
         """Return the lines that IPython and notebooks print instead of a traceback."""
@@ -30,7 +30,7 @@ class OneLine(Exception):
 class SceneError(OneLine, ValueError):
     """Invalid input: one line with the key, the value and the violated rule.
 
-    The line is printable and of limited length for any value.
+    For any value, the line contains only printable characters and has a limited length.
 
     Parameters
     ----------
@@ -63,12 +63,12 @@ class SceneError(OneLine, ValueError):
         return (type(self), (self.key, self.value, self.rule, self.file))
 
     def inside(self, prefix: str, file: str | None = None) -> SceneError:
-        """Return this error with the key of the enclosing mapping added, or with its file.
+        """Return this error with the key of the enclosing mapping in front, or with its file.
 
         Parameters
         ----------
         prefix : str
-            Key of the enclosing mapping, such as "species[1]"; "" without one.
+            Key of the enclosing mapping, such as "species[1]"; "" if there is no such mapping.
         file : str, optional
             File that contains the value. Default: the file of this error.
 
@@ -88,10 +88,10 @@ class SceneError(OneLine, ValueError):
 
 
 def unknown_word(name: object, candidates: Iterable[str], kind: str = "key") -> str:
-    """Return the rule for a word that is not a known word.
+    """Return the rule for a message about an unknown word.
 
-    The rule states the new name of the word, its meaning in other programs, the most similar known word, or
-    all known words.
+    The rule states the new name if the word has been renamed, or the corresponding name if other programs use
+    the word. Otherwise it states the most similar known word, or all known words.
     """
     from difflib import get_close_matches
 
@@ -108,9 +108,10 @@ def unknown_word(name: object, candidates: Iterable[str], kind: str = "key") -> 
 
 
 def optional(module: str, extra: str, purpose: str) -> ModuleType:
-    """Import a package that serves a single purpose and belongs to an `extra` of pyproject.toml.
+    """Import an optional package, which belongs to an `extra` of pyproject.toml.
 
-    If it is missing, raise SceneError with the command that installs it.
+    If the package is missing, SceneError is raised with the `purpose` of the package and the command that
+    installs it.
     """
     try:
         return import_module(module)
@@ -156,13 +157,13 @@ class SimulationError(OneLine, RuntimeError):
 def short_repr(value: object) -> str:
     """Format a value as one printable line of at most 120 characters.
 
-    The time is limited for values of any size.
+    The computing time is limited for values of any size.
     """
     return visible(_repr(value, _DEPTH), _LONGEST["value"])
 
 
 def _repr(value: object, depth: int) -> str:
-    """Format the first items of a value like repr(), without raising any error."""
+    """Format the first items of a value like repr(), but never raise an error."""
     kind = type(value)
     if kind is str or kind is bytes:
         assert isinstance(value, str | bytes)
@@ -201,7 +202,8 @@ def visible(text: object, longest: int | None = None, names: bool = False) -> st
     unknown sources.
 
     longest : maximum number of characters; the middle of a longer text is omitted.
-    names : True to keep bytes of file names that are not UTF-8, unless a byte alone is a control character.
+    names : True to keep bytes of file names that are not UTF-8, except bytes that are control characters by
+        themselves.
     """
     line = str(text)
     if longest is not None and len(line) > longest:

@@ -1,8 +1,8 @@
-"""Answers to mistakes in Python calls, in one line that names the remedy.
+"""Error messages for mistakes in Python code, each a line that names the remedy.
 
-Mistakes are calls with wrong arguments, names that do not exist, and changes of constant values. The
-decorator `with_guidance` applies to public classes. `gaspart.public.attach` wraps public functions with call
-checks. For files and command lines, `unknown_word` gives the same answers.
+Such mistakes are calls with wrong arguments, names that do not exist, and changes of constant objects. The
+decorator `with_guidance` adds these messages to public classes; `gaspart.public.attach` adds them to public
+functions. For files and command lines, `unknown_word` gives the same remedies.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ T = TypeVar("T")
 
 
 class MissingName(OneLine, AttributeError):
-    """Missing name of a package or object, with the name that was probably meant."""
+    """Error for a name that an owner lacks, with the name that was probably meant."""
 
     def __init__(self, owner: ModuleType | type, name: str, names: Iterable[str] = ()) -> None:
         super().__init__(name)
@@ -42,7 +42,7 @@ class MissingName(OneLine, AttributeError):
 
 
 class FixedValue(OneLine, FrozenInstanceError):
-    """Attempt to change an object that is constant."""
+    """Error for an attempt to change a constant object."""
 
     def __init__(self, owner: type, name: str) -> None:
         replacement = f"dataclasses.replace({owner.__name__.lower()}, {name}=...)"
@@ -55,7 +55,7 @@ class FixedValue(OneLine, FrozenInstanceError):
 def _remedy(owner: ModuleType | type, name: str, names: tuple[str, ...]) -> str:
     """Return the name that was probably meant, or "" if no known name is similar.
 
-    names : variables of the owner; they are preferred to other attributes
+    names : names of variables of the owner, which have precedence over other attributes
     """
     from difflib import get_close_matches
 
@@ -78,9 +78,9 @@ def _remedy(owner: ModuleType | type, name: str, names: tuple[str, ...]) -> str:
 
 
 def _parts(owner: ModuleType | type) -> Iterable[tuple[str, ModuleType | type]]:
-    """Return the named parts of an owner that have names of their own.
+    """Return the parts of an owner, with their names, in which a name is searched, too.
 
-    These are subpackages, and attributes whose type is a public class.
+    The parts are subpackages, and attributes whose type is a public class.
     """
     if isinstance(owner, ModuleType):
         within = ((f"{owner.__name__}.{name}", getattr(owner, name)) for name in ("analysis", "theory"))
@@ -140,9 +140,9 @@ def with_call_checks(function: Callable, title: str) -> Callable:
 
 
 def _mistake(function: Callable, title: str, arguments: tuple, named: dict[str, Any]) -> SceneError | None:
-    """Return the mistake in the arguments of a call.
+    """Return the error that describes a mistake in the arguments of a call.
 
-    Return None if the arguments are correct; the error then comes from the function itself.
+    If the arguments are correct, None is returned, because the error then comes from the function itself.
     """
     form = signature(function)
     try:

@@ -96,13 +96,15 @@ SYNONYMS: dict[str, str | tuple[str, ...]] = {
     "parameters": "over",
     "grid": "over",
 }
-"""Names by the other term. A remark follows a comma; several names are separated by a comma or "or". If a
-term has several meanings, the first known name is used.
+"""Names in gaspart by the term of other programs.
+
+A remark may follow the name after a comma; several names are separated by a comma or "or". If a term has
+several meanings, the first known name is used.
 """
 
 
 def meant(term: str, candidates: list[str]) -> str | None:
-    """Return the meaning of another term if its names are known, or None."""
+    """Return the names for a term of other programs if they are candidates, otherwise None."""
     meanings = SYNONYMS.get(term, ())
     for meaning in (meanings,) if isinstance(meanings, str) else meanings:
         if any(name in candidates for name in meaning.replace(",", " ").split()):
@@ -195,4 +197,4 @@ ELSEWHERE: dict[str, dict[str, str]] = {
     },
     "Tally": {"events": "collisions and wall_hits count them"},
 }
-"""Location of a missing name, by package or class and by name."""
+"""Location of names that a package or class lacks, by package or class and by name."""

@@ -1,4 +1,4 @@
-"""Keys that are fields of a dataclass: their checks, and the schema of their mapping."""
+"""Dataclasses whose fields are keys of files: checks of fields, and schemas of mappings."""
 
 from __future__ import annotations
 
@@ -36,17 +36,18 @@ def declare(kind: Kind) -> dict[str, Any]:
 
 
 def validate(instance: Any) -> None:
-    """Check every field of a frozen dataclass during its construction, and convert it.
+    """Check and convert every field of a frozen dataclass during its construction.
 
     Parameters
     ----------
     instance : dataclass
-        Instance. Each field is set to its value in the final type. None is accepted if it is the default.
+        Instance. Each field is set to the converted value. None is accepted for a field whose default is
+        None.
 
     Raises
     ------
     SceneError
-        If a value breaks its rule. The message has key, value and rule.
+        If a value breaks its rule. The message contains key, value and rule.
     """
     for name, check, optional in _checks(instance.__class__):
         value = getattr(instance, name)
@@ -56,7 +57,7 @@ def validate(instance: Any) -> None:
 
 @cache
 def _checks(cls: Any) -> tuple[tuple[str, Check, bool], ...]:
-    """Return name, check and a flag for each field of a dataclass.
+    """Return the name, the check and a flag of each field of a dataclass.
 
     The flag is True if the field has the default None.
     """
@@ -69,7 +70,7 @@ def set_fields(instance: Any, **checked: object) -> None:
     Parameters
     ----------
     instance : dataclass
-        Instance. Its cached properties are deleted, because they were computed from the earlier values.
+        Instance. Its cached properties are deleted, because they were computed from the previous values.
     **checked : object
         Values by the name of their field.
     """
@@ -80,7 +81,7 @@ def set_fields(instance: Any, **checked: object) -> None:
 
 
 def field_values(instance: Any) -> dict[str, Any]:
-    """Return the fields of a dataclass by name, without cached properties.
+    """Return the values of the fields of a dataclass by name, without cached properties.
 
     Parameters
     ----------
@@ -96,7 +97,7 @@ def field_values(instance: Any) -> dict[str, Any]:
 
 
 def schema_of(cls: Any, **more: Kind) -> Kind:
-    """Return the JSON schema of a mapping of the keys of a dataclass.
+    """Return the JSON schema of a mapping whose keys are the fields of a dataclass.
 
     Parameters
     ----------
@@ -104,7 +105,7 @@ def schema_of(cls: Any, **more: Kind) -> Kind:
         Dataclass whose fields are declared by `declare`. The summary of its docstring is the meaning of the
         mapping.
     **more : Kind
-        Further keys, before the fields.
+        Additional keys of the mapping, in front of the fields.
 
     Returns
     -------
@@ -143,7 +144,7 @@ def from_mapping(cls: type[T], mapping: object, where: str) -> T:
     Raises
     ------
     SceneError
-        If `mapping` is no mapping, has an unknown key or an invalid value, or does not have a required key.
+        If `mapping` is not a mapping, has an unknown key or an invalid value, or lacks a required key.
     """
     if not isinstance(mapping, dict):
         raise SceneError(where, mapping, "must be a mapping of keys to values")
@@ -159,7 +160,7 @@ def from_mapping(cls: type[T], mapping: object, where: str) -> T:
 
 
 def refuse_unknown(cls: Any, mapping: dict, where: str) -> None:
-    """Raise SceneError for a key that is no field of a dataclass.
+    """Raise SceneError for a key that is not a field of a dataclass.
 
     Parameters
     ----------
@@ -173,7 +174,7 @@ def refuse_unknown(cls: Any, mapping: dict, where: str) -> None:
     Raises
     ------
     SceneError
-        If a key is unknown. The rule in the message is from `unknown_word`.
+        If a key is unknown. The rule in the message is the result of `unknown_word`.
     """
     names = [item.name for item in fields(cls)]
     for key, value in mapping.items():
@@ -182,7 +183,7 @@ def refuse_unknown(cls: Any, mapping: dict, where: str) -> None:
 
 
 def instance_of(cls: type, meaning: str) -> Kind:
-    """Return the kind of an instance of a dataclass.
+    """Return the kind of values that are instances of a dataclass.
 
     Parameters
     ----------
@@ -194,7 +195,8 @@ def instance_of(cls: type, meaning: str) -> Kind:
     Returns
     -------
     Kind
-        Kind with the schema of the class. In a file the value is a mapping of the keys of the class.
+        Kind with the schema of the class. In a file such a value is a mapping whose keys are the fields of
+        the class.
     """
 
     def check(key: str, value: Any) -> Any:
@@ -206,7 +208,7 @@ def instance_of(cls: type, meaning: str) -> Kind:
 
 
 def instances_of(meaning: str, *classes: type, rule: str) -> Kind:
-    """Return the kind of a list of instances of some dataclasses.
+    """Return the kind of lists that contain instances of these dataclasses.
 
     Parameters
     ----------
@@ -215,7 +217,7 @@ def instances_of(meaning: str, *classes: type, rule: str) -> Kind:
     *classes : type
         Dataclasses of the items.
     rule : str
-        Rule for an item, for messages.
+        Rule that every item obeys, for messages.
 
     Returns
     -------
@@ -235,7 +237,7 @@ def instances_of(meaning: str, *classes: type, rule: str) -> Kind:
 
 
 def require(kind: Mapping[str, Any], value: object, where: str) -> None:
-    """Raise SceneError if a value of a file breaks a schema.
+    """Raise SceneError if a value in a file breaks a schema.
 
     Parameters
     ----------
@@ -277,7 +279,7 @@ def require(kind: Mapping[str, Any], value: object, where: str) -> None:
 def _validator() -> Any:
     """Return the validator of JSON schemas.
 
-    The test of this validator for distinct items takes a time proportional to the length of the list.
+    Its test that all items of a list differ takes a time proportional to the length of the list.
     """
     from jsonschema import Draft202012Validator, ValidationError
     from jsonschema.validators import extend
@@ -291,7 +293,7 @@ def _validator() -> Any:
 
 
 def _rule(validator: str, expected: Any) -> str:
-    """Return the rule of a JSON schema's keyword as words."""
+    """Return in words the rule that a keyword of a JSON schema expresses."""
     if validator == "type":
         types = [expected] if isinstance(expected, str) else expected
         return f"must be of type {' or '.join(types)}"

@@ -1,4 +1,4 @@
-"""Kinds of values. A kind is a JSON schema with a check for fields of classes."""
+"""Kinds of values: JSON schemas with checks for fields of classes."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Kind(dict[str, Any]):
     schema : mapping
         Entries of the schema.
     check : Check, optional
-        Check for a field of a class. Default: the value is unchanged, and the class itself checks it.
+        Check of a field of a class. Default: no check, because the class itself checks the value.
     """
 
     def __init__(self, schema: Mapping[str, Any], check: Check = _identity) -> None:
@@ -39,7 +39,7 @@ class Kind(dict[str, Any]):
         Parameters
         ----------
         **more : object
-            Entries, which replace entries of the same name.
+            Entries. They replace existing entries of the same name.
 
         Returns
         -------
@@ -59,14 +59,14 @@ _PER_AXIS = {"minItems": 2, "maxItems": 3}
 
 
 def describe(kind: Mapping[str, Any], meaning: str, check: Check | None = None, **more: Any) -> Kind:
-    """Return a kind with its meaning and further entries of its schema.
+    """Return a copy of a kind with a meaning and further entries in its schema.
 
     Parameters
     ----------
     kind : Kind or mapping
         Kind or JSON schema.
     meaning : str
-        Description; "" for none.
+        Description; "" for no description.
     check : Check, optional
         Check for a field of a class. Default: the check of `kind`.
     **more : object
@@ -118,7 +118,7 @@ def not_negative(meaning: str, **more: Any) -> Kind:
 
 
 def real(meaning: str) -> Kind:
-    """Return the kind of a number of either sign, 0 or of acceptable size.
+    """Return the kind of a number of either sign, 0 or with an acceptable size.
 
     Parameters
     ----------
@@ -300,7 +300,7 @@ def _numbers(dimension: int | None) -> Kind:
 
 
 def per_side(meaning: str) -> Kind:
-    """Return the kind of the numbers of boxes of a partition.
+    """Return the kind of the numbers of boxes along the sides of a container.
 
     Parameters
     ----------
@@ -363,7 +363,7 @@ def names(meaning: str, **more: Any) -> Kind:
 
 
 def record(keys: Mapping[str, Mapping[str, Any]], meaning: str = "", **more: Any) -> Kind:
-    """Return the kind of a mapping with these keys only.
+    """Return the kind of a mapping that may have these keys only.
 
     Parameters
     ----------
@@ -385,7 +385,7 @@ def record(keys: Mapping[str, Mapping[str, Any]], meaning: str = "", **more: Any
 
 
 def nullable(kind: Kind) -> Kind:
-    """Return a kind that accepts null, which counts as absent.
+    """Return a kind that also accepts null, which means that there is no value.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
-"""Checks of single values given by a user.
+"""Checks of single values from a user.
 
-Each check returns the value in its type, or raises SceneError. All functions accept any object: None, text,
-nan, an integer beyond the range of floats, an array.
+Each check returns the value in its final type, or raises SceneError. All functions can be called with any
+object, such as None, text, nan, an integer beyond the range of floats, or an array.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def number(
     least: float = -math.inf,
     most: float = math.inf,
 ) -> float:
-    """Return `value` as a finite float if it is in the range.
+    """Return `value` as a finite float; raise SceneError if it is outside the range.
 
     Parameters
     ----------
@@ -90,19 +90,19 @@ def number(
 
 
 def size(key: str, value: float | tuple[float, ...]) -> None:
-    """Raise SceneError for a number so small or so large that contacts would be lost.
+    """Raise SceneError for a number that is too small or too large to compute contacts.
 
     Parameters
     ----------
     key : str
         Key of the value, for the message.
     value : float or tuple of float
-        Number, or a vector, whose largest component counts. 0 is accepted.
+        Number, or vector, whose size is its largest absolute component. The size 0 is accepted.
 
     Raises
     ------
     SceneError
-        If the size is not 0 and not from `SMALLEST` to `LARGEST`.
+        If the size is neither 0 nor between `SMALLEST` and `LARGEST`.
     """
     largest = max(map(abs, value), default=0.0) if isinstance(value, tuple) else abs(value)
     if largest and not SMALLEST <= largest <= LARGEST:
@@ -195,7 +195,7 @@ def sized_number(key: str, value: Any) -> float:
 
 
 def count_of(key: str, value: Any, least: int = 0, most: int = LARGEST_INTEGER) -> int:
-    """Return `value` as an integer, if it is in the range.
+    """Return `value` as an integer; raise SceneError if it is outside the range.
 
     Parameters
     ----------
@@ -244,7 +244,7 @@ def finite_vector(key: str, value: Any, dimension: int | None = None) -> tuple[f
     Raises
     ------
     SceneError
-        If the value is not a list of this length of finite numbers.
+        If the value is not a list of finite numbers with this length.
     """
     rule = f"must be a list of {dimension or '2 or 3'} finite numbers"
     components = tuple(number(key, item, rule) for item in _items(key, value, rule, 4))
@@ -300,7 +300,7 @@ def instances(key: str, value: Any, kinds: type | tuple[type, ...], rule: str) -
 
 
 def true_or_false(key: str, value: Any) -> bool:
-    """Return `value`, if it is true or false.
+    """Return `value` if it is true or false; otherwise raise SceneError.
 
     Parameters
     ----------
@@ -325,7 +325,7 @@ def true_or_false(key: str, value: Any) -> bool:
 
 
 def one_of(key: str, value: Any, accepted: Iterable[Any]) -> Any:
-    """Return `value`, if it is one of the accepted words or numbers.
+    """Return `value` if it is an accepted word or number; otherwise raise SceneError.
 
     Parameters
     ----------
@@ -334,7 +334,7 @@ def one_of(key: str, value: Any, accepted: Iterable[Any]) -> Any:
     value : object
         Value.
     accepted : iterable
-        Accepted values, whose type counts, too.
+        Accepted values. A value of another type is not accepted even if it is numerically the same.
 
     Returns
     -------
@@ -352,7 +352,7 @@ def one_of(key: str, value: Any, accepted: Iterable[Any]) -> Any:
 
 
 def partition(key: str, value: Any) -> int | tuple[int, ...]:
-    """Return the numbers of boxes per side: an integer, or a tuple.
+    """Return the number of boxes per side as an integer, or as a tuple.
 
     Parameters
     ----------
@@ -364,12 +364,13 @@ def partition(key: str, value: Any) -> int | tuple[int, ...]:
     Returns
     -------
     int or tuple of int
-        Boxes per side, or a number for each axis, at most `MOST_BOXES` boxes in all.
+        An integer for all sides, or a tuple with a number for each side. The total number of boxes is at most
+        `MOST_BOXES`.
 
     Raises
     ------
     SceneError
-        If the value is no such number or list.
+        If the value is not such a number or list.
     """
     counts = value if isinstance(value, (tuple, list)) else (value,)
     sides = tuple(count_of(key, n, least=1) for n in counts)

@@ -1,1 +1,1 @@
-"""Runs of a given duration, or until accuracies are reached, also as replicas."""
+"""Runs of a prescribed duration or until accuracies are reached, single or as replicas."""

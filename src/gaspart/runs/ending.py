@@ -1,4 +1,4 @@
-"""End of a run without a duration: required accuracies of observables, and their limits.
+"""End of a run without a duration: required accuracies, and the conditions for them.
 
 The test that ends the run is in `gaspart.accuracy.reached`.
 """
@@ -37,12 +37,14 @@ class Accuracy(Requirement):
         Name of the observable, as in `gaspart measure`: Z, D, collision_rate, pressure, heat_flux,
         wall_shear, density, velocity or shear_viscosity.
     accuracy : float, [1]
-        Requested relative standard error; the error includes correlations. For an observable with components
-        that vanish, and for a profile, it is relative to their root mean square.
+        Requested relative standard error. The standard error includes the effect of correlations in time. For
+        a profile, and for an observable with components that vanish, the error is relative to the root mean
+        square of the components.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
     face : str, optional
-        Name of a wall, such as "x low". Default: each of the walls.
+        Name of the wall at which the observable must be accurate, such as "x low". Default: each of the
+        walls.
 
     Raises
     ------
@@ -56,8 +58,9 @@ class Accuracy(Requirement):
 
     Notes
     -----
-    Impulses are stored too, if the required accuracy concerns the density or the pressure on walls across one
-    axis, if the engine can tally impulses, and if they make the run shorter.
+    The run also stores an `ImpulseTally` under three conditions: the accuracy is required for the density, or
+    for the pressure on walls across a single axis; the engine supports the tally; and the tally makes the run
+    shorter.
 
     Examples
     --------
@@ -82,7 +85,7 @@ class Accuracy(Requirement):
 
     @classmethod
     def from_name(cls, name: str, accuracy: float, start: float | None = None) -> Self:
-        """Return the accuracy of an observable, named as on the command line and in a config.
+        """Return the accuracy of an observable whose name may contain a face.
 
         Parameters
         ----------
@@ -117,9 +120,9 @@ class Accuracy(Requirement):
 def contents_until(
     until: Until, scene: Scene, engine: Engine, contents: Contents, from_state: bool
 ) -> Contents:
-    """Return the contents of a file, with the displacements that requested accuracies need.
+    """Return the contents of a file, with displacements if a requested accuracy needs them.
 
-    Raises SceneError for an accuracy that this run cannot measure or never reach.
+    Raises SceneError for an accuracy that this run cannot measure or can never reach.
 
     from_state : True if the run starts from a prescribed state.
     """
@@ -134,8 +137,8 @@ def contents_until(
 def require_measurable(requirement: Requirement, scene: Scene, engine: Engine, contents: Contents) -> None:
     """Raise SceneError for an accuracy of an observable that this run cannot measure.
 
-    There are three reasons: the scene does not have the observable for a run of any length; runs of the
-    engine do not determine it; or the data of the observable are not in the file.
+    There are three possible reasons: the observable is not defined for the scene; runs of the engine do not
+    determine the observable; or the data of the observable are not in the file.
     """
     walls = walls_of(requirement.observable, scene)
     try:
@@ -149,7 +152,7 @@ def require_measurable(requirement: Requirement, scene: Scene, engine: Engine, c
 
 
 def _require_end(requirement: Requirement, scene: Scene, at_most: float | None, from_state: bool) -> None:
-    """Raise SceneError for a run that has no end.
+    """Raise SceneError for a run that would never end.
 
     Either nothing ever happens in the scene, or the scene has no steady state and the run has no maximum
     length.
@@ -176,7 +179,8 @@ def _require_end(requirement: Requirement, scene: Scene, at_most: float | None, 
 def require_reachable(requirement: Requirement, scene: Scene, replicas: int) -> None:
     """Raise SceneError for an accuracy that the mean of replicas never reaches.
 
-    Each replica has its own seed, and therefore a different initial energy.
+    The initial energy differs between replicas, because each replica has its own seed. This scatter limits
+    the accuracy of the mean.
 
     Parameters
     ----------
@@ -212,9 +216,9 @@ def require_reachable(requirement: Requirement, scene: Scene, replicas: int) -> 
 def default_sample_interval(scene: Scene, engine: Engine, correlations: Correlations | None) -> float:
     """Return the default time between frames, to two digits.
 
-    The interval is the mean time between two collisions of a particle, or, without collisions, the mean time
-    to cross the container. It is rounded to a multiple of the engine's steps and of the samples of
-    correlations.
+    The interval is the mean time between two collisions of a particle. Without collisions it is the mean time
+    in which a particle crosses the container. It is rounded to a multiple of the engine's steps and of the
+    samples of correlations.
 
     Parameters
     ----------

@@ -65,15 +65,16 @@ def run(
 ) -> Path:
     """Run a scene and write its trajectory to a file.
 
-    The run ends after `duration`, or, with `until`, when all requested accuracies are reached. An interrupted
-    run of the same recipe and program at `path` is continued, and a complete one is left unchanged.
+    The run ends after `duration`, or, with `until`, when all requested accuracies are reached. If an
+    interrupted run with the same settings and program version is at `path`, it is continued. If a complete
+    run with the same settings is at `path`, nothing is changed.
 
     Parameters
     ----------
     scene : Scene
         The scene to simulate.
     engine : Engine or {"event", "step", "dsmc"}, optional
-        The engine; a name selects its default settings. Default: event-driven.
+        Engine, or the name of an engine with default settings. Default: event-driven.
     seed : int or tuple of int, default 0
         Seed of the initial state and of all random numbers of the run.
     duration : float, [time], optional
@@ -87,28 +88,28 @@ def run(
         Requested relative standard errors, standard error / |value|. The accuracies are tested at 64, 96,
         128 ... frames (see `reached_accuracy`).
     at_most : float, [time], optional
-        Maximum length of a run with `until`. By default such a run ends if its first 16384 frames have no
-        contact.
+        Maximum length of a run with `until`. Default: no maximum, but the run ends if there is no contact in
+        its first 16384 frames.
     displacements : bool, default False
         Also store the unwrapped displacement of each particle since time 0, in float64.
     follow : int, optional
         Store only the first `follow` particles. Numbers of collisions and other totals still include all
         particles.
     keep : {"positions", "velocities"}, optional
-        Store only this property of the particles.
+        Store only positions or only velocities. Default: both.
     correlations : Correlations, optional
-        Time correlations to accumulate: each frame stores the sums since the start, over all pairs of
-        samples. The sums are of the velocities and, with `displacements`, of the mean-squared displacement;
-        with ``Correlations(stress=True)``, of the stress tensor and the heat flux.
+        Time correlations to accumulate. Each frame stores sums over all pairs of samples since the start:
+        sums for the velocity autocorrelation and, with `displacements`, for the mean-squared displacement;
+        with ``Correlations(stress=True)``, sums for the stress tensor and the heat flux instead.
     pairs : bool, default False
-        Count the collisions of each pair of species in each frame.
+        Store in each frame the number of collisions of each pair of species.
     tallies : iterable of OptionalTally, optional
         Optional sums to store: ``ImpulseTally("z", 200)`` for densities and pressures,
         ``PairImpulseTally(3.0, 300, 0.5)`` for g(r). They are more accurate than counts.
     initial : State, str or Path, optional
         Initial state: a state, the last state of a trajectory (`last_state`), or a GSD or XYZ file
-        (`read_state`). The particles and the size of the container must be the same as in `scene`. Defaults
-        of engines are still computed from the scene's speeds or temperatures.
+        (`read_state`). The particles and the size of the container must be the same as in `scene`. Default
+        settings of engines are still computed from the speeds or temperatures of `scene`.
     checkpoint_seconds : float, default 30.0
         Wall-clock time between checkpoints, in seconds.
     progress : callable, optional
@@ -121,8 +122,8 @@ def run(
         Store the final state in ``<path>.checkpoint.npz``.
     replicas : int, default 1
         Number of independent simultaneous runs, one process each. Run k has the seed ``(seed, k)``. For the
-        path ``run.nc``, its file is ``run-k.nc`` (`replica_paths`). With `until` the runs end when their mean
-        is accurate.
+        path ``run.nc``, its file is ``run-k.nc`` (`replica_paths`). With `until` all runs end when their mean
+        has reached the accuracies.
 
     Returns
     -------
@@ -144,8 +145,8 @@ def run(
 
     Notes
     -----
-    With rough contacts the file also has spins. SIGINT and SIGTERM take effect after a checkpoint, before the
-    handlers of the caller.
+    If contacts are rough, the file also contains spins. After SIGINT or SIGTERM a checkpoint is written
+    before the handlers of the caller are executed.
 
     Examples
     --------
@@ -176,9 +177,9 @@ def run(
 
 
 def _engine_of(scene: object, engine: Engine | str | None) -> Engine:
-    """Return the engine of a run (`resolve_engine`).
+    """Return the engine of a run, see `resolve_engine`.
 
-    Raises SceneError for an unknown engine, and for a value that is no scene.
+    Raises SceneError for an unknown engine, and if `scene` is not a scene.
     """
     require_scene(scene)
     return resolve_engine(engine)
@@ -187,7 +188,8 @@ def _engine_of(scene: object, engine: Engine | str | None) -> Engine:
 def _in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
     """Return the recipes of the replicas of a run.
 
-    Raises SceneError like `in_replicas`, and for an accuracy that their mean never reaches.
+    Raises SceneError under the same conditions as `in_replicas`, and for an accuracy that the mean of the
+    replicas can never reach.
     """
     recipes, until = in_replicas(recipe, replicas), recipe.until
     if until is not None and until.at_most is None and recipe.initial is None:
@@ -209,7 +211,7 @@ def _record(
 
 
 def _with_useful_tally(contents: Contents, request: Until, scene: Scene, engine: Engine) -> Contents:
-    """Add a tally, if there is one, that makes the requested accuracies cheaper."""
+    """Add the tally that makes the requested accuracies cheaper, if there is such a tally."""
     from gaspart.accuracy.target import Target  # this loads the analysis, which few runs need
 
     useful = (
@@ -227,8 +229,8 @@ def _start(
 ) -> State | None:
     """Return the initial state of a run; for a file, its last state.
 
-    Raises SceneError if that file is one of the files at `path`, also under another name, because it would be
-    overwritten.
+    Raises SceneError if this file is one of the files of the run at `path`, even under another name, because
+    the run would overwrite it.
     """
     paths = replica_paths(_require_path(path), count_of("replicas", replicas, least=1, most=MOST_REPLICAS))
     if not isinstance(initial, str | Path):
@@ -256,7 +258,7 @@ def _request(
     until: Accuracy | list[Accuracy] | tuple[Accuracy, ...] | None,
     at_most: float | None,
 ) -> Until | None:
-    """Return the end of a run without a duration.
+    """Return the accuracies that end a run, or None for a run with a duration.
 
     Raises SceneError for arguments that exclude or require each other.
     """
@@ -283,7 +285,7 @@ def resume(
     duration: float | None = None,
     keep_checkpoint: bool = False,
 ) -> Path:
-    """Finish an interrupted run, or extend a complete one, from its files only.
+    """Finish an interrupted run, or extend a complete run, from its files only.
 
     Without a `duration` the interrupted run whose file is ``<path>.partial`` is continued to its end. With a
     `duration` the complete run at `path` is continued to that time.

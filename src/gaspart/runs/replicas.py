@@ -51,7 +51,8 @@ def record_together(
     Raises
     ------
     SceneError, SimulationError
-        Like `gaspart.trajectory.run.record`. SimulationError is raised also if a process was killed.
+        Under the same conditions as in `gaspart.trajectory.run.record`. SimulationError is also raised if a
+        process was killed.
     """
     path = output_path(path)
     files = replica_paths(path, len(recipes))
@@ -85,7 +86,7 @@ def resume_together(
     Raises
     ------
     SceneError, SimulationError
-        Like `gaspart.trajectory.run.resume` and `extend`.
+        Under the same conditions as in `gaspart.trajectory.run.resume` and `extend`.
     """
     path, replicas = path_of_all(file, recipe), beside(file, recipe)
     if duration is not None:
@@ -108,9 +109,9 @@ def _carry_out(
     options: WriteOptions,
     examined: Examined,
 ) -> None:
-    """Call a function for all replicas.
+    """Call a function for all replicas in separate processes.
 
-    The arguments of the function are `send`, the arguments in `calls`, the options, and True if the function
+    The function is called with `send`, the arguments in `calls` for one replica, the options, and True if it
     must report progress.
     """
     reached: dict[int, tuple[float, float, int]] = {}
@@ -150,6 +151,6 @@ def _extend(send: Send, duration: float, path: Path, options: WriteOptions, with
 
 
 def _sending(options: WriteOptions, send: Send, with_progress: bool) -> WriteOptions:
-    """Return options with which a process sends its progress and the results of its tests."""
+    """Return options that make a process send its progress and the results of its tests."""
     progress = (lambda *reached: send(reached)) if with_progress else None
     return replace(options, progress=progress, examiner=Examiner(send))

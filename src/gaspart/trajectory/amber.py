@@ -1,8 +1,8 @@
 """File format of trajectories: AMBER NetCDF 1.0, https://ambermd.org/netcdf/nctraj.xhtml.
 
-A netCDF-3 file consists of a header, which the netCDF library makes, and `frames` of equal size. A checksum
-(CRC-32) in the header detects damage. Other readers ignore it. The checksum excludes the number of frames in
-the header.
+A netCDF-3 file consists of a header, which the netCDF library makes, and frames of the same size. A checksum
+(CRC-32) in the header detects damage; programs other than gaspart ignore it. The checksum is computed without
+the number of frames in the header, which changes during a run.
 """
 
 from __future__ import annotations
@@ -53,15 +53,14 @@ _EXTRA: dict[str, tuple[str, tuple[str, ...], dict[str, str]]] = {
     "pair_collisions": (">f8", ("pair",), {"long_name": "collisions of each pair of species so far"}),
     "piston": (">f8", ("motion",), {"long_name": "place along its axis, and velocity, of the piston"}),
 }
-"""Variables that only some files have, as in `Layout`, in their order in the file."""
+"""Variables that only some files have, in the form of `Layout` and in the order of the file."""
 INITIAL: tuple[str, ...] = tuple(
     f"initial_{name}" for name in ("positions", "velocities", "spins", "piston", "displaced", "vibrations")
 )
-"""Variables of a run with a prescribed initial state. They are parts of a State, for all particles of the
-scene."""
+"""Variables of a run with a prescribed initial state: arrays of a `State` for all particles of the scene."""
 _OF_INITIAL = ("particle", "component")
 BOOKKEEPING = ("header_bytes", "header_crc32", "frame_bytes")
-"""Attributes for checking a file: sizes of the header and of a frame, and checksum of the header."""
+"""Attributes by which a file is checked: size and checksum of the header, and size of a frame."""
 MOST_FRAMES = 2**31 - 1
 _UNFINISHED = bytes(2 * WORD) + struct.pack(">I", 10)
 """First bytes of a file before its first word is written: no frames, and the tag of dimensions."""
@@ -72,8 +71,8 @@ _FIRST_NAME = struct.pack(">I", 5) + b"frame"
 def counters(engine: Engine, tallies: Iterable[OptionalTally] = ()) -> tuple[str, ...]:
     """Return the names of the cumulative sums in a file of this engine.
 
-    Sums start at time 0. Each sum is a variable. Sums that only other engines compute are left out, because
-    they would be zero.
+    The sums start at time 0, and each sum is a variable of the file. Sums that only other engines compute are
+    omitted, because they would be zero.
 
     tallies : optional tallies of the run.
     """
@@ -82,10 +81,10 @@ def counters(engine: Engine, tallies: Iterable[OptionalTally] = ()) -> tuple[str
 
 
 def cell(scene: Scene, lengths: np.ndarray, piston: np.ndarray | None) -> dict[str, np.ndarray]:
-    """Return the variables that describe the cell of a frame; it may end at a piston.
+    """Return the variables of a frame that describe the container, which may end at a piston.
 
-    In two dimensions the cell is as high as its longest side. Readers assume that the cell is periodic along
-    z as well. Some of them limit distances to half of the smallest side.
+    In two dimensions the height of the cell along z is its longest side. The reason is that other programs
+    assume that the cell is periodic along z as well, and some limit distances to half of the smallest side.
     """
     sides, origin = np.full(3, float(np.max(lengths))), np.zeros(3)
     sides[: len(lengths)] = lengths
@@ -114,7 +113,7 @@ class Layout:
     counters : names of the counters of the file
     sums : names of the sums of the correlations
     axes : lengths of the axes that not every file has: axes of optional tallies, `lag` and `pair`
-    keep : key of `KEPT`
+    keep : key of `KEPT`: the only stored property of the particles
     """
 
     def __init__(
@@ -182,7 +181,8 @@ class Layout:
         The first attributes are `BOOKKEEPING`.
 
         particles : radius, mass and type of each particle
-        initial : properties of the particles at time 0 if the user supplied them, in double precision
+        initial : properties of the particles at time 0, in double precision, if the user supplied an initial
+            state
         """
         bookkeeping = dict(
             zip(BOOKKEEPING, (np.int32(0), np.int32(0), np.float64(self.frame.itemsize)), strict=True)
@@ -234,7 +234,7 @@ def _initial_axes(name: str, values: np.ndarray) -> tuple[str, ...]:
 def _frames_begin(header: bytes) -> int:
     """Return the offset of the first variable of a frame, time.
 
-    The offset is stored as the last value before the name of the next variable.
+    This offset is stored in the header, as the last value before the name of the next variable.
     """
     after = b"cell_lengths"
     (begin,) = struct.unpack_from(">Q", header, header.index(struct.pack(">I", len(after)) + after) - 8)
@@ -244,7 +244,7 @@ def _frames_begin(header: bytes) -> int:
 def _value_at(header: bytes | bytearray, name: str) -> int:
     """Return the offset of the value of a numerical attribute.
 
-    The value is preceded by its name, padded to words, its type, and its count.
+    Before the value, the header contains the name padded to words, the type, and the number of values.
     """
     return header.index(name.encode()) + -(-len(name) // WORD) * WORD + 2 * WORD
 
@@ -254,7 +254,7 @@ def stored_header(file: BinaryIO) -> bytes:
 
     The result is the header that `Layout.header` made.
 
-    Raises ValueError, with the violated rule, for a damaged file and for a file of another program.
+    Raises ValueError, with the violated rule, if the file is damaged or from another program.
     """
     file.seek(0)
     head = file.read(_HEAD)
@@ -285,7 +285,7 @@ def frame_bytes(header: bytes) -> int:
 
 
 def same_header(file: BinaryIO, header: bytes) -> bool:
-    """Return True if a file begins with this header, apart from the number of frames."""
+    """Return True if a file has this header, except for the number of frames."""
     after = FRAME_COUNT_AT + WORD
     file.seek(0)
     stored = file.read(len(header))
@@ -295,8 +295,8 @@ def same_header(file: BinaryIO, header: bytes) -> bool:
 def is_blank(file: BinaryIO) -> bool:
     """Return True if a file is empty, or if its header is incomplete.
 
-    The first word of a header is written last. The following bytes are compared too, because a file of zeros
-    may belong to another program.
+    The header is incomplete if its first word is missing, because this word is written last. The bytes after
+    it are compared, too, because a file of zeros may belong to another program.
     """
     file.seek(0)
     start = file.read(len(_UNFINISHED) + WORD + len(_FIRST_NAME))
@@ -321,7 +321,7 @@ def frame_count(file: BinaryIO) -> int:
 
 
 def _frame_checksum(frame: bytes | memoryview, number: int, header_checksum: int) -> bytes:
-    """Return the last word of a frame: the checksum of the preceding bytes."""
+    """Return the last word of a frame, the checksum of the bytes before it."""
     start = zlib.crc32(struct.pack(">I", number), header_checksum)
     return struct.pack(">I", zlib.crc32(frame[:-WORD], start))
 
@@ -329,11 +329,12 @@ def _frame_checksum(frame: bytes | memoryview, number: int, header_checksum: int
 def damaged_frame(file: int, header: bytes, numbers: range, checksum: int | None = None) -> int | None:
     """Return the first frame that is damaged or truncated; None if all are correct.
 
-    All frames are read. Computing the CRC-32 takes about as long as copying the frames in memory.
+    All these frames are read. Computing the CRC-32 takes about as long as copying the frames in memory.
 
     file : descriptor
     numbers : frames to test
-    checksum : of the header, where it is at hand: the header has three numbers of each particle
+    checksum : checksum of the header, if the caller knows it. The header is long: it has three numbers for
+        each particle
     """
     size, header_checksum = frame_bytes(header), zlib.crc32(header) if checksum is None else checksum
     at_once = max(1, _CHUNK // size)
@@ -367,7 +368,7 @@ class CheckedFrames:
         self.close = weakref.finalize(self, os.close, self._file)
 
     def find_damage(self, numbers: np.ndarray) -> int | None:
-        """Return the first of these frames that is damaged, or None.
+        """Return the index of the first damaged frame among these frames, or None.
 
         May raise OSError.
         """
@@ -382,7 +383,7 @@ class CheckedFrames:
 
 
 class Frames:
-    """Frames of an unbuffered open file; only the first `kept` frames are kept.
+    """Frames of an unbuffered open file, which is first truncated to `kept` frames.
 
     If `kept` is 0, the header is written too. Every method may raise OSError.
     """
@@ -413,9 +414,9 @@ class Frames:
         write_at(self._file.fileno(), header[: len(MAGIC)], 0)
 
     def append(self, values: dict[str, np.ndarray | float]) -> None:
-        """Write one frame: a value for every variable of the layout.
+        """Write a frame, with a value for every variable of the layout.
 
-        Vectors have 2 or 3 components.
+        Vectors may have 2 or 3 components.
         """
         for name in self._frame.dtype.names[:-1]:
             array = np.asarray(values[name])
@@ -441,5 +442,5 @@ class Frames:
         write_at(self._file.fileno(), struct.pack(">I", self.count), FRAME_COUNT_AT)
 
     def sync(self) -> None:
-        """Return when all data are on disk."""
+        """Wait until all data are on disk."""
         os.fsync(self._file.fileno())

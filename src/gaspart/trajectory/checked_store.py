@@ -27,7 +27,7 @@ slower."""
 
 
 class Trajectory(xr.Dataset):
-    """Open trajectory: a Dataset whose error for a missing name suggests the probable name."""
+    """Open trajectory: a Dataset whose error for an unknown name suggests the most similar name."""
 
     __slots__ = ()
 
@@ -43,8 +43,9 @@ class Trajectory(xr.Dataset):
 class CheckedStore(NetCDF4DataStore):
     """Variables of a trajectory; checksums of frames are verified before use.
 
-    Times are read when the file is opened. Checksums are verified only for frames whose times are not
-    multiples of `interval`. Otherwise opening a file would read the whole file.
+    Times of frames are read when the file is opened. At this moment, checksums are verified only for frames
+    whose times are not multiples of `interval`, because verifying all frames would require reading the
+    complete file.
     """
 
     def __init__(self, file: netCDF4.Dataset, path: Path, frames: CheckedFrames, interval: float) -> None:
@@ -72,7 +73,7 @@ class CheckedStore(NetCDF4DataStore):
 
 
 class _CheckedArray(BackendArray):
-    """Variable of frames, of which any slice can be read."""
+    """Variable with one value per frame, of which any slice can be read."""
 
     def __init__(self, variable: netCDF4.Variable, store: CheckedStore) -> None:
         self._variable, self._store = variable, store

@@ -1,4 +1,4 @@
-"""File of the float64 state of an unfinished run, written completely or not at all."""
+"""Checkpoint: file with the float64 state of a run, written completely or not at all."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from gaspart.files import FileKind, open_regular, place, remove_own, scratch_bes
 
 _DIGEST, _FRAMES = "trajectory header", "trajectory frames"
 _MARKS = tuple(f"{name}.npy".encode() for name in (_DIGEST, _FRAMES))
-"""Names of parts that every checkpoint has, at its beginning and in the directory at its end."""
+"""Names of parts in every checkpoint, which appear at its beginning and in the directory at its end."""
 _NEAR = 1 << 16  # these parts are within this number of bytes from either end
 _LEAST = 64  # in bytes; a shorter file does not contain the first name
 _COMMENT_LENGTH, _CHECKSUM = struct.Struct("<H"), struct.Struct("<I")  # record at the end of a zip file
@@ -26,7 +26,7 @@ _COMMENT_LENGTH, _CHECKSUM = struct.Struct("<H"), struct.Struct("<I")  # record 
 
 @dataclass(frozen=True)
 class Checkpoint:
-    """State of an unfinished run.
+    """Contents of the checkpoint of a run.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ def checkpoint_path(path: Path) -> Path:
 
 
 def _is_checkpoint(path: Path) -> bool:
-    """Return True if `write_checkpoint` wrote a file, even if the file was damaged later."""
+    """Return True if a file was written by `write_checkpoint`, even if it is damaged now."""
     with open_regular(path) as file:
         start = file.read(_NEAR)
         size = file.seek(0, os.SEEK_END)
@@ -63,7 +63,7 @@ def _digest(header: bytes) -> str:
 
 
 def remove_checkpoint(path: Path) -> None:
-    """Remove an unnecessary or incomplete checkpoint; other files are not removed."""
+    """Remove a checkpoint that is not needed or incomplete; keep files of other kinds."""
     remove_own(path, CHECKPOINT)
 
 
@@ -71,8 +71,8 @@ def write_checkpoint(path: Path, header: bytes, frames: int, arrays: dict[str, A
     """Write the checkpoint of a run, identified by the header of its trajectory.
 
     The file is a zip file of arrays (.npz). Its comment, at the end, is a checksum of all bytes before the
-    comment. A file at `path` that is no checkpoint is never replaced: SceneError is raised. May raise
-    OSError.
+    comment. If the file at `path` is not a checkpoint, it is not replaced, and SceneError is raised. May
+    raise OSError.
     """
     with scratch_beside(path) as new:
         with new.open("r+b") as file:
@@ -87,7 +87,7 @@ def write_checkpoint(path: Path, header: bytes, frames: int, arrays: dict[str, A
 
 
 def read_checkpoint(path: Path, header: bytes) -> Checkpoint | None:
-    """Return the checkpoint of the run with this header; None if missing or unusable."""
+    """Return the checkpoint of the run with this header; None if it is missing or unusable."""
     try:
         return _checkpoint(path, header)
     except SceneError:
@@ -97,12 +97,10 @@ def read_checkpoint(path: Path, header: bytes) -> Checkpoint | None:
 def kept_beside(path: Path, header: bytes, otherwise: str) -> Checkpoint | None:
     """Return the checkpoint that was stored with a trajectory, or None.
 
-    The trajectory has this header.
+    `header` is the header of the trajectory. Raises SceneError for a checkpoint that cannot be used, because
+    it must not be replaced silently by less exact data.
 
-    Raises SceneError for a checkpoint that cannot be used, because less exact data must not replace it
-    silently.
-
-    otherwise : text for the message: the alternative without the checkpoint.
+    otherwise : words for the message that state what the user can do without the checkpoint.
     """
     try:
         return _checkpoint(checkpoint_path(path), header)
@@ -113,7 +111,8 @@ def kept_beside(path: Path, header: bytes, otherwise: str) -> Checkpoint | None:
 def _checkpoint(path: Path, header: bytes) -> Checkpoint | None:
     """Read a checkpoint like `read_checkpoint`, but raise SceneError if it is unusable.
 
-    A checkpoint is unusable if it is damaged, belongs to another run, or is a file of another kind.
+    A checkpoint is unusable if it is damaged, or belongs to another run. A file of another kind is unusable,
+    too.
     """
     try:
         with open_regular(path) as file:

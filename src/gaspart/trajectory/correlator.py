@@ -1,8 +1,8 @@
 """Time correlations that are accumulated during a run, without stored frames.
 
-The correlation functions include all pairs of samples up to a largest lag, in double precision. For the
-largest lag L and K velocity components, L + 1 samples are in memory, and each sample costs about L K
-additions.
+The correlation functions include all pairs of samples up to a largest lag, in double precision. With a
+largest lag of L samples and with K velocity components, L + 1 samples are in memory, and each new sample
+costs about L K additions.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ SUMS = {
     "squared_displacement_sum": "|r(t) - r(0)|^2",
     "displacement_velocity_sum": "(r(t) - r(0)).(v(t) + v(0))",
 }
-"""Averages over particles that are summed over pairs of samples, by lag."""
+"""Averages over particles that are summed over pairs of samples, separately for each lag."""
 STRESS = {"shear": ACTION, "rotational": ACTION, "collisional": ACTION, "bulk": ACTION, "heat": HEAT}
-"""Correlated fluxes of the stress tensor and the heat flux, with the units of their time integrals G.
+"""Correlated components of stress tensor and heat flux, with the units of their time integrals G.
 
 The fluxes are: the mean over the shear components of the symmetric part; the mean over the components of the
 antisymmetric part; the mean over the shear components of the collisional part; 1/d of the trace; and the mean
@@ -42,7 +42,7 @@ CORRELATED = {
     "ends": "(J(0) + J(t)) / 2, J = dG/dt over an interval",
     "change": "G(t) - G(0)",
 }
-"""Terms that are summed over pairs of samples. The last two are only for `bulk`, whose mean is not zero."""
+"""Terms summed over pairs of samples; the last two only for `bulk`, whose mean is not zero."""
 _PREFIX = "correlator "  # prefix of its arrays in a checkpoint
 
 
@@ -60,7 +60,7 @@ class Correlations:
     start : float, default 0.0, [time]
         Time of the first sample; must be an integer multiple of `interval`.
     stress : bool, default False
-        Correlate the stress tensor and the heat flux, not the velocities.
+        Correlate the stress tensor and the heat flux instead of the velocities.
 
     Raises
     ------
@@ -145,7 +145,7 @@ class Correlations:
         SceneError
             If a value is invalid.
         TypeError, ValueError
-            If it is another text.
+            If the text does not describe correlations.
 
         Examples
         --------
@@ -225,8 +225,8 @@ def meaning_of(name: str) -> str:
 class _Correlator:
     """Sums over all pairs of samples up to a largest lag.
 
-    The last axis of `earlier` has the most recent samples, one for each lag. The last axis of `sums` is the
-    lag, too.
+    The last axis of the array `earlier` contains the most recent samples, one for each lag. The last axis of
+    `sums` is the lag, too.
     """
 
     def __init__(self, settings: Correlations, earlier: tuple[int, ...], sums: tuple[int, ...]) -> None:
@@ -240,7 +240,7 @@ class _Correlator:
         return self._first + self._samples
 
     def _add(self, now: np.ndarray, add_products: Callable[..., None], terms: float | np.ndarray) -> None:
-        """Add the products of the next sample with earlier samples, divided by the number of terms."""
+        """Add the products of the next sample and the earlier samples, divided by `terms`."""
         slots = self._earlier.shape[-1]
         slot, used = self._samples % slots, min(self._samples + 1, slots)
         self._earlier[..., slot] = now
@@ -266,10 +266,10 @@ class Correlator(_Correlator):
     """Correlations of the motion of the particles.
 
     Velocities and positions of all moving particles are used. Along axes with conserved momentum
-    (`Scene.conserved_axes`), they are relative to the centre of mass. They are also relative to the mean
-    velocity of sliding faces. The subtraction reduces the mean square of a particle of mass m by the factor 1
-    - m / M, where M is the total mass. If masses differ, or if momentum is not conserved along all axes,
-    components are rescaled so that all sums are reduced by the factor 1 - 1 / N.
+    (`Scene.conserved_axes`), they are relative to the centre of mass. If faces slide, their mean velocity is
+    subtracted. The subtraction of the motion of the centre of mass multiplies the mean square for a particle
+    of mass m by 1 - m / M, where M is the total mass. If masses differ, or if momentum is not conserved along
+    all axes, components are rescaled so that the factor is 1 - 1 / N for all N particles and all axes.
 
     Parameters
     ----------
@@ -322,9 +322,9 @@ class Correlator(_Correlator):
         self._add(now, products, self._moving.sum())
 
     def _relative(self, values: np.ndarray) -> np.ndarray:
-        """Return values (N, d) of the moving particles relative to the centre of mass.
+        """Return values (N, d) for moving particles only, relative to the centre of mass.
 
-        The result has the shape (M d,).
+        For M moving particles, the result has the shape (M d,).
         """
         values = values[self._moving]
         centre = (values * self._weights).sum(axis=0)
@@ -337,7 +337,7 @@ class Correlator(_Correlator):
 
 
 def _scale(weights: np.ndarray, conserved: np.ndarray) -> np.ndarray:
-    """Return rescaling factors (M, d) for components relative to the centre of mass.
+    """Return the rescaling factors (M, d) for components relative to the centre of mass.
 
     weights : (M, 1), mass of each particle divided by the total mass.
     """
@@ -352,8 +352,8 @@ def _scale(weights: np.ndarray, conserved: np.ndarray) -> np.ndarray:
 class StressCorrelator(_Correlator):
     """Correlations of the stress tensor and the heat flux, after both are averaged over an interval.
 
-    Impulses are instantaneous, but their mean over an interval is finite. The first sample has no preceding
-    interval, and is not counted.
+    The stress is averaged because impulses are instantaneous, while their mean over an interval is finite.
+    The first sample is not counted, because there is no interval before it.
     """
 
     def __init__(self, settings: Correlations, dimension: int) -> None:
@@ -371,7 +371,7 @@ class StressCorrelator(_Correlator):
         return super().next + self._begun
 
     def add(self, simulation: Simulation) -> None:
-        """Add the next sample, of a simulation that tallies the stress.
+        """Add the next sample from a simulation that tallies the stress.
 
         Parameters
         ----------

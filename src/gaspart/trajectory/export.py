@@ -147,7 +147,7 @@ def export(trajectory: str | Path, path: str | Path, frame: int | str = -1, over
 
 
 def _snapshots(path: Path, frame: int | str) -> Iterator[Snapshot]:
-    """Return an iterator over one frame, or over all frames.
+    """Return an iterator over one frame, or over all frames for `frame` = "all".
 
     Errors for frames that cannot be exported are raised immediately.
     """
@@ -198,10 +198,10 @@ def _read(path: Path, numbers: range) -> Iterator[Snapshot]:
 
 
 def _write_gsd(path: Path, snapshots: Iterator[Snapshot]) -> None:
-    """Write frames in HOOMD's schema.
+    """Write frames as a GSD file in HOOMD's schema.
 
-    `log/time` is the time. `log/cell_origin` is the lower corner of the box in the scene's coordinates; a
-    piston may move it. The step is the index of the frame.
+    The entry `log/time` contains the time of a frame. The entry `log/cell_origin` contains the lower corner
+    of the box in the scene's coordinates, which a piston may move. The step of a frame is its index.
     """
     hoomd = optional("gsd.hoomd", "gsd", "GSD files")
     with path.open("rb") as scratch, hoomd.open(descriptor_path(scratch), "w") as file:
@@ -210,9 +210,9 @@ def _write_gsd(path: Path, snapshots: Iterator[Snapshot]) -> None:
 
 
 def _gsd_frame(frame: Any, snapshot: Snapshot) -> Any:
-    """Fill a GSD frame; its origin is the middle of the box.
+    """Fill a GSD frame, whose coordinates have their origin in the middle of the box.
 
-    The box of discs has zero thickness.
+    For discs the thickness of the box is zero.
     """
     sides = np.where([False, False, snapshot.dimension == 2], 0.0, snapshot.lengths)
     frame.configuration.dimensions = snapshot.dimension
@@ -231,9 +231,9 @@ def _gsd_frame(frame: Any, snapshot: Snapshot) -> Any:
 
 
 def _shapes(snapshot: Snapshot) -> list[dict]:
-    """Return the shape of each type; {} if its particles differ in size.
+    """Return the shape of each type; {} for a type with particles of different sizes.
 
-    In a file without sizes, readers assume a diameter of 1.
+    The shapes are needed because other programs assume a diameter of 1 without them.
     """
     shapes: list[dict] = []
     for n in range(int(snapshot.types.max(initial=0)) + 1):
@@ -243,7 +243,7 @@ def _shapes(snapshot: Snapshot) -> list[dict]:
 
 
 def _write_xyz(path: Path, snapshots: Iterator[Snapshot]) -> None:
-    """Write extended XYZ, with the boundary conditions of the container, and particle ids."""
+    """Write an extended XYZ file with boundary conditions and particle numbers."""
     columns = "species:S:1:pos:R:3:velo:R:3:radius:R:1:masses:R:1:id:I:1"
     with path.open("w", encoding="ascii") as file:
         for snapshot in snapshots:
@@ -261,7 +261,7 @@ def _write_xyz(path: Path, snapshots: Iterator[Snapshot]) -> None:
 
 
 def _write_data(path: Path, snapshots: Iterator[Snapshot]) -> None:
-    """Write LAMMPS data of atom_style sphere.
+    """Write a LAMMPS data file of atom_style sphere.
 
     The density is the particle's mass divided by the volume of a ball of its diameter.
     """
@@ -288,7 +288,7 @@ def _write_data(path: Path, snapshots: Iterator[Snapshot]) -> None:
 
 
 def _rows(template: str, *columns: np.ndarray) -> Iterator[str]:
-    """Format the rows of a table in blocks, which is faster than row by row."""
+    """Yield the text of a table in blocks of rows, which are fast to format."""
     for first in range(0, len(columns[0]), _ROWS):
         block = [column[first : first + _ROWS].tolist() for column in columns]
         yield template * len(block[0]) % tuple(chain.from_iterable(zip(*block, strict=True)))

@@ -1,4 +1,4 @@
-"""State at the end of a trajectory: from a stored checkpoint, or the last frame."""
+"""State at the end of a trajectory, from its stored checkpoint or from its last frame."""
 
 from __future__ import annotations
 
@@ -40,8 +40,9 @@ def last_state(path: str | Path) -> State:
     ------
     SceneError
         If `open_trajectory` rejects the file, or if a stored checkpoint is damaged or belongs to another run.
-        If there is no checkpoint, also if the last frame does not contain all particles (`follow`) or all
-        properties (`keep`), or if it does not determine the state (a scene with sticky faces).
+        Without a checkpoint, SceneError is also raised if the last frame does not contain all particles
+        (`follow`) or all properties (`keep`), or if a frame does not determine the state (in a scene with
+        sticky faces).
 
     Notes
     -----

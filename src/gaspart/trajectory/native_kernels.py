@@ -1,9 +1,10 @@
-"""Kernels compiled for this processor, instead of the kernels in the package.
+"""Compilation of kernels for this processor, which replace the kernels in the package.
 
 The kernels of a wheel run on every processor of the level x86-64-v3. On a processor with AVX-512, kernels
-compiled for this processor are faster, and their results are bitwise identical. They are compiled at the end
-of a long run, if a similar run would save more time than the compilation costs. The kernels are stored in the
-user's kernel cache. This cache has precedence over the kernels of the package, so the next process uses them.
+compiled for this processor are faster, and their results are bitwise identical. Such kernels are compiled at
+the end of a long run, if they would save more time in a run of the same length than the compilation costs.
+They are stored in the user's kernel cache, which has precedence over the kernels of the package. The next
+process therefore uses them.
 """
 
 from __future__ import annotations
@@ -23,9 +24,9 @@ Kernel = tuple[str, str, tuple]
 """Module and name of a kernel, and types of its arguments."""
 
 GAIN = 1.2
-"""Speed of the event-driven engine with native kernels, divided by its speed with the wheel's kernels.
+"""Ratio of the speeds of the event-driven engine with native kernels and with kernels of the wheel.
 
-Measured on a processor with AVX-512, 1000 spheres at a packing fraction of 0.2.
+The ratio was measured on a processor with AVX-512, for 1000 spheres at a packing fraction of 0.2.
 """
 COMPILATION = 20.0
 """CPU time of compiling the kernels of a run, in seconds."""
@@ -37,7 +38,7 @@ def pays(seconds: float, features: dict[str, bool]) -> bool:
 
     `seconds` is the CPU time of a run.
 
-    features : features of the processor by their LLVM names.
+    features : True or False for features of the processor, by LLVM name.
     """
     return features.get("avx512f", False) and seconds * (1.0 - 1.0 / GAIN) > COMPILATION
 
@@ -47,8 +48,9 @@ def replace_shipped_kernels(seconds: float) -> bool:
 
     seconds : CPU time of the run that has ended.
 
-    Returns True if native kernels were stored. Nothing is compiled in three cases: no kernels of a package
-    are in use; numba's own settings name a processor; or another process is compiling the same kernels.
+    Returns True if native kernels were stored. Nothing is compiled in three further cases: no kernels of the
+    package are in use; the settings of numba name a processor; or another process is compiling the same
+    kernels.
     """
     if not (cache.FOLDER / cache.LIST).exists() or not pays(seconds, _features()):
         return False
@@ -72,7 +74,7 @@ def replace_shipped_kernels(seconds: float) -> bool:
 
 
 def _features() -> dict[str, bool]:
-    """Return the features of this processor; none if numba's settings name a processor."""
+    """Return the features of this processor; {} if the settings of numba name a processor."""
     config = cache.load_numba().config
     if config.CPU_NAME is not None or config.CPU_FEATURES is not None:
         return {}
@@ -102,7 +104,7 @@ def _dispatchers() -> list[Any]:
 
 
 def _stamp(kernels: list[Kernel]) -> Path | None:
-    """Return the path of the file that marks stored native kernels; None if no cache exists."""
+    """Return the path of the file that marks native kernels as stored; None without a cache."""
     folders = (function.stats.cache_path for function in _dispatchers())
     folder = next(filter(None, folders), None)
     if folder is None or not kernels:

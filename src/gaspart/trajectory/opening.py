@@ -1,4 +1,4 @@
-"""Trajectory file: its name during the run, its kind, its lock, and opening."""
+"""Trajectory file: name during the run, test of its kind, lock, and opening."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 PARTIAL = ".partial"
-"""Suffix of a trajectory during the run."""
+"""Suffix of the file name of a trajectory during the run."""
 
 
 def partial_path(path: Path) -> Path:
@@ -61,11 +61,11 @@ def writing(path: Path) -> Iterator[None]:
 
 @contextmanager
 def open_locked(partial: Path) -> Iterator[BinaryIO]:
-    """Open the partial file to read and write, without a buffer, locked by this process.
+    """Open the partial file for unbuffered reading and writing, and lock it.
 
-    The file may be closed within the block, for example before it is renamed; the lock remains. Raises
-    SceneError for a file that gaspart did not write, and for a link. Raises it also for a file with a second
-    name (hard link), because changes would appear under the second name, too.
+    The lock lasts to the end of the block, even if the file is closed earlier, for example before it is
+    renamed. Raises SceneError for a file that gaspart did not write, and for a link. SceneError is also
+    raised for a file with a second name (hard link), because changes would appear under the second name, too.
     """
     with suppress(FileNotFoundError):  # another process has just finished it
         may_replace(partial, UNFINISHED, overwrite=True)
@@ -86,7 +86,7 @@ def open_locked(partial: Path) -> Iterator[BinaryIO]:
 
 @contextmanager
 def _alone(partial: Path) -> Iterator[None]:
-    """Hold the lock of a partial file.
+    """Hold the lock of a partial file during the `with` block.
 
     Raises SceneError if another process has locked it.
     """
@@ -114,9 +114,9 @@ def replica_path(path: Path, number: int) -> Path:
 
 
 def run_path(value: object) -> Path:
-    """Return the path of a trajectory that a user provides.
+    """Return an argument of a user as the path of a trajectory.
 
-    Raises SceneError for other values.
+    Raises SceneError if the argument is not a path.
     """
     if isinstance(value, str | os.PathLike):
         return Path(value)
@@ -124,7 +124,7 @@ def run_path(value: object) -> Path:
 
 
 def not_a_trajectory(value: object) -> SceneError:
-    """Return the error for a value that is no trajectory."""
+    """Return the error for a value that is not a trajectory."""
     rule = "must be the path of a trajectory, which gaspart.run writes"
     if isinstance(value, Scene):
         rule = "this is a scene: run it first, gaspart.run(scene, duration=..., path=...)"
@@ -176,9 +176,9 @@ def open_netcdf(path: Path) -> netCDF4.Dataset:
 
 
 def open_checked(path: Path) -> tuple[netCDF4.Dataset, CheckedFrames]:
-    """Open a trajectory like `open_netcdf`, with the record of its checked frames.
+    """Open a trajectory like `open_netcdf`; also return the record of its checked frames.
 
-    The caller must close both.
+    The caller must close the Dataset and the record.
     """
     with open_verified(path) as (file, header, frames):
         return open_descriptor(file), CheckedFrames(file, header, frames)
@@ -199,7 +199,7 @@ def open_netcdf_file(path: Path) -> Iterator[netCDF4.Dataset]:
 
 
 def check_frames(path: Path, numbers: range | None = None) -> None:
-    """Read some frames of a trajectory, or all.
+    """Verify the checksums of some or all frames of a trajectory.
 
     Raises SceneError if a frame is damaged.
     """
@@ -211,5 +211,5 @@ def check_frames(path: Path, numbers: range | None = None) -> None:
 
 
 def damage(frame: int) -> str:
-    """Return the message about a frame with a wrong checksum."""
+    """Return the message about a frame whose checksum is wrong."""
     return f"frame {frame} is damaged: its checksum does not match"

@@ -1,4 +1,4 @@
-"""Collisions of each pair of species, counted from the recorded events of a run."""
+"""Numbers of collisions of each pair of species, counted from recorded events."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def pair_names(scene: Scene) -> list[str]:
 
 
 class PairCounter:
-    """Collisions of each pair of species since time 0, in a simulation that records its events.
+    """Numbers of collisions of each pair of species since time 0, from recorded events.
 
     counts : (pairs,), in the order of `pairs_of`.
     """

@@ -31,7 +31,7 @@ _UNUSED = ["spatial", "cell_spatial", "cell_angular", "checksum", *amber.INITIAL
 These variables are names of axes, checksums, and variables that belong to the recipe.
 """
 GIVEN_START = "given_start"
-"""Attribute of an open trajectory that starts from a given state."""
+"""Attribute that is 1 for a trajectory that starts from a state supplied by the user."""
 _UNITS = {field.name: field.metadata["units"] for field in fields(Tally) if "units" in field.metadata} | {
     "kinetic_energy": ENERGY,
     "mass": "mass",
@@ -64,8 +64,8 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     Raises
     ------
     SceneError
-        If the file is unreadable, truncated, damaged in its header, or not written by gaspart. When a frame
-        is read for the first time, also if this frame is damaged.
+        If the file is unreadable, truncated, damaged in its header, or not written by gaspart. SceneError is
+        also raised when a damaged frame is read for the first time.
 
     Notes
     -----
@@ -73,11 +73,11 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     dimension and, unless faces are open, count, packing_fraction and number_density. The attribute
     given_start is 1 if the run starts from a state that the user supplied.
 
-    With open faces, each atom is a particle number. If no particle has this number in a frame, coordinates
-    and velocities are NaN.
+    With open faces, the dimension atom counts particle numbers. If no particle in the container has a number
+    in a frame, its coordinates and velocities are NaN.
 
-    The checksum of a frame covers all of its variables, so that a frame is read as a whole. When a file is
-    opened, only the times of its frames are read.
+    When a file is opened, only the times of its frames are read. The checksum of a frame is for all of its
+    variables together, so that all of them are read before one of them is used.
 
     Examples
     --------
@@ -137,7 +137,7 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
 
 
 def _following(recipe: Recipe) -> dict[str, float]:
-    """Return the attributes that are derived from a scene and its start."""
+    """Return the attributes that follow from the scene and the initial state."""
     scene = recipe.scene
     start = {GIVEN_START: 1} if recipe.initial is not None else {}
     names = ("dimension", *(() if scene.is_open else ("count", "packing_fraction", "number_density")))
@@ -145,7 +145,7 @@ def _following(recipe: Recipe) -> dict[str, float]:
 
 
 def _with_piston(data: xr.Dataset) -> xr.Dataset:
-    """Return a dataset in which the motion of a piston is two variables with units."""
+    """Return a dataset with position and velocity of a piston as two variables with units."""
     position, velocity = (data["piston"].isel(motion=n, drop=True) for n in (0, 1))
     position.attrs, velocity.attrs = (
         {"units": unit, "long_name": f"{name} of the piston along its axis"}

@@ -1,4 +1,4 @@
-"""Recipe of a trajectory: everything that determines it, and its form in the file."""
+"""Recipe of a trajectory: all settings that determine it, and their form in the file."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 MOST_REPLICAS = 10_000
 ROUNDING = 1e-9
-"""Relative deviation from an integer multiple that is attributed to rounding."""
+"""Largest relative deviation from an integer multiple that counts as rounding."""
 
 
 def multiple(key: str, value: float, unit_key: str, unit: float) -> int:
@@ -52,15 +52,16 @@ def multiple(key: str, value: float, unit_key: str, unit: float) -> int:
 class Recipe(Contents):
     """Everything that determines a trajectory; invalid settings raise SceneError.
 
-    A recipe has the scene, the engine, the length of the run, and the `Contents` of its file.
+    A recipe contains the scene, the engine, the seed, the length of the run, and the `Contents` of its file.
 
     Attributes
     ----------
-    duration, sample_interval : in the scene's time. The duration must be an integer multiple of
+    duration, sample_interval : times in the units of the scene. The duration must be an integer multiple of
         sample_interval. With the time-stepped engine, sample_interval must be an integer multiple of
         time_step.
     until : criterion that ends the run instead of a duration; the duration is then None.
-    initial : state at time 0, if scene and seed do not determine it. The file contains this state.
+    initial : state at time 0, if scene and seed do not determine it. In this case the file contains this
+        state.
     replica : number of the replica, from 1, and number of replicas of the run, if there are several.
     """
 
@@ -122,7 +123,7 @@ class Recipe(Contents):
 
     @property
     def samples_per_frame(self) -> int:
-        """Number of samples per frame interval: 1, unless correlations need closer samples."""
+        """Number of samples per frame interval: 1, unless correlations need more samples."""
         if self.correlations is None:
             return 1
         return multiple(
@@ -133,7 +134,7 @@ class Recipe(Contents):
     def frames(self) -> int:
         """Number of frames of the complete trajectory, including the frame at time 0.
 
-        For a run until an accuracy is reached, it is the maximum number.
+        For a run that ends at an accuracy, this is the maximum number.
         """
         if self.until:
             return self.until.most_frames(self.sample_interval) or amber.MOST_FRAMES
@@ -142,7 +143,7 @@ class Recipe(Contents):
 
     @property
     def longest(self) -> float:
-        """Duration of the run; for a run until an accuracy is reached, the maximum duration."""
+        """Duration of the run; for a run that ends at an accuracy, the maximum duration."""
         return (self.frames - 1) * self.sample_interval if self.duration is None else self.duration
 
     @property
@@ -208,7 +209,7 @@ class Recipe(Contents):
         }
 
     def _length(self) -> dict:
-        """Return the attributes that state the end of the run."""
+        """Return the attributes of the file that describe the end of the run."""
         if self.until is None:
             return {"duration": self.duration}
         longest = self.until.at_most
@@ -223,7 +224,7 @@ class Recipe(Contents):
         return {name: np.array(part) for name, part in parts.items() if part is not None}
 
     def header(self, revision: str) -> bytes:
-        """Return the bytes of the file before its first frame, as this program makes them.
+        """Return the bytes before the first frame of a file that this program writes.
 
         revision : git revision of the program; "" without a revision.
         """

@@ -1,4 +1,4 @@
-"""Main loop of a run: advance to the next frame, write it, store checkpoints."""
+"""Main loop of a run, which advances to the next frame, writes it, and stores checkpoints."""
 
 from __future__ import annotations
 
@@ -26,12 +26,13 @@ from gaspart.trajectory.until import examined_before, examined_from, is_examined
 Progress = Callable[[float, float, int], None]
 """Callback whose arguments are the present time, the duration, and the number of collisions so far.
 
-For a run until an accuracy is reached, the duration is the present estimate.
+For a run that ends at an accuracy, the duration is the present estimate.
 """
 Examine = Callable[[int], float | None]
 """Function that returns the error after a number of frames, divided by the required error.
 
-The result is infinite if the error is unknown. As long as another replica has fewer frames, None is returned.
+The result is infinite if the error is unknown. The result is None as long as another replica has fewer
+frames.
 """
 
 _SEGMENT = 0.1  # seconds of work between checks of clock and signals, within a factor of 2
@@ -42,10 +43,10 @@ _LOOK = 0.05  # seconds between checks of other replicas
 class Recording:
     """Simulation in progress, file of its frames, and path of the finished trajectory.
 
-    Checkpoints, and the division into segments, change no bit of the result.
+    The trajectory does not depend, even in its last bit, on checkpoints or on the division into segments.
 
     every : time between checkpoints, in seconds
-    examine : for a run that ends when it is accurate
+    examine : function that tests the accuracy, for a run that ends at an accuracy
     """
 
     def __init__(
@@ -82,8 +83,9 @@ class Recording:
     def finish(self, keep: bool = False) -> None:
         """Write all missing frames, and finally a checkpoint if `keep` is True.
 
-        Raises OSError. Raises SimulationError if an invariant is violated; the state is then stored next to
-        the trajectory, in `.failed.npz`. A signal takes effect after a checkpoint has been written.
+        May raise OSError. Raises SimulationError if an invariant is violated; the state is then stored in a
+        file `.failed.npz` next to the trajectory. A signal to the process takes effect after a checkpoint has
+        been written.
         """
         try:
             with defer_signals() as signals:
@@ -98,7 +100,7 @@ class Recording:
         set_note("")
 
     def _keep_failed(self) -> str:
-        """Store the state of a failed run, unless another file exists at its path.
+        """Store the state of a failed run, unless another file has the name for this state.
 
         Returns the message about the stored state.
         """
@@ -112,7 +114,8 @@ class Recording:
     def _is_complete(self, signals: Deferral) -> bool:
         """Return True if the file has all frames; wait for other replicas.
 
-        The result depends only on the frames. A run that was interrupted therefore ends at the same frame.
+        The result depends on the frames only. Therefore a run ends at the same frame even if it was
+        interrupted.
         """
         count = self._frames.count
         if count >= self._recipe.frames:
@@ -139,7 +142,7 @@ class Recording:
     def _estimate_again(self) -> None:
         """Estimate the duration of a continued run for progress reports.
 
-        The result of the run does not change.
+        The estimate does not affect the trajectory.
         """
         before = examined_before(self._frames.count)
         if self._progress and self._examine and before is not None:
@@ -147,7 +150,7 @@ class Recording:
                 self._duration = self._estimate(before, excess)
 
     def _finish_frame(self, signals: Deferral) -> None:
-        """Take the missing samples of the present frame interval, and write the frame."""
+        """Add the missing samples of the present frame interval to the correlations, and write the frame."""
         frame, correlator = self._frames.count, self._correlator
         last = frame * self._recipe.samples_per_frame
         while correlator and correlator.next < last:
@@ -168,7 +171,7 @@ class Recording:
             self._between_segments(signals)
 
     def _between_segments(self, signals: Deferral) -> None:
-        """Report progress, write a checkpoint, and deliver a signal, if due."""
+        """Report progress, write a checkpoint and deliver a signal, each if it is due."""
         now = time.monotonic()
         if self._progress and now - self._reported >= _PROGRESS:
             collisions = self._simulation.tally.collisions

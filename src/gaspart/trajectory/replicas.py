@@ -1,9 +1,9 @@
 """Replicas of a run: their seeds and their files.
 
-Replica k of `run.nc` has the seed of the run followed by k, and the file `run-k.nc`. Replicas that run until
-an accuracy is reached end together, at a test of their mean. Each replica reads the files of the others. The
-frames in a test do not change any more. Therefore the decision does not depend on the order in which replicas
-advance, or on interruptions.
+Replica k of `run.nc` has the seed of the run followed by k, and the file `run-k.nc`. If replicas end at an
+accuracy, they end together, at a test of the accuracy of their mean. For this test, each replica reads the
+files of the others. A test uses only frames that do not change any more. Therefore the decision does not
+depend on interruptions, or on the order in which replicas advance.
 """
 
 from __future__ import annotations
@@ -60,9 +60,9 @@ def in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
 
 
 def differ(scene: Scene, engine: Engine, has_initial: bool = False) -> bool:
-    """Return True if runs with different seeds differ.
+    """Return True if runs of a scene with different seeds give different results.
 
-    Such runs differ if random numbers are drawn for the initial state, or later.
+    The results differ if random numbers are drawn for the initial state or during the run.
     """
     drawn = not has_initial and (scene.vibrates or any(kind.count for kind in scene.species))
     return drawn or engine.draws(scene)
@@ -75,7 +75,7 @@ def _seed(recipe: Recipe, number: int) -> tuple[int, ...]:
 
 
 def of_all(recipe: Recipe) -> tuple[Recipe, int]:
-    """Return the recipe of the run that a replica belongs to, and the number of replicas.
+    """Return the recipe of the run to which a replica belongs, and the number of replicas.
 
     Parameters
     ----------
@@ -167,7 +167,7 @@ def beside(path: Path, recipe: Recipe) -> list[tuple[Path, Recipe]]:
 def find_run(path: str | Path) -> tuple[Path, Recipe]:
     """Return a file of the run at a path, finished or unfinished, and its recipe.
 
-    The result is the file at the path itself, or the first of several replicas.
+    The file is the file at the path itself, or the file of the first of several replicas.
 
     Parameters
     ----------
@@ -182,7 +182,7 @@ def find_run(path: str | Path) -> tuple[Path, Recipe]:
     Raises
     ------
     SceneError
-        If `read_recipe` raises it.
+        If `read_recipe` cannot read a recipe.
     """
     path = Path(path)
     first = replica_paths(path, 2)[0] if path.name else path
@@ -208,7 +208,7 @@ def files_of(path: str | Path) -> list[Path]:
     Raises
     ------
     SceneError
-        If a file is missing or belongs to another run, or if `read_recipe` raises it.
+        If a file is missing or belongs to another run, or if `read_recipe` cannot read its recipe.
     """
     first, recipe = find_run(path)
     if recipe.replica is None:
@@ -228,12 +228,12 @@ def files_of(path: str | Path) -> list[Path]:
 
 
 def _places(path: Path) -> tuple[Path, Path]:
-    """Return the possible paths of a trajectory: finished and unfinished."""
+    """Return the paths of a trajectory when it is finished and when it is unfinished."""
     return path, partial_path(path)
 
 
 def find_replicas(files: Sequence[tuple[Path, Recipe]], frames: int) -> list[Path] | None:
-    """Return the files of all replicas of a run with at least a number of frames.
+    """Return the files of all replicas if each has the required number of frames.
 
     Parameters
     ----------
@@ -246,7 +246,7 @@ def find_replicas(files: Sequence[tuple[Path, Recipe]], frames: int) -> list[Pat
     -------
     list of Path or None
         The files, finished or unfinished. None if a replica has fewer frames, or was begun with another
-        recipe. A single run is at its path.
+        recipe.
     """
     if len(files) == 1:
         return [files[0][0]]
@@ -255,7 +255,7 @@ def find_replicas(files: Sequence[tuple[Path, Recipe]], frames: int) -> list[Pat
 
 
 def _with_frames(path: Path, recipe: Recipe, frames: int) -> Path | None:
-    """Return the file of a replica that has this number of frames, or None."""
+    """Return the file of a replica if it has this number of frames; otherwise None."""
     for candidate in _places(path):
         with suppress(SceneError, OSError, struct.error):  # the file does not exist yet, or is empty
             with open_regular(candidate) as file:
@@ -267,7 +267,7 @@ def _with_frames(path: Path, recipe: Recipe, frames: int) -> Path | None:
 
 @contextmanager
 def opened_together(paths: Sequence[Path]) -> Iterator[list[xr.Dataset]]:
-    """Open several trajectories.
+    """Open several trajectories, which are closed at the end of the `with` block.
 
     Parameters
     ----------
@@ -282,7 +282,7 @@ def opened_together(paths: Sequence[Path]) -> Iterator[list[xr.Dataset]]:
     Raises
     ------
     SceneError
-        If `open_trajectory` raises it.
+        If `open_trajectory` rejects one of the files.
     """
     with ExitStack() as stack:
         yield [stack.enter_context(open_trajectory(path)) for path in paths]

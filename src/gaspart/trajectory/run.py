@@ -1,9 +1,9 @@
-"""Trajectories: written during the run, continued after an interruption.
+"""Writing of trajectories during runs, and continuation of runs.
 
 A run writes `path.partial`, and regularly the checkpoint `path.checkpoint.npz`, from which it can continue
 bitwise identically. When the run is complete, the file is renamed to `path`. The content of the file does not
-depend on the time or the machine of the run. If the last checkpoint is stored with the file, it is the final
-state, from which a longer run can continue (`extend`).
+depend on the time or the machine of the run. The last checkpoint can be stored with the file. It contains the
+final state, from which a longer run can continue (`extend`).
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ def longer(path: Path, duration: float) -> Recipe:
 def is_beginning(path: Path, recipe: Recipe) -> bool:
     """Return True if the file at `path` is the beginning of a requested run.
 
-    The two runs then differ only in their duration; the file is shorter.
+    In this case the two runs differ only in their duration, and the requested duration is longer.
     """
     try:
         stored, revision = read_recipe(path), stored_revision(path)
@@ -97,12 +97,12 @@ def is_beginning(path: Path, recipe: Recipe) -> bool:
 
 
 def take_over(path: Path, recipe: Recipe, frames: Frames) -> Checkpoint | None:
-    """Copy the frames and the final state of a shorter run to the longer run.
+    """Copy the frames and the final state of a shorter run to a longer run.
 
-    The shorter run is at `path`. The longer run is begun in `frames`. If there is no shorter run, or if its
-    final state was not stored, the function returns None and changes nothing. The checkpoint of the shorter
-    run is replaced last. If the copy is interrupted, it can therefore be repeated. Raises OSError, and
-    SceneError for a damaged file.
+    The shorter run is at `path`. The frames of the longer run are written to `frames`. If there is no shorter
+    run, or if its final state was not stored, the function returns None and changes nothing. The checkpoint
+    of the shorter run is replaced last, so that the copy can be repeated if it is interrupted. Raises
+    OSError, and SceneError for a damaged file.
     """
     if not (path.exists() and is_beginning(path, recipe)):
         return None
@@ -124,14 +124,14 @@ def take_over(path: Path, recipe: Recipe, frames: Frames) -> Checkpoint | None:
 Examiner: TypeAlias = "Callable[[Sequence[xr.Dataset], Until, int], float]"
 """Function that computes the errors in the first frames of a run, or of all its replicas.
 
-The function returns the largest error divided by the required error; inf if the error is unknown, 0 to end
-the run.
+The function returns the largest ratio of an error to the required error. The result is inf if an error is
+unknown, and 0 if the run must end.
 """
 _LOOK = 0.05  # seconds between checks of other replicas
 
 
 class Content(Enum):
-    """Content of a file, compared with the requested run."""
+    """Relation of an existing file to the requested run."""
 
     NOTHING = "there is no file, or an empty one"
     BEGUN = "this run, unfinished"
@@ -162,7 +162,7 @@ _ACTIONS: dict[Content, Action | dict[Content, Action]] = {
     Content.COMPLETE: Action.NONE,
     Content.OTHER: Action.REPLACE,
 }
-"""Action by the content at the path; if this is not sufficient, also by the content of the partial file."""
+"""Action for each content of the file at the path, and if necessary of the partial file."""
 
 
 def is_finished(recipe: Recipe, path: Path, examiner: Examiner | None, overwrite: bool) -> bool:
@@ -182,7 +182,7 @@ def is_finished(recipe: Recipe, path: Path, examiner: Examiner | None, overwrite
 
 
 def _difference(path: Path, recipe: Recipe, content: Content) -> str:
-    """Return the difference between the file of a run and the requested run, as text."""
+    """Describe the difference between the file of a run and the requested run."""
     try:
         stored = read_recipe(path)
     except SceneError:
@@ -203,7 +203,7 @@ def _difference(path: Path, recipe: Recipe, content: Content) -> str:
 
 
 def _content(path: Path, recipe: Recipe, examiner: Examiner | None) -> Content:
-    """Return the content at the path of a run.
+    """Return the content of the file at the path of a run.
 
     Raises SceneError for a file of another kind.
     """
@@ -231,7 +231,7 @@ def _partial_content(partial: Path, recipe: Recipe) -> Content:
 
 
 def is_complete(recipe: Recipe, path: Path, frames: int, examiner: Examiner | None) -> bool:
-    """Return True if a trajectory with this number of frames is complete; wait for replicas.
+    """Return True if a trajectory is complete with this number of frames; wait for replicas.
 
     The accuracy can be tested only when the other replicas have these frames, too.
     """
@@ -246,7 +246,7 @@ def is_complete(recipe: Recipe, path: Path, frames: int, examiner: Examiner | No
 def examination(recipe: Recipe, path: Path, examiner: Examiner | None) -> Examine | None:
     """Return the function that tests the accuracy in the first frames of a run.
 
-    Without required accuracies, None is returned. All replicas of a run are tested together.
+    For a run without required accuracies, None is returned. All replicas of a run are tested together.
     """
     until = recipe.until
     if until is None:
@@ -279,7 +279,7 @@ class WriteOptions:
     Attributes
     ----------
     checkpoint_seconds : time between checkpoints
-    progress : callback about the progress of the run
+    progress : function that is called to report the progress of the run
     overwrite : True if the file of another run may be replaced
     examiner : function that tests accuracies, for a recipe that ends at an accuracy
     keep_checkpoint : True if the last checkpoint is stored with the file
@@ -298,7 +298,7 @@ class WriteOptions:
 def record(recipe: Recipe, path: str | Path, options: WriteOptions) -> Path:
     """Write the trajectory of a recipe at `path`, and return `path`.
 
-    For exceptions, see `gaspart.run` (`gaspart.runs`).
+    The exceptions are the same as in `gaspart.run`.
     """
     path = output_path(path)
     if path.suffix != ".nc" and not path.is_dir():  # `gaspart check` recognises the format by this suffix
@@ -351,7 +351,7 @@ def extend(path: str | Path, duration: float, options: WriteOptions) -> Path:
     The resulting file has the bytes of an uninterrupted run of the longer duration. The run continues from
     its final checkpoint, which `keep_checkpoint` stores. Without this checkpoint the run is repeated from its
     start. If the run has a checkpoint, the extended run has a checkpoint, too. An interrupted extension is
-    continued by this function or by `resume`. Raises SceneError like `longer`. Raises SceneError also if
+    continued by this function or by `resume`. Raises SceneError under the same conditions as `longer`, and if
     another unfinished run is at the path, or if the checkpoint is damaged or belongs to another run.
     """
     path = Path(path)
@@ -377,7 +377,7 @@ def extend(path: str | Path, duration: float, options: WriteOptions) -> Path:
 
 
 def simulation_of(recipe: Recipe) -> Simulation:
-    """Return the simulation of a recipe, at its start."""
+    """Return the simulation of a recipe at time 0."""
     return Simulation(recipe.scene, recipe.engine, recipe.seed, initial=recipe.initial, tallies=recipe.asked)
 
 
@@ -413,9 +413,9 @@ def _finish(recipe: Recipe, path: Path, options: WriteOptions) -> None:
 
 
 def _can_keep(partial: Path, frames: int, overwrite: bool) -> bool:
-    """Return True if the first frames are undamaged.
+    """Return True if the first `frames` frames of a file are undamaged.
 
-    If they are damaged, raises SceneError unless they may be replaced.
+    If a frame is damaged, the function raises SceneError, unless `overwrite` is True.
     """
     try:
         check_frames(partial, range(frames))

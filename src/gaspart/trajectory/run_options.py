@@ -1,12 +1,13 @@
 """Options of a run that determine the contents of its file.
 
-A field of `Contents` states the type, meaning and default of an option, its attribute in the file, and the
+A field of `Contents` declares an option: its type, meaning and default, its attribute in the file, and the
 reasons that exclude it. The following are derived from this declaration: the checks and attributes of a
-`Recipe`, the keys of a config, the options of `gaspart run`, the options in the command that a file states,
-and the reference of these. A tally that a run can request is declared in `state.tally`. In Python it is an
-object. On the command line and in configs it is the text of its settings.
+`Recipe`, the keys of a config, the options of `gaspart run`, the command in a file that reproduces it, and
+the reference pages of all these. A tally that a run can request is declared in `state.tally`. In Python it is
+an object. On the command line and in configs it is the text of its settings.
 
-The planning of a workflow imports this module, so slow imports are made inside functions.
+Planning a workflow imports this module. To keep planning fast, functions import slow modules only when they
+run.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ KEPT = {"positions": "coordinates", "velocities": "velocities"}
 """Choices of `keep`, with the variable of a frame that each choice stores."""
 
 REQUESTED = {name: tally for name, tally in TALLIES.items() if tally.form}
-"""Tallies that an option requests by text, by name."""
+"""Classes of the tallies that a run can request by an option, by name."""
 
 
 # Values of the options, and their attributes in a file.
@@ -47,14 +48,14 @@ def _to_int32(value: int) -> Any:
 
 
 def _read_correlations(value: str | Mapping[str, Any]) -> Correlations:
-    """Make correlations from an attribute of a file, or from the argument of a job."""
+    """Return correlations from an attribute of a file, or from an argument of a job."""
     from gaspart.trajectory.correlator import Correlations
 
     return Correlations.from_json(value) if isinstance(value, str) else Correlations(**value)
 
 
 def _check_correlations(key: str, value: Any) -> Correlations:
-    """Return correlations; raise SceneError for another value."""
+    """Return `value` if it is a `Correlations` object; otherwise raise SceneError."""
     from gaspart.trajectory.correlator import Correlations
 
     if not isinstance(value, Correlations):
@@ -65,7 +66,7 @@ def _check_correlations(key: str, value: Any) -> Correlations:
 def _check_tallies(key: str, value: Any) -> tuple[OptionalTally, ...]:
     """Return requested tallies in the order of their declarations.
 
-    Raises SceneError for another value.
+    Raises SceneError if `value` does not consist of tallies.
     """
     tallies = value if isinstance(value, Iterable) and not isinstance(value, str) else (value,)
     requested: dict[str, OptionalTally] = {}
@@ -84,7 +85,7 @@ def tallies_to_json(tallies: Iterable[OptionalTally]) -> str:
 
 
 def tallies_from_json(text: str) -> tuple[OptionalTally, ...]:
-    """Make the tallies from an attribute `tallies`; the inverse of `tallies_to_json`.
+    """Return the tallies that an attribute `tallies` describes; the inverse of `tallies_to_json`.
 
     Raises SceneError for an unknown name, and TypeError for an unknown setting.
     """
@@ -101,7 +102,7 @@ def tallies_from_json(text: str) -> tuple[OptionalTally, ...]:
 def stored_tally(attributes: Mapping[str, Any], kind: type[AnyTally]) -> AnyTally | None:
     """Return the tally of a class from the attributes of a trajectory, or None.
 
-    Raises SceneError and TypeError like `tallies_from_json`.
+    Raises SceneError and TypeError under the same conditions as `tallies_from_json`.
     """
     tallies = tallies_from_json(attributes.get("tallies", "[]"))
     return next((tally for tally in tallies if isinstance(tally, kind)), None)
@@ -119,10 +120,11 @@ def _declare(
 ) -> dict[str, Any]:
     """Return the metadata of the field of an option.
 
-    kind : kind and, for an option of the command line and a key of a config, meaning and default
+    kind : kind of the value; for an option of the command line and a key of a config, also meaning and
+        default
     store, restore : conversions to the attribute of a file, and back
-    closed : True if open faces exclude it, because particles change
-    until : rule by which accuracies that end the run exclude it
+    closed : True if open faces exclude the option, because particles are replaced
+    until : rule for the message if accuracies that end the run exclude the option
     """
     return {**declare(kind), "store": store, "restore": restore, "closed": closed, "until": until}
 
@@ -201,7 +203,7 @@ class Contents:
 
     @property
     def kept(self) -> tuple[str, ...]:
-        """Data that this file has, named as in `needs` of observables."""
+        """Names of optional data that the file contains, as in `needs` of observables."""
         fluxes = self.correlations is not None and self.correlations.stress
         return ("fluxes",) * fluxes + ("pairs",) * self.pairs
 
@@ -223,7 +225,7 @@ OPTIONS: dict[str, Kind] = {
 
 
 def required_contents(needs: Collection[str]) -> dict[str, bool]:
-    """Return the fields of `Contents` that observables with these `needs` require."""
+    """Return the values of fields of `Contents` that observables with these `needs` require."""
     return {"displacements": "paths" in needs, "pairs": "pairs" in needs}
 
 
@@ -276,7 +278,7 @@ def stated_options(contents: Contents) -> dict[str, Any]:
 
 
 def scene_tallies(scene: Scene) -> tuple[OptionalTally, ...]:
-    """Return the tallies that every run of a scene has, if its engine can make them."""
+    """Return the tallies that every run of a scene has, if the engine supports them."""
     return tuple(tally() for tally in TALLIES.values() if tally.fact and getattr(scene, tally.fact))
 
 
@@ -289,7 +291,7 @@ def tallied_fields(tallies: Iterable[OptionalTally]) -> list[str]:
 def tally_axes(tally: OptionalTally, scene: Scene) -> dict[str, int]:
     """Return the length of each axis of a tally's fields, by name, except `face`.
 
-    The length of an axis is a setting of the tally whose name is the plural of the axis.
+    The length of an axis is the setting of the tally whose name is the plural of the axis name.
     """
     lengths = {key.removesuffix("s"): length for key, length in asdict(tally).items()}
     lengths |= {"axis": scene.dimension, "direction": scene.dimension, "species": row_count(scene)}

@@ -1,4 +1,4 @@
-"""Runs until accuracies are reached: required accuracies, and frame numbers of tests."""
+"""Runs that end at accuracies: required accuracies, and frame numbers of tests."""
 
 from __future__ import annotations
 
@@ -14,16 +14,17 @@ from gaspart.scene.faces import wall_of
 
 _ACCURACIES = 1e-8, 1.0
 _FIRST = 64, 96
-"""Numbers of frames at the first two tests. Each later test has twice the number of the test before the last.
+"""Numbers of frames at the first two tests.
 
-The ratios of successive numbers are 3/2 and 4/3.
+The number at each later test is twice the number two tests before. The ratios of successive numbers are 3/2
+and 4/3.
 """
 _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class Requirement:
-    """Required accuracy in the form of a file.
+    """Required accuracy of an observable, as stored in a file.
 
     See `gaspart.Accuracy`, which validates observables.
     """
@@ -51,13 +52,13 @@ class Requirement:
 
     @property
     def name(self) -> str:
-        """Observable, with its face if prescribed, as on the command line."""
+        """Name of the observable as on the command line, with the face if one is prescribed."""
         return self.observable if self.face is None else f"{self.observable}:{self.face}"
 
 
 @dataclass(frozen=True)
 class Until:
-    """Accuracies that a run must all reach, and its maximum duration, or None."""
+    """Accuracies that a run must all reach, and its maximum duration (None: no maximum)."""
 
     accuracies: tuple[Requirement, ...]
     at_most: float | None = None
@@ -108,7 +109,7 @@ class Until:
     def from_json(cls, text: str, at_most: float | None) -> Until:
         """Make an instance from a text, the inverse of `to_json`.
 
-        Raises SceneError, and TypeError or ValueError for another text.
+        Raises SceneError for invalid values, and TypeError or ValueError for a text of another form.
         """
         return cls(tuple(Requirement(**entry) for entry in json.loads(text)), at_most)
 
