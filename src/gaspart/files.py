@@ -1,4 +1,4 @@
-"""Writer of all results: files are complete, and never replace files of other kinds."""
+"""Writer of all results: files are complete and never replace files of other kinds."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def begins_with(*beginnings: bytes, at: int = 0) -> Callable[[Path], bool]:
 def output_path(path: str | Path) -> Path:
     """Return `path` as the path of an output file.
 
-    Raises SceneError if it names no file ("", "a/", ".").
+    Raises SceneError if the path does not name a file ("", "a/", ".").
     """
     text = os.fspath(path)
     if os.path.basename(text) in ("", ".", "..") or "\0" in text:
@@ -64,8 +64,9 @@ def output_path(path: str | Path) -> Path:
 def open_regular(path: str | Path, follow: bool = True) -> BinaryIO:
     """Open a file for reading; all input is opened by this function.
 
-    Raises OSError for a folder, pipe, socket or device, because reading could block or never end. Without
-    `follow` it is also raised for a link. Raises ValueError for a name that contains a NUL.
+    Raises OSError for a folder, pipe, socket or device, because reading from it could block or never end.
+    Unless `follow` is True, OSError is also raised for a link. Raises ValueError for a name that contains a
+    NUL.
     """
     _require_regular(os.stat(path, follow_symlinks=follow), path)  # opening some devices has side effects
     flags = OPEN_AS_IT_IS | (0 if follow else NO_LINK)
@@ -162,8 +163,8 @@ def writing(path: str | Path, kind: FileKind | None = None, overwrite: bool = Fa
     `may_replace` is applied before the block and again at its end. The scratch file is in the folder of
     `path` and has a unique name. It is removed if writing fails. After a kill, the next attempt removes it.
 
-    Raises SceneError for the reasons of `output_path` and `may_replace`, and for a missing folder or a full
-    disk.
+    Raises SceneError under the conditions of `output_path` and `may_replace`, and for a missing folder or a
+    full disk.
     """
     path = output_path(path)
     try:

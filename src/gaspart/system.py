@@ -73,9 +73,9 @@ def is_private(status: os.stat_result) -> bool:
 
 
 def is_running(process: int) -> bool:
-    """Return True if a process with this number exists, or if this cannot be known.
+    """Return True if a process with this number exists, or if its existence is unknown.
 
-    On Windows it cannot be known.
+    On Windows the existence of a process is always unknown.
     """
     if not POSIX:  # on Windows, signal 0 is Ctrl-C
         return True

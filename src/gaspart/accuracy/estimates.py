@@ -1,11 +1,12 @@
-"""Components of observables and their errors, for pilot runs and for runs `until` accurate.
+"""Components of observables and their errors, for pilot runs and for runs until an accuracy.
 
 The squared error of a mean over a time t is S / t + C / t^2. S is the spectrum of the series at frequency 0,
-by `correlated_mean`. The term C is due to stored quantities. During a run a wall takes up momentum and the
-sum m x v that the gas stores, and returns them later. So impulses in consecutive intervals are
-anticorrelated. In a short run C dominates, and an error that is extrapolated as t^(-1/2) is too large. In a
-series of short intervals S is hidden by C. Both stored quantities are known at each frame. Therefore the
-series is regressed on the changes of the stored quantities, and S is the spectrum of the residual.
+computed by `correlated_mean`. The term C is due to stored quantities. During a run a wall takes up momentum
+and the sum m x v that the gas stores, and returns them later. So impulses in consecutive intervals are
+anticorrelated. In a short run the term C dominates, and an error that is extrapolated as t^(-1/2) is too
+large. In a series of short intervals, the term C hides S. Both stored quantities are known at each frame.
+Therefore the series is regressed on the changes of the stored quantities, and S is the spectrum of the
+residual.
 """
 
 from __future__ import annotations
@@ -39,9 +40,9 @@ _DOUBT = 0.1
 
 
 def bound(freedom: float) -> float:
-    """Compute the upper bound of an error divided by the error, for given degrees of freedom.
+    """Compute the ratio of the upper bound of an error to the error.
 
-    The bound is computed from a quantile of the chi-square distribution.
+    The ratio is computed from a quantile of the chi-square distribution with the given degrees of freedom.
     """
     from scipy.special import chdtri
 
@@ -85,7 +86,7 @@ class Component:
     def length(self, accuracy: float) -> float:
         """Compute the measured time after which the upper bound of the relative error equals `accuracy`.
 
-        Runs `until` accurate use this bound. The result is inf if no time suffices.
+        Runs that end at an accuracy (`--until`) use this bound. The result is inf if no time suffices.
         """
         if not self.accuracy < math.inf or not accuracy > 0.0:
             return math.inf

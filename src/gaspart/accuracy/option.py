@@ -27,8 +27,8 @@ from gaspart.theory.conditions import Conditions
 from gaspart.trajectory.recipe import MOST_REPLICAS
 
 WORTH = 1.5
-"""Minimum ratio of the cost of the exact engine to the cost of another engine at which the other engine is
-preferred.
+"""Another engine is preferred to the exact engine if the cost of the exact engine is at least this many times
+higher.
 """
 _PER_EQUILIBRATION = 10.0  # smallest ratio of a replica's length to its equilibration
 
@@ -37,7 +37,7 @@ _PER_EQUILIBRATION = 10.0  # smallest ratio of a replica's length to its equilib
 class Option:
     """Candidate engine with the cost of an accurate run.
 
-    bias : bound on the systematic error, from theory and from pilots.
+    bias : upper bound of the relative systematic error, from theory and from pilots.
     noise : noise of the observable.
     speed : CPU seconds per unit of time.
     accuracy : requested accuracy.

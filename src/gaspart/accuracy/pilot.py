@@ -53,9 +53,9 @@ _BRIEF, _TRIED = 1e-3, 24
 defined.
 """
 _UNKNOWN_YET = *TOO_SHORT, "particles at rest", "sample_interval"
-"""Keys of errors that may disappear in a longer run."""
+"""Keys of the error messages that may not occur in a longer run."""
 _SAME = 1e-6
-"""Relative change of a kinetic energy that counts as rounding."""
+"""Relative change of the kinetic energy that is attributed to rounding."""
 _USUAL, _RANGE = 2.0, 5.0
 """Deviations from the steady mean, in standard deviations: limit for a start that is already steady, and
 limit that a steady run does not exceed.

@@ -1,8 +1,8 @@
 """Observables with uncertainties. The functions below are public (`gp.analysis`).
 
 Each function takes a trajectory (a path or an open trajectory) or a `Simulation`. It returns an `Observable`:
-an xarray.Dataset with uncertainties, units, theory and a `plot` method. Each function is imported at its
-first use. `lyapunov_exponent` needs a simulation that recorded its events.
+an xarray.Dataset with uncertainties, units, theory and a `plot` method. Python imports each function when it
+is first used. `lyapunov_exponent` needs a simulation that recorded its events.
 """
 
 from gaspart.public import attach as _attach

@@ -1,8 +1,8 @@
 """Bond order of particles, computed by freud, and Fourier modes of the density of discs.
 
 Ramasubramani and others, Comput. Phys. Commun. 254, 107275 (2020). In all functions, positions (N, d) are in
-[0, L] of a periodic container with side lengths (d,). freud works in single precision. Here freud uses one
-thread, because a job of the workflow has one thread. freud is an optional dependency: `pip install
+[0, L] of a periodic container with side lengths (d,). freud works in single precision. freud is limited to
+one thread, because a job of the workflow has one thread. freud is an optional dependency: `pip install
 'gaspart[order]'`.
 """
 
@@ -29,9 +29,9 @@ def _freud() -> ModuleType:
 
 
 def _system(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> tuple[Any, np.ndarray]:
-    """Return the box and the positions in the convention of freud.
+    """Return a freud box and the positions in freud's coordinates.
 
-    The origin is in the middle of the box. Discs have z = 0.
+    The origin of freud's coordinates is the centre of the box. For discs z = 0.
     """
     box = _freud().box.Box(*map(float, lengths), is2D=len(lengths) == 2)
     points = np.zeros((len(positions), 3), dtype=np.float32)
@@ -40,11 +40,11 @@ def _system(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> tup
 
 
 def hexatic(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> np.ndarray:
-    """Compute the hexatic order parameter psi_6 of each disc, complex, shape (N,).
+    """Compute the complex hexatic order parameter psi_6 of each disc, shape (N,).
 
     The order parameter is the mean of exp(6 i theta) over the bonds of a disc to its Voronoi neighbours.
-    |psi_6| is 1 in a triangular lattice. The mean over discs shows whether all discs have one orientation.
-    Halperin and Nelson, Phys. Rev. Lett. 41, 121 (1978).
+    |psi_6| is 1 in a triangular lattice. The absolute value of the mean over discs is large only if the bonds
+    of all discs have the same orientation. Halperin and Nelson, Phys. Rev. Lett. 41, 121 (1978).
     """
     system = _system(positions, lengths)
     neighbours = _freud().locality.Voronoi().compute(system).nlist  # not freud's default of 6
@@ -56,7 +56,7 @@ def hexatic(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> np.
 def global_steinhardt(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> float:
     """Compute the order parameter Q_6 of all bonds between spheres and their 12 nearest neighbours.
 
-    Q_6 is 0.5745 in a face-centred cubic lattice, about 1 / sqrt(12 N) in a fluid. Steinhardt, Nelson and
+    Q_6 is 0.5745 in a face-centred cubic lattice and about 1 / sqrt(12 N) in a fluid. Steinhardt, Nelson and
     Ronchetti, Phys. Rev. B 28, 784 (1983).
     """
     order = _freud().order.Steinhardt(l=6, average=False, wl=False, weighted=False, wl_normalize=False)
@@ -65,10 +65,11 @@ def global_steinhardt(positions: np.ndarray, lengths: Sequence[float] | np.ndarr
 
 
 def local_steinhardt(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> np.ndarray:
-    """Compute q_6 of each sphere, averaged over the sphere and its 12 neighbours, shape (N,).
+    """Compute the averaged bond order q_6 of each sphere, shape (N,).
 
-    The value is about 0.48 in a crystal near melting and 0.15 in a fluid. Lechner and Dellago, J. Chem. Phys.
-    129, 114707 (2008).
+    The complex order parameters q_6m are averaged over the sphere and its 12 nearest neighbours. The
+    resulting q_6 is about 0.48 in a crystal near melting and about 0.15 in a fluid. Lechner and Dellago, J.
+    Chem. Phys. 129, 114707 (2008).
     """
     order = _freud().order.Steinhardt(l=6, average=True, wl=False, weighted=False, wl_normalize=False)
     order.compute(_system(positions, lengths), neighbors={"num_neighbors": NEIGHBOURS})
@@ -80,11 +81,10 @@ def structure_factor(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Compute S(k) = |sum exp(i k.r)|^2 / N of discs on a grid of wave vectors.
 
-    Returns the wave numbers (K,) and (L,) along x and y up to `highest`, and S(k) with shape (K, L). S(k) is
-    the mean over frames (T, N, 2) at the wave vectors that the container permits. S(0) is NaN. freud is not
-    used, because its structure factors reject two dimensions, and its diffraction pattern rejects boxes that
-    are not
-    square.
+    Returns the wave numbers along x (K,) and along y (L,) up to `highest`, and S(k), shape (K, L). `frames`
+    are positions (T, N, 2). S(k) is averaged over the frames and computed at the wave vectors that are
+    compatible with the periodic container. S(0) is NaN. freud is not used, because its structure factors
+    reject two dimensions, and its diffraction pattern rejects boxes that are not square.
     """
     unit = 2.0 * np.pi / np.asarray(lengths)
     waves = [step * np.arange(-int(highest / step), int(highest / step) + 1) for step in unit]

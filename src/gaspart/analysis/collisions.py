@@ -1,8 +1,8 @@
-"""Data set of collisions: the particles, the contact geometry, and the preceding free flights.
+"""Data set of collisions: the colliding particles, the contact geometry, and the preceding free flights.
 
-Kinetic theory averages these quantities. Each collision of two particles is a row. It has the free times and
-free paths since the last event of each particle, the normal at contact, and the speed of approach. Wall hits
-end free flights, but they have no rows.
+Kinetic theory predicts averages of these quantities. The data set has one row for each collision of two
+particles. The row contains the normal at contact, the speed of approach, and, for both particles, the time
+and the path since the previous event of the particle. A wall hit also ends a free flight, but it has no row.
 """
 
 from __future__ import annotations
@@ -71,14 +71,14 @@ def collision_data(
     Raises
     ------
     SceneError
-        If the scene has gravity (paths are not straight) or fewer than two particles, or if the count is
-        below 1 or exceeds the memory of this machine.
+        If the scene has gravity (paths are then not straight) or fewer than two particles, if `collisions` is
+        below 1, or if the data would exceed the memory of this machine.
     SimulationError
         If no collision occurs.
 
     Notes
     -----
-    The memory is limited to the size of the data.
+    The required memory is proportional to the number of recorded collisions.
 
     Examples
     --------
@@ -147,20 +147,20 @@ def record_collisions(
     equilibration : float, default 0.0, [time]
         Simulated time before the recording begins.
     overwrite : bool, default False
-        Replace an existing data set of collisions. Files of other kinds are never replaced.
+        If True, replace an existing data set of collisions. Files of other kinds are never replaced.
 
     Returns
     -------
     Dataset
-        The data.
+        The data set of collisions.
 
     Raises
     ------
     SceneError
-        If the file exists and is not replaced, or if it cannot be written; and for the reasons of
+        If the file exists and may not be replaced, or if it cannot be written. Also under the conditions of
         `collision_data`.
     SimulationError
-        For the reasons of `collision_data`.
+        Under the conditions of `collision_data`.
     """
     with writing(path, COLLISIONS, overwrite) as scratch:
         data = collision_data(scene, collisions, seed, equilibration)
@@ -171,7 +171,7 @@ def record_collisions(
 
 
 def _is_collision_data(path: Path) -> bool:
-    """Return True if a file was written by `record_collisions`."""
+    """Return True if `record_collisions` wrote the file."""
     import netCDF4
 
     if not begins_with(b"CDF\x02", b"\x89HDF")(path):  # older versions wrote netCDF-4
@@ -187,7 +187,7 @@ COLLISIONS = FileKind("a data set of collisions written by gaspart", _is_collisi
 
 
 def _check_memory(collisions: int, scene: Scene) -> None:
-    """Raise SceneError if twice the size of the collisions exceeds the memory."""
+    """Raise SceneError if the memory is smaller than twice the size of the collision data."""
     required = 16.0 * collisions * (9 + scene.dimension)
     there = memory()
     if there is not None and required > there:
@@ -196,7 +196,7 @@ def _check_memory(collisions: int, scene: Scene) -> None:
 
 
 def contact_value(data: xr.Dataset, blocks: int = 20) -> Estimate:
-    """Measure the contact value of g of equal particles from their collision rate.
+    """Measure the contact value of g(r) for equal particles from their collision rate.
 
     Parameters
     ----------
@@ -213,12 +213,13 @@ def contact_value(data: xr.Dataset, blocks: int = 20) -> Estimate:
     Raises
     ------
     SceneError
-        If the scene has several kinds of particles.
+        If the particles of the scene are not all equal.
 
     Notes
     -----
-    chi = 2 M / (N t S rho sigma^(d-1) sqrt(kT / (pi m))), with S = 2 pi (2D) or 4 pi (3D); this is exact in
-    equilibrium [1]_. The temperature follows from the mean approach, sqrt(pi kT / m).
+    For M collisions of N particles in the time t, chi = 2 M / (N t S rho sigma^(d-1) sqrt(kT / (pi m))), with
+    S = 2 pi (2D) or 4 pi (3D). This formula is exact in equilibrium [1]_. The temperature is computed from
+    the mean speed of approach, which is sqrt(pi kT / m).
 
     References
     ----------
@@ -249,23 +250,23 @@ def contact_value(data: xr.Dataset, blocks: int = 20) -> Estimate:
 
 
 def pair_rows(events: dict, last: tuple, scene: Scene) -> tuple[xr.Dataset, tuple]:
-    """Return the collisions of two particles among events, as rows of `collision_data`.
+    """Select the collisions of two particles from events, as rows of `collision_data`.
 
     Parameters
     ----------
     events : dict of str to ndarray
         Events from `Simulation.events`.
     last : tuple of ndarray
-        Time and velocity of each particle after its last event before these events.
+        Time and velocity of each particle after its last event before `events`.
     scene : Scene
         The scene.
 
     Returns
     -------
     rows : Dataset
-        The collisions.
+        The collisions of two particles.
     last : tuple of ndarray
-        Time and velocity of each particle after its last event.
+        Time and velocity of each particle after its last event in `events`.
     """
     particles, times, after = events["particles"], events["time"], events["velocities"]
     number_of_particles = len(last[0])
@@ -311,11 +312,11 @@ def pair_rows(events: dict, last: tuple, scene: Scene) -> tuple[xr.Dataset, tupl
 
 
 GROUPS = 16
-"""Number of groups of particles; their scatter gives the uncertainty."""
+"""Number of groups of particles. The scatter between groups gives the uncertainty."""
 COMPLETE = 16.0
-"""Length of the discarded end of the record, in mean free times. Flights that begin in this part are not
-used, because the longest of them would be missing. A fraction exp(-11) of the flights of slow particles is
-longer.
+"""Duration of the last part of the record, in mean free times. Flights that begin in this part are discarded,
+because the longest of them would not end within the record. Only a fraction exp(-11) of the flights of slow
+particles is longer than this part.
 """
 _LONGEST = 5.0  # upper end of the bins in mean free times
 
@@ -326,30 +327,30 @@ def free_flight_times(simulation: Simulation, bins: int = 40) -> Observable:
     Parameters
     ----------
     simulation : Simulation
-        An event-driven, periodic simulation. `record_events` was True while it advanced, for at least 32
-        collisions per particle.
+        An event-driven simulation of a periodic scene. It must have advanced with `record_events` = True for
+        at least 32 collisions per particle.
     bins : int, default 40
         Number of bins between 0 and five mean free times.
 
     Returns
     -------
     Observable
-        Density (free_time,) in [1/time]. The variables `mean_free_time` and `mean_free_path` are the mean
-        time and the mean path of a flight. Each variable has a variable with the suffix _error and, if theory
-        exists, a variable with the suffix _theory.
+        Probability density (free_time,) in [1/time]. The variables `mean_free_time` and `mean_free_path` are
+        the mean duration and the mean path of a free flight. The error of each variable has the suffix
+        _error. Its theoretical value, if theory exists, has the suffix _theory.
 
     Raises
     ------
     SceneError
-        If the record is missing or too short, with gravity, with walls, or for fewer than 16 moving
+        If the record is missing or too short, or if the scene has gravity, walls or fewer than 16 moving
         particles.
 
     Notes
     -----
-    Uncertainties come from the scatter of 16 groups of particles. They are NaN in an empty bin. Theory exists
-    for equal particles. The density is `theory.free_time_pdf`, which assumes independent collisions. The
-    theory of the two means is exact in equilibrium, apart from the uncertainty of the contact value, and
-    includes the correction for the finite number of particles.
+    Uncertainties come from the scatter of 16 groups of particles. The uncertainty of an empty bin is NaN.
+    Theory exists for equal particles. The theoretical density is `theory.free_time_pdf`, which assumes
+    independent collisions. The theoretical mean free time and path are exact in equilibrium, apart from the
+    uncertainty of the contact value. They include the correction for the finite number of particles.
 
     Examples
     --------
@@ -405,9 +406,9 @@ def free_flight_times(simulation: Simulation, bins: int = 40) -> Observable:
 
 
 def _theory(simulation: Simulation, edges: np.ndarray) -> tuple[np.ndarray, tuple[float, float]] | None:
-    """Compute the expected density of free times in each bin, and their mean time and path.
+    """Compute the theoretical density of free times, and the mean free time and path.
 
-    The density has shape (bins,); None if there is no theory.
+    The density is averaged over each bin, shape (bins,). Return None if no theory exists.
     """
     gas, state = simulation.scene.gas, simulation.state
     if gas is None or gas.packing_fraction > theory.HIGHEST_PACKING_FRACTION[gas.dimension]:

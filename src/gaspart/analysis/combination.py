@@ -30,7 +30,7 @@ from gaspart.trajectory.run_options import tallies_from_json
 from gaspart.yaml_text import parse_yaml
 
 _ROUNDING = 1e-12
-"""Relative scatter of equal values that are computed in a different order."""
+"""Relative scatter that rounding causes if the same values are computed in a different order."""
 
 
 def replicas(
@@ -67,14 +67,14 @@ def replicas(
     SceneError
         If there are fewer than two runs; if scenes or engines differ (the message names the first
         difference); if two runs are identical (same initial state and same seed, or same initial state in a
-        scene without random numbers); if curves have different coordinates, such as densities in different
-        bins; and for the reasons of the observable's function.
+        scene without random numbers); or if curves have different coordinates, such as densities in different
+        bins. Also under the conditions of the observable's function.
 
     Notes
     -----
-    The uncertainty is the standard error of the mean from the scatter of the runs. The error requires no
-    assumption about correlations within a run. The number of degrees of freedom is the number of runs minus
-    one (`freedom`).
+    The uncertainty is the standard error of the mean, computed from the scatter between runs. It requires no
+    assumption about correlations within a run. Its number of degrees of freedom (`freedom`) is the number of
+    runs minus one.
 
     Examples
     --------
@@ -103,14 +103,14 @@ def replicas(
 
 
 def _open_source(source: Source) -> AbstractContextManager[xr.Dataset | Simulation]:
-    """Return a context with an open trajectory or a simulation."""
+    """Return a context manager that yields an open trajectory or a simulation."""
     return open_trajectory(source) if isinstance(source, str | Path) else nullcontext(source)
 
 
 def _in_joint_bins(
     name: str, sources: Sequence[Source], results: list[Observable], start: float | None, end: float | None
 ) -> list[Observable]:
-    """Measure an observable again in the widest bins of any run."""
+    """Measure an observable again for all runs, in the widest bins among the runs."""
     declared = OBSERVABLES[name]
     middles = [result[declared.along[-1]].values for result in results]
     widest = max(float(middle[-1] + 0.5 * (middle[1] - middle[0])) for middle in middles)
@@ -126,12 +126,13 @@ class _Recipe:
     """Description of a run, to detect equal or incompatible replicas.
 
     name : name of the run in messages.
-    settings : scene and engine of the run.
+    settings : the scene and the engine of the run.
     seed : seed of the run.
-    draws : True if the run uses random numbers after the start.
-    times : times at which states are known; if `every` is True, all times up to the last one.
-    state : function of a time that returns the bytes of the state as they are in a file.
-    tallies : names of the stored optional tallies, with the texts of their options.
+    draws : True if the run draws random numbers after its initial state.
+    times : times at which states are known. If `every` is True, states are known at all times up to the last
+        of these times.
+    state : function that returns the state at a given time, as the bytes that a file would contain.
+    tallies : names of the optional tallies that the run stored, with their options as text.
     """
 
     name: str
@@ -145,7 +146,7 @@ class _Recipe:
 
 
 def _recipe(run: Any, name: str) -> _Recipe:
-    """Return the recipe of an open trajectory or a simulation."""
+    """Return the `_Recipe` of an open trajectory or a simulation."""
     if isinstance(run, Simulation):
         settings = {"scene": run.scene.to_dict(), "engine": engine_to_dict(run.engine)}
         times = np.array([0.0, run.time])
@@ -162,20 +163,20 @@ def _recipe(run: Any, name: str) -> _Recipe:
 
 
 def _texts(tallies: Iterable[OptionalTally]) -> dict[str, str]:
-    """Return the option texts of tallies, by name."""
+    """Return the options of tallies as text, by the name of the tally."""
     return {tally.name: tally.to_text() for tally in tallies if tally.form}
 
 
 def _state_in_frame(frames: dict[str, np.ndarray], time: float) -> bytes:
-    """Return the state in the trajectory frame at a given time."""
+    """Return the state in the frame of a trajectory at this time."""
     number = int(np.searchsorted(frames["time"], time))
     return _bits(*(frames[name][number] for name in ("coordinates", "velocities") if name in frames))
 
 
 def _state_at(simulation: Simulation, time: float) -> bytes:
-    """Return the state of a simulation at a time up to its present time.
+    """Return the state of a simulation at its present time or at an earlier time.
 
-    For an earlier time the simulation is run again.
+    To obtain an earlier state, the simulation is run again.
     """
     if time < simulation.time:
         simulation = simulation.again()
@@ -192,7 +193,7 @@ def _bits(*vectors: np.ndarray) -> bytes:
 def _check_replica(recipe: _Recipe, others: list[_Recipe]) -> None:
     """Raise SceneError unless a run is a replica of the other runs.
 
-    Replicas differ only in the seed or in the initial state.
+    Replicas differ from each other only in the seed or in the initial state.
     """
     for other in others:
         if difference := _difference(recipe.settings, other.settings):
@@ -222,9 +223,9 @@ def _last_common(recipe: _Recipe, other: _Recipe) -> float | None:
 
 
 def _difference(first: Any, second: Any, key: str = "") -> tuple[str, Any, Any] | None:
-    """Find the first difference of two trees: its dotted key and both values.
+    """Find the first difference between two nested dictionaries: its dotted key and both values.
 
-    Return None if the two trees are equal.
+    Return None if they are equal.
     """
     if isinstance(first, dict) and isinstance(second, dict):
         pairs = {str(name): (first.get(name), second.get(name)) for name in {**first, **second}}
@@ -239,7 +240,7 @@ def _difference(first: Any, second: Any, key: str = "") -> tuple[str, Any, Any] 
 
 
 def _other_coordinate(result: Observable, other: Observable, name: str, other_name: str) -> SceneError:
-    """Return an error that names the differing coordinate of two results of one observable."""
+    """Return an error that names the coordinate in which two results of one observable differ."""
     for dim in map(str, result.estimate.dims):
         first, second = result[dim].values, other[dim].values
         if not np.array_equal(first, second):
@@ -252,14 +253,14 @@ def _other_coordinate(result: Observable, other: Observable, name: str, other_na
 
 
 def _describe_coordinate(values: np.ndarray) -> str:
-    """Return a coordinate as text."""
+    """Describe a coordinate as text."""
     if values.dtype.kind in "US" or not values.size:
         return ", ".join(map(str, values)) or "none"
     return f"{values.size} values from {values[0]:.6g} to {values[-1]:.6g}"
 
 
 def _mean(measurements: list[Observable], recipes: list[_Recipe]) -> Observable:
-    """Average independent measurements of one observable over runs with these descriptions."""
+    """Average the measurements of one observable from independent runs, which `recipes` describe."""
     first, quantity = measurements[0], str(measurements[0].attrs["quantity"])
     dims = first.estimate.dims
     for measurement, recipe in zip(measurements[1:], recipes[1:], strict=True):

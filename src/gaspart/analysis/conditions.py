@@ -1,8 +1,8 @@
-"""Conditions of a scene under which an observable is defined; each function raises SceneError if not.
+"""Conditions on a scene under which an observable is defined.
 
-The conditions are tested before a run and again at the measurement, so both reject the same scenes. A
-selection is a keyword argument of the observable's function: `species`, `particles`, `axis`, `at`, `lag`,
-`per_axis`.
+Each function raises SceneError if its condition is not satisfied. The conditions are tested before a run and
+again at the measurement, so both reject the same scenes. `selection` contains keyword arguments of the
+observable's function: `species`, `particles`, `axis`, `at`, `lag`, `per_axis`.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from gaspart.state.tally import StressTally
 
 Selection = Mapping[str, Any]
 GROUPS = 16
-"""Number of groups of particles; their scatter gives an uncertainty."""
+"""Number of groups of particles. The scatter between groups gives an uncertainty."""
 SLIDING = "this observable is not defined where images of the particles slide"
 VARYING = (
     "lets particles enter and leave, and this observable follows particles that stay; defined here are "
@@ -32,12 +32,12 @@ _NEIGHBOURHOOD = {2: 7, 3: 13}  # a particle and its nearest neighbours in a cry
 
 
 def refuse_shear(scene: Scene, selection: Selection) -> None:
-    """Raise SceneError for sheared faces."""
+    """Raise SceneError if faces of the container are sheared."""
     refuse_sheared(scene, SLIDING)
 
 
 def steady_flow(scene: Scene, selection: Selection) -> None:
-    """Require that no flow changes with time, unless motion is relative to rest."""
+    """Require a steady flow, unless motion is measured relative to the resting container."""
     if scene.flow_changes and selection.get("about") != "rest":
         faces = [name for name, face in scene.faces.items() if face.moves] or MOVING_WALL
         rule = 'move the gas: motion about a flow that changes is not known from frames; pass about="rest"'
@@ -45,7 +45,7 @@ def steady_flow(scene: Scene, selection: Selection) -> None:
 
 
 def require_open_faces(scene: Scene, selection: Selection) -> None:
-    """Raise SceneError unless a face is open."""
+    """Raise SceneError unless at least one face is open."""
     if not scene.is_open:
         raise SceneError(
             "faces", list(scene.faces), f"none is open: there are always {scene.count} particles"
@@ -53,9 +53,9 @@ def require_open_faces(scene: Scene, selection: Selection) -> None:
 
 
 def open_across(scene: Scene, selection: Selection) -> None:
-    """Require closed faces along the selected axis.
+    """Require that the faces across all axes except the selected one are closed.
 
-    Particles would leave the container through open faces along this axis.
+    Otherwise particles would enter and leave on both sides of a plane across the selected axis.
     """
     axis = walled_axis_of(scene, selection.get("axis"))
     for face, _ in scene.faces_of(Open):
@@ -90,22 +90,23 @@ def require_walls(scene: Scene, selection: Selection) -> None:
 
 
 def thermal_walls(scene: Scene, selection: Selection) -> None:
-    """Raise SceneError unless a face has a temperature."""
+    """Raise SceneError unless at least one face has a temperature."""
     if not scene.thermal_numbers:
         raise SceneError("faces", list(scene.faces), "none is at a temperature, and takes heat")
 
 
 def dragged_walls(scene: Scene, selection: Selection) -> None:
-    """Require thermal faces that slide, or along which a force drives the gas."""
+    """Require thermal faces that slide, or a force that drives the gas along thermal faces."""
     if not scene.drags_faces:
         rule = "none is at a temperature and slides, or has a force along it: nothing drags them"
         raise SceneError("faces", list(scene.faces), rule)
 
 
 def walled_axis(scene: Scene, selection: Selection) -> None:
-    """Raise SceneError unless the selected axis, or any axis by default, has walls at both ends.
+    """Raise SceneError unless the selected axis has walls at both ends.
 
-    A selected plane across the axis must lie in the container.
+    If no axis is selected, at least one axis must have walls at both ends. If a plane across the axis is
+    selected, it must lie in the container.
     """
     axis = walled_axis_of(scene, selection.get("axis"))
     at = selection.get("at")
@@ -118,11 +119,11 @@ def walled_axis(scene: Scene, selection: Selection) -> None:
 
 
 def walled_axis_of(scene: Scene, name: str | None) -> int:
-    """Return the number of the named axis.
+    """Return the index of an axis from its name.
 
-    The default is the last axis with open faces, or otherwise the last axis with walls.
+    Without a name, return the last axis with open faces or, if no face is open, the last axis with walls.
 
-    Raises SceneError for an axis without walls, and for an unknown one.
+    Raises SceneError for an axis without walls and for an unknown name.
     """
     has_axis(scene, {"axis": name})
     walled = [axis for axis, periodic in enumerate(scene.container.periodic) if not periodic]
@@ -141,7 +142,7 @@ def elastic(scene: Scene, selection: Selection) -> None:
 
 
 def homogeneous(scene: Scene, selection: Selection) -> None:
-    """Require equivalent positions: no walls, no interior walls and no fixed particles."""
+    """Require that all positions are equivalent: no walls, no interior walls, no fixed particles."""
     _periodic(scene, "this observable needs a periodic container; set boundary: periodic")
     _without_obstacles(
         scene,
@@ -150,9 +151,9 @@ def homogeneous(scene: Scene, selection: Selection) -> None:
 
 
 def without_obstacles(scene: Scene, selection: Selection) -> None:
-    """Require that there are no interior walls or fixed particles.
+    """Require a scene without interior walls and without fixed particles.
 
-    Interior walls and fixed particles would carry a part of the pressure.
+    Interior walls and fixed particles would bear a part of the pressure.
     """
     _without_obstacles(scene, "carry a part of the pressure, which the virial of the particles does not have")
 
@@ -182,7 +183,7 @@ def thermal(scene: Scene, selection: Selection) -> None:
 
 
 def of_species(scene: Scene, selection: Selection) -> None:
-    """Require that all particles belong to species."""
+    """Require that every particle belongs to a species (no single particles)."""
     if scene.particles:
         rule = "pairs are those of species: there are single particles"
         raise SceneError("particles", len(scene.particles), rule)
@@ -200,10 +201,11 @@ def one_size_each(scene: Scene, selection: Selection) -> None:
 
 
 def require_particles(scene: Scene, selection: Selection) -> None:
-    """Raise SceneError if too few particles move.
+    """Raise SceneError if too few particles are free to move.
 
-    Without a selection, at least 16 particles must move. Of a selected species, at least one particle must
-    move. Selected numbers of particles must exist. A species and particles cannot be selected together.
+    Without a selection, at least 16 particles must move. If a species is selected, at least one particle of
+    the species must move. If particle numbers are selected, these particles must exist. A species and
+    particles cannot be selected together.
     """
     chosen = {key: selection.get(key) for key in ("species", "particles")}
     if all(value is None for value in chosen.values()):
@@ -228,7 +230,7 @@ def _enough(scene: Scene) -> None:
 def _in_species(scene: Scene, species: Any) -> int:
     """Count the moving particles of a species, identified by its number.
 
-    Single particles have the number after the last species.
+    All single particles have the number that follows the number of the last species.
     """
     kinds = len(scene.species) + bool(scene.particles)
     if count_of("species", species) >= kinds:
@@ -238,7 +240,7 @@ def _in_species(scene: Scene, species: Any) -> int:
 
 
 def has_species(scene: Scene, selection: Selection) -> None:
-    """Raise SceneError if all particles, or all of a selected species, are fixed."""
+    """Raise SceneError if all particles, or all particles of the selected species, are fixed."""
     some_move(scene, selection)
     species = selection.get("species")
     if species is not None and not _in_species(scene, species):
@@ -246,7 +248,7 @@ def has_species(scene: Scene, selection: Selection) -> None:
 
 
 def free_axis(scene: Scene, selection: Selection) -> None:
-    """Raise SceneError unless an axis is periodic."""
+    """Raise SceneError unless at least one axis is periodic."""
     if not any(scene.container.periodic):
         rule = "has no periodic axis: displacements between walls are bounded, and there is no D"
         raise SceneError("container.boundary", scene.container.boundary, rule)
@@ -267,26 +269,26 @@ def two_species(scene: Scene, selection: Selection) -> None:
 
 
 def a_pair(scene: Scene, selection: Selection) -> None:
-    """Require two particles."""
+    """Require at least two particles."""
     if scene.count < 2:
         raise SceneError("count", scene.count, "a pair needs two particles")
 
 
 def a_neighbourhood(scene: Scene, selection: Selection) -> None:
-    """Require at least 7 discs or 13 spheres."""
+    """Require at least 7 discs or 13 spheres, so that each particle has enough neighbours."""
     least = _NEIGHBOURHOOD[scene.dimension]
     if scene.count < least:
         raise SceneError("count", scene.count, f"needs {least} particles or more")
 
 
 def smooth_sizes(scene: Scene, selection: Selection) -> None:
-    """Require smooth and elastic particles; each species of a mixture has a single size."""
+    """Require smooth elastic particles, and a single size for each species of a mixture."""
     plain_mixture(scene)
     in_species(scene, selection)
 
 
 def in_species(scene: Scene, selection: Selection) -> None:
-    """Require equal particles, or species of a single size each."""
+    """Require equal particles, or species that each have a single size."""
     if scene.alike:
         return
     if scene.particles:
@@ -305,7 +307,7 @@ def has_axis(scene: Scene, selection: Selection) -> None:
 
 
 def require_elastic_periodic(scene: Scene, selection: Selection) -> None:
-    """Raise SceneError unless the container is periodic and only contacts change velocities."""
+    """Raise SceneError unless the container is periodic and only collisions change velocities."""
     StressTally().check(scene)
 
 
@@ -316,9 +318,9 @@ def shears(scene: Scene, selection: Selection) -> None:
 
 
 def heat_flows(scene: Scene, selection: Selection) -> None:
-    """Raise SceneError unless heat flows.
+    """Raise SceneError unless the scene has a cause of a heat flux.
 
-    Temperature differences, moving faces, or sources or sinks of energy drive a heat flux.
+    Causes of a heat flux are temperature differences, moving faces, and sources or sinks of energy.
     """
     heated = scene.dissipates or scene.thermostat is not None or _flows(scene)
     if (
@@ -330,7 +332,11 @@ def heat_flows(scene: Scene, selection: Selection) -> None:
 
 
 def velocity_flows(scene: Scene, selection: Selection) -> None:
-    """Require sliding faces, sheared images, a force along faces, or different open faces."""
+    """Require a cause of flow.
+
+    Causes of flow are sliding faces, sheared images, a force along faces, and open faces with different
+    states.
+    """
     if not _flows(scene) and not _streams(scene):
         raise SceneError("faces", list(scene.faces), "nothing drives a flow: the mean velocity is 0")
 
@@ -342,9 +348,9 @@ def _flows(scene: Scene) -> bool:
 
 
 def streams(scene: Scene, selection: Selection) -> None:
-    """Require open faces with different states, between which particles flow.
+    """Require open faces with different states, so that particles flow between them.
 
-    Otherwise the mean flux between walls is zero.
+    Otherwise the mean flux of particles is zero.
     """
     if not _streams(scene):
         rule = "the net flux between walls is 0 in a steady state"

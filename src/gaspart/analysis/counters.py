@@ -44,8 +44,9 @@ def compressibility_factor(source: Source, start: float | None = None) -> Observ
     Returns
     -------
     Observable
-        The compressibility factor Z, dimensionless. Theory is for the fluid phase, with the first-order
-        correction in 1/N. For mixtures it is an approximation and has no uncertainty.
+        The compressibility factor Z, dimensionless. The theoretical value is for the fluid phase and includes
+        the first-order correction in 1/N. For mixtures the theoretical value is an approximation without an
+        uncertainty.
 
     Raises
     ------
@@ -55,8 +56,9 @@ def compressibility_factor(source: Source, start: float | None = None) -> Observ
 
     Notes
     -----
-    Z = 1 + sum |dr . dp| / (d N k_B T t). The temperature is k_B T = 2 E / (d (N - 1)), with the kinetic
-    energy E relative to the centre of mass.
+    Z = 1 + sum |dr . dp| / (d N k_B T t), summed over the collisions in the time t. In a collision the
+    centres are separated by dr, and the momentum dp is exchanged. The temperature is k_B T = 2 E / (d (N -
+    1)), with the kinetic energy E relative to the centre of mass.
 
     Examples
     --------
@@ -88,31 +90,32 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
     -------
     Observable
         Pressure (face,) in [energy / length^d], with standard errors. Theory exists for equal particles
-        between two hard walls a given distance apart (`gaspart.theory.wall_pressure`). The pressure is NaN on
-        side walls while particles rest. For particles of several sizes it is also NaN on faces whose
-        accessible area changes as other faces move.
+        between two hard walls at a fixed distance (`gaspart.theory.wall_pressure`). The pressure on side
+        walls is NaN while particles are at rest under gravity. For particles of several sizes it is also NaN
+        on faces whose accessible area changes as other faces move.
 
     Raises
     ------
     SceneError
-        If the scene has no walls; if there are too few frames; if particles rest where obstacles may support
-        them; or if there are particles of several sizes and the file has no tally per area.
+        If the scene has no walls; if there are too few frames; if particles rest at positions where obstacles
+        may support them; or if there are particles of several sizes and the file does not contain the
+        momentum per accessible area.
 
     Notes
     -----
     The pressure is a sum over particle sizes a of F_a / A_a. F_a is the force of particles of this size, and
     A_a is the area of the face that their centres can reach. Areas covered by fixed particles and interior
     walls are excluded (`gaspart.scene.accessible`). If faces move, the instantaneous area is used. By the
-    contact theorem, the pressure is k_B T times the density at contact, summed over sizes. In an ideal gas it
-    is n k_B T, with the density n in the accessible volume. Particles that never touch the face do not
-    contribute. Across the axis of a piston with a load, the force is divided by the cross-section of the
-    container, because the load is defined with this area. The mean pressure is then equal to the load. The
-    force on a face (`wall_force`) does not depend on such a convention.
+    contact theorem, this pressure is k_B T times the density at contact, summed over sizes. In an ideal gas
+    the pressure is n k_B T, where n is the density in the accessible volume. Particles that never touch the
+    face do not contribute. On the faces across the axis of a loaded piston, the force is divided by the
+    cross-section of the container, because the load is defined with this area. The mean pressure is then
+    equal to the load. The force on a face (`wall_force`) does not depend on the definition of an area.
 
-    Contacts of particles at rest are not events. Such particles press on a floor with the momentum that they
-    receive from gravity and that no event removes. If the run has stored impulses along an axis, the known
-    fluctuations of these impulses are subtracted from the pressures across this axis
-    (`gaspart.analysis.impulses`). The attribute `estimator` names this method.
+    A contact of a particle at rest is not an event. Gravity gives such a particle momentum that no event
+    removes. This momentum is added to the momentum that the floor receives. If the run has stored impulses
+    along an axis, their known fluctuations are subtracted from the pressures on the faces across this axis
+    (`gaspart.analysis.impulses`). The attribute `estimator` then names this method.
 
     Examples
     --------
@@ -141,14 +144,14 @@ def wall_force(source: Source, start: float | None = None) -> Observable:
     Returns
     -------
     Observable
-        Outward normal force (face,), in [energy / length], with standard errors. Side walls have NaN while
-        particles rest.
+        Outward normal force (face,), in [energy / length], with standard errors. The force on side walls is
+        NaN while particles are at rest under gravity.
 
     Raises
     ------
     SceneError
-        If the scene has no walls; if there are too few frames; or if particles rest where obstacles may
-        support them.
+        If the scene has no walls; if there are too few frames; or if particles rest at positions where
+        obstacles may support them.
 
     Notes
     -----
@@ -170,9 +173,9 @@ def wall_force(source: Source, start: float | None = None) -> Observable:
 
 @contextmanager
 def _open_walls(source: Source, start: float | None, name: str) -> Iterator[tuple[Run, np.ndarray]]:
-    """Open a run, and return the frames at the ends of its blocks (K + 1,).
+    """Open a run, and find the frames (K + 1,) that bound its K blocks.
 
-    Raises SceneError if the observable of faces, `name`, is undefined.
+    Raises SceneError if the observable `name`, a property of faces, is undefined.
     """
     with open_run(source, start, sheared=True, varying=True) as run:
         require_defined(name, run.scene)
@@ -183,7 +186,7 @@ def _open_walls(source: Source, start: float | None, name: str) -> Iterator[tupl
 
 
 def _of_faces(function: str, run: Run, ends: np.ndarray, about: dict[str, Any]) -> Observable:
-    """Return the result of the named function from blocks of a run."""
+    """Build the result of the function named `function` from blocks of a run."""
     name = name_of(function)
     faces, samples = on_walls(run, ends, name)
     freedoms = np.full(len(faces), len(samples) - 1.0)
@@ -202,7 +205,7 @@ def _of_faces(function: str, run: Run, ends: np.ndarray, about: dict[str, Any]) 
 
 
 def controlled_on_walls(run: Run, name: str) -> dict[int, tuple[str, int, np.ndarray]]:
-    """Compute the pressures or forces on walls for which the run has stored impulses.
+    """Compute pressures or forces on walls with control variates from stored impulses.
 
     Parameters
     ----------
@@ -214,8 +217,8 @@ def controlled_on_walls(run: Run, name: str) -> dict[int, tuple[str, int, np.nda
     Returns
     -------
     dict of int to tuple
-        Keys: index among all walls. Values: name of the wall, number of control variates, and value in each
-        interval, shape (T - 1,).
+        Keys: index among all walls. Values: name of the wall, number of control variates, and pressure or
+        force in each interval, shape (T - 1,).
     """
     faces, each = on_walls(run, np.arange(len(run.time)), name)
     groups, by_face = group_count(run) if run.has_states else 0, {}
@@ -228,14 +231,14 @@ def controlled_on_walls(run: Run, name: str) -> dict[int, tuple[str, int, np.nda
 
 
 def on_walls(run: Run, ends: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the pressure or the force on each wall between frames.
+    """Compute the mean pressure or force on each wall between given frames.
 
     Parameters
     ----------
     run : Run
         The run.
     ends : ndarray of int, shape (K + 1,)
-        Numbers of the frames.
+        Indices of the frames that bound the K intervals.
     name : {"pressure", "force"}
         The quantity.
 
@@ -249,7 +252,7 @@ def on_walls(run: Run, ends: np.ndarray, name: str) -> tuple[np.ndarray, np.ndar
     Raises
     ------
     SceneError
-        For the reasons of `wall_pressure`.
+        Under the conditions of `wall_pressure`.
     """
     require_defined(name, run.scene)
     time, walls = np.diff(run.time)[:, None], np.repeat(~run.periodic, 2)
@@ -266,15 +269,17 @@ def on_walls(run: Run, ends: np.ndarray, name: str) -> tuple[np.ndarray, np.ndar
 
 
 def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
-    """Compute the momentum (K, 2d) that particles at rest give to each face between frames.
+    """Compute the momentum (K, 2d) that particles at rest give to each face.
 
-    The frames are `ends` (K + 1,). On a floor, this momentum closes the balance
+    The K intervals lie between the frames `ends` (K + 1,). For a floor, this momentum follows from the
+    balance
 
         change of the momentum = momentum from gravity + impulses of the lower face - impulses of the upper
         face.
 
-    On a ceiling the force is 0. On side walls it is 0, or NaN if the momentum on a floor exceeds a millionth
-    of the weight. Raises SceneError if particles rest where something other than a face may support them.
+    For a ceiling the momentum is 0. For side walls it is 0, but NaN if the momentum that the floor receives
+    from particles at rest exceeds a millionth of the impulse of the weight. Raises SceneError if particles
+    rest at positions where something other than a face may support them.
     """
     carried = np.zeros((len(ends) - 1, 2 * run.dimension))
     if not run.has_gravity or (run.is_subset and not run.dissipates):
@@ -298,14 +303,14 @@ def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
 
 
 def refuse_rest(run: Run, rule: str) -> None:
-    """Raise SceneError if a particle rests under gravity in a frame after the first.
+    """Raise SceneError if a particle rests under gravity in any frame after the first.
 
     Parameters
     ----------
     run : Run
         The run.
     rule : str
-        Rule for the error message.
+        Rule that the error message states.
 
     Raises
     ------
@@ -323,7 +328,7 @@ def refuse_rest(run: Run, rule: str) -> None:
 
 
 def collision_rate(source: Source, start: float | None = None) -> Observable:
-    """Measure the number of collisions of a moving particle per time.
+    """Measure the collision rate: the mean number of collisions of a moving particle per time.
 
     Parameters
     ----------
@@ -335,8 +340,9 @@ def collision_rate(source: Source, start: float | None = None) -> Observable:
     Returns
     -------
     Observable
-        The rate, in [1/time]. Theory is exact in equilibrium, apart from the contact value. The contact value
-        comes from the equation of state of the fluid, corrected for the number of particles.
+        The rate, in [1/time]. The theoretical rate is exact in equilibrium, apart from the contact value. The
+        contact value is computed from the equation of state of the fluid and corrected for the finite number
+        of particles.
 
     Raises
     ------
@@ -345,9 +351,8 @@ def collision_rate(source: Source, start: float | None = None) -> Observable:
 
     Notes
     -----
-    The rate is (2 M + F) / (N t), the mean number of collisions of a particle per time. M is the number of
-    collisions between two moving particles, N the number of moving particles, and F the number of collisions
-    with fixed particles.
+    The rate is (2 M + F) / (N t) for N moving particles in the time t. M is the number of collisions between
+    two moving particles, and F is the number of collisions of moving particles with fixed particles.
 
     Examples
     --------

@@ -13,11 +13,11 @@ from typing import Any, TypeAlias
 from gaspart.scene.scene import Scene
 
 Condition: TypeAlias = Callable[[Scene, Mapping[str, Any]], None]
-"""Function that raises SceneError if an observable is undefined for a scene and a selection, for runs of any
-length.
+"""Function that raises SceneError if an observable is undefined for a scene and a selection, whatever the
+length of the run.
 """
 BASE = {"length": (1, 0, 0), "mass": (0, 1, 0), "time": (0, 0, 1), "energy": (2, 1, -2)}
-"""Powers of length, mass and time for each word in unit strings; k_B = 1."""
+"""Powers of length, mass and time that each word in a unit string stands for, with k_B = 1."""
 _FACTOR = re.compile(r"([a-z]+)(?:\^(-?\d+))?")
 _EXPONENT = re.compile(r"\^(?:\((\d*d?)-(\d*d?)\)|d)")
 
@@ -40,7 +40,8 @@ def units_in(units: str, dimension: int) -> str:
 def powers_of(units: str, dimension: int) -> tuple[int, int, int]:
     """Return the powers of length, mass and time in the declared units.
 
-    If the units become smaller, the numerical value grows with these powers.
+    The numerical value of an observable changes with these powers if the units of length, mass and time
+    change.
     """
     total = [0, 0, 0]
     above, _, below = units_in(units, dimension).partition(" / ")
@@ -56,15 +57,15 @@ class Along:
     """Dimension of a result, and how its values change when the scene is transformed.
 
     units : units of the coordinate.
-    names : True if the coordinate consists of names, one for each value.
-    exchanged : effect of exchanging axes. "": none. "names": the names follow the axes. "chosen": the values
-        belong to the other axis.
-    mirrored : effect of a mirror image across an axis. "": none. "ends": the low and the high face are
-        exchanged. "reversed": the values along this axis are in reverse order. "signs": a component changes
-        its sign once for each occurrence of the axis in its name.
-    shifted : effect of a shift of all particles along a periodic axis. "": none. "moved": the values move
-        along the axis.
-    relabelled : True if the names follow the species numbers.
+    names : True if the coordinate labels each value with a name.
+    exchanged : effect of exchanging two axes. "": none. "names": the axes in the names are exchanged.
+        "chosen": the values then belong to the other axis.
+    mirrored : effect of a mirror image across an axis. "": none. "ends": the values of the low and the high
+        face are exchanged. "reversed": the values along this axis are in reverse order. "signs": the sign of
+        a component changes once for each occurrence of the axis in the component's name.
+    shifted : effect of a shift of all particles along a periodic axis. "": none. "moved": the values are
+        shifted along the axis.
+    relabelled : True if the names change when the species are renumbered.
     """
 
     meaning: str
@@ -96,57 +97,64 @@ class Named:
 
     Description:
 
-    title : name in words, and label of its values on an axis, with the symbol.
+    title : name of the observable in words. With the symbol, it is the label of a plotted axis.
     definition : definition in one sentence.
     symbol : the symbol.
     units : units as powers of length, mass, time and energy with k_B = 1 (`units_in`).
     function : name of the function in `gaspart.analysis`, and its `arguments`.
-    along : dimensions of the result, names in `DIMENSIONS`; empty for a scalar.
-    selections : keyword arguments that restrict the observable, or resolve it along axes.
+    along : dimensions of the result, as names in `DIMENSIONS`; empty for a scalar.
+    selections : keyword arguments that restrict the observable to some particles or positions, or resolve it
+        along axes.
 
     Conditions of definition:
 
-    needs : stored data that the observable needs. "": none. "paths": paths of particles. "pairs": numbers of
+    needs : data that the run must have stored. "": none. "paths": paths of particles. "pairs": numbers of
         collisions of each pair of species. "fluxes": correlations of the stress and the heat flux. "shear":
-        momentum along faces, which only some engines tally.
+        tangential momentum given to faces, which only some engines tally.
     conditions : conditions on a scene, see `Condition`.
-    needs_all_particles : when the file must contain all particles. "always", "never", "mixed" (with several
-        kinds of particles), or "unless fluxes" (unless the run stores fluxes, which include the temperature).
-    varying : True if the observable is defined in scenes with open faces.
-    ends : keyword argument of the function for the end of its bins, if this follows from the run.
-    nothing : equations (`Engine.equation`) that do not determine the observable, with a reason for each
-        equation.
+    needs_all_particles : when the file must contain all particles. "always", "never", "mixed" (if there are
+        several kinds of particles), or "unless fluxes" (always, except if the run stores fluxes, because
+        these data include the temperature).
+    varying : True if the observable is also defined in scenes with open faces, where the number of particles
+        varies.
+    ends : keyword argument of the function that sets the upper end of its bins, if the default depends on the
+        run.
+    nothing : equations (`Engine.equation`) that do not determine the observable, each with the reason.
 
     Theory for comparison:
 
     theory : function in `analysis.expected` that computes the theory for the equation of the engine.
-    bulk : function of `theory.bulk` for an infinite plain gas and each equation.
+    bulk : function of `theory.bulk` that computes the observable of an infinite plain gas for each equation.
     source : source of the theoretical value for the exact dynamics; {state} stands for the equation of state.
-    mixture : function of `gaspart.theory` for a mixture; "" without one.
+    mixture : function of `gaspart.theory` that computes the theory for a mixture; "" without a theory.
 
-    Symmetries (units and `along` determine changes of units, exchanges of axes, mirror images and shifts):
+    Symmetries (the effects of changes of units, exchanges of axes, mirror images and shifts follow from
+    `units` and `along`):
 
     moving : True if the observable is the same in a uniformly moving frame of reference.
-    scatter : samples whose scatter gives the uncertainty: parts of the "run", or groups of "particles". The
-        groups depend on the order of the particles.
-    merged : effect of splitting a species into two equal species. "": none. "split": a value for each of
-        their pairs. "lost": undefined for one of the two.
+    scatter : samples whose scatter gives the uncertainty. "run": parts of the run. "particles": groups of
+        particles, which depend on the order of the particles.
+    merged : effect of splitting a species into two equal species. "": none. "split": the result has a value
+        for each pair of the two new species. "lost": the observable is undefined for one of the two new
+        species.
 
     Planning of runs:
 
     power : power of the temperature to which the observable is proportional.
-    memory : True if the observable depends on correlated collisions, which no kinetic equation includes.
-    lags : number of lags of its correlations in a pilot run, 0 without correlations.
-    samples : criterion for the time between frames. "": average over time. "structure": independent
-        positions. "paths": lags.
+    memory : True if the observable depends on correlations between collisions, which kinetic equations
+        neglect.
+    lags : number of lags of the correlations that a pilot run stores for it; 0 if it needs no correlations.
+    samples : criterion for the time between frames. "": no criterion, because the observable is an average
+        over time. "structure": positions in consecutive frames should be independent. "paths": frames must
+        resolve the lags.
     of_impulses : True if the observable is computed from the impulses on all walls.
     by_impulses : True if stored impulses make the observable more accurate.
-    ends_runs : True if `--until` may require an accuracy of the observable.
+    ends_runs : True if `--until` accepts the observable, so that its accuracy can end a run.
     drives : conditions under which the observable is nonzero in the steady state. They are tested in addition
         to `conditions` before a run is planned.
-    tabulated : True if the table contains costs and errors.
-    relative_to : reference of the relative accuracy: each "value", or the "norm" of all values if some vanish
-        on average.
+    tabulated : True if the accuracy table contains costs and errors of the observable.
+    relative_to : quantity by which an error is divided to obtain the relative accuracy: each "value", or the
+        "norm" of all values if some values vanish on average.
     """
 
     title: str
@@ -195,10 +203,10 @@ class Named:
 
     @property
     def listed(self) -> str:
-        """Definition, with the option that the run needs."""
+        """Definition of the observable, with the option that the run needs."""
         options = {"pairs": ", of a run with --pairs", "fluxes": ", of a run with --stress"}
         return self.definition + options.get(self.needs, "")
 
     def powers(self, dimension: int) -> tuple[int, int, int]:
-        """Return the powers of length, mass and time in its units."""
+        """Return the powers of length, mass and time in the units of the observable."""
         return powers_of(self.units, dimension)

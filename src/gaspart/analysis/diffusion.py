@@ -1,8 +1,8 @@
 """Diffusion coefficient from the paths of particles.
 
-The uncertainty is the scatter of groups of particles, which are treated as independent. If there are fewer
-particles than groups, the run is divided into as many blocks as there would be groups, and the error is the
-scatter of these blocks.
+The uncertainty follows from the scatter between groups of particles, which are treated as independent. If
+there are fewer particles than groups, the run is divided into as many blocks as there would be groups. The
+error then follows from the scatter between the blocks.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ from gaspart.errors import SceneError
 from gaspart.keys.values import number
 
 LINEAR_FROM = 12.0
-"""Collisions per particle after which the slope of the mean-squared displacement is examined."""
+"""Lag from which the slope of the mean-squared displacement is examined, in collisions per particle."""
 _WITHIN = 2.0
 """Maximum change of the slope, in standard errors, at which the slope counts as constant."""
 _SLOW = 0.06
-"""Maximum relative change of the slope at which only the slow tail of correlations is missing."""
+"""Maximum relative change of the slope that is attributed to the slow tail of the correlations."""
 _TAIL = 1.0 / (math.sqrt(2.0) - 1.0)
-"""Sum of all later changes divided by the last change, for lags that double each time. The missing part of D
-decreases as t^(-1/2).
+"""Sum of all further changes of the slope divided by its last change, if each lag is twice the previous one.
+The missing part of D decreases with the lag as t^(-1/2).
 """
 
 
@@ -59,43 +59,44 @@ def diffusion_coefficient(
         Measure only this species, as in `mean_squared_displacement`.
     particles : sequence of int, optional
         Measure only these particles, as in `mean_squared_displacement`. For fewer than 16 particles, such as
-        a single tracer, the run is divided into 16 blocks, and each block must be long enough.
+        a single tracer, the run is divided into 16 blocks, and each block must contain the lags.
     per_axis : bool, default False
         Measure D along each periodic axis instead of the mean over axes.
     lag : float, [time], optional
-        Use half of the slope of the mean-squared displacement along an axis at this time, from the frames
-        before and after it.
+        Return half of the slope of the mean-squared displacement along an axis at this lag. The slope is
+        computed from the lags of one frame less and one frame more.
     about : {"flow", "rest"}, default "flow"
-        Frame of reference, as in `mean_squared_displacement`. It also applies to the condition of zero
-        momentum.
+        Frame of reference, as in `mean_squared_displacement`. With "rest", momentum does not count as
+        conserved.
 
     Returns
     -------
     Observable
-        D in [length^2/time]. A scalar for a periodic container. For a container with walls, or with
-        `per_axis`, one value along each periodic axis, (axis,). Across walls displacements are bounded, so D
-        does not exist there. The variable `lags` contains the first and the last lag of the slope.
+        D in [length^2/time]. The result is a scalar for a periodic container. For a container with walls, or
+        with `per_axis`, it has one value for each periodic axis, (axis,). Along an axis with walls
+        displacements are bounded, so D does not exist. The variable `lags` contains the first and the last
+        lag of the slope.
 
     Raises
     ------
     SceneError
         If there is no periodic axis, if the run is too short, or if it has too few frames. If no lag is
-        passed, also for discs whose momentum lasts longer than 12 collisions, because their squared
-        displacement grows as t ln t, and if the slope still changes at the longest lags.
+        passed, also if the slope still changes at the longest lags, and for discs whose total momentum
+        persists for more than 12 collisions. The squared displacement of such discs grows as t ln t.
 
     Notes
     -----
-    Slopes are computed between 6, 12, 24, 48 ... collisions of a particle, up to the length of the run. D is
-    the first slope that equals the previous slope within two standard errors of their difference. If the last
-    slope has changed by less than 6 %, only a slow tail is missing. The estimated size of the tail is added
-    to the error.
+    Slopes are computed between the lags of 6, 12, 24, 48 ... collisions of a particle, as far as the run
+    permits. D is the first slope that agrees with the previous slope within two standard errors of their
+    difference. If no slope agrees, but the last slope has changed by less than 6 %, only a slow tail is
+    missing. D is then the last slope, and the estimated size of the tail is added to the error.
 
-    D at a `lag` is the integral of the velocity autocorrelation up to this lag. It exists even where D does
-    not, for example for discs and between walls.
+    D at a `lag` is the integral of the velocity autocorrelation up to this lag. This integral exists even if
+    D does not exist, for example for discs and between walls.
 
-    Theory for spheres in a periodic cube: the result of Erpenbeck and Wood with the correction of Yeh and
-    Hummer; the uncertainty is half of this correction. Theory at a given lag: the derivative of the
-    theoretical mean-squared displacement.
+    The theoretical D of spheres in a periodic cube is the result of Erpenbeck and Wood with the correction of
+    Yeh and Hummer; its uncertainty is half of this correction. If a lag is passed, the theoretical value is
+    the derivative of the theoretical mean-squared displacement.
 
     Examples
     --------
@@ -141,10 +142,10 @@ def diffusion_coefficient(
 
 
 def _all_lags(run: Run, stride: int, parts: int) -> tuple[int, ...]:
-    """Return lags of 6, 12, 24, 48 ... collisions of a particle, in frames.
+    """Return the lags, in frames, of 6, 12, 24, 48 ... collisions of a particle.
 
-    The longest lag is at most half of the frames of each of `parts` equal parts of the run. Raises SceneError
-    for the reasons of `lags_of_slopes`.
+    The run is divided into `parts` equal parts. The longest lag is at most half of the frames of a part.
+    Raises SceneError under the conditions of `lags_of_slopes`.
     """
     return _extend_lags(lags_of_slopes(run, stride, parts), len(run.time) // (stride * parts))
 
@@ -157,7 +158,7 @@ def _extend_lags(lags: tuple[int, ...], frames: int) -> tuple[int, ...]:
 
 
 def _with_lags(result: Observable, ends: np.ndarray, rate: float) -> Observable:
-    """Add the first and the last lag of a slope to its result."""
+    """Add to a result the first and the last lag of its slope."""
     collisions = " to ".join(f"{rate * end:.3g}" for end in ends)
     result.attrs["lags"] = ends
     result.attrs["note"] = (
@@ -172,10 +173,10 @@ def _rate(run: Run) -> float:
 
 
 def _lags_about(run: Run, lag: float, stride: int, parts: int) -> tuple[int, ...]:
-    """Return a lag in frames, rounded down and up.
+    """Return the lags one frame shorter and one frame longer than a lag, in frames.
 
-    Raises SceneError for a lag shorter than the time between frames, or longer than half of each of the equal
-    parts of a run.
+    Raises SceneError for a lag that is shorter than the time between frames, or longer than half of a part.
+    The run is divided into `parts` equal parts.
     """
     interval = run.interval * stride
     frames = len(run.time[::stride]) // parts
@@ -209,7 +210,8 @@ def require_spheres(run: Run, lasting: np.ndarray) -> None:
 def linear_lags(rate: float, interval: float) -> tuple[int, int, int]:
     """Return the lags, in frames, of 6, 12 and 24 collisions of a particle.
 
-    The first lag is before the window of D; the other lags are its start and its end.
+    The slope that gives D lies between the second and the third lag. The first lag serves to test that the
+    slope is constant.
 
     Parameters
     ----------
@@ -265,10 +267,10 @@ def lags_of_slopes(run: Run, stride: int = 1, parts: int = 1) -> tuple[int, ...]
 
 
 def _lasting_momentum(run: Run, lag: int) -> np.ndarray:
-    """Return a mask (d,) of axes along which the moving particles' momentum persists for `lag` frames.
+    """Return a mask (d,) of the axes along which momentum persists for `lag` frames.
 
-    Along these axes the momentum is conserved, or more than half of it remains, for example with a few
-    obstacles among many particles.
+    The momentum is the total momentum of the moving particles. It persists if it is conserved, or if more
+    than half of it remains, for example with a few obstacles among many particles.
     """
     masses = run.masses[run.moving]
     if run.flow_axes:
@@ -294,11 +296,12 @@ def _slopes(groups: Groups, lags: tuple[int, ...]) -> np.ndarray:
 
 
 def settled_slope(slopes: np.ndarray, sizes: Sequence[int] | None = None) -> tuple[int, np.ndarray | float]:
-    """Find the first slope that no longer changes, among slopes (G, K, ...) at increasing lags.
+    """Find the first slope that agrees with the previous one, among slopes at increasing lags.
 
-    Returns the index of the slope and an estimate of the neglected tail. The tail is 0 if the slope equals
-    the previous slope within its error along every axis. `sizes` (G,) are the numbers of particles in the
-    groups. Raises SceneError if the last slopes change by more than a slow tail explains.
+    The slopes have the shape (G, K, ...). Returns the index of the slope and an estimate of the neglected
+    tail. The tail is 0 if the slope agrees with the previous slope within its error along every axis. `sizes`
+    (G,) are the numbers of particles in the groups. Raises SceneError if the last slopes change by more than
+    a slow tail explains.
     """
     for k in range(1, slopes.shape[1]):
         change, error = means_of(slopes[:, k] - slopes[:, k - 1], sizes)
@@ -332,14 +335,14 @@ def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
     Returns
     -------
     Observable
-        D_12 in [length^2/time]. Theory: Enskog's first approximation.
+        D_12 in [length^2/time]. The theoretical value is Enskog's first approximation.
 
     Raises
     ------
     SceneError
-        If there are not exactly two species; with fixed particles, walls or contacts that lose energy; for
-        discs, for which the coefficient does not exist; if frames are too far apart or runs too short; or if
-        the slope still changes at the longest lags.
+        If there are not exactly two species; if there are fixed particles, walls or contacts that lose
+        energy; for discs, for which the coefficient does not exist; if frames are too far apart or the run is
+        too short; or if the slope still changes at the longest lags.
 
     Notes
     -----
@@ -348,13 +351,14 @@ def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
 
         D_12 = x_1 x_2 N / (2 d) d/dt <|X_1(t) - X_2(t)|^2>,
 
-    The derivative is the first slope between 6, 12, 24, 48 ... collisions of a particle that equals the
-    previous slope within two standard errors [1]_ [2]_. The attribute `lags` contains the two lags. The
-    longest lag is a 32nd of the run, but at least 24 collisions. If the last slope has changed by less than 6
-    %, only a slow tail is missing. The estimated size of the tail is added to the error. Fick's coefficient
-    is D_12 times the thermodynamic factor, which is 1 for species of one size. If the species differ only in
-    their numbers, D_12 is exactly the D of a single particle. X_1 - X_2 is a single vector for any number of
-    particles, so only longer runs are more accurate.
+    Slopes are computed between the lags of 6, 12, 24, 48 ... collisions of a particle. The derivative is the
+    first slope that agrees with the previous slope within two standard errors [1]_ [2]_. The attribute `lags`
+    contains the two lags of this slope. The longest lag is a 32nd of the run, but at least 24 collisions. If
+    no slope agrees, but the last slope has changed by less than 6 %, only a slow tail is missing. The
+    estimated size of the tail is added to the error. Fick's coefficient is D_12 times the thermodynamic
+    factor, which is 1 for species of one size. If the species differ only in their numbers, D_12 is exactly
+    the D of a single particle. X_1 - X_2 is a single vector for any number of particles, so only longer runs
+    are more accurate.
 
     References
     ----------
@@ -386,9 +390,9 @@ def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
 
 
 def _rises(path: np.ndarray, lags: tuple[int, ...]) -> Iterator[np.ndarray]:
-    """Yield the slopes of the squared change of a path per frame, between consecutive lags.
+    """Yield the slopes of the squared change of a path between consecutive lags, per frame.
 
-    Each slope is a series over the time origins that both lags permit.
+    Each slope is a series over the time origins at which both lags end within the run.
     """
     for early, late in itertools.pairwise(lags):
         number = len(path) - late
@@ -398,8 +402,8 @@ def _rises(path: np.ndarray, lags: tuple[int, ...]) -> Iterator[np.ndarray]:
 def _settled_rise(rises: list[np.ndarray]) -> tuple[int, float]:
     """Find the first slope that no longer changes.
 
-    Returns the index of the slope and the estimated size of the neglected tail. The limits are the same as in
-    `settled_slope`. Raises SceneError if the last slopes change by more than a slow tail explains.
+    Returns the index of the slope and the estimated size of the neglected tail. The criteria are the same as
+    in `settled_slope`. Raises SceneError if the last slopes change by more than a slow tail explains.
     """
     for k in range(1, len(rises)):
         changes = rises[k] - rises[k - 1][: len(rises[k])]

@@ -12,24 +12,23 @@ if TYPE_CHECKING:  # single numbers, as in claims, do not need numpy
     import xarray
 
 Number = Any
-"""A number or an array of any library; it is stored as a float or an array of floats."""
+"""A number, or an array of any array library. It is stored as a float or as an array of floats."""
 
 
 @dataclass(frozen=True, eq=False)
 class Estimate:
     """Number with its standard uncertainty (0 if exact), or an array of such numbers.
 
-    `freedom` is the number of degrees of freedom of the uncertainty if it comes from the scatter of a few
-    samples; it is then their number minus one. Otherwise it is infinite. With a finite `freedom`, a deviation
-    follows
-    Student's t distribution. Sums, products and quotients propagate the uncertainties of independent numbers
-    to first order, and the degrees of freedom by the formula of Welch and Satterthwaite (Biometrics Bulletin
-    2, 110 (1946)).
+    `freedom` is the number of degrees of freedom of the uncertainty. If the uncertainty comes from the
+    scatter of a few samples, `freedom` is the number of samples minus one. Otherwise it is infinite. With a
+    finite `freedom`, a deviation follows Student's t distribution. Sums, products and quotients propagate the
+    uncertainties to first order, as for independent numbers. They propagate the degrees of freedom by the
+    formula of Welch and Satterthwaite (Biometrics Bulletin 2, 110 (1946)).
 
-    Arrays are broadcast to one shape. Each element is propagated exactly as a single number, to the last bit.
-    An estimate of an array has a length, and can be indexed and iterated over along its first axis. The array
-    must not be changed. Raises ValueError for a negative uncertainty, for degrees of freedom that are not
-    positive, and for arrays of shapes that do not broadcast.
+    Arrays are broadcast to a common shape. The result for each element is bitwise identical to the result for
+    a single number. An estimate of an array has a length, and can be indexed and iterated over along its
+    first axis. Its array must not be changed. Raises ValueError for a negative uncertainty, for degrees of
+    freedom that are not positive, and for arrays whose shapes cannot be broadcast.
     """
 
     value: Number
@@ -53,7 +52,7 @@ class Estimate:
     def of(cls, dataset: xarray.Dataset, name: str) -> Estimate:
         """Return the variable `name` of a dataset, with `name`_error as its uncertainty.
 
-        If the variable `name`_freedom exists and is positive, it is the number of degrees of freedom.
+        If the variable `name`_freedom exists and is positive, it gives the number of degrees of freedom.
         """
         column, error = dataset[name], dataset[f"{name}_error"]
         if f"{name}_freedom" not in dataset:
@@ -64,22 +63,25 @@ class Estimate:
 
     @classmethod
     def stack(cls, estimates: Sequence[Estimate]) -> Estimate:
-        """Join estimates of one shape along a new first axis; none give an empty array."""
+        """Join estimates of the same shape along a new first axis.
+
+        An empty sequence gives an empty array.
+        """
         parts = ([estimate._parts[k] for estimate in estimates] for k in range(3))
         return cls(*parts)
 
     @property
     def deviation(self) -> Number:
-        """Distance from 0 in standard deviations; infinite for an exact number other than 0.
+        """Value divided by its standard deviation; infinite for an exact number other than 0.
 
-        If the uncertainty comes from a few samples, the probability by Student's t is converted to the
-        Gaussian deviation of equal probability.
+        If the uncertainty comes from a few samples, the deviation follows Student's t distribution. It is
+        then converted to the Gaussian deviation that has the same probability.
         """
         return _each(_deviation, 1)(self.value, self.error, self.freedom)
 
     @property
     def weights(self) -> np.ndarray:
-        """Normalized weights of the elements of an array, 1 / error^2 divided by their sum."""
+        """Weights 1 / error^2 of the elements of an array, divided by their sum."""
         weights: np.ndarray = self.error**-2
         return weights / weights.sum()
 
@@ -149,7 +151,7 @@ class Estimate:
 def concise(value: float, error: float) -> str:
     """Format a number with its uncertainty in the last two digits, such as 1.242(20).
 
-    Without an uncertainty the number has six digits.
+    If the number has no uncertainty, it is written with six digits.
     """
     if not (0.0 < error < math.inf and math.isfinite(value)):
         return f"{value:.6g}"
@@ -164,7 +166,7 @@ def concise(value: float, error: float) -> str:
 
 
 def as_estimate(number: Estimate | Number) -> Estimate:
-    """Return an estimate unchanged, or another number or array as an exact estimate."""
+    """Return an estimate unchanged; convert other numbers and arrays to exact estimates."""
     return number if isinstance(number, Estimate) else Estimate(number)
 
 
@@ -193,14 +195,15 @@ def _any(wrong: bool | np.ndarray) -> bool:
 
 
 def _sum(value: Number, *parts: tuple[Number, Number]) -> Estimate:
-    """Return the value with the combined uncertainty of two contributions (error, degrees of freedom)."""
+    """Return a value whose uncertainty combines two contributions (error, degrees of freedom)."""
     return Estimate(value, *_each(_together, 2)(*parts[0], *parts[1]))
 
 
 def _each(function: Callable[..., Any], results: int) -> Callable[..., Any]:
     """Extend a function of floats to arrays.
 
-    Single floats are not passed through numpy, because math and numpy differ in the last bits.
+    A single float is not converted to a numpy array, because the results of math and numpy differ in the last
+    bits.
     """
 
     def of_any(*numbers: Number) -> Any:

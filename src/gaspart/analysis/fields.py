@@ -34,13 +34,14 @@ def field(
     source : str, Path, Dataset or Simulation
         A trajectory (a path or an open trajectory), or a simulation.
     of : {"density", "velocity", "temperature"}, default "density"
-        "density": particles per volume of the cell; the volume is the part within the present container
-        (faces may move). "velocity": mean velocity. "temperature": twice the kinetic energy per degree of
-        freedom, relative to the local mass-weighted flow.
+        "density": number of particles divided by the volume of the cell. If faces move, only the part of the
+        cell inside the container counts. "velocity": mean velocity. "temperature": twice the kinetic energy
+        per degree of freedom, relative to the local mass-weighted flow.
     axes : str, optional
         Axes, such as "xy". Default: the first two.
     cells : int or sequence of int, default 20
-        Number of cells along each axis. Along the other axes each cell is as long as the container.
+        Number of cells along each of the `axes`. Along all other axes each cell extends over the whole
+        container.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
     species : int, optional
@@ -49,8 +50,8 @@ def field(
     Returns
     -------
     Observable
-        Mean over all frames, with dimensions ("x", "y"); a velocity has ("component", "x", "y"). NaN in cells
-        that were always empty.
+        Mean over all frames, with the `axes` as dimensions, such as ("x", "y"); for a velocity ("component",
+        "x", "y"). The value is NaN in cells that were empty in all frames.
 
     Raises
     ------
@@ -60,10 +61,10 @@ def field(
 
     Notes
     -----
-    The local flow for the temperature is computed in the same cells, also across sliding faces. With faces
-    that move along their normal it is computed in layers of each frame (see `gaspart.analysis.flow`). Errors
-    are defined as in `profile`. If the run has stored impulses, the density along one axis is also computed
-    as in `profile`.
+    For the temperature, the local flow is computed in the same cells and, between sliding faces, also
+    resolved along the axis across them. If faces move along their normal, the flow is computed in layers of
+    each frame (see `gaspart.analysis.flow`). Errors are defined as in `profile`. If the run has stored
+    impulses, the density along one axis is also computed as in `profile`.
 
     Examples
     --------
@@ -102,7 +103,7 @@ def field(
 
 
 def _axes(run: Run, axes: str | None) -> list[int]:
-    """Return the numbers of the named axes; raise SceneError for unknown axes."""
+    """Return the indices of axes from their names; raise SceneError for unknown axes."""
     names = "xyz"[: run.dimension]
     requested = "xy" if axes is None else axes
     if not requested or len(set(requested)) < len(requested) or not set(requested) <= set(names):
@@ -128,7 +129,7 @@ def velocity_profile(
     bins: int = 40,
     start: float | None = None,
 ) -> Observable:
-    """Measure the mean velocity of the moving particles along an axis.
+    """Measure the profile of the mean velocity of the moving particles along an axis.
 
     Parameters
     ----------
@@ -146,7 +147,8 @@ def velocity_profile(
     Returns
     -------
     Observable
-        Mean velocity (component, position) in [length/time]. NaN in bins that stay empty.
+        Mean velocity (component, position) in [length/time]. The value is NaN in bins that were empty in all
+        frames.
 
     Raises
     ------
@@ -156,13 +158,13 @@ def velocity_profile(
 
     Notes
     -----
-    It is the mean velocity of particles, not the mass-weighted mean. For sheared gases and between sliding
-    walls it is relative to the scene's frame of reference. Uncertainties are defined as in `field`.
+    All particles have equal weight in the mean, whatever their masses. For sheared gases and between sliding
+    walls the velocity is relative to the scene's frame of reference. Uncertainties are defined as in `field`.
 
-    Theory for sheared images: their linear flow. Theory between sliding plates: free molecular flow above a
-    Knudsen number of 100, and a linear flow with slip below 0.1. Below 0.1 also the parabolic flow of dilute
-    spheres that a force drives along plates. Theory in equilibrium: the velocity of the centre of mass
-    everywhere.
+    Theory exists in four cases. For sheared images it is their linear flow. Between sliding plates it is free
+    molecular flow above a Knudsen number of 100, and a linear flow with slip below 0.1. For dilute spheres
+    that a force drives along plates it is a parabolic flow, also below 0.1. In equilibrium the velocity is
+    everywhere equal to the velocity of the centre of mass.
 
     Examples
     --------

@@ -1,24 +1,26 @@
-"""Reference of motion: the flow to which velocities, displacements and temperatures are relative.
+"""Flow relative to which velocities, displacements and temperatures are measured.
 
 By default, temperature, speeds, msd, vacf, D and all results of `by_species` are relative to the same local
 flow. With about="rest" they are relative to the resting container.
 
-Consider a group of particles in local equilibrium with mean velocity u = sum m v / M and total mass M. For a
-component of a particle's velocity, <m (v - u)^2> = (1 - m / M) k_B T holds exactly for any u. The fraction m
-/ M of a degree of freedom belongs to u. The group depends on how the gas can move:
+Consider a group of particles in local equilibrium with total mass M and mean velocity u = sum m v / M. For a
+component v of the velocity of a particle of mass m, <m (v - u)^2> = (1 - m / M) k_B T holds exactly for any
+value of u. So the particle has 1 - m / M degrees of freedom per axis relative to u. The choice of the group
+depends on how the gas can move:
 
-- All particles of a frame, along axes on which their total momentum is conserved.
-- All particles of a cell in all frames, if the flow is steady: between sliding faces, under a force along a
-  periodic axis, or in a `wind`.
-- All particles of a cell in one frame, if the flow changes: with faces that move along their normal, and
-  between open faces.
+- All particles of a frame form a group for the axes along which their total momentum is conserved.
+- All particles that are in the same cell in any frame form a group if the flow is steady: between sliding
+faces, under a force along a periodic axis, or in a `wind`. - All particles that are in the same cell in the
+same frame form a group if the flow changes with time: if faces move along their normal, and between open
+faces.
 
 The known flow between sheared faces (`LeesEdwards`) is subtracted first.
 
 A displacement relative to a steady flow is the displacement of the particle minus the time integral of the
 flow at its position. The integral is computed by the trapezoidal rule over frames. Then <|dr|^2> is twice the
-integral of the velocity autocorrelation relative to the flow, without the contribution of a gradient of the
-flow (Taylor dispersion). Relative to a changing flow, displacements cannot be computed from frames.
+double time integral of the velocity autocorrelation relative to the flow. It contains no contribution of a
+gradient of the flow (Taylor dispersion). Displacements relative to a flow that changes with time cannot be
+computed from frames.
 """
 
 from __future__ import annotations
@@ -44,17 +46,19 @@ if TYPE_CHECKING:
 
 _POINTS = 2**14
 _RATIOS = {2: 1.32471795724474602596, 3: 1.22074408460575947536}
-"""Ratios whose powers give evenly spread points: x^(d + 1) = x + 1 (Roberts 2018)."""
+"""Solutions x of x^(d + 1) = x + 1. Multiples of powers of 1/x, modulo 1, are evenly spread points (Roberts
+2018).
+"""
 _INSTANTS = 64, 1024  # minimum and maximum number of instants per interval for a time average
 _GOLDEN = 0.6180339887498949
 _NUMBERS = 2_000_000  # maximum number of values for all intervals together
 
 
 def sides(run: Run, times: np.ndarray) -> np.ndarray:
-    """Return both ends (S, d, 2) of the container along each axis at given times.
+    """Return the lower and upper ends (S, d, 2) of the container at the given times.
 
-    The times (S,) lie within the run. A piston is assumed to move uniformly between frames. Raises SceneError
-    if the frames do not contain the position of the piston.
+    The ends are along each axis. The times (S,) lie within the run. A piston is assumed to move uniformly
+    between frames. Raises SceneError if the frames do not contain the position of the piston.
     """
     scene = run.scene
     ends = np.zeros((len(times), run.dimension, 2))
@@ -73,7 +77,7 @@ def sides(run: Run, times: np.ndarray) -> np.ndarray:
 def accessible_lengths(run: Run, times: np.ndarray) -> np.ndarray:
     """Return the side lengths (S, d) of the box that centres of moving particles can reach.
 
-    The times have the shape (S,). The largest moving particles determine the box.
+    The times have the shape (S,). The radius of the largest moving particles determines the box.
     """
     lower, upper = run.scene.reach(run.scene.largest_moving_radius)
     margins = np.array(run.scene.container.lengths) - np.subtract(upper, lower)
@@ -81,12 +85,13 @@ def accessible_lengths(run: Run, times: np.ndarray) -> np.ndarray:
 
 
 def face_areas(run: Run) -> np.ndarray:
-    """Compute the area of each face that divides a force or a flux.
+    """Compute the area of each face by which a force or a flux is divided.
 
-    The shape is (T - 1, 2d). It is the area that centres can reach, averaged over each interval between
-    frames. Across the axis of a piston with a load it is the cross-section of the container, because the load
-    is defined with this area. If particles of several sizes reach different areas, it is NaN. Then the
-    momentum given to faces is tallied per area. Moving faces exclude fixed particles and interior walls.
+    The shape is (T - 1, 2d). The area is that part of a face that particle centres can reach, averaged over
+    each interval between frames. For faces across the axis of a loaded piston it is the cross-section of the
+    container, because the load is defined with this area. The area is NaN if particles of several sizes can
+    reach different areas; then the run tallies the momentum per area. Scenes with moving faces contain no
+    fixed particles or interior walls.
     """
     scene, intervals = run.scene, len(run.time) - 1
     if scene.has_unequal_areas:
@@ -104,9 +109,10 @@ def face_areas(run: Run) -> np.ndarray:
 
 
 def _mean_areas(run: Run) -> np.ndarray:
-    """Compute areas (T - 1, 2d) without obstacles, averaged over each interval between frames.
+    """Compute the mean area (T - 1, 2d) of each face in each interval, without obstacles.
 
-    If a face moves, the mean is over evenly spread instants that do not resonate with the period of the face.
+    If a face moves, the mean is over evenly spread instants that are not in resonance with the oscillation of
+    the face.
     """
     intervals = len(run.time) - 1
     number = int(np.clip(_NUMBERS // intervals, *_INSTANTS))
@@ -119,10 +125,11 @@ def _mean_areas(run: Run) -> np.ndarray:
 def per_area(run: Run, amounts: np.ndarray, tallied: str) -> np.ndarray:
     """Divide the amounts that each face receives per interval by the accessible area.
 
-    If particles of several sizes reach different areas, the result is a sum over sizes. Each term is the
-    amount from particles of one size divided by their area, and comes from the named tally. If `amounts` has
-    no components, the tally's normal component is used. The result is NaN for faces whose area changes with
-    time in this case. Raises SceneError if the file does not contain the tally.
+    If particles of several sizes can reach different areas, the result is a sum over sizes. Each term is the
+    amount that particles of one size give, divided by the area that they can reach. The sum is read from the
+    tally with the name `tallied`. If `amounts` has no components, the normal component of the tally is used.
+    In this case the result is NaN for faces whose area changes with time. Raises SceneError if the file does
+    not contain the tally.
     """
     areas = face_areas(run)
     fluxes = amounts / areas.reshape(*areas.shape, *[1] * (amounts.ndim - 2))
@@ -146,16 +153,16 @@ def per_area(run: Run, amounts: np.ndarray, tallied: str) -> np.ndarray:
 
 
 def _across(lengths: np.ndarray) -> np.ndarray:
-    """Compute the product of the other side lengths for each side (..., d)."""
+    """Compute for each axis the product of the side lengths (..., d) along the other axes."""
     axes = range(lengths.shape[-1])
     return np.stack([np.delete(lengths, axis, axis=-1).prod(axis=-1) for axis in axes], axis=-1)
 
 
 def accessible_fraction(run: Run, radius: float, axis: int, edges: np.ndarray) -> np.ndarray:
-    """Compute the fraction (bins,) of each bin along an axis that is accessible to particle centres.
+    """Compute the fraction (bins,) of each bin's volume that is accessible to particle centres.
 
-    Fixed particles exclude the remaining volume for particles of this radius. The fraction is estimated with
-    `_POINTS` evenly spread points.
+    The bins lie along `axis`. Fixed particles exclude the rest of the volume for the centres of particles
+    with this radius. The fraction is estimated from `_POINTS` evenly spread points.
     """
     container, fixed = run.scene.container, ~np.isfinite(run.masses)
     lengths, widths = np.array(container.lengths), np.diff(edges)
@@ -196,7 +203,7 @@ class Grid:
 
     @classmethod
     def line(cls, lower: float, upper: float, number: int) -> Grid:
-        """Return cells along one axis."""
+        """Return a grid of cells along one axis."""
         return cls((float(lower),), (float(upper),), (int(number),))
 
     @cached_property
@@ -217,15 +224,15 @@ class Grid:
 
     @property
     def volume(self) -> float:
-        """Volume of a cell in the space of its axes."""
+        """Volume of a cell: the product of its side lengths along the axes of the grid."""
         sides = zip(self.lower, self.upper, self.numbers, strict=True)
         return math.prod((high - low) / number for low, high, number in sides)
 
     def cells(self, positions: np.ndarray, inside: bool = False) -> np.ndarray:
-        """Return the cell number of each position (..., A); -1 outside and for NaN.
+        """Return the cell number of each position (..., A); -1 outside the grid and for NaN.
 
-        The upper end belongs to the last cell. If `inside` is True, a position that rounding moved outside
-        belongs to the nearest cell.
+        The upper end of the grid belongs to the last cell. If `inside` is True, all positions lie in the grid
+        apart from rounding. Positions outside the grid are then assigned to the nearest cell.
         """
         shape = np.shape(positions)[:-1]
         index, outside = np.zeros(shape, dtype=np.int64), np.zeros(shape, dtype=bool)
@@ -252,10 +259,10 @@ class Grid:
 
         cells : cell numbers, from `cells`.
         weights : array that broadcasts to the shape of `cells`.
-        blocks : block number of each row (T,) of cells (T, ...); then the result has one set of sums per
-            block, shape (blocks, *numbers).
-        before : sums over earlier frames, of the same shape, to which the new terms are added. The result is
-            then bitwise identical to a single sum over all frames. It has as many blocks as the result.
+        blocks : block number (T,) of each row of `cells` (T, ...). With block numbers, the result has one set
+            of sums for each block, shape (blocks, *numbers).
+        before : sums over earlier frames, to which the new terms are added. It has the shape of the result.
+            The result is then bitwise identical to a single sum over all frames.
         """
         number = 1 if blocks is None else int(blocks.max(initial=-1)) + 1
         shape = self.numbers if blocks is None else (number, *self.numbers)
@@ -277,7 +284,7 @@ class Grid:
 
 
 ABOUT = FLOW, REST = "flow", "rest"
-"""Frames of reference of motion: the local flow, or the container at rest."""
+"""Frames of reference for motion: the local flow, or the container at rest."""
 _SAMPLES = 500  # minimum number of particles in frames per cell for an accurate steady flow
 _CELLS = 20  # default number of cells along an axis
 _CROWD = 8  # default number of particles per cell of a changing flow
@@ -289,14 +296,14 @@ class Peculiar:
     """Velocities (T, M, d) of the M moving particles relative to the mean motion.
 
     `freedom` is the number of degrees of freedom of each velocity component: 1 minus the fraction that
-    belongs to the mean motion. Its shape broadcasts to (T, M, d).
+    belongs to the mean motion. Its shape can be broadcast to (T, M, d).
     """
 
     velocities: np.ndarray
     freedom: np.ndarray
 
     def energies(self, masses: np.ndarray) -> np.ndarray:
-        """Compute twice the kinetic energy (T, M) of each particle with masses (M,)."""
+        """Compute twice the kinetic energy (T, M) of each particle, from the masses (M,)."""
         return masses * sum_squares(self.velocities)
 
     def freedoms(self) -> np.ndarray:
@@ -309,7 +316,7 @@ class Peculiar:
 def sum_squares(vectors: np.ndarray) -> np.ndarray:
     """Sum the squares of the components of vectors (..., d).
 
-    The sum is over one axis after another, because numpy sums a short last axis slowly.
+    The components are added one after another, because numpy sums over a short last axis slowly.
     """
     total = vectors[..., 0] ** 2
     for k in range(1, vectors.shape[-1]):
@@ -320,8 +327,8 @@ def sum_squares(vectors: np.ndarray) -> np.ndarray:
 def about_the_whole(run: Run) -> Peculiar:
     """Compute velocities relative to the centre of mass in each frame.
 
-    The velocity of the centre of mass is subtracted along the axes on which the total momentum is conserved.
-    For a sheared gas, the flow is also subtracted.
+    The velocity of the centre of mass is subtracted only along the axes on which the total momentum is
+    conserved. For a sheared gas, the known flow is also subtracted.
     """
     return about_the_mean(_about_known(run), run.masses[run.moving], run.conserved)
 
@@ -342,7 +349,7 @@ def about_the_mean(velocities: np.ndarray, masses: np.ndarray, axes: np.ndarray)
 
 
 def _about_known(run: Run) -> np.ndarray:
-    """Return velocities (T, M, d) of the moving particles, for a sheared gas about its flow."""
+    """Return velocities (T, M, d) of moving particles, relative to the flow of a sheared gas."""
     velocities = _chosen(run.velocities, run.moving)
     if run.scene.shear_rate is None:
         return velocities
@@ -352,21 +359,20 @@ def _about_known(run: Run) -> np.ndarray:
 def flow_axes(run: Run) -> list[int]:
     """Return the axes along which the flow velocity may vary.
 
-    These are the axes of the scene (`Facts.flow_axes`), or the axes of a wind. No axis is returned if the gas
-    only moves as a whole.
+    The scene may define these axes (`Facts.flow_axes`). If it does not, but a wind exists, the axes along
+    which the wind may vary are returned. No axis is returned if the gas can only move as a whole.
     """
     scene = run.scene
     return list(scene.flow_axes or (scene.resolved_axes() if wind(run).any() else ()))
 
 
 def wind(run: Run) -> np.ndarray:
-    """Find the periodic axes along which a wind blows, as a mask (d,).
+    """Find the periodic axes along which a wind (a mean velocity) exists, as a mask.
 
-    The momentum is not conserved along these axes.
-
-    The mean momentum over the run is more than three times its equilibrium scatter sqrt(M k_B T). Neglecting
-    a weaker wind adds at most 9 / (d N) to the relative temperature. A single particle has no scatter for
-    comparison.
+    The mask has the shape (d,). A wind exists along an axis if the momentum along the axis is not conserved,
+    and if its mean over the run is more than three times the equilibrium scatter sqrt(M k_B T). If a weaker
+    wind is neglected, the temperature is too high by at most the fraction 9 / (d N). For a single particle no
+    wind is assumed, because its momentum has no scatter for comparison.
     """
     has_flow = np.zeros(run.dimension, dtype=bool)
     masses = run.masses[run.moving]
@@ -386,20 +392,20 @@ def wind(run: Run) -> np.ndarray:
 
 
 def about_the_flow(run: Run) -> Peculiar:
-    """Compute velocities in all frames relative to the mean motion (see `mean_motion`)."""
+    """Compute the velocities in all frames relative to the mean motion (see `mean_motion`)."""
     return mean_motion(run)(run)
 
 
 def mean_motion(
     run: Run, along: Mapping[int, int] | None = None, local: bool = False
 ) -> Callable[[Run], Peculiar]:
-    """Return a function that computes velocities relative to the mean motion in some frames.
+    """Return a function that computes the velocities in frames relative to the mean motion.
 
-    If the run measures velocities relative to rest, the function returns them unchanged. Otherwise, if the
-    gas can flow, velocities are relative to the local mass-weighted flow in cells along `flow_axes`. If it
-    cannot flow, they are relative to the centre of mass. `along` maps an axis to its number of cells if this
-    is not the default. If the flow is steady, further axes in `along` are resolved too. If `local` is True,
-    the motion is always relative to the flow in these cells.
+    If motion in the run is measured relative to rest, the function returns the velocities unchanged.
+    Otherwise, if the gas can flow, velocities are relative to the local mass-weighted flow in cells along
+    `flow_axes`. If the gas cannot flow, velocities are relative to the centre of mass. `along` maps an axis
+    to a number of cells that replaces the default. If the flow is steady, further axes in `along` are also
+    resolved. If `local` is True, velocities are always relative to the flow in these cells.
     """
     across, stated = run.flow_axes, dict(along or {})
     if not across and local:
@@ -415,23 +421,24 @@ def mean_motion(
 
 
 def _about_rest(run: Run) -> Peculiar:
-    """Return unchanged velocities of the moving particles."""
+    """Return the velocities of the moving particles unchanged."""
     velocities = _chosen(run.velocities, run.moving)
     return Peculiar(velocities, np.ones((1, velocities.shape[1], 1)))
 
 
 def _number(run: Run, axes: list[int], changes: bool) -> int:
-    """Return the number of cells along each of these axes."""
+    """Return the number of cells along each of the axes."""
     particles = int(run.moving.sum())
     samples = particles / _CROWD if changes else particles * len(run.time) / _SAMPLES
     return int(np.clip(samples ** (1.0 / len(axes)), 1, _CELLS))
 
 
 class FlowCells:
-    """Cells of a flow; if the flow is steady, with its mass and momentum.
+    """Cells in which the flow velocity is computed.
 
-    `numbers` maps an axis to its number of cells. Without mass and momentum, the flow changes with time; then
-    it is the mass-weighted mean in the cells of each frame.
+    `numbers` maps an axis to its number of cells. For a steady flow, the mass and momentum of the cells are
+    stored. Otherwise the flow changes with time. The flow velocity is then the mass-weighted mean in each
+    cell of each frame.
     """
 
     def __init__(self, run: Run, numbers: Mapping[int, int]) -> None:
@@ -447,9 +454,10 @@ class FlowCells:
     def sum(
         self, cells: np.ndarray, masses: np.ndarray, velocities: np.ndarray, before: list | None
     ) -> list[np.ndarray]:
-        """Sum mass and momentum in cells (C,), or in each frame (T, C).
+        """Sum mass and momentum in cells.
 
-        If the flow changes, the sums are per frame; otherwise they are added to the sums of earlier frames.
+        If the flow changes with time, there are sums for each frame, shape (T, C). Otherwise there is one sum
+        over the frames, shape (C,), which is added to the sums of earlier frames.
         """
         blocks = np.arange(len(cells)) if before is None else None
         weights = [masses, *(masses * velocities[..., k] for k in range(velocities.shape[-1]))]
@@ -458,7 +466,7 @@ class FlowCells:
 
 
 def steady_cells(run: Run, numbers: Mapping[int, int]) -> FlowCells:
-    """Return cells of a steady flow with the mass and momentum of all frames."""
+    """Return the cells of a steady flow with the mass and momentum summed over all frames."""
     flow_cells = FlowCells(run, numbers)
     sums = [np.zeros(flow_cells.grid.numbers) for _ in range(1 + run.dimension)]
     for _, part in run.parts():
@@ -468,7 +476,7 @@ def steady_cells(run: Run, numbers: Mapping[int, int]) -> FlowCells:
 
 
 def about_cells(run: Run, cells: FlowCells) -> Peculiar:
-    """Compute velocities relative to the mass-weighted mean in cells, of a steady flow or per frame."""
+    """Compute velocities relative to the mass-weighted mean velocity in the cells."""
     numbers, velocities, masses = cells.cells(run), _about_known(run), run.masses[run.moving]
     sums, groups = cells.sums, numbers
     if sums is None:

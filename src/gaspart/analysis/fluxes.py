@@ -35,8 +35,8 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
     Returns
     -------
     Observable
-        Heat per time and accessible area into each face (face,), in [energy/(length^(d-1) time)]. It is
-        positive if the gas heats the wall. Areas are defined by `wall_pressure`.
+        Heat that each face (face,) receives per time and accessible area, in [energy/(length^(d-1) time)].
+        The flux is positive if the gas heats the wall. The documentation of `wall_pressure` defines the area.
 
     Raises
     ------
@@ -45,15 +45,16 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
 
     Notes
     -----
-    The heat is the energy that particles lose in the rest frame of the wall. For a sliding wall, it is the
-    energy received minus the work of the wall. The mean is for the steady state: the contributions of changes
-    of two bounded quantities, the energy of the gas and its first moment across the walls, are subtracted
-    (`_mean_without_stores`).
+    The heat is the energy that particles lose in the rest frame of the wall. For a sliding wall, the heat is
+    the energy that the wall receives plus the work that the wall does on the gas. The result is the mean flux
+    of the steady state. The energy of the gas and the first moment of this energy across the walls are
+    bounded. The contributions of their changes are subtracted (`_mean_without_stores`).
 
-    Theory: 0 in equilibrium. Between two plates, free molecular flow above a Knudsen number of 100, and below
-    0.1 Fourier's law with Enskog's conductivity and temperature jumps. Between these limits it is an
-    interpolation with an accuracy of 8 % (`gaspart.theory.interpolated_flux`). Between sliding plates it is
-    half of the work of the stress. With partial accommodation, theory exists only for free molecular flow.
+    The theoretical flux is 0 in equilibrium. Between two plates it is the flux of free molecular flow above a
+    Knudsen number of 100. Below 0.1 it follows from Fourier's law with Enskog's conductivity and temperature
+    jumps. Between these limits it is an interpolation with an accuracy of 8 %
+    (`gaspart.theory.interpolated_flux`). Between sliding plates it is half of the power of the stress. With
+    partial accommodation, theory exists only for free molecular flow.
 
     Examples
     --------
@@ -94,8 +95,8 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
     Returns
     -------
     Observable
-        Momentum along each axis that the face receives per time and accessible area, (face, component), in
-        [energy/length^d]. The normal component is NaN; see `wall_pressure`.
+        Momentum that each face receives along each axis per time and accessible area, (face, component), in
+        [energy/length^d]. The normal component is NaN; `wall_pressure` measures it.
 
     Raises
     ------
@@ -104,13 +105,15 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
 
     Notes
     -----
-    Only some engines tally it, for faces that slide or along which a force drives the gas. The mean is for
-    the steady state, as in `heat_flux`, corrected by the change of the momentum of the gas.
+    Only some engines tally the tangential momentum. They tally it for faces that slide and for faces along
+    which a force drives the gas. As in `heat_flux`, the result is the mean of the steady state. The
+    contribution of the change of the gas momentum is subtracted.
 
-    Theory: if a force drives a gas along two equal faces, exactly half of the force on the gas. Between
-    sliding plates, free molecular flow above a Knudsen number of 100, Enskog's viscosity with slip below 0.1,
-    and between these limits an interpolation with an accuracy of 8 % (`gaspart.theory.interpolated_stress`).
-    With partial accommodation, only free molecular flow.
+    If a force drives a gas along two identical faces, the theoretical force on each face is exactly half of
+    the force on the gas. Between sliding plates above a Knudsen number of 100, the theoretical stress is
+    computed for free molecular flow. Below 0.1 it follows from Enskog's viscosity with slip. Between these
+    limits it is an interpolation with an accuracy of 8 % (`gaspart.theory.interpolated_stress`). With partial
+    accommodation, theory exists only for free molecular flow.
 
     Examples
     --------
@@ -145,8 +148,8 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
 def _amounts_per_area(run: Run, name: str, tallied: str) -> np.ndarray:
     """Return the amount that each face receives per interval and accessible area.
 
-    The shape is (T - 1, 2d, ...). See `per_area`. Raises SceneError if the frames do not contain the named
-    sum.
+    The shape is (T - 1, 2d, ...). See `per_area`. Raises SceneError if the frames do not contain the sum
+    `name`.
     """
     if name not in run.data:
         raise SceneError(name, "missing", "the engine does not tally it, or an older version wrote the file")
@@ -157,7 +160,8 @@ def _steady(run: Run, faces: np.ndarray, amounts: np.ndarray, stored: list[np.nd
     """Compute the time average of the amount that each face receives, and its error, shape (F,).
 
     amounts : (T - 1, F), amounts in each interval.
-    stored : arrays (T,) of bounded sums over the gas; blocks are corrected for their changes.
+    stored : arrays (T,) of bounded sums over the gas. The average is corrected for their changes in each
+        block.
 
     Raises SceneError for too few frames and for faces that no particle hit.
     """
@@ -178,11 +182,12 @@ def _steady(run: Run, faces: np.ndarray, amounts: np.ndarray, stored: list[np.nd
 
 
 def _mean_without_stores(rates: np.ndarray, changes: list[np.ndarray]) -> Estimate:
-    """Compute the mean of rates (K,) in consecutive blocks, corrected for changes of bounded sums.
+    """Compute the mean of rates (K,) in blocks, corrected for changes of bounded sums.
 
-    A gas later returns the amount that it has stored. The contribution of the changes (K,) is removed by
-    least squares. Blocks may be shorter than the correlation time of a particle, which in free flight is the
-    time from wall to wall. Therefore the error is computed as for a correlated series.
+    The blocks are consecutive. An amount that the gas stores in one block is later returned, so stored
+    amounts do not change the long-time mean. The contribution of the changes (K,) of the bounded sums is
+    removed by least squares. Blocks may be shorter than the correlation time. In free flight, the correlation
+    time is the flight time from wall to wall. Therefore the error is computed as for a correlated series.
     """
     used = [change / np.abs(change).max() for change in changes if change.any()]
     design = np.stack([np.ones(len(rates)), *used], axis=1)
@@ -191,10 +196,10 @@ def _mean_without_stores(rates: np.ndarray, changes: list[np.ndarray]) -> Estima
 
 
 def _energies(run: Run) -> list[np.ndarray]:
-    """Return the kinetic energy relative to the mean velocity of the faces, and its first moments.
+    """Compute the kinetic energy relative to the mean velocity of the faces, and its first moments.
 
-    Each result is an array (T,). The energy is translational. The moments are across the faces. The result is
-    empty if the file does not contain all particles.
+    Each result is an array (T,). Only translational energy counts. The moments are taken along the normals of
+    the faces. The result is empty if the file does not contain all particles.
     """
     if run.is_subset:
         return []
@@ -203,9 +208,10 @@ def _energies(run: Run) -> list[np.ndarray]:
 
 
 def _momenta(run: Run, axis: int) -> list[np.ndarray]:
-    """Return the momentum relative to the mean velocity of the faces, and its first moments.
+    """Compute the momentum relative to the mean velocity of the faces, and its first moments.
 
-    Each result is an array (T,). The momentum is along `axis`; the moments are across the faces.
+    Each result is an array (T,). The momentum is the component along `axis`. The moments are taken along the
+    normals of the faces.
     """
     if run.is_subset:
         return []
@@ -215,7 +221,7 @@ def _momenta(run: Run, axis: int) -> list[np.ndarray]:
 def _about_faces(run: Run) -> np.ndarray:
     """Compute velocities (T, M, d) relative to the mean velocity of the thermal faces.
 
-    These relative velocities are the same in any frame of reference.
+    These relative velocities do not depend on the frame of reference.
     """
     frame = np.zeros(run.dimension)
     for _, face in run.scene.sliding_faces:
@@ -226,7 +232,8 @@ def _about_faces(run: Run) -> np.ndarray:
 def _with_moments(run: Run, carried: np.ndarray) -> list[np.ndarray]:
     """Sum an amount that particles carry, and its first moments across the thermal faces.
 
-    The amounts have the shape (T, M); each sum has the shape (T,). Moments are relative to the middle.
+    The amounts have the shape (T, M); each sum has the shape (T,). For the moments, positions are relative to
+    the middle of the container.
     """
     positions = run.positions[:, run.moving] - 0.5 * np.array(run.scene.container.lengths)
     across = sorted({number // 2 for number in run.scene.thermal_numbers})
@@ -252,7 +259,7 @@ def particle_flux(
     axis : {"x", "y", "z"}, optional
         The axis. Default: the last axis with open faces, otherwise the last axis with walls.
     at : float, [length], optional
-        Position of the plane along the axis. Default: the middle.
+        Position of the plane along the axis. Default: the middle of the container.
     species : int, optional
         Measure only this species, identified by its number in the scene.
     start : float, [time], optional
@@ -262,23 +269,26 @@ def particle_flux(
     Returns
     -------
     Observable
-        The flux (component,) along the axis, in [1/time], positive towards larger coordinates.
+        The number of particles per time (component,), in [1/time]. It is positive if more particles cross the
+        plane towards larger coordinates than towards smaller ones.
 
     Raises
     ------
     SceneError
-        If the axis is periodic, so that images cross it, or is not the axis of open faces; if the plane is
-        outside the container; if the file does not contain all particles; or if there are too few frames.
+        If the axis is periodic, because images of particles then cross the plane; if faces across another
+        axis are open; if the plane is outside the container; if the file does not contain all particles; or
+        if there are too few frames.
 
     Notes
     -----
-    The flux is exactly the change of the number of particles beyond the plane, however often particles cross
-    it between frames. Particles that return do not count, nor do particles that enter or leave through an
-    open face beyond the plane. The plane crosses the whole container. If interior walls lie in the plane, all
-    particles pass through their openings.
+    The flux is computed from the change of the number of particles beyond the plane. So it is exact, however
+    often particles cross the plane between frames. Particles that cross and return do not count. Particles
+    that enter or leave through an open face beyond the plane do not count either. The plane crosses the whole
+    container. If interior walls lie in the plane, all particles pass through their openings.
 
-    Theory: 0 in a steady state without interior walls. For free molecular flow through openings between walls
-    in the plane it is n sqrt(k_B T / 2 pi m) times their area, with the density n on both sides.
+    Without interior walls, the theoretical flux is 0 in a steady state. For openings between interior walls
+    in the plane, theory exists in free molecular flow. The flux through the openings in each direction is n
+    sqrt(k_B T / 2 pi m) times their area, where n is the density on the side from which the particles come.
 
     Examples
     --------

@@ -1,10 +1,12 @@
 """Density along an axis from the momentum that particles carry through planes across the axis.
 
-This momentum follows from impulses without counting noise (`Tally.momentum_flux_sum`; docs/estimators.md has
-the derivation). Its rate at a plane is A rho <m v^2>. In equilibrium <m v^2> of a particle at the plane is
-known, so the density rho follows. In a dilute gas and in narrow bins, counting has more noise. For long waves
-of a dense gas, counting has less noise. So both estimates are averaged with weights in each bin. The weights
-in one half of the run come from the other half, so that they are independent of the noise that they multiply.
+This momentum is computed from impulses, without the noise of counting particles (`Tally.momentum_flux_sum`;
+docs/estimators.md contains the derivation). Through a plane of area A at the density rho, the momentum per
+time is A rho <m v^2>. In equilibrium <m v^2> of a particle at the plane is known, so the rate determines rho.
+In a dilute gas and in narrow bins, counting is noisier than the impulses. For long density waves of a dense
+gas, counting is less noisy. So both estimates are combined in each bin as a weighted mean. The weights for
+one half of the run are computed from the other half. So the weights are independent of the noise that they
+multiply.
 """
 
 from __future__ import annotations
@@ -32,7 +34,7 @@ from gaspart.trajectory.run_options import stored_tally
 def engine_class(run: Run) -> type[Engine]:
     """Return the class of the engine of a run.
 
-    If the file does not name the engine, return the base class, which has no capabilities.
+    If the file does not name the engine, return the base class, which declares no capabilities.
     """
     return ENGINES.get(json.loads(run.data.attrs.get("engine", "{}")).get("name"), Engine)
 
@@ -45,8 +47,9 @@ def engine_tallies(run: Run) -> frozenset[str]:
 def knows_energies(engine: Engine | type[Engine], scene: Scene) -> bool:
     """Return True if the mean kinetic energy along each axis is known exactly.
 
-    This requires an engine without a systematic error, and a scene in which the energy is equally shared
-    among axes. Time steps carry some of the energy across a wall, near the wall.
+    This requires an engine without a systematic error, and a scene in which the energy is equally distributed
+    among the axes. An engine with time steps has such an error near a wall, because particles cross the wall
+    within a step.
     """
     return engine.reference and shares_energy_evenly(scene)
 
@@ -54,11 +57,11 @@ def knows_energies(engine: Engine | type[Engine], scene: Scene) -> bool:
 def estimator(
     run: Run, usual: str, better: str, used: bool, tally: OptionalTally | None, lacks: str = ""
 ) -> dict[str, str]:
-    """Return the attributes that state from which data an observable was estimated.
+    """Return the attributes that name the data from which an observable was estimated.
 
-    The estimator is `better` if it was `used`, otherwise `usual`. In the latter case, if the scene and the
-    engine allow a run to store `tally`, a note recommends the option. If `lacks` is not empty, the note
-    instead states which data the existing tally does not contain.
+    The attribute `estimator` is the text `better` if `used` is True, otherwise `usual`. If the usual
+    estimator was used, but the scene and the engine allow a run to store `tally`, a note recommends the
+    option. If `lacks` is not empty, the note instead states which data the stored tally does not contain.
     """
     if used:
         return {"estimator": better}
@@ -74,29 +77,31 @@ def estimator(
 
 
 USUAL_BINS = 40
-"""Default number of bins of a profile, unless the run has stored impulses."""
+"""Default number of bins of a profile if the run has not stored impulses."""
 _ROUNDING = 1e-10
-"""Fraction of the highest density that is attributed to rounding."""
+"""Density that is attributed to rounding, as a fraction of the highest density."""
 _GROUPS = 16
-"""Number of parts of half a run from which a weight is estimated. In a long run each part is longer than the
-correlation time.
+"""Number of parts into which half of a run is divided to estimate a weight. In a long run each part is longer
+than the correlation time.
 """
 _NEIGHBOURS = 0.02
-"""Bins within this distance on both sides share a weight; it is a fraction of the length."""
+"""Distance within which bins on both sides contribute to a common weight, as a fraction of the container's
+length.
+"""
 
 
 @dataclass(frozen=True)
 class MomentumFlux:
-    """Momentum of one species carried through the planes of bins, in M intervals.
+    """Momentum that one species carries through the planes between bins, in M intervals.
 
     flux : (M, bins), see `Tally.momentum_flux_sum`.
     time : (M,), durations of the intervals.
     count : number of particles.
-    spread : (bins,), <m v^2> of a particle in each bin.
-    above : (bins,), mean distance from a particle to the upper end of its bin, as a fraction of the bin.
+    spread : (bins,), mean of m v^2 along the axis for a particle in each bin.
+    above : (bins,), mean distance from a particle to the upper end of its bin, divided by the bin width.
     reached : (bins,), True if particles can be in the bin.
     width : width of a bin.
-    pull : force on a particle along the axis.
+    pull : force of gravity on a particle along the axis.
     walled : True if faces bound the axis.
     """
 
@@ -111,9 +116,9 @@ class MomentumFlux:
     walled: bool
 
     def numbers(self) -> np.ndarray:
-        """Compute the number of particles in each bin multiplied by the time, shape (M, bins).
+        """Compute the number of particles in each bin integrated over time, shape (M, bins).
 
-        In each interval, the sum over the bins is exact: the number of particles times the time.
+        In each interval, the sum over the bins is exact: the total number of particles times the duration.
         """
         if self.pull > 0.0:  # start at the lower side, so that no error grows with the density
             below = self.pull * self.count * self.time[:, None]
@@ -142,10 +147,10 @@ class MomentumFlux:
         return content + (total - content.sum(axis=1))[:, None] * shares
 
     def _fallen(self) -> np.ndarray:
-        """Compute the numbers under gravity, which gives momentum to all particles below a plane.
+        """Compute the numbers of particles under gravity, which changes the momentum of particles.
 
-        For the planes of one bin these are all particles in lower bins, and on average a fraction of the
-        particles in the bin itself.
+        Gravity gives momentum to all particles below a plane. For the planes of a bin, these are all
+        particles in lower bins and, on average, a fraction of the particles in the bin itself.
         """
         numbers, below = np.empty(self.flux.shape), np.zeros(len(self.flux))
         shares = self.spread / self.width - self.pull * self.above
@@ -156,9 +161,9 @@ class MomentumFlux:
 
 
 def useful_impulses(scene: Scene, tallies: Collection[str], axis: int, bins: int) -> tuple[ImpulseTally, ...]:
-    """Return the impulse tally along an axis, if it determines the density of a scene.
+    """Return the impulse tally along an axis; () if it cannot determine the density.
 
-    tallies : names of the tallies that the engine can make
+    tallies : names of the tallies that the engine can store
     """
     tally = ImpulseTally("xyz"[axis], bins)
     try:
@@ -172,7 +177,7 @@ def useful_impulses(scene: Scene, tallies: Collection[str], axis: int, bins: int
 
 
 def usual_tally(axis: str) -> ImpulseTally:
-    """Return the impulse tally along an axis with `USUAL_BINS` bins."""
+    """Return the options of an impulse tally along an axis, with `USUAL_BINS` bins."""
     return ImpulseTally(axis, USUAL_BINS)
 
 
@@ -182,9 +187,10 @@ def read_impulses(data: xr.Dataset) -> ImpulseTally | None:
 
 
 def numbers_by_impulses(run: Run, axis: int, bins: int, species: int | None) -> np.ndarray | None:
-    """Compute the moving particles in each bin times the time, in each interval between frames.
+    """Compute the number of moving particles in each bin, integrated over each interval.
 
-    The shape is (T - 1, bins). Return None if the run has not stored the required data.
+    The intervals lie between frames; the shape is (T - 1, bins). Return None if the run has not stored the
+    required data.
     """
     has = read_impulses(run.data)
     if has is None or has.axis != "xyz"[axis] or has.bins % bins:
@@ -198,10 +204,10 @@ def numbers_by_impulses(run: Run, axis: int, bins: int, species: int | None) -> 
 
 
 def _momentum_flux(run: Run, axis: int, bins: int, row: int) -> MomentumFlux | None:
-    """Return the momentum flux in one row of the tally.
+    """Return the momentum flux from row `row` of the tally.
 
-    Return None if the result would depend on several masses, or if the file does not contain the particles
-    that determine the temperature.
+    Return None if particles of different masses contribute to the row, or if the file does not contain the
+    particles that determine the temperature.
     """
     members = run.species == row
     masses = run.masses[members]
@@ -224,22 +230,23 @@ def _momentum_flux(run: Run, axis: int, bins: int, row: int) -> MomentumFlux | N
 
 
 def _uniform(run: Run, walled: bool) -> bool:
-    """Return True if the density is proportional to the momentum flux at any temperature."""
+    """Return True if the density is proportional to the momentum flux, whatever the temperature."""
     return walled and not _has_potential(run)
 
 
 def _has_potential(run: Run) -> bool:
-    """Return True if gravity or potential wells act."""
+    """Return True if gravity or potential wells act on particles."""
     return run.has_gravity or any(face.kind == "well" for face in run.scene.faces.values())
 
 
 def _spread(run: Run, axis: int, bins: int, members: np.ndarray) -> np.ndarray:
     """Compute <m v^2> along an axis for a particle in each bin, shape (bins,).
 
-    All particles in `members` (N,) have the same mass. If faces have a temperature, it determines the result.
-    If the energy of the gas is constant, the kinetic energy is the energy minus the potential energy. The
-    temperature at a position is then the mean over the states with a particle at this position. If a momentum
-    is conserved, the fraction of each particle in the motion of the whole is included.
+    All particles in the mask `members` (N,) have the same mass. If faces have a temperature, this temperature
+    determines the result. Otherwise the energy of the gas is constant, and the kinetic energy is the total
+    energy minus the potential energy. The temperature at a position is then the mean over the states that
+    have a particle at this position. If the momentum is conserved, the result is corrected for the motion of
+    the centre of mass.
     """
     hot = run.scene.face_temperatures
     spread = np.full(bins, min(hot) if hot else run.temperature)
@@ -256,31 +263,31 @@ def _spread(run: Run, axis: int, bins: int, members: np.ndarray) -> np.ndarray:
 def _above(run: Run, axis: int, bins: int, members: np.ndarray) -> np.ndarray:
     """Compute the mean distance from a particle to the upper end of its bin, shape (bins,).
 
-    The unit is the bin width. The value is one half if no particle was in the bin.
+    The distance is divided by the bin width. It is set to one half if no particle was in the bin.
     """
     positions, cells = _places(run, axis, bins, members)
     return _mean_in(cells, cells + 1.0 - positions, np.full(bins, 0.5))
 
 
 def _places(run: Run, axis: int, bins: int, members: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the positions (T, n) of particles in units of bins, and their bins."""
+    """Return the positions (T, n) divided by the bin width, and the bin numbers."""
     positions = run.positions[:, members, axis] * (bins / run.scene.container.lengths[axis])
     return positions, np.clip(positions.astype(np.int64), 0, bins - 1)
 
 
 def _mean_in(cells: np.ndarray, values: np.ndarray, default: np.ndarray) -> np.ndarray:
-    """Average values (T, n) in each bin, shape (bins,); an empty bin has the default value."""
+    """Average values (T, n) in each bin, shape (bins,); an empty bin has the value `default`."""
     number = np.bincount(cells.ravel(), minlength=len(default))
     total = np.bincount(cells.ravel(), values.ravel(), minlength=len(default))
     return np.divide(total, number, out=default, where=number > 0)
 
 
 def mixture(counted: np.ndarray, impulses: np.ndarray, periodic: bool) -> np.ndarray:
-    """Compute the weights (K, bins) of the impulse estimate in its mixture with counts.
+    """Compute the weights (K, bins) of the impulse estimate in the weighted mean with counts.
 
-    `counted` and `impulses` are the estimates in blocks (K, bins). The weights in each half of the blocks are
-    computed from the other half. They are between 0 and 1. If `periodic` is True, the first bin is a
-    neighbour of the last one.
+    `counted` and `impulses` are the estimates in blocks (K, bins). The weights for each half of the blocks
+    are computed from the other half. The weights are between 0 and 1. If `periodic` is True, the first bin is
+    a neighbour of the last one.
     """
     half = len(counted) // 2
     first = _weights(counted[:half], impulses[:half], periodic)
@@ -289,9 +296,9 @@ def mixture(counted: np.ndarray, impulses: np.ndarray, periodic: bool) -> np.nda
 
 
 def _weights(counted: np.ndarray, impulses: np.ndarray, periodic: bool) -> np.ndarray:
-    """Compute the weights (bins,) that minimize the variance of the mixed mean over these blocks.
+    """Compute the weights (bins,) that minimize the variance of the weighted mean over the blocks.
 
-    Neighbouring bins share a weight.
+    Neighbouring bins have a common weight.
     """
     groups = np.arange(len(counted)) * min(_GROUPS, len(counted)) // len(counted)
     starts = np.flatnonzero(np.diff(groups, prepend=-1))
@@ -304,7 +311,7 @@ def _weights(counted: np.ndarray, impulses: np.ndarray, periodic: bool) -> np.nd
 
 
 def _near(values: np.ndarray, reach: int, periodic: bool) -> np.ndarray:
-    """Sum each value and the values up to `reach` bins away."""
+    """Sum, for each bin, the values of all bins that are at most `reach` bins away."""
     extended = np.pad(values, reach, "wrap" if periodic else "constant")
     cumulative = np.concatenate([[0.0], np.cumsum(extended)])
     width = 2 * reach + 1
@@ -343,16 +350,17 @@ def mixed_density(run: Run, axis: int, bins: int, species: int | None) -> Means 
 def default_bins(run: Run, axis: int, of: str) -> int:
     """Return the default number of bins along an axis.
 
-    For a density it is the number of bins of the stored impulses.
+    For a density, the default is the number of bins of the stored impulses.
     """
     has = read_impulses(run.data)
     return has.bins if of == "density" and has is not None and has.axis == "xyz"[axis] else USUAL_BINS
 
 
 def described_density(run: Run, axis: int, bins: int, by_impulses: bool) -> dict[str, str]:
-    """Return the attributes of a density: see `estimator`.
+    """Return the attributes that name the data from which a density was estimated.
 
-    If the stored bins of a run cannot be used, a note states it.
+    The attributes are defined by `estimator`. If the bins of the stored impulses cannot be used, a note says
+    so.
     """
     has, tallies = read_impulses(run.data), useful_impulses(run.scene, engine_tallies(run), axis, 200)
     lacks = ""
@@ -377,14 +385,15 @@ def described_density(run: Run, axis: int, bins: int, by_impulses: bool) -> dict
 
 
 _LEAST, _MOST = 32, 128
-"""Minimum and maximum number of groups of a run, from half of which coefficients are estimated. With fewer
-groups no coefficients are estimated; more groups give no improvement. In each group a particle collides at
-least once, so that its energy is redistributed among directions.
+"""Minimum and maximum number of groups of intervals into which a run is divided. Regression coefficients are
+estimated from half of the groups. With fewer groups no coefficients are estimated; more groups give no
+improvement. In each group a particle collides at least once, so that its energy is redistributed among
+directions.
 """
 FEWEST = 10
 """Minimum number of moving particles for control variates of pressures. Fewer particles redistribute their
-energy among directions too slowly for a regression. For two discs in 2.6 x 2.9, only 52 of 60 values were
-within two errors.
+energy among directions too slowly for a regression. For two discs in a container of 2.6 x 2.9, only 52 of 60
+values were within two standard errors.
 """
 
 
@@ -408,10 +417,10 @@ def wall_controls(run: Run, axis: int) -> np.ndarray | None:
 
 
 def stores(run: Run) -> np.ndarray:
-    """Compute the total momentum and sum m x v of the moving particles along each axis.
+    """Compute the momentum and the sum of m x v along each axis, for moving particles.
 
-    The shape is (d, T, 2), for each frame; x is measured from the middle. The shape is (d, T, 0) if the file
-    does not contain all particles.
+    The shape is (d, T, 2), with one value for each frame. The position x is measured from the middle of the
+    container. The shape is (d, T, 0) if the file does not contain all particles.
     """
     if not run.has_states:
         return np.zeros((run.dimension, len(run.time), 0))
@@ -422,7 +431,7 @@ def stores(run: Run) -> np.ndarray:
 
 
 def group_count(run: Run) -> int:
-    """Return the number of groups of intervals of a run for a regression.
+    """Return the number of groups of intervals for a regression.
 
     The number is 0 if there are too few intervals or particles.
     """
@@ -434,11 +443,11 @@ def group_count(run: Run) -> int:
 
 
 def subtract_controls(series: np.ndarray, controls: np.ndarray, groups: int) -> np.ndarray:
-    """Subtract from a series (K,) its correlated part with controls (K, R).
+    """Subtract from a series (K,) the part that is correlated with control variates (K, R).
 
-    The controls have the mean 0. The coefficients for each half of the series come from a regression of the
-    other half, in `groups` / 2 groups of consecutive values. So they are independent of the noise that they
-    multiply, and the mean is unbiased.
+    The control variates have a mean of 0. The coefficients for each half of the series come from a regression
+    on the other half, in `groups` / 2 groups of consecutive values. So the coefficients are independent of
+    the noise that they multiply, and the mean of the result is unbiased.
     """
     half, residual = len(series) // 2, series.copy()
     first, second = slice(None, half), slice(half, None)

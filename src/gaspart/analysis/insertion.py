@@ -4,11 +4,11 @@ P_N is the probability that a particle at a random position in a fluid of N part
 them. It is :math:`P_N = Q_{N+1}/Q_N`, with the configuration integral Q over :math:`V^N` (source C, Eq. 46),
 so that :math:`\mu_\mathrm{excess}/k_B T = -\ln P_N` (Widom, J. Chem. Phys. 39, 2808 (1963)).
 
-In a dense fluid, nearly all random positions overlap with a particle. Most of the container is known to be
-covered. A cell is covered if all its points are closer to one particle than the contact distance. The covered
-cells of a grid are excluded. The other cells are subdivided while they are few, and positions are drawn at
-random in the remaining cells. Each trial is weighted by the fraction of the container that remains, so the
-average is exactly the same.
+In a dense fluid, nearly all random positions overlap with a particle. Therefore regions in which no position
+can be free are excluded first. A cell of a grid is covered if all its points are closer to one particle than
+the contact distance. Covered cells are excluded. The other cells are subdivided as long as their number is
+small, and positions are drawn at random in the remaining cells. Each trial is weighted by the fraction of the
+container that remains. So the mean is the same as for positions in the whole container.
 """
 
 from __future__ import annotations
@@ -31,22 +31,22 @@ from gaspart.errors import SceneError
 from gaspart.keys.values import count_of
 
 TRIALS = 512
-"""Default number of positions tried in each frame."""
+"""Default number of positions that are tried in each frame."""
 MOST_FRAMES = 2048
 """Maximum number of frames in which positions are tried; the frames are evenly spaced."""
 _CELLS = 65536
-"""Maximum number of cells of the first grid."""
+"""Maximum number of cells of the first, coarsest grid."""
 _PER_DISTANCE = 8
-"""Maximum number of cells of this grid per contact distance."""
+"""Maximum number of cells of the first grid per contact distance."""
 _MOST_CELLS = 2048  # after a subdivision
 _MARGIN = 1.5
-"""Margin for an error estimate, in standard deviations of ln P between frames. The best frame must exceed the
-frames that contribute most to the mean of P by this margin.
+"""Margin required for an error estimate, in standard deviations of ln P between frames. By this margin, ln P
+of the best frame must exceed ln P of the frames that contribute most to the mean of P.
 """
 _TWO_SIGMA = 0.9772
 """Probability that a normal variable is at most two standard deviations above its mean."""
 _WORTH = 0.6
-"""Fraction of uncovered cells above which no further subdivision follows."""
+"""If more than this fraction of the subdivided cells remain uncovered, cells are not subdivided further."""
 
 
 @dataclass(frozen=True)
@@ -58,9 +58,9 @@ class Insertions:
     share : ndarray, shape (T,), [1]
         Fraction of the container in which positions were drawn.
     successes : ndarray of int, shape (T,)
-        Number of free positions.
+        Number of free positions found.
     trials : int
-        Number of trials in each frame whose uncovered fraction is not 0.
+        Number of trials in each frame in which some volume is not covered.
     """
 
     share: np.ndarray
@@ -69,22 +69,22 @@ class Insertions:
 
     @property
     def probability(self) -> np.ndarray:
-        """Probability (T,) that a random position is free, by frame."""
+        """Probability (T,) that a random position is free, for each frame."""
         return self.share * self.successes / self.trials
 
     @property
     def resolution(self) -> float:
-        """Probability that corresponds to a single free position.
+        """Probability that corresponds to a single free position in all trials.
 
-        This probability is 1 divided by the number of random positions in the container that would be
-        equivalent.
+        The trials are equivalent to a larger number of random positions in the whole container. The
+        probability is 1 divided by this number.
         """
         return float(self.share.mean() / (self.trials * len(self.share)))
 
 
 Hosts: TypeAlias = Sequence[tuple[np.ndarray | slice, float]]
-"""Groups of particles in the fluid: their numbers, and the contact distance of each group with the inserted
-particle.
+"""Groups of particles in the fluid: the numbers of the particles, and their contact distance with the
+inserted particle.
 """
 
 
@@ -127,10 +127,10 @@ def insertions(
 def _try(
     groups: list[tuple[np.ndarray, float]], lengths: np.ndarray, number: int, generator: np.random.Generator
 ) -> tuple[float, int]:
-    """Count free trials in the region that is not covered by single particles.
+    """Count the free positions among trials in the region that no single particle covers.
 
-    Returns the fraction of the container in this region, and the count. `groups` are positions with the
-    contact distance.
+    Returns the volume of this region as a fraction of the container, and the count. `groups` contains
+    positions of particles, each array with its contact distance.
     """
     from scipy.spatial import cKDTree
 
@@ -145,7 +145,10 @@ def _try(
 
 
 def _apart(trees: list[tuple[Any, float]], positions: np.ndarray, less: float) -> np.ndarray:
-    """Find positions (M, d) that are farther from every particle than its distance minus a length."""
+    """Mark the positions (M, d) that are far enough from all particles.
+
+    The distance from each particle must exceed the contact distance minus `less`.
+    """
     is_free = np.ones(len(positions), dtype=bool)
     for tree, distance in trees:
         if distance > less:
@@ -179,12 +182,12 @@ def _remaining(
 def _find_covered_cells(
     groups: list[tuple[np.ndarray, float]], sides: np.ndarray, number: np.ndarray
 ) -> np.ndarray:
-    """Find the cells (cells,) of a grid that lie completely within the distance of one particle.
+    """Find the grid cells (cells,) that lie completely within the contact distance of one particle.
 
-    The grid has the shape (*number). Cells that differ only in the last axis form a strip. In each nearby
-    strip, a particle covers an interval of cells. 1 is added at its first cell and subtracted after its last
-    cell. The cumulative sum along the strip is then the number of particles that cover each cell. Intervals
-    continue periodically from the last to the first cell.
+    The grid has the shape (*number). Cells that differ only in their index along the last axis form a strip.
+    In each nearby strip, a particle covers an interval of cells. The number 1 is added at the first cell of
+    the interval and subtracted after its last cell. The cumulative sum along the strip is then the number of
+    particles that cover each cell. Intervals continue periodically from the last to the first cell.
     """
     last, strips = int(number[-1]), int(np.prod(number[:-1]))
     ends = np.zeros(strips * last, dtype=int)
@@ -217,18 +220,18 @@ def chemical_potential(source: Source, trials: int = TRIALS, start: float | None
     source : str, Path, Dataset or Simulation
         A trajectory (a path or an open trajectory), or a simulation.
     trials : int, default 512
-        Number of random positions that are tried in each of up to 2048 frames, in the region where a particle
-        may fit.
+        Number of random positions that are tried in each of up to 2048 frames. The positions lie in the
+        region where a particle may fit.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
     Observable
-        Chemical potential relative to an ideal gas, dimensionless: a scalar, or (species,) for a mixture.
+        Chemical potential relative to an ideal gas, divided by k_B T: a scalar, or (species,) for a mixture.
         Variables: `probability`, the probability that a random position is free, with its error; `successes`,
         the number of free positions; `frames_with_success`, the number of frames with at least one free
-        position; `resolution`, the probability that corresponds to a single success.
+        position; `resolution`, the probability that corresponds to a single free position.
 
     Raises
     ------
@@ -241,9 +244,9 @@ def chemical_potential(source: Source, trials: int = TRIALS, start: float | None
     The error refers to the mean over frames, to first order. In a dense fluid ln P has a large standard
     deviation s between frames. Frames about s standard deviations above the median contribute most to the
     mean of P. Among n independent frames, the best frame is about sqrt(2 ln n) standard deviations above the
-    median. If this is less than s + 1.5, the frames that contribute most are missing. Then the result is too
-    large, its error is NaN, and a note states this. Theory: the equation of state, for the same numbers of
-    particles.
+    median. If sqrt(2 ln n) is less than s + 1.5, the frames that contribute most are missing. Then the result
+    is too large, its error is NaN, and a note says so. The theoretical value follows from the equation of
+    state, for the same number of particles.
 
     Examples
     --------
@@ -279,9 +282,9 @@ def chemical_potential(source: Source, trials: int = TRIALS, start: float | None
 
 
 def _hosts(run: Run) -> list[Hosts]:
-    """Return the contact distances of an inserted particle, for each species.
+    """Return the contact distances of an inserted particle of each species.
 
-    For equal particles there is one list for all.
+    For equal particles the result has a single element.
     """
     radii = [kind.radius for kind in run.scene.kinds if kind.count]
     if run.scene.alike:
@@ -316,7 +319,7 @@ def _insert(run: Run, frames: slice, hosts: Hosts, trials: int) -> tuple[np.ndar
 def _is_sampled(probability: np.ndarray, error: float) -> bool:
     """Return True if the frames that contribute most to the mean probability (T,) were sampled.
 
-    error : relative standard error of the mean, with the correlation between frames.
+    error : relative standard error of the mean, including the correlation between frames.
     """
     free = probability[probability > 0.0]
     if error == 0.0:
@@ -361,5 +364,5 @@ _MEANINGS = {
 
 
 def _variables(dims: tuple[str, ...], counts: dict[str, Any]) -> dict[str, tuple]:
-    """Return the variables that state how successful the insertions were."""
+    """Return the variables that describe how many insertions succeeded."""
     return {name: (dims, counts[name], {"units": "1", "long_name": _MEANINGS[name]}) for name in counts}

@@ -1,8 +1,9 @@
 """Largest Lyapunov exponent, the rate at which neighbouring runs separate, from the events of one run.
 
-The linearised dynamics (tangent space) propagates a small deviation of the initial state. So the deviation
-never saturates, and no second run is needed. In free flight, the velocity deviation times the time is added
-to the position deviation; a contact maps both (Dellago, Posch & Hoover, Phys. Rev. E 53, 1485 (1996)).
+The linearised dynamics (in tangent space) propagates an infinitesimal deviation of the initial state. So the
+deviation never saturates, and no second run is needed. In free flight, the velocity deviation times the time
+is added to the position deviation. At a contact, the deviations of positions and velocities are mapped
+linearly (Dellago, Posch & Hoover, Phys. Rev. E 53, 1485 (1996)).
 """
 
 from __future__ import annotations
@@ -20,7 +21,8 @@ from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 
 ALIGNMENT = 0.25
-"""Fraction of the events in which the deviation aligns with the direction of fastest growth; it is discarded.
+"""Fraction of the record that is discarded at the start, while the deviation aligns with the direction of
+fastest growth.
 """
 
 
@@ -75,7 +77,7 @@ class Deviation:
             vj[a] -= (1.0 - share) * pushed
 
     def rescale(self, time: float) -> float:
-        """Advance all particles to `time`, divide by the length of the deviation, and return this length."""
+        """Advance all particles to `time`, normalize the deviation, and return its previous length."""
         for n in range(len(self.times)):
             self.advance(n, time)
         both = np.array(self.positions), np.array(self.velocities)
@@ -126,8 +128,8 @@ def lyapunov_exponent(simulation: Simulation, start: float | None = None, seed: 
     simulation : Simulation
         A simulation for which `record_events` was True while it advanced.
     start : float, [time], optional
-        Time from which growth is measured. Default: a quarter of the record is discarded, in which the
-        deviation aligns with the direction of fastest growth.
+        Time from which growth is measured. Default: the first quarter of the record is discarded. In this
+        time the deviation aligns with the direction of fastest growth.
     seed : int, default 0
         Seed of the random initial deviation.
 
@@ -139,13 +141,13 @@ def lyapunov_exponent(simulation: Simulation, start: float | None = None, seed: 
     Raises
     ------
     SceneError
-        If there is no record or it has too few events, or if the scene has anything but smooth elastic
-        contacts of moving particles and hard faces.
+        If there is no record, if it has too few events, or if the scene has anything other than moving
+        particles with smooth elastic contacts and hard faces.
 
     Notes
     -----
-    The uncertainty is the error of the mean of a correlated series: the growth rate in equal intervals. The
-    computation takes about 10 microseconds per event.
+    The growth rates in equal intervals form a correlated series. The uncertainty is the error of the mean of
+    this series. The computation takes about 10 microseconds per event.
 
     Examples
     --------
@@ -192,7 +194,7 @@ def lyapunov_exponent(simulation: Simulation, start: float | None = None, seed: 
 
 
 def _require_plain(scene: Scene) -> None:
-    """Raise SceneError for features through which `Deviation` cannot be propagated."""
+    """Raise SceneError if the scene has features for which `Deviation` has no linear map."""
     law = scene.restitution
     present = {
         "gravity": scene.gravity is not None and any(scene.gravity),

@@ -59,7 +59,8 @@ def measure(
     Returns
     -------
     Observable or dict
-        The measured quantity with its uncertainty; for several names a dict {name: Observable}.
+        The measured quantity with its uncertainty. For several names, the result is a dict {name:
+        Observable}.
 
     Raises
     ------
@@ -95,7 +96,9 @@ def measure(
 
 @contextmanager
 def until_time(source: Source, end: float | None, pairs: bool = False) -> Iterator[Source]:
-    """Return the frames of a source up to a time; None returns the source itself.
+    """Return the frames of a source up to the time `end`.
+
+    Without an end time, the source itself is returned.
 
     If `pairs` is True, the frames of a simulation include the numbers of collisions of each pair of species.
     Raises SceneError for fewer than two frames.
@@ -117,19 +120,19 @@ def until_time(source: Source, end: float | None, pairs: bool = False) -> Iterat
 
 @contextmanager
 def open_frames(source: Source, pairs: bool = False) -> Iterator[xr.Dataset]:
-    """Yield the frames of a source, which are read or computed once.
+    """Yield the frames of a source; they are read or computed only once.
 
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
         A trajectory (a path or an open trajectory), or a simulation.
     pairs : bool, default False
-        Count the collisions of each pair of species of a simulation.
+        For a simulation, also count the collisions of each pair of species.
 
     Yields
     ------
     Dataset
-        The frames. A file is closed at the end of the block.
+        The frames. If the source is a file, it is closed at the end of the `with` block.
     """
     from gaspart.analysis.run import repeat_run
     from gaspart.simulation import Simulation

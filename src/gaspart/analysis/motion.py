@@ -1,8 +1,8 @@
 """Observables from paths and velocities of particles: displacement and velocity correlation.
 
-For a run with correlations, they are averages over all samples, and the scatter of parts of the run is the
-uncertainty. Otherwise they are computed from frames, and the scatter of groups of particles, which are
-treated as independent, is the uncertainty.
+If a run has stored correlations, the observables are averages over all samples, and the uncertainty follows
+from the scatter between parts of the run. Otherwise the observables are computed from frames. The uncertainty
+then follows from the scatter between groups of particles, which are treated as independent.
 """
 
 from __future__ import annotations
@@ -39,16 +39,16 @@ from gaspart.trajectory.correlator import SUMS
 
 
 _BLOCK = 256
-"""Number of coordinates that are transformed at once."""
+"""Number of coordinates whose Fourier transforms are computed at once."""
 _DIRECT = 1e-4
-"""Squared displacement divided by the mean square of coordinates, below which it is summed directly. The
-transforms would lose at least 4 of 16 digits.
+"""If the squared displacement divided by the mean square of the coordinates is below this limit, it is summed
+directly. Fourier transforms would lose at least 4 of 16 digits.
 """
 
 
 @dataclass(frozen=True)
 class Curves:
-    """Time correlations of one replica at L lags, in reduced units, shape (L,) each.
+    """Time correlations of one replica at L lags, in reduced units; each has the shape (L,).
 
     `time`, lags. `msd`, <|r(t) - r(0)|^2>. `correlation`, <v(0).v(t)> / d. `running`, derivative of msd
     divided by 2d, from <(r(t) - r(0)).(v(t) + v(0))> / 2d, which is exact at every lag.
@@ -61,9 +61,10 @@ class Curves:
 
 
 def correlate(displacements: np.ndarray, velocities: np.ndarray, interval: float, lags: int) -> Curves:
-    """Average over particles and all time origins at lags 0 ... `lags` - 1 of `interval`.
+    """Compute correlations, averaged over particles and all time origins.
 
-    displacements, velocities: (T, N, d), evenly sampled. Raises ValueError for more lags than frames.
+    The lags are 0 ... `lags` - 1 times `interval`. `displacements` and `velocities` have the shape (T, N, d)
+    and are sampled at equal intervals. Raises ValueError for more lags than frames.
     """
     frames, count, dimension = displacements.shape
     if not 1 <= lags <= frames:
@@ -81,7 +82,7 @@ def correlate(displacements: np.ndarray, velocities: np.ndarray, interval: float
 
 
 def squared_displacement(paths: np.ndarray, lags: int) -> np.ndarray:
-    """Return the mean of |r(t) - r(0)|^2 over particles and time origins.
+    """Compute the mean of |r(t) - r(0)|^2 over particles and time origins.
 
     Parameters
     ----------
@@ -111,7 +112,7 @@ def squared_displacement(paths: np.ndarray, lags: int) -> np.ndarray:
 
 
 def autocorrelation(values: np.ndarray, lags: int) -> np.ndarray:
-    """Return the mean of a(0) a(t) over particles, axes and time origins.
+    """Compute the mean of a(0) a(t) over particles, axes and time origins.
 
     Parameters
     ----------
@@ -130,15 +131,15 @@ def autocorrelation(values: np.ndarray, lags: int) -> np.ndarray:
 
 
 def _columns(values: np.ndarray) -> np.ndarray:
-    """Return values (T, N, d) as columns (T, N d)."""
+    """Reshape values (T, N, d) to columns (T, N d)."""
     return np.asarray(values, dtype=float).reshape(len(values), -1)
 
 
 def _products(columns: np.ndarray, others: np.ndarray | None = None) -> np.ndarray:
-    """Return sums of products of series with a time difference t.
+    """Compute sums of products of series values that are separated by a time difference t.
 
-    The products are a(s + t) a(s) or a(s + t) b(s). They are summed over columns (T, C) and times s, for t =
-    0, 1 ... T - 1. Negative t are at the end of the result.
+    The products are a(s + t) a(s) or a(s + t) b(s). They are summed over the columns (T, C) and over the
+    times s, for t = 0, 1 ... T - 1. The sums for negative t are at the end of the result.
     """
     from scipy.fft import irfft, next_fast_len, rfft
 
@@ -158,16 +159,16 @@ def _products(columns: np.ndarray, others: np.ndarray | None = None) -> np.ndarr
 
 
 _PARTS = 16, 32
-"""Minimum and maximum number of parts of a run; the scatter of the parts gives an uncertainty."""
+"""Minimum and maximum number of parts of a run. The scatter between the parts gives an uncertainty."""
 _PART = 4.0
-"""Minimum length of a part in longest lags, so that few pairs of samples extend over two parts."""
+"""Minimum length of a part divided by the longest lag, so that few pairs of samples extend over two parts."""
 
 
 def average_correlations(trajectory: xr.Dataset) -> Curves:
-    """Return the averages that a run with correlations has accumulated up to its last frame.
+    """Return the averages of the stored correlations of a run up to its last frame.
 
-    Lags are in the time units of the scene, and velocities are not shifted; msd and running are NaN without
-    displacements.
+    Lags are in the time unit of the scene. Velocities are not relative to the centre of mass. `msd` and
+    `running` are NaN if the run has not stored displacements.
     """
     last, dimension = trajectory.isel(frame=-1), trajectory.sizes["spatial"]
     lags = trajectory.sizes["lag"]
@@ -184,11 +185,12 @@ def accumulated_mean(run: Run, name: str) -> tuple[np.ndarray, np.ndarray, np.nd
     Returns four arrays of shape (lags,): the lags, the mean, its standard error, and the degrees of freedom
     of the error.
 
-    The mean is over pairs of samples whose later sample is in the measured part. The error is the scatter of
-    16 to 32 consecutive parts; in a long run, each part is at least four times the longest lag. The result
-    holds for freely moving particles. Along axes on which the momentum is conserved, the velocity of the
-    centre of mass is subtracted, and the result is multiplied by N / (N - 1). Raises SceneError for too few
-    frames, and for a single particle with a constant velocity.
+    The mean is over all pairs of samples whose later sample is in the measured part of the run. The error
+    follows from the scatter between 16 to 32 consecutive parts. In a long run, each part is at least four
+    times as long as the longest lag. The result is for particles that are independent of the centre of mass:
+    along axes on which the momentum is conserved, the velocity of the centre of mass is subtracted, and the
+    result is multiplied by N / (N - 1). Raises SceneError for too few frames, and for a single particle with
+    a constant velocity.
     """
     samples, lags = run.data["correlated_samples"].values, np.arange(run.data.sizes["lag"])
     pairs = np.maximum(samples[:, None] - lags, 0.0)
@@ -208,7 +210,7 @@ def accumulated_mean(run: Run, name: str) -> tuple[np.ndarray, np.ndarray, np.nd
 
 
 def _of_free_particles(run: Run) -> float:
-    """Return the ratio of squared velocities of free particles and relative to the centre of mass."""
+    """Compute <v^2> of independent particles divided by <v^2> relative to the centre of mass."""
     if not run.conserved.any():
         return 1.0
     count = int(np.isfinite(run.masses).sum())
@@ -223,7 +225,7 @@ def mask_between(time: np.ndarray, start: float, stop: float) -> np.ndarray:
 
 
 def line(x: np.ndarray, y: np.ndarray) -> float:
-    """Fit the slope of a line by least squares; NaN for fewer than four points."""
+    """Compute the slope of a line by least squares; NaN for fewer than four points."""
     return float(np.polyfit(x, y, 1)[0]) if len(x) >= 4 else math.nan
 
 
@@ -253,10 +255,10 @@ def mean_squared_displacement(
         Measure only this species, identified by its number in the scene. Single particles have the number
         after the last species.
     particles : sequence of int, optional
-        Measure only these particles. For fewer than 16 particles the error is the scatter of blocks of the
-        run.
+        Measure only these particles. For fewer than 16 particles the error follows from the scatter between
+        blocks of the run.
     per_axis : bool, default False
-        Return the displacement along each axis, (axis, lag), instead of the sum.
+        Return the mean-squared displacement along each axis, (axis, lag), instead of the sum over the axes.
     about : {"flow", "rest"}, default "flow"
         Frame of reference. "flow": relative to the local flow if the gas flows; otherwise relative to the
         centre of mass along axes on which the total momentum is conserved, multiplied by N / (N - 1). "rest":
@@ -265,20 +267,21 @@ def mean_squared_displacement(
     Returns
     -------
     Observable
-        The displacement (lag,) in [length^2].
+        The mean-squared displacement (lag,) in [length^2].
 
     Raises
     ------
     SceneError
-        If there are fewer than 16 moving particles and none are selected; if the flow changes with time; if
-        frames are unevenly spaced; or if frames are too far apart to follow particles across periodic faces.
+        If there are fewer than 16 moving particles and no selection is passed; if the flow changes with time;
+        if frames are unevenly spaced; or if frames are too far apart to follow particles across periodic
+        faces.
 
     Notes
     -----
-    For a run with correlations and displacements, the result has the lags of the correlations, and all
-    samples are
-    used, unless lags, species, particles or per_axis are passed. `gaspart.analysis.flow` defines the local
-    flow. Theory: Enskog's diffusion coefficient and the linear Boltzmann equation.
+    If the run has stored correlations with displacements, and none of `lags`, `species`, `particles` and
+    `per_axis` is passed, all samples are used, and the lags are the lags of the correlations.
+    `gaspart.analysis.flow` defines the local flow. The theoretical curve follows from the linear Boltzmann
+    equation with Enskog's diffusion coefficient.
 
     Examples
     --------
@@ -342,9 +345,9 @@ def velocity_autocorrelation(
 
     Notes
     -----
-    For a run with correlations all samples are used, as in `mean_squared_displacement`. Displacements are not
-    needed. Theory: (k_B T / m) exp(-2 nu t / d), with the collision rate nu: exact at short times, without
-    the long-time tail.
+    If the run has stored correlations, all samples are used, as in `mean_squared_displacement`, but the
+    correlations need not include displacements. The theoretical curve is (k_B T / m) exp(-2 nu t / d), where
+    nu is the collision rate. It is exact at short times, but does not contain the long-time tail.
 
     Examples
     --------
@@ -373,7 +376,7 @@ def _accumulates(
 ) -> bool:
     """Return True if a run has accumulated the requested curve (a name in `SUMS`).
 
-    This requires a gas that does not flow.
+    The curve is used only if the gas does not flow.
     """
     covers_all = lags is None and species is None and particles is None
     if not (name in run.data and covers_all and run.about == FLOW):
@@ -401,7 +404,7 @@ def _autocorrelation(
 
 
 def axes_of(run: Run, chosen: np.ndarray | slice = slice(None)) -> dict[str, Any]:
-    """Return the dimension of an observable along chosen axes.
+    """Return the dimension `axis` of an observable that is resolved along axes.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Measured quantity: an xarray.Dataset with uncertainties, units, theory and a plot."""
+"""Measured quantity: an xarray.Dataset with uncertainties, units, theory and a plot method."""
 
 from __future__ import annotations
 
@@ -21,25 +21,25 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 LEAST_INTERVALS = 16
-"""Minimum number of intervals between frames; fewer intervals do not determine the uncertainty of a mean."""
+"""Minimum number of intervals between frames for the uncertainty of a mean."""
 _ROUNDING = 1e-12
 """Relative scatter below which a series counts as constant."""
 _LONG = 32  # number of characters above which a label has two lines
 _FEW = 12
-"""Maximum number of values that are all written out."""
+"""Maximum number of values that a summary lists one by one."""
 _PLANE = 2
-"""Number of axes of a field that can be plotted."""
+"""Maximum number of axes of a field that can be plotted."""
 STRETCHES = 20
 """Number of blocks of a run whose means are plotted for a scalar."""
 
 
 class ByFace(xr.Dataset):
-    """Dataset that may have the dimension `face` with names such as `x low`."""
+    """Dataset that may have the dimension `face`, whose coordinate contains names such as `x low`."""
 
     __slots__ = ()
 
     def sel(self, *indexers: Any, **named: Any) -> Self:
-        """Select as from a Dataset; a face has two names, `x_low` and `x low`.
+        """Select as from a Dataset; a face can be named `x_low` or `x low`.
 
         Parameters
         ----------
@@ -74,11 +74,12 @@ class Observable(ByFace):
 
     Notes
     -----
-    Variables: the quantity has the name in the attribute `quantity`. Its standard deviation has the suffix
-    _error. If theory exists, it has the suffixes _theory and _theory_error (NaN if the uncertainty is
-    unknown, for example for an approximation). A scalar also has the variable `stretches` (time), the means
-    over consecutive blocks of the run, and the attribute `freedom`, the degrees of freedom of its error.
-    Every variable has `units`.
+    Variables: the attribute `quantity` contains the name of the variable with the measured values. The suffix
+    _error is added to this name for the standard errors. If theory exists, the suffixes _theory and
+    _theory_error are added for the theoretical values and their uncertainties. An uncertainty of theory is
+    NaN if it is unknown, for example for an approximation. A scalar also has the variable `stretches` (time),
+    which contains the means over consecutive blocks of the run. Its attribute `freedom` is the number of
+    degrees of freedom of its error. Every variable has `units`.
 
     Examples
     --------
@@ -167,10 +168,10 @@ class Observable(ByFace):
 
     @property
     def summary(self) -> str:
-        """Result as text: a number is written as `Z = 1.242(20), theory 1.227`.
+        """Result as text, such as `Z = 1.242(20), theory 1.227`.
 
-        The short name of the quantity is used if it exists. For several values, each value is listed; for a
-        curve, only the number of values and the axis are given.
+        The text contains the short name of the quantity, if it has one. Several values are listed one by one.
+        For a curve, only the number of values and the axis are stated.
 
         Examples
         --------
@@ -194,7 +195,7 @@ class Observable(ByFace):
         return self.summary if self.estimate.size <= _FEW else f"{self.summary}\n{super().__repr__()}"
 
     def _repr_html_(self) -> str:
-        """Return HTML with the `summary`, a plot of a curve, and the folded data set."""
+        """Return HTML with the `summary`, a plot of a curve, and the collapsed data set."""
         text = html.escape(self.summary).replace("\n", "<br>")
         is_plotted = self.estimate.size > _FEW and len(_cells(self)) <= _PLANE
         drawn = f'<br><img src="{_embed_plot(self)}" alt="{text}">' if is_plotted else ""
@@ -209,7 +210,7 @@ class Observable(ByFace):
         Parameters
         ----------
         theory : bool, default False
-            Also draw the theoretical curve; if no theory exists for this scene, the legend says so.
+            If True, also draw the theoretical curve. If no theory exists for this scene, the legend says so.
         axis : matplotlib Axes, optional
             Axes to draw in. Default: a new one.
 
@@ -320,7 +321,7 @@ def _cells(result: Observable) -> list[str]:
 
 
 def _plot_field(result: Observable, axis: Axes, cells: list[str]) -> None:
-    """Draw a scalar field as a colour map, or a flow as arrows along both axes."""
+    """Draw a scalar field as a colour map, or a flow as arrows."""
     if len(cells) > _PLANE:
         raise SceneError("axes", "".join(cells), "a plot has two; choose a layer: .isel(z=0)")
     x, y = (result[name] for name in cells)
@@ -335,7 +336,7 @@ def _plot_field(result: Observable, axis: Axes, cells: list[str]) -> None:
 
 
 def label_of(values: xr.DataArray) -> str:
-    """Return the label of an axis: the meaning and the unit of a variable.
+    """Return the label of a plotted axis: the meaning and the unit of a variable.
 
     Parameters
     ----------
@@ -361,7 +362,8 @@ def scalar(
     series : (M,), the values in the intervals.
     edges : (M + 1,), the times of the frames.
     slow : True if correlations may decay as slowly as 1 / t.
-    about : `units`, `long_name`, and optionally `theory` (a value and its uncertainty) and its `source`.
+    about : attributes `units` and `long_name`, and optionally `theory` (a value and its uncertainty) and its
+        `source`.
 
     Raises SceneError for fewer values than `LEAST_INTERVALS`.
     """
@@ -392,7 +394,7 @@ def observable(
 ) -> Observable:
     """Build a result from its parts.
 
-    `along` maps each dimension to its coordinate and the attributes of the coordinate.
+    `along` maps the name of each dimension to its coordinate and the attributes of the coordinate.
     """
     dims = tuple(along)
     parts = {name: (values, long_name), f"{name}_error": (errors, "standard uncertainty")}

@@ -1,8 +1,9 @@
 """Declarations of all named observables.
 
-All users of observables read these declarations, and no other list of names exists: `gaspart measure`,
-`sweep`, `advise`, `--until`, `check`, `info` and `theory`, figures of users, the reference page and shell
-completion (`tests/workflow/test_observables.py`). The module `declaration` defines their form.
+All parts of the program that use observables read these declarations. No other list of their names exists.
+These parts are `gaspart measure`, `sweep`, `advise`, `--until`, `check`, `info` and `theory`, figures of
+users, the reference page and shell completion (`tests/workflow/test_observables.py`). The module
+`declaration` defines the form of a declaration.
 """
 
 from __future__ import annotations
@@ -30,15 +31,19 @@ KEPT: dict[str, tuple[str, Any, str]] = {
     ),
     "pairs": ("pairs", False, "the run must count collisions by pairs: run with --pairs"),
 }
-"""Data that a run stores only on request: key, value and rule of the error message without them."""
+"""Data that a run stores only on request. The entry of each is the key, the value and the rule of the error
+message if the run lacks the data.
+"""
 _SAMPLED = "is of the positions of pairs, which DSMC does not have"
 _OF_PAIRS: dict[str, Any] = {
     "samples": "structure",
     "nothing": dict.fromkeys(("boltzmann", "enskog"), _SAMPLED),
 }
-"""Properties of observables that follow from the relative positions of particles."""
+"""Common properties of the observables that are computed from the relative positions of particles."""
 _FLUX: dict[str, Any] = {"needs": "fluxes", "lags": 100}
-"""Properties of observables that follow from correlations of the stress and the heat flux."""
+"""Common properties of the observables that are computed from correlations of the stress and the heat
+flux.
+"""
 
 OBSERVABLES: dict[str, Named] = {
     "Z": Named(
@@ -443,11 +448,11 @@ OBSERVABLES: dict[str, Named] = {
         **_OF_PAIRS,
     ),
 }
-"""Observables by name, as on the command line, in a sweep and in a config."""
+"""Observables by the name that the command line, a sweep and a config use."""
 
 
 TOO_SHORT = ("frames", "duration", "collisions", "wall_hits", "start", "D", "mutual_diffusion")
-"""Keys of errors that may disappear in a longer run."""
+"""Keys of the error messages that may not occur in a longer run."""
 
 
 ALIASES: dict[str, str] = {
@@ -466,9 +471,9 @@ ALIASES: dict[str, str] = {
 
 
 def observable_name(name: object) -> str:
-    """Return the name of an observable, from its name or an alias.
+    """Return the standard name of an observable, from its name or an alias.
 
-    Raises SceneError for other values.
+    Raises SceneError for an unknown name.
     """
     if isinstance(name, str):
         if name in OBSERVABLES:
@@ -480,7 +485,7 @@ def observable_name(name: object) -> str:
 
 
 def observables_with(**traits: Any) -> tuple[str, ...]:
-    """Return the names of the observables whose properties have these values."""
+    """Return the names of the observables whose declarations have these property values."""
     return tuple(
         name
         for name, declared in OBSERVABLES.items()
@@ -489,12 +494,12 @@ def observables_with(**traits: Any) -> tuple[str, ...]:
 
 
 def selecting(key: str) -> tuple[str, ...]:
-    """Return the names of the observables that accept a selection."""
+    """Return the names of the observables that accept the selection `key`."""
     return tuple(name for name, declared in OBSERVABLES.items() if key in declared.selections)
 
 
 def selections() -> tuple[str, ...]:
-    """Return the keys of all selections."""
+    """Return the keys of all selections that some observable accepts."""
     return tuple(dict.fromkeys(key for declared in OBSERVABLES.values() for key in declared.selections))
 
 
@@ -507,7 +512,7 @@ def about(name: str, dimension: int) -> dict[str, str]:
 def name_of(function: str) -> str:
     """Return the name of the observable that a function of `gaspart.analysis` measures.
 
-    A function that measures no named observable has its own name.
+    If the function measures no named observable, return the name of the function.
     """
     return next((name for name, declared in OBSERVABLES.items() if declared.function == function), function)
 
@@ -524,7 +529,7 @@ def require_selection(name: str, selection: Mapping[str, Any]) -> None:
 def require_defined(name: str, scene: Scene, **selection: Any) -> None:
     """Raise SceneError, with the reason, if an observable is undefined for a scene.
 
-    Such an observable is undefined for runs of any length. Also raises SceneError for a selection that the
+    The condition does not depend on the length of a run. Also raises SceneError for a selection that the
     observable or the scene does not allow.
     """
     declared = OBSERVABLES[observable_name(name)]
@@ -538,7 +543,7 @@ def require_defined(name: str, scene: Scene, **selection: Any) -> None:
 def require_run(name: str, scene: Scene, kept: Collection[str] = (), follow: int | None = None) -> None:
     """Raise SceneError if no run of a scene, of any length, can measure an observable.
 
-    kept : see `require_kept`.
+    kept : names of the stored data, see `require_kept`.
     follow : number of particles in the file, the argument of `gaspart.run`; None for all.
     """
     require_defined(name, scene)
@@ -553,10 +558,10 @@ def require_run(name: str, scene: Scene, kept: Collection[str] = (), follow: int
 
 
 def walls_of(name: str, scene: Scene) -> tuple[str, ...]:
-    """Return the walls, named like `x low`, for which an observable may have a value.
+    """Return the walls, such as `x low`, for which an observable may have a value.
 
     For a pressure or force these are all walls; for other observables of faces, the faces with a temperature.
-    All other observables have no walls.
+    For all other observables, no walls are returned.
     """
     if "face" not in OBSERVABLES[name].along:
         return ()
@@ -568,8 +573,8 @@ def walls_of(name: str, scene: Scene) -> tuple[str, ...]:
 def require_steady_value(name: str, scene: Scene) -> None:
     """Raise SceneError, with the reason, if an observable is 0 on average in the steady state.
 
-    A relative accuracy of such an observable is undefined. In a container that is open only to a vacuum, all
-    observables are 0.
+    A relative accuracy of such an observable is undefined. In a container whose open faces all lead to a
+    vacuum, all observables are 0 in the steady state.
     """
     if scene.is_open and not any(face.temperatures for _, face in scene.faces_of(Open)):
         refuse_open(scene, "has no reservoir: all particles leave, and nothing is steady; give a duration")
@@ -580,8 +585,8 @@ def require_steady_value(name: str, scene: Scene) -> None:
 def require_modelled(name: str, scene: Scene, engine: Engine) -> None:
     """Raise SceneError, with the reason, if runs of an engine do not determine an observable.
 
-    The equation of the engine does not determine the observable or gives a trivial value, or the engine does
-    not store the required data.
+    This is the case if the equation of the engine does not determine the observable or gives a trivial value,
+    or if the engine does not store the required data.
     """
     declared = OBSERVABLES[observable_name(name)]
     if engine.equation in declared.nothing:
@@ -599,8 +604,8 @@ def require_kept(name: str, kept: Collection[str]) -> None:
 
     The message names the option to set.
 
-    `kept` contains the names of stored data, "fluxes" or "pairs". Paths can also be reconstructed from frames
-    that are close enough.
+    `kept` contains the names of the data that the run has stored, such as "fluxes" or "pairs". Paths need not
+    be stored, because they can be reconstructed from frames that are close enough in time.
     """
     needs = OBSERVABLES[observable_name(name)].needs
     if needs in KEPT and needs not in kept:

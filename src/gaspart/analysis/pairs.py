@@ -1,6 +1,6 @@
 """Pairs of particles: the radial distribution function.
 
-Uncertainties come from the scatter of consecutive blocks of the run.
+Uncertainties come from the scatter between consecutive blocks of the run.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from gaspart.workers import in_threads
 # Pairs in a periodic container, counted by their distance.
 
 _COLUMNS, _BOXES = 2, 8
-"""Numbers of columns and boxes per largest distance in `count_pairs`, unless the density is low."""
+"""Numbers of columns and of boxes per largest distance in `count_pairs`, unless the density is low."""
 _MOST_BOXES = 4
 """Maximum number of boxes per particle."""
 
@@ -53,7 +53,8 @@ def pair_counts(
     furthest : float, [length]
         Largest distance.
     threads : int, default 1
-        Number of threads. Each thread counts whole frames, so the counts do not depend on the number.
+        Number of threads. Each frame is counted by a single thread, so the counts do not depend on the number
+        of threads.
 
     Returns
     -------
@@ -106,9 +107,10 @@ def _boxes(size: np.ndarray, count: int, furthest: float, first: int) -> np.ndar
 def radial_distribution(
     frames: np.ndarray, lengths: Sequence[float] | np.ndarray, bins: int, furthest: float, threads: int = 1
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the centres (bins,) of shells and g(r), averaged over frames (T, N, d).
+    """Compute g(r), averaged over frames (T, N, d), at the centres of shells.
 
-    The counts are divided by the counts of an ideal gas with N (N - 1) / 2 pairs.
+    Returns the centres (bins,) and g(r) (bins,). The counts are divided by the counts for an ideal gas with N
+    (N - 1) / 2 pairs.
     """
     count = np.shape(frames)[1]
     counts = pair_counts(frames, lengths, bins, furthest, threads)
@@ -117,7 +119,7 @@ def radial_distribution(
 
 
 def ideal_counts(count: int, lengths: Sequence[float] | np.ndarray, bins: int, furthest: float) -> np.ndarray:
-    """Return the mean `pair_counts` of a frame of an ideal gas.
+    """Compute the mean `pair_counts` of a frame of an ideal gas.
 
     Parameters
     ----------
@@ -162,17 +164,17 @@ def read_pair_impulses(run: Run) -> PairImpulseTally | None:
 
 
 def shell_volumes(bins: int, dimension: int) -> np.ndarray:
-    """Compute the volumes (bins,) of shells of equal thickness, in units of the first shell."""
+    """Compute the volumes (bins,) of shells of equal thickness, divided by the first volume."""
     return np.diff(np.arange(bins + 1.0) ** dimension)
 
 
 def g_by_impulses(run: Run, starts: np.ndarray, bins: int, furthest: float) -> np.ndarray | None:
-    """Compute two contributions (2, S, bins) to g(r): of colliding pairs and of all other pairs.
+    """Compute two contributions (2, S, bins) to g(r): from colliding pairs and from all other pairs.
 
     The contributions are for S blocks of a run that begin at the frames `starts` (S,). Return None if the run
-    has not stored pair impulses, if the shells are not multiples of the stored shells, if a block has no
-    duration, or if no pair has collided. In the last case impulses do not determine g(r), although it is not
-    0.
+    has not stored pair impulses, if the shells do not consist of whole stored shells, if a block has no
+    duration, or if no pair has collided. Without collisions impulses do not determine g(r), although g(r) is
+    not 0.
     """
     has = read_pair_impulses(run)
     if has is None or starts[-1] == len(run.time) - 1 or furthest > has.furthest * (1.0 + _ALIKE):
@@ -220,15 +222,15 @@ def rdf(
     bins : int, optional
         Number of bins. Default: 100, or the bins of the stored pair impulses.
     furthest : float, [length], optional
-        Largest distance. Default: five of the largest diameters or just below half of the shortest side; or
-        the largest distance of the stored pair impulses.
+        Largest distance. Default: the largest distance of the stored pair impulses. Without stored impulses,
+        the default is five times the largest diameter, but less than half of the shortest side.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
     Observable
-        The function (distance,), dimensionless, averaged over up to 320 frames.
+        The function g(r), dimensionless, shape (distance,), averaged over up to 320 frames.
 
     Raises
     ------
@@ -238,14 +240,15 @@ def rdf(
 
     Notes
     -----
-    g(r) is the number of pairs divided by the number for N independent particles, with N (N - 1) / 2 pairs in
-    the volume. So it is 1 at all distances in an ideal gas of any N. In a fluid it tends to 1 + (1 - S(0)) /
-    N at large distances; S(0) is the reduced compressibility [1]_.
+    g(r) is the number of pairs at the distance r divided by the mean number for N independent particles,
+    which form N (N - 1) / 2 pairs. So it is 1 at all distances in an ideal gas of any N. In a fluid it tends
+    to 1 + (1 - S(0)) / N at large distances; S(0) is the reduced compressibility [1]_.
 
-    Stored pair impulses make g(r) more accurate than counts, if each bin consists of an equal number of
-    stored shells (`gaspart.analysis.pairs`). The attribute `estimator` names the method. Theory: only in the
-    first bins beyond the diameter, the contact value that corresponds to the pressure of N particles. The
-    error of an empty bin is NaN, or 0 at distances at which hard particles would overlap.
+    If the run has stored pair impulses, and each bin consists of an equal number of stored shells, g(r) is
+    more accurate than from counts alone (`gaspart.analysis.pairs`). The attribute `estimator` names the
+    method. A theoretical value exists only in the first bins beyond the diameter. It is the contact value
+    that corresponds to the pressure of N particles. The error of an empty bin is NaN, or 0 at distances at
+    which hard particles would overlap.
 
     References
     ----------
@@ -296,7 +299,7 @@ def rdf(
 
 
 def chosen_frames(run: Run, values: np.ndarray) -> np.ndarray:
-    """Return the values in up to `MOST_FRAMES` evenly spaced frames.
+    """Select the values in up to `MOST_FRAMES` evenly spaced frames.
 
     Parameters
     ----------
@@ -321,7 +324,7 @@ def chosen_frames(run: Run, values: np.ndarray) -> np.ndarray:
 
 
 def stretches_of(run: Run) -> list[slice]:
-    """Return the `chosen_frames` of 16 consecutive blocks of a run.
+    """Divide the `chosen_frames` of a run into 16 consecutive blocks.
 
     Parameters
     ----------
@@ -347,7 +350,7 @@ def stretches_of(run: Run) -> list[slice]:
 
 
 def pair_collision_rates(source: Source, start: float | None = None) -> Observable:
-    """Measure the collision rate of a particle of one species with all particles of another species.
+    """Measure the collision rate of a particle of one species with a second species.
 
     Parameters
     ----------
@@ -360,8 +363,8 @@ def pair_collision_rates(source: Source, start: float | None = None) -> Observab
     Returns
     -------
     Observable
-        Collisions per time of one particle of the first species of each pair with all particles of the second
-        species, (pair,), in [1/time].
+        Collision rate for each pair of species, (pair,), in [1/time]: the number of collisions per time of
+        one particle of the first species with all particles of the second species.
 
     Raises
     ------
@@ -371,9 +374,9 @@ def pair_collision_rates(source: Source, start: float | None = None) -> Observab
 
     Notes
     -----
-    Theory is exact except for the contact values, which are for an infinite mixture. A particle has N_i - 1
-    partners of its own species i. The mean speed is computed for a finite number of particles at fixed
-    energy.
+    The theoretical rate is exact except for the contact values. These are for an infinite mixture. A particle
+    of species i has N_i - 1 partners of its own species. The mean speed is computed for the finite number of
+    particles at fixed energy.
 
     Examples
     --------
@@ -392,7 +395,7 @@ def pair_collision_rates(source: Source, start: float | None = None) -> Observab
 
 
 def contact_values(source: Source, start: float | None = None) -> Observable:
-    """Measure the pair distribution at contact, g_ij, of each pair of species from its collision rate.
+    """Measure the contact value g_ij of each pair of species from its collision rate.
 
     Parameters
     ----------
@@ -410,8 +413,8 @@ def contact_values(source: Source, start: float | None = None) -> Observable:
     Raises
     ------
     SceneError
-        For the reasons of `pair_collision_rates`, and for a scene with walls, contacts that lose energy, or a
-        polydisperse species.
+        Under the conditions of `pair_collision_rates`, and for a scene with walls, contacts that lose energy,
+        or a polydisperse species.
 
     Notes
     -----
@@ -420,8 +423,8 @@ def contact_values(source: Source, start: float | None = None) -> Observable:
         n_ij S sigma_ij^(d-1) g_ij sqrt(k_B T / (2 pi mu_ij)) t / V,
 
     with n_ij = N_i N_j or N_i (N_i - 1) / 2 pairs of particles, S = 2 pi (2D) or 4 pi (3D), and the reduced
-    mass mu_ij. This is exact in equilibrium [1]_, with the mean speed of a finite number of particles at
-    fixed energy.
+    mass mu_ij. This formula is exact in equilibrium [1]_, if the mean speed is computed for the finite number
+    of particles at fixed energy.
 
     References
     ----------
@@ -444,7 +447,7 @@ def contact_values(source: Source, start: float | None = None) -> Observable:
 
 
 def rate_scales(run: Run) -> np.ndarray:
-    """Compute the number of collisions of a pair of species per collision of a particle.
+    """Compute the number of collisions of each pair of species per collision of one particle.
 
     The particle belongs to the first species of the pair.
 
@@ -464,7 +467,7 @@ def rate_scales(run: Run) -> np.ndarray:
 
 
 def contact_scales(run: Run) -> np.ndarray:
-    """Compute the collisions per time of each pair divided by its contact value.
+    """Compute the collision rate of each pair of species divided by its contact value.
 
     Parameters
     ----------
@@ -479,7 +482,7 @@ def contact_scales(run: Run) -> np.ndarray:
     Raises
     ------
     SceneError
-        For the reasons of `contact_values`.
+        Under the conditions of `contact_values`.
     """
     require_defined("contact_values", run.scene)
     scene, d = run.scene, run.dimension
@@ -494,7 +497,7 @@ def contact_scales(run: Run) -> np.ndarray:
 
 
 def estimates_of(run: Run, scales: np.ndarray) -> list[Estimate]:
-    """Estimate the collisions of each pair per time, divided by its scale.
+    """Estimate the collision rate of each pair of species, divided by the scale of the pair.
 
     Parameters
     ----------
@@ -511,7 +514,7 @@ def estimates_of(run: Run, scales: np.ndarray) -> list[Estimate]:
     Raises
     ------
     SceneError
-        If there are too few frames, or if the run has no counts or no collisions.
+        If there are too few frames, or if the run has no collisions or has not counted them by pair.
     """
     if "pair_collisions" not in run.data:
         raise SceneError(*KEPT["pairs"])
@@ -529,7 +532,7 @@ def estimates_of(run: Run, scales: np.ndarray) -> list[Estimate]:
 
 
 def _of_pairs(observed: str, name: str, run: Run, estimates: list[Estimate]) -> Observable:
-    """Return an observable of pairs, `observed`, as a result with a named variable."""
+    """Build the result of the observable `observed` of pairs, with a variable called `name`."""
     along = {"pair": (np.array(pair_names(run.scene)), {"long_name": "numbers of two species, from 0"})}
     values, errors = np.array([[estimate.value, estimate.error] for estimate in estimates]).T
     return observable(name, along, values, errors, **describe(observed, run))

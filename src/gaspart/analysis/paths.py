@@ -1,7 +1,7 @@
 """Paths and velocities of groups of moving particles, read in blocks of particles.
 
-The memory does not depend on the number of particles. A run that is larger than a block is read twice: first
-the velocity of the centre of mass is summed, then the particles are measured.
+The required memory does not depend on the number of particles. A run that is larger than a block is read
+twice. The first pass sums the velocity of the centre of mass. The second pass measures the particles.
 """
 
 from __future__ import annotations
@@ -16,10 +16,12 @@ from gaspart.analysis.run import Run, divide_frames
 from gaspart.errors import SceneError
 
 MOST_FRAMES = 1000
-"""Maximum number of correlated frames per group; of a longer run every second or third frame ... is used."""
+"""Maximum number of frames that are correlated for each group. In a longer run only every second, third ...
+frame is used.
+"""
 _FARTHEST = 0.45  # maximum displacement between frames, as a fraction of a side
 _WHOLE = 5_000_000
-"""Maximum number of values for which a run is read at once."""
+"""Maximum number of values of a run that is read at once."""
 _BLOCK = 1_000_000
 """Number of values in a block of particles of a larger run."""
 
@@ -37,8 +39,8 @@ class Groups:
     interval : float, [time]
         Time between frames.
     blocks : callable
-        Generator of the number of a group with values (T, n, d) of some of its particles, until all particles
-        have been read.
+        Function that returns a generator. Each item is the number of a group and the values (T, n, d) of some
+        of its particles. The items together contain all particles.
     """
 
     sizes: list[int]
@@ -75,21 +77,21 @@ def groups_of(
 ) -> Groups:
     """Return the moving particles in groups, relative to the centre of mass or the local flow.
 
-    For fewer than `GROUPS` particles, the groups are blocks of the run. Relative to the centre of mass, the
-    mean squared velocity of a particle of mass m is reduced by the factor 1 - m / M, where M is the total
-    mass. If the gas flows, values are relative to the local flow (`analysis.flow`).
+    If there are fewer than `GROUPS` particles, the groups are blocks of the run. Relative to the centre of
+    mass, the mean squared velocity of a particle of mass m is reduced by the factor 1 - m / M, where M is the
+    total mass. If the gas flows, the values are relative to the local flow (`analysis.flow`).
 
     Parameters
     ----------
     run : Run
         The run.
     paths : bool, default True
-        Return paths; otherwise velocities.
+        If True, return paths; otherwise velocities.
     about : ndarray of bool, shape (d,), optional
         Axes along which values are relative to the centre of mass. Default: axes along which its velocity is
         conserved.
     chosen : ndarray, optional
-        Selected moving particles.
+        Indices of the selected particles among the moving particles. Default: all.
     stride : int, optional
         Use every `stride`-th frame. Default: `stride_of`.
 
@@ -136,7 +138,7 @@ def groups_of(
 def _groups_of_particles(
     motion: Callable[[slice], np.ndarray], values: _Values, numbers: np.ndarray, interval: float
 ) -> Groups:
-    """Return groups of particles, from the group number of each particle (M,)."""
+    """Build groups of particles from the group number of each particle (M,)."""
 
     def blocks() -> Iterator[tuple[int, np.ndarray]]:
         for members in values.blocks(len(numbers)):
@@ -150,7 +152,7 @@ def _groups_of_particles(
 class _Values:
     """Paths or velocities (T, M, d) of the moving particles in every `stride`-th frame.
 
-    If the gas flows, they are relative to the local flow, and all in memory.
+    If the gas flows, the values are relative to the local flow, and all values are in memory.
     """
 
     def __init__(self, run: Run, paths: bool, stride: int) -> None:
@@ -164,7 +166,7 @@ class _Values:
             self._whole = self._read(self._moving)
 
     def blocks(self, count: int) -> Iterator[slice]:
-        """Divide a number of particles into blocks."""
+        """Divide `count` particles into blocks that fit into the memory limit."""
         length = max(1, _BLOCK // (self.frames * self._run.dimension)) if self._whole is None else count
         return (slice(first, first + length) for first in range(0, count, length))
 
@@ -209,8 +211,8 @@ def _about_flow(run: Run, paths: bool, stride: int) -> np.ndarray:
 def _group_numbers(species: np.ndarray) -> np.ndarray:
     """Return the group number of each particle, from its species (M,).
 
-    All groups of a mixture have the same composition. Otherwise the difference between species would
-    contribute to their scatter, and longer runs would not reduce it.
+    All groups of a mixture have the same composition. Otherwise differences between species would contribute
+    to the scatter between groups, and longer runs would not reduce this contribution.
     """
     if np.ptp(species) == 0:
         return np.repeat(np.arange(GROUPS), [len(part) for part in np.array_split(species, GROUPS)])
@@ -220,9 +222,10 @@ def _group_numbers(species: np.ndarray) -> np.ndarray:
 
 
 def stride_of(run: Run, count: int = GROUPS) -> int:
-    """Return the stride between the frames that are used, for a number of particles.
+    """Return the stride between the frames that are used.
 
-    For fewer than `GROUPS` particles, each block of the run is a group.
+    The stride depends on the number of particles, because for fewer than `GROUPS` particles each group is a
+    block of the run.
 
     Parameters
     ----------
@@ -240,7 +243,7 @@ def stride_of(run: Run, count: int = GROUPS) -> int:
 
 
 def unwrap_positions(run: Run, particles: np.ndarray | None = None, stride: int = 1) -> Iterator[np.ndarray]:
-    """Yield positions that continue across periodic faces, from the file or by the nearest image.
+    """Yield positions that are continuous across periodic faces.
 
     Parameters
     ----------

@@ -1,8 +1,9 @@
-"""Sums in cells, frame by frame: density, flow and temperature, and the errors of their means.
+"""Density, flow and temperature in cells, with errors, from sums in each frame.
 
-The content of a cell is correlated over many frames; near the top of a granular bed, for tens of its
-collision times. So the frames are joined into at most 256 blocks. The error of a ratio R = sum A / sum B over
-the run is the error of the mean of the correlated series (A - R B) / mean B, for each cell separately.
+The number of particles in a cell is correlated over many frames; near the top of a granular bed, the
+correlation lasts for tens of collision times. So the frames are combined into at most 256 blocks. The error
+of a ratio R = sum A / sum B over the run is the error of the mean of the correlated series (A - R B) / mean
+B, for each cell separately.
 """
 
 from __future__ import annotations
@@ -25,19 +26,19 @@ BLOCKS = 256
 into account.
 """
 _LEAST_FREEDOM = 2.0
-"""Minimum number of degrees of freedom of a known error. With fewer, the run is too short for the
-correlation, or the cell was occupied in too few blocks.
+"""Minimum number of degrees of freedom for which an error counts as known. With fewer degrees of freedom, the
+run is too short compared with the correlation time, or the cell was occupied in too few blocks.
 """
 _ROUNDING = 1e-12  # relative scatter of a constant value
 
 
 @dataclass(frozen=True)
 class Means:
-    """Values in cells, their standard errors, and the degrees of freedom of these errors.
+    """Mean values in cells, their standard errors, and the degrees of freedom of these errors.
 
-    All arrays have one shape. A value is NaN in an empty cell. An error is NaN if it has fewer than two
-    degrees of freedom, or if the value of the cell does not change, for example a velocity if a single
-    particle crosses the cell. It is 0 if nothing moves, or if all cells have one value.
+    All arrays have the same shape. A value is NaN in an empty cell. An error is NaN if it has fewer than two
+    degrees of freedom, or if the value of the cell does not change, for example the velocity if only a single
+    particle crosses the cell. An error is 0 if nothing moves, or if all cells have the same value.
     """
 
     values: np.ndarray
@@ -50,10 +51,11 @@ class Means:
 
 
 def ratio(above: np.ndarray, below: np.ndarray, still: bool = False) -> Means:
-    """Compute sum A / sum B for series (K, ...) of K consecutive blocks.
+    """Compute the ratio sum A / sum B of two series, with its error.
 
-    At least 16 blocks are required. `still` is True if nothing moves. The degrees of freedom of a cell are at
-    most the number that the correlation of all cells together allows.
+    The series have the shape (K, ...) for K consecutive blocks, at least 16. `still` is True if nothing
+    moves. The degrees of freedom of a cell are limited to the number that follows from the correlation of all
+    cells together.
     """
     total = below.sum(axis=0)
     values = np.divide(above.sum(axis=0), total, out=np.full(total.shape, np.nan), where=total > 0.0)
@@ -78,9 +80,9 @@ def ratio(above: np.ndarray, below: np.ndarray, still: bool = False) -> Means:
 
 @dataclass(frozen=True)
 class Cells:
-    """Cells of a run along some axes, as long as the container along the others.
+    """Cells of a run along some axes; along the other axes they extend over the container.
 
-    members : numbers (n,) of the particles that are measured, all of them moving.
+    members : numbers (n,) of the particles that are measured. All of these particles move.
     axes : axes of the grid.
     """
 
@@ -91,13 +93,13 @@ class Cells:
 
     @cached_property
     def grid(self) -> Grid:
-        """Cells of the container at its initial size."""
+        """Grid of cells in the container at its initial size."""
         lengths = [float(self.run.scene.container.lengths[axis]) for axis in self.axes]
         return Grid((0.0,) * len(lengths), tuple(lengths), self.numbers)
 
     @cached_property
     def blocks(self) -> np.ndarray:
-        """Block number (T,) of each frame. Raises SceneError for too few frames."""
+        """Block number (T,) of each frame; raises SceneError if there are too few frames."""
         frames = len(self.run.time)
         if frames < LEAST_FRAMES:
             raise SceneError("frames", frames, f"an error needs {LEAST_FRAMES} or more")
@@ -136,7 +138,7 @@ class Cells:
         return sums
 
     def room(self) -> np.ndarray:
-        """Compute the volume of the cells within the container, summed over the frames, shape (K, *cells)."""
+        """Compute the volume of the cells inside the container, summed over frames, shape (K, *cells)."""
         moving, ends = self.run.scene.moving_axes, sides(self.run, self.run.time[:1])
         lengths = np.diff(ends[0], axis=1)[:, 0]
         across = [axis for axis in range(self.run.dimension) if axis not in self.axes]
@@ -180,10 +182,10 @@ class Cells:
         return Means(*(np.stack([getattr(part, name) for part in parts]) for name in vars(parts[0])))
 
     def temperature(self, local: bool) -> Means:
-        """Compute k_B T, twice the kinetic energy relative to the mean motion per degree of freedom.
+        """Compute k_B T: twice the kinetic energy per degree of freedom, relative to the mean motion.
 
-        If `local` is True, the motion is always relative to the flow in these cells; otherwise only if the
-        gas flows, see `flow.about_the_flow`.
+        If `local` is True, velocities are always relative to the flow in these cells. Otherwise they are
+        relative to a local flow only if the gas flows, see `flow.about_the_flow`.
         """
         about = mean_motion(self.run, dict(zip(self.axes, self.numbers, strict=True)), local)
         masses = self.run.masses[self.run.moving]

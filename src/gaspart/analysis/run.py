@@ -38,7 +38,7 @@ Source: TypeAlias = str | Path | xr.Dataset | Simulation
 EQUILIBRATION = 0.25
 """Fraction of a run that is discarded, unless the caller passes a time."""
 REPEATED = 129
-"""Number of frames when a simulation is run again to be measured; fewer if there are many particles."""
+"""Number of frames if a simulation is run again for a measurement; fewer if there are many particles."""
 _AT_REST = 1e-24  # fraction of a kinetic energy: the square of a rounding error
 _MOST = 20_000_000  # maximum number of values in these frames
 _BLOCK = 500_000  # number of values that are read at once; more if a single frame has more
@@ -49,7 +49,7 @@ class Run:
     """Measured part of a run: T frames of N particles in d dimensions.
 
     time : (T,), times of the frames.
-    data : frames with cumulative counters (T,) or (T, walls).
+    data : the frames, with cumulative counters of shape (T,) or (T, walls).
     centred : True if the total momentum is known to be zero along the axes on which it is conserved. Then a
         temperature is defined even if the file does not contain all particles or their velocities.
     about : reference of velocities and displacements (`analysis.flow`): the local "flow" of the gas, or
@@ -64,7 +64,7 @@ class Run:
 
     @property
     def count(self) -> int:
-        """Number of particles N in the scene; with open faces, of all particle numbers in use."""
+        """Number of particles N in the scene; with open faces, number of particle numbers in use."""
         return self.scene.capacity
 
     @property
@@ -94,7 +94,7 @@ class Run:
     def block_length(self, blocks: int) -> int:
         """Return the number of frames in each of `blocks` equal blocks, after the first frame.
 
-        Remaining frames belong to no block. Raises ValueError for too few frames.
+        Frames that remain do not belong to any block. Raises ValueError if there are too few frames.
         """
         length = (len(self.time) - 1) // blocks
         if length < 1:
@@ -103,7 +103,7 @@ class Run:
 
     @cached_property
     def positions(self) -> np.ndarray:
-        """Positions (T, N, d). With open faces, unused particle numbers have NaN."""
+        """Positions (T, N, d); with open faces, NaN for particle numbers that are not in use."""
         return self.vectors("coordinates").values.astype(float)
 
     @cached_property
@@ -112,7 +112,7 @@ class Run:
         return self.vectors("velocities").values.astype(float)
 
     def vectors(self, name: str) -> xr.DataArray:
-        """Return the vectors of all frames, which are read when they are used.
+        """Return the vectors of all frames; they are read from the file when they are used.
 
         Parameters
         ----------
@@ -127,7 +127,7 @@ class Run:
         Raises
         ------
         SceneError
-            If the file does not have them.
+            If the file does not contain the vectors.
         """
         if name not in self.data:
             kept = self.data.attrs.get("keep")
@@ -140,7 +140,7 @@ class Run:
         return np.asarray(self.vectors(name)[number].values, dtype=float)
 
     def blocks(self, name: str, frames: slice) -> Iterator[np.ndarray]:
-        """Read vectors of some frames in blocks of limited memory.
+        """Read the vectors of some frames in blocks that need limited memory.
 
         Parameters
         ----------
@@ -164,21 +164,21 @@ class Run:
         return self.data.sizes["atom"] * self.dimension
 
     def parts(self) -> Iterator[tuple[slice, Run]]:
-        """Divide the run into parts of limited memory, which are read when they are used.
+        """Divide the run into parts that need limited memory.
 
         Yields
         ------
         frames : slice
             Frames of the part.
-        part : Run These frames. In a part, properties that depend on all frames, such as `flow_axes`, hold
-            for this part only.
+        part : Run Run with only these frames. Properties that depend on all frames, such as `flow_axes`, are
+            computed from the part only.
         """
         for frames in divide_frames(len(self.time), self._numbers):
             yield frames, replace(self, time=self.time[frames], data=self.data.isel(frame=frames))
 
     @cached_property
     def masses(self) -> np.ndarray:
-        """Masses (N,), infinite for fixed particles; single particles come before species."""
+        """Masses (N,), infinite for fixed particles; single particles come first, then species."""
         fixed = self._each(per_particle(self.scene, "fixed")).astype(bool)
         return np.where(fixed, np.inf, self._each(per_particle(self.scene, "mass")).astype(float))
 
@@ -188,9 +188,9 @@ class Run:
         return self._each(per_particle(self.scene, "radius")).astype(float)
 
     def _each(self, values: np.ndarray) -> np.ndarray:
-        """Extend values of the initial particles to the shape (N,).
+        """Extend values of the initial particles to all N particle numbers.
 
-        Particles that enter later are equal to the initial particles.
+        Particles that enter later have the same properties as the initial particles.
         """
         return np.resize(values, self.count)
 
@@ -212,9 +212,10 @@ class Run:
 
     @property
     def conserved(self) -> np.ndarray:
-        """Mask (d,) of axes along which the total momentum is conserved; all False relative to rest.
+        """Mask (d,) of axes along which the total momentum is conserved.
 
-        Motion along these axes is measured relative to the mean.
+        Motion along these axes is measured relative to the centre of mass. If motion is measured relative to
+        rest, all elements are False.
         """
         return np.array(self.scene.conserved_axes) & (self.about == FLOW)
 
@@ -240,7 +241,7 @@ class Run:
 
     @cached_property
     def flow_axes(self) -> list[int]:
-        """Axes along which the flow velocity may vary (see `flow.flow_axes`); none relative to rest."""
+        """Axes along which the flow velocity may vary (see `flow.flow_axes`)."""
         return flow_axes(self) if self.about == FLOW else []
 
     @property
@@ -252,7 +253,8 @@ class Run:
     def freedoms(self) -> np.ndarray:
         """Number of translational degrees of freedom in each frame, shape (T,).
 
-        Raises SceneError without any degree of freedom, for example for one particle in a periodic container.
+        Raises SceneError if there is no degree of freedom, for example for one particle in a periodic
+        container.
         """
         moving = int(self.moving.sum())
         values = np.full(len(self.time), self.dimension * moving - int(self.conserved.sum()), dtype=float)
@@ -271,10 +273,10 @@ class Run:
     def temperatures(self) -> np.ndarray:
         """Temperature k_B T of each frame, shape (T,).
 
-        The temperature is twice the translational kinetic energy relative to the mean motion (see `motion`)
-        per degree of freedom. It is set to 0 if this energy is only a rounding error of the centre-of-mass
-        velocity. If the file does not contain all particles, see `_of_all`. Raises SceneError for the reasons
-        of `freedoms`.
+        The temperature is twice the translational kinetic energy per degree of freedom, relative to the mean
+        motion (see `motion`). It is set to 0 if this energy is only a rounding error of the centre-of-mass
+        velocity. If the file does not contain all particles, the temperature is computed by `_of_all`. Raises
+        SceneError under the conditions of `freedoms`.
         """
         refuse_open(self.scene, "changes the particles: there is no temperature of the whole run")
         lacking = self.is_subset or "velocities" not in self.data
@@ -295,7 +297,8 @@ class Run:
     def _energies(self) -> np.ndarray:
         """Kinetic energies relative to the flow and to rest, and degrees of freedom.
 
-        The shape is (3, T); each energy is multiplied by 2.
+        The rows of the array (3, T) are twice the energy relative to the flow, twice the energy relative to
+        rest, and the degrees of freedom.
         """
         masses, about, rows = self.masses[self.moving], mean_motion(self), []
         for _, part in self.parts():
@@ -323,7 +326,7 @@ class Run:
 
     @cached_property
     def temperature(self) -> float:
-        """Mean of `temperatures`, k_B T."""
+        """Mean of `temperatures` over the frames, k_B T."""
         return float(self.temperatures.mean())
 
     @property
@@ -354,9 +357,9 @@ class Run:
 
     @property
     def fluid(self) -> Gas | None:
-        """Gas of the scene, if it has at least two particles in a periodic container.
+        """Gas of the scene, if the scene has at least two particles in a periodic container.
 
-        None outside the density range of the equation of state of the fluid.
+        None otherwise, and outside the density range of the fluid's equation of state.
         """
         gas = self.scene.gas
         if gas is None or gas.count < 2 or not self.periodic.all():
@@ -365,7 +368,7 @@ class Run:
 
     @property
     def mixture(self) -> Mixture | None:
-        """Mixture of the scene, in which equal species are combined; None under the conditions of `fluid`."""
+        """Mixture of the scene, in which identical species are combined; None as for `fluid`."""
         mixture = self.scene.mixture
         if mixture is None or not self.periodic.all() or self.count < 2:
             return None
@@ -379,14 +382,14 @@ class Run:
     def moving_fluid(self) -> Gas | None:
         """The `fluid` at the temperature of the run; None if nothing moves.
 
-        Raises SceneError for the reasons of `moving`.
+        Raises SceneError under the conditions of `moving`.
         """
         gas = self.fluid
         return replace(gas, temperature=self.temperature) if gas and self.temperature > 0.0 else None
 
 
 def divide_frames(frames: int, numbers: int) -> Iterator[slice]:
-    """Divide frames into blocks of limited memory, from the number of values per frame."""
+    """Divide frames into blocks that need limited memory."""
     length = max(1, _BLOCK // max(1, numbers))
     for first in range(0, frames, length):
         yield slice(first, min(first + length, frames))
@@ -398,7 +401,7 @@ def select_particles(run: Run, species: int | None, particles: Sequence[int] | N
     species : species number, as in `Run.species`.
     particles : particle numbers, as in the file.
 
-    Raises SceneError if both arguments are passed, for numbers that do not exist, and if no selected particle
+    Raises SceneError if both arguments are passed, if a number does not exist, and if no selected particle
     moves.
     """
     moving = np.flatnonzero(run.moving)
@@ -442,14 +445,14 @@ def open_run(
     """Open the part of a source after the time `start`.
 
     By default the first quarter of the run is discarded. A simulation is run again from its start to its
-    present time. With `pairs`, the collisions of each pair of species are counted.
+    present time. If `pairs` is True, the collisions of each pair of species are counted.
 
     sheared : True if the observable is defined in a sheared gas.
     varying : True if the observable is defined with open faces.
     about : see `Run`.
 
-    Raises SceneError if the observable is undefined, for fewer than two frames, and for input that
-    `open_trajectory` rejects.
+    Raises SceneError if the observable is undefined for the scene, if there are fewer than two frames, and
+    for input that `open_trajectory` rejects.
     """
     one_of("about", about, ABOUT)
     if isinstance(source, Simulation):
@@ -505,7 +508,7 @@ def repeat_run(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
 
 
 def frame_of(simulation: Simulation) -> dict[str, Any]:
-    """Return the variables of a frame for the present state of a simulation."""
+    """Return the present state of a simulation as the variables of a frame."""
     state, scene = simulation.state, simulation.scene
     vectors = {"coordinates": state.positions, "velocities": state.velocities}
     vectors["displacements"] = state.unwrapped
@@ -517,7 +520,7 @@ def frame_of(simulation: Simulation) -> dict[str, Any]:
 
 
 def with_frames(simulation: Simulation, rows: Sequence[dict[str, Any]]) -> xr.Dataset:
-    """Return the frames of a simulation in the form of a trajectory."""
+    """Return the frames `rows` of a simulation in the form of a trajectory."""
     scene, engine = simulation.scene, simulation.engine
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     columns["displacements"] = columns["displacements"] - columns["displacements"][0]

@@ -1,7 +1,8 @@
 """Values of a run in each interval between frames, and in blocks of intervals.
 
-Z, the collision rate and the pressures on faces are computed only in this module. `gaspart.analysis` reduces
-these values to a mean with an uncertainty; figures combine them in their own ways.
+Z, the collision rate and the pressures on faces are computed only in this module. The functions of
+`gaspart.analysis` reduce these values to a mean with an uncertainty. Figures combine the values in other
+ways.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from gaspart.state.tally import compressibility_factor
 
 
 def compressibility(run: Run) -> np.ndarray:
-    r"""Compute Z in each interval by the virial theorem, shape (T - 1,).
+    r"""Compute the compressibility factor Z in each interval by the virial theorem, shape (T - 1,).
 
     With impulses dp exchanged at the distance dr,
 
@@ -29,11 +30,11 @@ def compressibility(run: Run) -> np.ndarray:
 
     The temperature is defined by the motion relative to the centre of mass, k_B T = 2 E' / (d (N - 1)). In a
     pair collision |dp| and the collision rate are both proportional to |v_n|, where v_n is the normal
-    component of v_1 - v_2. So the sum is proportional to <v_n^2>. This mean is linear in the energy, so a
-    fixed energy changes nothing. With zero total momentum <v_1 . v_2> = -<v^2> / (N - 1), hence <v_n^2> = 2
-    k_B T / m with this T. So Z - 1 is the value of the canonical ensemble of N particles. Its difference from
-    the infinite system is known to first order in 1/N (`theory.finite_size_correction(...,
-    ensemble="canonical")`).
+    component of v_1 - v_2. So the sum is proportional to <v_n^2>. This mean is linear in the energy, so it is
+    the same at fixed energy as in the canonical ensemble. With zero total momentum <v_1 . v_2> = -<v^2> / (N
+    - 1), hence <v_n^2> = 2 k_B T / m with this T. So Z - 1 is the value of the canonical ensemble of N
+    particles. Its difference from the infinite system is known to first order in 1/N
+    (`theory.finite_size_correction(..., ensemble="canonical")`).
     """
     return compressibility_factor(
         run.increments("virial_sum"), run.count, run.dimension, run.temperature, np.diff(run.time)
@@ -41,10 +42,10 @@ def compressibility(run: Run) -> np.ndarray:
 
 
 def collisions(run: Run) -> np.ndarray:
-    """Compute the collisions of one moving particle in each interval, shape (T - 1,).
+    """Compute the mean collisions of a moving particle in each interval, shape (T - 1,).
 
     A collision of two moving particles counts for both. Raises SceneError if the file does not contain all
-    particles, or does not count the collisions with fixed particles.
+    particles, or does not contain the number of collisions with fixed particles.
     """
     scene, met, count = run.scene, run.increments("collisions"), int(run.moving.sum())
     if count == 1:
@@ -57,7 +58,7 @@ def collisions(run: Run) -> np.ndarray:
 
 
 def collision_rate(run: Run) -> np.ndarray:
-    """Compute the collisions of one moving particle per time in each interval, shape (T - 1,)."""
+    """Compute the collision rate of a moving particle in each interval, shape (T - 1,)."""
     return collisions(run) / np.diff(run.time)
 
 
@@ -79,7 +80,7 @@ def face_pressures(run: Run) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Blocks:
-    """K blocks of equal length of a run; the remaining frames are not used.
+    """K blocks of a run with equal lengths; the remaining frames are not used.
 
     Neighbouring blocks share the frame at which counters are read. Averages over frames exclude the first
     frame of the run. Raises ValueError for more blocks than intervals.
@@ -90,7 +91,7 @@ class Blocks:
 
     @property
     def length(self) -> int:
-        """Number of intervals, and of frames, in each block."""
+        """Number of intervals in each block, equal to the number of frames."""
         return self.run.block_length(self.number)
 
     @property
@@ -100,7 +101,7 @@ class Blocks:
 
     @property
     def frames(self) -> slice:
-        """All frames of the blocks."""
+        """Slice of all frames in the blocks."""
         return slice(1, self.number * self.length + 1)
 
     @property
@@ -133,7 +134,7 @@ class Blocks:
 
 
 def over(values: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """Sum values (T - 1, ...) of intervals between the frames `ends` (K + 1,).
+    """Sum the values (T - 1, ...) of the intervals between frames `ends` (K + 1,).
 
     The sums have shape (K, ...).
     """
@@ -151,17 +152,18 @@ _FINE = 2000
 def plateau(
     volume: np.ndarray, pressure: np.ndarray, error: np.ndarray
 ) -> tuple[float, float, tuple[float, float]]:
-    """Compute the pressure of the line that cuts off equal areas of p(V).
+    """Compute the coexistence pressure from a loop of p(V), by Maxwell's equal-area construction.
 
-    Returns the pressure, its error, and the volumes at the ends of the line.
+    A horizontal line at this pressure cuts off equal areas of the loop. Returns the pressure, its error, and
+    the volumes at both ends of the line.
 
-    The arguments `volume` (per particle, in any order), `pressure` and its standard errors have the shape
-    (P,). A finite system in the coexistence region has a loop (Mayer and Wood, J. Chem. Phys. 42, 4268
-    (1965)) because the interface of the finite system costs free energy. The area between the ends is the
-    difference in free energy, so at equal areas both phases have the same chemical potential. The loop is
-    interpolated monotonically between the points (Fritsch and Carlson). The error is half of the width of the
-    central 68 % of loops that are redrawn from the errors of the points. Without a loop, or if less than half
-    of the bootstrap samples have a loop, the result is NaN, NaN, (NaN, NaN).
+    The arguments are the volume per particle (in any order), the pressure and its standard errors, each of
+    shape (P,). A finite system in the coexistence region has a loop (Mayer and Wood, J. Chem. Phys. 42, 4268
+    (1965)) because the interface of the finite system costs free energy. If the areas are equal, both phases
+    have the same chemical potential. The loop is interpolated between the points by the monotonic method of
+    Fritsch and Carlson. For the error, the points are drawn again from their errors many times; the error is
+    half of the width of the central 68 % of the resulting pressures. Without a loop, or if less than half of
+    the bootstrap samples have a loop, the result is NaN, NaN, (NaN, NaN).
     """
     order = np.argsort(volume)
     volume, pressure, error = (np.asarray(values, dtype=float)[order] for values in (volume, pressure, error))
@@ -175,7 +177,7 @@ def plateau(
 
 
 def _equal_areas(volume: np.ndarray, pressure: np.ndarray) -> tuple[float, tuple[float, float]]:
-    """Return the height of the line and the volumes at its ends, the largest volume first."""
+    """Return the pressure of the equal-area line and the volumes at its ends, largest first."""
     from scipy.interpolate import PchipInterpolator
     from scipy.optimize import brentq
 
@@ -216,18 +218,20 @@ def _equal_areas(volume: np.ndarray, pressure: np.ndarray) -> tuple[float, tuple
 LEAST_FRAMES = 32
 """Minimum number of frames for a test of drift."""
 SIGNIFICANT = 4.0
-"""Rise in standard errors that counts as a drift; by chance it occurs once in 16 000 series."""
+"""Change, in standard errors, above which a quantity counts as drifting. By chance it occurs in one of 16 000
+series.
+"""
 _DEGREE = 3
-"""Degree of the polynomial that follows a drift."""
+"""Degree of the polynomial that is fitted to a drift."""
 _CONSTANT = 1e-6
 """Relative scatter below which a series counts as constant."""
 
 
 def drift_of(data: Source, start: float | None = None, positions: bool = False) -> str:
-    """Describe the drifting quantities in the measured part of an open trajectory; "" if none drifts.
+    """Describe the quantities that drift in the measured part of a trajectory; "" if none drifts.
 
-    The tested quantities are the number of particles with open faces, the kinetic energy per particle, and,
-    with `positions`, the mean position of the particles along axes with walls.
+    The tested quantities are the kinetic energy per particle; if faces are open, the number of particles;
+    and, if `positions` is True, the mean position of the particles along each axis with walls.
     """
     with open_run(data, start, sheared=True, varying=True) as run:
         if len(run.time) < LEAST_FRAMES:

@@ -28,9 +28,9 @@ def by_species(source: Source, start: float | None = None, about: str = FLOW) ->
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
     about : {"flow", "rest"}, default "flow"
-        Frame of reference. "flow": velocities and paths are relative to the local flow if the gas flows,
-        otherwise relative to the centre of mass along axes on which the total momentum is conserved (see
-        `gaspart.analysis.flow`). "rest": relative to the container.
+        Frame of reference. "flow": velocities and paths are relative to the local flow if the gas flows.
+        Otherwise they are relative to the centre of mass, along axes on which the total momentum is conserved
+        (see `gaspart.analysis.flow`). "rest": relative to the container.
 
     Returns
     -------
@@ -42,8 +42,8 @@ def by_species(source: Source, start: float | None = None, about: str = FLOW) ->
         - `temperature` [energy], twice the mean translational energy per degree of freedom;
         - `mean_speed` [length/time];
         - `D` [length^2/time], and the curves `msd` and `vacf` (species, lag), as by `gaspart measure` with a
-          species. NaN if a quantity is undefined for a species, such as D between walls, or if the species
-          has fewer lags than others. The attribute `not_measured` states the reason.
+          species. The value is NaN if the quantity is undefined for a species, such as D between walls, or if
+          the species has fewer lags than other species. The attribute `not_measured` states the reason.
 
     Raises
     ------
@@ -53,9 +53,9 @@ def by_species(source: Source, start: float | None = None, about: str = FLOW) ->
     Notes
     -----
     Relative to the centre of mass, the mean squared velocity of a particle of mass m is reduced by the factor
-    1 - m / M. M is the total mass of the particles whose mean is subtracted. This is exact in equilibrium.
-    Temperatures and speeds are corrected for this. `to_dataframe` of the variables without lags gives a table
-    with one row per species.
+    1 - m / M. M is the total mass of the particles whose mean velocity is subtracted. Temperatures and speeds
+    are corrected by this factor, which is exact in equilibrium. Call `to_dataframe` on the variables without
+    lags to obtain a table with one row per species.
 
     Examples
     --------
@@ -126,9 +126,9 @@ def _of_velocities(run: Run, kind: int) -> dict[str, Observable]:
 
 
 def _column(name: str, results: list[Observable | None]) -> xr.Dataset:
-    """Join the values of one observable for all species, with uncertainties.
+    """Combine the values of one observable for all species, with uncertainties.
 
-    The result is empty if the observable was measured for no species.
+    The result is empty if the observable could not be measured for any species.
     """
     available = [result for result in results if result is not None]
     if not available:

@@ -1,6 +1,6 @@
 """Observables from positions and speeds: distributions, profiles and order.
 
-Uncertainties come from the scatter of consecutive blocks of the run, or of groups of particles.
+Uncertainties come from the scatter between consecutive blocks of the run, or between groups of particles.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def speed_distribution(
     fastest: float | None = None,
     about: str = FLOW,
 ) -> Observable:
-    """Measure the probability density of the speeds of moving particles, of all frames together.
+    """Measure the probability density of the speeds of moving particles over all frames.
 
     Parameters
     ----------
@@ -61,11 +61,12 @@ def speed_distribution(
 
     Notes
     -----
-    Velocities relative to the flow (see `gaspart.analysis.flow`) are multiplied by sqrt(M / (M - m)). M is
-    the mass of the particles whose mean is subtracted. The error is the scatter of groups of particles. It is
-    NaN in an empty bin. Theory: Maxwell's distribution at the temperature of the run. For one species at a
-    constant kinetic energy, the exact distribution for the number of particles. There is no theory if the gas
-    flows and has no single temperature.
+    Velocities of a particle of mass m relative to the flow (see `gaspart.analysis.flow`) are multiplied by
+    sqrt(M / (M - m)). M is the total mass of the particles whose mean velocity is subtracted. The error
+    follows from the scatter between groups of particles. It is NaN in an empty bin. The theoretical density
+    is Maxwell's distribution at the temperature of the run. For one species at a constant kinetic energy it
+    is the exact distribution for the finite number of particles. There is no theory if the gas flows and
+    therefore has no uniform temperature.
 
     Examples
     --------
@@ -142,21 +143,22 @@ def profile(
     source : str, Path, Dataset or Simulation
         A trajectory (a path or an open trajectory), or a simulation.
     of : {"density", "temperature"}, default "density"
-        "density": moving particles per volume within the present container (faces may move). The volume from
-        which fixed particles exclude centres does not count (NaN if no volume is left). "temperature":
-        temperature of the moving particles (NaN if there are no particles).
+        "density": number of moving particles divided by the volume of the bin. Only volume inside the
+        container counts (faces may move), and only volume that fixed particles leave accessible to centres
+        (NaN without accessible volume). "temperature": temperature of the moving particles (NaN if the bin
+        contains no particles).
     axis : {"x", "y", "z"}, optional
         The axis. Default: the last one.
     bins : int, optional
-        Default: 40. For a density, the default is the number of bins of the impulses that the run has stored
-        along the axis.
+        Number of bins. Default: 40. If the run has stored impulses along the axis, the default for a density
+        is their number of bins.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
     species : int, optional
         Measure only this species, identified by its number in the scene.
     about : {"flow", "rest"}, default "flow"
         Frame of reference of a temperature. "flow": relative to the local flow if there are sliding or moving
-        faces, a force along a periodic axis, or a uniform wind; otherwise relative to the centre of mass if
+        faces, a force along a periodic axis, or a uniform wind. Otherwise relative to the centre of mass, if
         its velocity is conserved (see `gaspart.analysis.flow`). "rest": relative to the container.
 
     Returns
@@ -172,16 +174,17 @@ def profile(
 
     Notes
     -----
-    Errors include time correlations, for each bin separately. An error is NaN if it has fewer than two
-    degrees of freedom, because the run is too short for the correlation in this bin. It is also NaN if the
-    value of a bin does not change (0 if nothing moves, or if all bins have one value).
+    The error of each bin includes the time correlation in this bin. An error is NaN if it has fewer than two
+    degrees of freedom, because the run is then too short compared with the correlation time in this bin. It
+    is also NaN if the value of the bin does not change. It is 0 if nothing moves, or if all bins have the
+    same value.
 
     If the run has stored impulses along the axis, and each bin consists of an integer number of stored bins,
-    the density is computed from impulses. This is more accurate than counting (`gaspart.analysis.impulses`).
-    The attribute `estimator` names this method.
+    the density is also computed from impulses. The result is more accurate than from counts alone
+    (`gaspart.analysis.impulses`). The attribute `estimator` names the method.
 
-    Theory of the density: hydrostatics of equal particles under gravity along this axis, with the equation of
-    state of the fluid. Theory of the temperature: uniform in equilibrium.
+    For equal particles under gravity along this axis, the theoretical density is hydrostatic, with the
+    equation of state of the fluid. The theoretical temperature in equilibrium is uniform.
 
     Examples
     --------
@@ -216,7 +219,7 @@ def profile(
 
 
 def density(source: Source, start: float | None = None, **selection: Any) -> Observable:
-    """Measure the density along an axis: `profile` of "density".
+    """Measure the density along an axis by `profile` with "density".
 
     Parameters
     ----------
@@ -248,7 +251,7 @@ def density(source: Source, start: float | None = None, **selection: Any) -> Obs
 
 
 def temperature(source: Source, start: float | None = None, **selection: Any) -> Observable:
-    """Measure the temperature along an axis: `profile` of "temperature".
+    """Measure the temperature along an axis by `profile` with "temperature".
 
     Parameters
     ----------
@@ -335,8 +338,8 @@ def order_parameter(source: Source, start: float | None = None) -> Observable:
 def _density(run: Run, axis: int, bins: int, species: int | None) -> Means:
     """Compute the density of the moving particles, or of one species.
 
-    The density is NaN where fixed particles exclude centres. Raises SceneError for a file that contains only
-    the first particles of several kinds.
+    The density is NaN in bins from which fixed particles exclude all centres. Raises SceneError if particles
+    are of several kinds and the file does not contain all of them.
     """
     if len(run.scene.kinds) > 1:
         run.require_all()

@@ -1,6 +1,6 @@
 """Static structure factors of all particles and of each pair of species.
 
-Uncertainties come from the scatter of consecutive blocks of the run.
+Uncertainties come from the scatter between consecutive blocks of the run.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ from gaspart.workers import in_threads
 
 
 _FEW = 24
-"""Number of waves along the longest side, up to which all wave vectors of a shell are candidates. Up to twice
-this number, every second wave along each axis is a candidate, and so on.
+"""If the number of waves along the longest side is at most this number, all wave vectors of a shell are
+candidates. Up to twice this number, every second wave along each axis is a candidate, and so on.
 """
 
 
 def wave_vectors(lengths: Sequence[float] | np.ndarray, highest: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the wave vectors with 0 < |k| <= highest, one of each pair k, -k.
+    """Return one of each pair of wave vectors k, -k with 0 < |k| <= highest.
 
     The wave vectors are k = 2 pi n / L.
 
@@ -56,9 +56,9 @@ def shells_of(
 
     `bins` is the number of equal intervals.
 
-    The vectors are evenly distributed among the candidates. If there are many, the candidates are every
-    second (fourth, ...) wave along each axis. Returns n (M, d), the shell number of each vector (M,), and the
-    mean |k| (S,) of the S nonempty shells.
+    The selected vectors are evenly distributed among the candidates. If there are too many wave vectors, only
+    every second (fourth, ...) wave along each axis is a candidate. Returns n (M, d), the shell number of each
+    vector (M,), and the mean |k| (S,) of the S nonempty shells.
     """
     parts, low, step = [], 0.0, 1
     while low < highest:
@@ -78,21 +78,21 @@ def shells_of(
 
 
 def in_shells(values: np.ndarray, shell: np.ndarray) -> np.ndarray:
-    """Average the values (M,) in each shell, shape (S,)."""
+    """Average values (M,) of wave vectors in each shell, shape (S,)."""
     return np.bincount(shell, values) / np.bincount(shell)
 
 
 def factors(
     frames: np.ndarray, lengths: Sequence[float] | np.ndarray, waves: np.ndarray, threads: int = 1
 ) -> np.ndarray:
-    """Return |sum exp(i k.r)|^2 / N of each frame, shape (T, M); see `amplitudes`."""
+    """Compute |sum exp(i k.r)|^2 / N in each frame, shape (T, M); see `amplitudes`."""
     return np.abs(amplitudes(frames, lengths, waves, threads)) ** 2 / frames.shape[1]
 
 
 def amplitudes(
     frames: np.ndarray, lengths: Sequence[float] | np.ndarray, waves: np.ndarray, threads: int = 1
 ) -> np.ndarray:
-    """Return sum exp(i k.r) of each frame at wave vectors.
+    """Compute the sum of exp(i k.r) over the particles in each frame, for several wave vectors.
 
     The wave vectors are k = 2 pi n / L.
 
@@ -105,7 +105,7 @@ def amplitudes(
     waves : ndarray of int, shape (M, d)
         The integers n.
     threads : int, default 1
-        Number of threads; each thread sums whole frames.
+        Number of threads. Each frame is summed by a single thread.
 
     Returns
     -------
@@ -127,11 +127,11 @@ def amplitudes(
 
 
 def _factor_rows(waves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the products from which all factors are computed, and the rows of each wave.
+    """Return the products from which all exponential factors are computed, and the rows of each wave.
 
     The factors are exp(2 pi i n x / L).
 
-    For waves (M, d), `sum_waves` takes them as arrays (R, 2) and (M, d).
+    For waves (M, d), `sum_waves` expects the products and the rows as arrays (R, 2) and (M, d).
     """
     from gaspart.kernels.analysis.waves import CONJUGATE
 
@@ -160,7 +160,9 @@ _WAVES = 24
 container permits.
 """
 _WORK = 2**35
-"""Maximum number of terms in all sums over particles; beyond this number fewer frames are used."""
+"""Maximum number of terms in all sums over particles together. If there would be more terms, fewer frames are
+used.
+"""
 
 
 def structure_factor(
@@ -182,8 +184,8 @@ def structure_factor(
     Returns
     -------
     Observable
-        S (wave_number,), dimensionless, averaged over up to 320 frames; fewer if there are many particles.
-        The coordinate is the mean |k| in each interval.
+        S (wave_number,), dimensionless, averaged over up to 320 frames. Fewer frames are used if there are
+        many particles. The coordinate is the mean |k| in each interval.
 
     Raises
     ------
@@ -193,11 +195,11 @@ def structure_factor(
 
     Notes
     -----
-    The sums are exact, at the wave vectors that the container permits: k = 2 pi (n_x / L_x, ...). k = 0 is
-    excluded, because S is N there. The values are averaged in intervals, with up to 24 vectors in each
-    interval. An interval without vectors is omitted. In a fluid, S(k) tends to the reduced compressibility
-    k_B T d rho / dP at small k, and to 1 at large k. Theory for equal spheres: the approximation of Verlet
-    and Weis.
+    The sums are exact at the wave vectors that the periodic container permits: k = 2 pi (n_x / L_x, ...). The
+    vector k = 0, at which S = N, is excluded. The values are averaged in intervals of |k|, over up to 24
+    vectors in each interval. An interval without vectors is omitted. In a fluid, S(k) tends to the reduced
+    compressibility k_B T d rho / dP at small k, and to 1 at large k. The theoretical curve for equal spheres
+    is the approximation of Verlet and Weis.
 
     Examples
     --------
@@ -244,8 +246,8 @@ def partial_structure_factors(
     Raises
     ------
     SceneError
-        For the reasons of `structure_factor`; also if the scene has single particles, because these do not
-        belong to a species.
+        Under the conditions of `structure_factor`. Also if the scene has single particles, because these do
+        not belong to a species.
 
     Notes
     -----
@@ -253,10 +255,11 @@ def partial_structure_factors(
 
         S_ab(k) = <rho_a(k) rho_b(-k)> / sqrt(N_a N_b),    rho_a(k) = sum over species a of exp(i k.r).
 
-    At large k, and for an ideal mixture, the values are 1 for equal species and 0 for different species. With
-    the number fractions x, the sum of sqrt(x_a x_b) S_ab over all a and b is exactly the `structure_factor`.
-    Wave vectors and errors are the same as in `structure_factor`. Theory for spheres of one size: the
-    approximation of Verlet and Weis. Theory for a mixture: the approximation of Percus and Yevick.
+    At large k, and for an ideal mixture at any k, the factor is 1 if a and b are the same species and 0 if
+    they are different species. With the number fractions x, the sum of sqrt(x_a x_b) S_ab over all a and b is
+    exactly the `structure_factor`. Wave vectors and errors are the same as in `structure_factor`. The
+    theoretical factors are the approximation of Verlet and Weis for spheres of one size, and the
+    approximation of Percus and Yevick for spheres of several sizes.
 
     References
     ----------
@@ -299,10 +302,10 @@ def _average_products(
     highest: float | None,
     products: Callable[[np.ndarray, np.ndarray], np.ndarray],
 ) -> tuple[np.ndarray, dict[str, Any]]:
-    """Return means of `products` over 16 blocks of the run, in intervals of |k|.
+    """Average `products` in each of 16 blocks of the run, in intervals of |k|.
 
-    `products` is a function of (frames, waves) that returns an array (T, ..., M). Returns an array
-    (16, ..., wave_number), and the coordinate. Raises SceneError for the reasons of `structure_factor`.
+    `products` is a function of (frames, waves) that returns an array (T, ..., M). Returns an array (16, ...,
+    wave_number), and the coordinate. Raises SceneError under the conditions of `structure_factor`.
     """
     bins = count_of("bins", bins, least=2)
     lengths = run.scene.container.lengths

@@ -1,16 +1,16 @@
 """Viscosities, thermal conductivity and pressure tensor, from tallies of the stress and the heat flux.
 
-A run with `Correlations(stress=True)` sums products of these fluxes J, relative to the velocity of the centre
-of mass. Each flux is averaged over an interval h between two samples. The run also sums squared differences
-of their time integrals, G = V int J dt (Helfand, Phys. Rev. 119, 1 (1960)). A transport coefficient is the
-limit at long times of the expression
+A run with `Correlations(stress=True)` sums products of these fluxes J. The fluxes are relative to the
+velocity of the centre of mass. Each flux is averaged over the interval h between two samples. The run also
+sums squared differences of their time integrals, G = V int J dt (Helfand, Phys. Rev. 119, 1 (1960)). A
+transport coefficient is the limit at long times of each of the expressions
 
     <(G(t) - G(0))^2> / (2 V t x)  and of its derivative  h [C(0)/2 + C(h) + C(2h) + ... ] / (V x),
 
-where C is the correlation of V J. x = k_B T for the viscosities, and k_B T^2 for the conductivity of a gas of
-one species. These are the formulas of Helfand and of Green and Kubo. With means over intervals instead of
-instantaneous values, the second formula is still exact at the times between two lags. It includes the
-impulses at collisions.
+where C is the correlation function of V J. The constant x is k_B T for the viscosities, and k_B T^2 for the
+conductivity of a gas of one species. The first expression is the formula of Helfand, the second the formula
+of Green and Kubo. The second formula is exact at the times between two lags, although the fluxes are means
+over intervals and not instantaneous values. These means include the impulses at collisions.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ from gaspart.trajectory.correlator import Correlations
 
 
 def conductivity_without_diffusion(run: Run, lag: float) -> Observable:
-    """Measure the thermal conductivity of a mixture, from correlations up to a lag in time units.
+    """Measure the thermal conductivity of a mixture from correlations up to the time `lag`.
 
     Raises SceneError if frames are unevenly spaced, too far apart, or too few, and if the file does not
     contain all particles.
@@ -86,9 +86,9 @@ def conductivity_without_diffusion(run: Run, lag: float) -> Observable:
 
 
 def _sum_displacements(run: Run) -> np.ndarray:
-    """Sum displacements relative to the centre of mass over the particles of each species.
+    """Sum the displacements of each species relative to the centre of mass.
 
-    The shape is (S - 1, T, d), because the sum of the last species follows from the others.
+    The shape is (S - 1, T, d), because the sum for the last species follows from the other sums.
     """
     moving, masses = run.moving, run.masses  # raises SceneError if the file lacks particles
     members = [run.species == kind for kind in np.unique(run.species)[:-1]]
@@ -102,10 +102,10 @@ def _sum_displacements(run: Run) -> np.ndarray:
 def _products(flux: np.ndarray, other_flux: np.ndarray, lags: int) -> np.ndarray:
     """Compute products of changes of two sets of time-integrated fluxes.
 
-    The integrals have the shapes (A, T, d) and (B, T, d), the products (A, B, T - 1 - lags). The change of
-    one quantity over an interval is multiplied by the change of the other: half of the change over the same
-    interval plus the change over the next `lags` intervals. The result is the mean over both orders and over
-    axes.
+    The integrals have the shapes (A, T, d) and (B, T, d), and the products the shape (A, B, T - 1 - lags).
+    The change of one integral over an interval is multiplied by a sum of changes of the other integral: half
+    of its change over the same interval plus its change over the next `lags` intervals. The result is
+    averaged over both orders of the two integrals and over axes.
     """
 
     def half(first: np.ndarray, second: np.ndarray) -> np.ndarray:
@@ -128,7 +128,7 @@ def shear_viscosity(source: Source, lag: float | None = None, start: float | Non
     source : str, Path or Dataset
         A trajectory with correlations of the stress (a path or an open trajectory).
     lag : float, [time], optional
-        Longest time difference of the correlations that are summed. Default: the longest lag.
+        Longest time difference of the correlations that are summed. Default: the longest stored lag.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
 
@@ -145,9 +145,10 @@ def shear_viscosity(source: Source, lag: float | None = None, start: float | Non
 
     Notes
     -----
-    Between sheared faces (`LeesEdwards`) it is the response -P_yx / shear_rate instead; this needs no lag and
-    gives no curves. The antisymmetric part of the stress is included. It is zero unless collisions do not
-    conserve angular momentum, as in the cells of DSMC. Theory: Enskog's viscosity.
+    Between sheared faces (`LeesEdwards`) the result is the response -P_yx / shear_rate instead. It needs no
+    lag and has no curves. The antisymmetric part of the stress is included. This part is zero unless
+    collisions violate the conservation of angular momentum, as in the cells of DSMC. The theoretical value is
+    Enskog's viscosity.
 
     Examples
     --------
@@ -174,7 +175,7 @@ def bulk_viscosity(source: Source, lag: float | None = None, start: float | None
     source : str, Path or Dataset
         A trajectory with correlations of the stress (a path or an open trajectory).
     lag : float, [time], optional
-        Longest time difference of the correlations that are summed. Default: the longest lag.
+        Longest time difference of the correlations that are summed. Default: the longest stored lag.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
 
@@ -186,12 +187,12 @@ def bulk_viscosity(source: Source, lag: float | None = None, start: float | None
     Raises
     ------
     SceneError
-        For the reasons of `shear_viscosity`.
+        Under the conditions of `shear_viscosity`.
 
     Notes
     -----
-    The mean is computed over the run, which has the duration T. This makes the value too low by about the
-    fraction 2 lag / T. Theory as for `shear_viscosity`.
+    The mean pressure is computed from the run itself, which has the duration T. Therefore the result is too
+    low by about the fraction 2 lag / T. The theoretical value is Enskog's bulk viscosity.
 
     Examples
     --------
@@ -215,7 +216,7 @@ def thermal_conductivity(source: Source, lag: float | None = None, start: float 
     source : str, Path or Dataset
         A trajectory with correlations of the stress (a path or an open trajectory).
     lag : float, [time], optional
-        Longest time difference of the correlations that are summed. Default: the longest lag.
+        Longest time difference of the correlations that are summed. Default: the longest stored lag.
     start : float, [time], optional
         Frames before this time are discarded. Default: a quarter of the run.
 
@@ -227,14 +228,14 @@ def thermal_conductivity(source: Source, lag: float | None = None, start: float 
     Raises
     ------
     SceneError
-        For the reasons of `shear_viscosity`; also for particles of many sizes, and for single particles in a
-        mixture.
+        Under the conditions of `shear_viscosity`; also for a polydisperse species, and for single particles
+        in a mixture.
 
     Notes
     -----
-    For a mixture it is the conductivity without diffusion (see `conduction`). It is computed from the fluxes
-    between frames, without the curves. The time between frames must not exceed the lag. Theory as for
-    `shear_viscosity`.
+    For a mixture the result is the conductivity without diffusion (see `conduction`). It is computed from the
+    fluxes between frames, and the curves are absent. The time between frames must not exceed the lag. The
+    theoretical value is Enskog's conductivity.
 
     Examples
     --------
@@ -278,7 +279,8 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
 
     Notes
     -----
-    In a sheared gas, velocities are relative to the flow. Theory: the equation of state, for a gas at rest.
+    In a sheared gas, velocities are relative to the flow. The theoretical value, for a gas at rest, follows
+    from the equation of state.
 
     Examples
     --------
@@ -312,8 +314,8 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
 def _read_settings(run: Run) -> Correlations:
     """Return the settings of the stress correlations of a run.
 
-    Raises SceneError if the run has none. Older versions stored fluxes of absolute velocities. A run of such
-    a version is rejected if the gas moves as a whole.
+    Raises SceneError if the run has none. Older versions of gaspart stored fluxes that are not relative to
+    the centre of mass. A run of such a version is rejected if the gas moves as a whole.
     """
     text = run.data.attrs.get("correlations")
     settings = Correlations.from_json(text) if text else None
@@ -327,7 +329,7 @@ def _read_settings(run: Run) -> Correlations:
 
 
 def _moves(scene: Scene, state: State) -> bool:
-    """Return True if the motion of the whole gas has enough energy to change a coefficient."""
+    """Return True if the centre of mass moves fast enough to change a transport coefficient."""
     squares = (state.velocities - flow(scene, state.positions)) ** 2
     thermal = float((state.masses[:, None] * squares).mean())
     return float(state.masses.sum() * (drift_of(scene, state) ** 2).sum()) > _SLIGHT * thermal
@@ -385,7 +387,7 @@ _PARTS = {"shear": ("shear", "rotational")}
 
 
 def _lags_until(settings: Correlations, lag: float | None) -> int:
-    """Return the number of the longest lag whose correlations are summed."""
+    """Return the index of the longest lag whose correlations are summed."""
     if lag is None:
         return settings.lags
     number = round(lag / settings.interval)
@@ -396,9 +398,9 @@ def _lags_until(settings: Correlations, lag: float | None) -> int:
 
 
 def green_kubo(run: Run, name: str) -> np.ndarray:
-    """Compute a coefficient from the correlation up to each lag, in each block.
+    """Compute a transport coefficient from the correlation up to each lag, in each block.
 
-    Blocks are the intervals between frames in which pairs of samples of all lags end.
+    A block is an interval between frames. Only intervals in which pairs of samples of all lags end are used.
 
     Parameters
     ----------
@@ -423,7 +425,7 @@ def green_kubo(run: Run, name: str) -> np.ndarray:
 
 
 def helfand(run: Run, name: str) -> np.ndarray:
-    """Compute a coefficient from the squared change of G over each lag, in each block.
+    """Compute a transport coefficient from the squared change of G over each lag, by block.
 
     Parameters
     ----------
@@ -451,7 +453,7 @@ def _scale(run: Run, name: str) -> float:
 
 
 def _blocks(run: Run, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return the correlation of V J and the squared change of G by block.
+    """Return the correlation of V J and the squared change of G for each block.
 
     Both arrays have the shape (B, lags).
 

@@ -47,14 +47,15 @@ from gaspart.trajectory.recipe import Recipe, read_recipe
 __all__ = ["Check", "judge", "judge_places"]
 
 TOUCH = 1e-7
-"""Overlap divided by the diameter that is attributed to rounding; the limit is larger if the numbers in the
-file are coarser.
+"""Maximum overlap, divided by the diameter, that is attributed to rounding. The limit is larger if the
+numbers in the file have a coarser resolution.
 """
 COARSEST = 0.1
-"""Overlap divided by the diameter that is never attributed to rounding, even in a file with coarse numbers.
+"""Overlap, divided by the diameter, above which an overlap is never attributed to rounding, even in a file
+with a coarse resolution.
 """
 MOST_FRAMES = 200
-"""Number of evenly spaced frames that are tested for overlaps and contact values."""
+"""Maximum number of evenly spaced frames that are tested for overlaps and contact values."""
 _MANY = 100_000  # number of particles in these frames above which importing numba to count pairs saves time
 _BINS = 2**20  # maximum bin width for counting pairs, as a fraction of the contact distance
 _MARGIN = 1e-9  # possible rounding error of a distance between images, in diameters
@@ -83,13 +84,13 @@ def judge_places(frames: Frames, tolerance: float | None = None) -> list[Check]:
 
 
 def _allowed_overlap(frames: Frames, tolerance: float | None) -> float:
-    """Return the tolerance as a fraction of the smallest diameter."""
+    """Return the allowed overlap as a fraction of the smallest diameter."""
     coarse = 4.0 * frames.resolution / (2.0 * float(frames.radii.min()))
     return min(max(TOUCH, coarse), COARSEST) if tolerance is None else tolerance
 
 
 def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Check:
-    """Return the deepest overlap of two particles as a check, in units of their contact distance."""
+    """Check the deepest overlap of two particles, as a fraction of their contact distance."""
     if frames.sampled:
         return Check("overlaps", None, "contacts are sampled, so that particles may overlap")
     if frames.no_identity and frames.diameter is None and frames.radii_by_frame is None:
@@ -160,8 +161,8 @@ def _pressure(frames: Frames) -> Check:
 
     Z is computed from collisions if the file counts them, otherwise from the pair distribution at contact.
     Two conditions select the frames that are used. Since the start, particles must have moved by the distance
-    between neighbours, so that no order of a lattice remains (it decays as exp(-k^2 <r^2> / 2d)). Between two
-    frames, particles must have moved across the shells in which pairs are counted.
+    between neighbours, so that no lattice order remains (this order decays as exp(-k^2 <r^2> / 2d)). Between
+    two frames, particles must have moved across the shells in which pairs are counted.
     """
     name = _PRESSURE
     if reason := _no_pressure(frames):
@@ -200,7 +201,7 @@ def _pressure(frames: Frames) -> Check:
 
 
 def _by_collisions(path: Path, start: float) -> Check:
-    """Compare Z from the collisions of a gaspart run after a time with theory."""
+    """Compare Z with theory, from the collisions of a gaspart run after the time `start`."""
     factor = compressibility_factor(path, start=start)
     if factor.theory is None:
         return Check(_PRESSURE, None, "there is no theory of it for this scene")
@@ -262,7 +263,9 @@ def _diffusion(frames: Frames) -> Check:
 
 
 ENERGY_DRIFT = 1e-9
-"""Largest drift of the energy, relative to the energy that particles had and carried."""
+"""Maximum drift of the energy, divided by the greatest sum of the kinetic energy and the energy that
+particles carried through faces.
+"""
 _CHANGING = "particles come and go: its theory is of those that stay"
 
 

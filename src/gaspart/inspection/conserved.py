@@ -17,7 +17,9 @@ from gaspart.inspection.verdict import Check
 
 
 WRONG = 1e-3
-"""Relative error of a flight, beyond the resolution of the numbers, that is not attributed to rounding."""
+"""Relative error of a flight above which the error is not attributed to rounding, in addition to the
+resolution of the numbers.
+"""
 _SINGLE = float(np.finfo(np.float32).eps)
 _DIGITS = 12  # decimal places at which decimal and binary numbers differ
 
@@ -25,7 +27,7 @@ _DIGITS = 12  # decimal places at which decimal and binary numbers differ
 class Flights(NamedTuple):
     """Number of flights without a collision, and their largest relative error.
 
-    The frame is the end of the flight with the largest error.
+    The frame is the one at which the flight with the largest error ends.
     """
 
     number: int
@@ -34,7 +36,7 @@ class Flights(NamedTuple):
 
 
 def flights(frames: Frames) -> Flights:
-    """Compare displacements with velocities, for particles with the same velocity in two frames."""
+    """Compare displacements with velocities for particles whose velocity is the same in two frames."""
     assert frames.velocities is not None and frames.time is not None, "requires velocities and times"
     squares = frames.squares
     root = float(np.sqrt(squares.sum() / max(np.count_nonzero(squares), 1)))
@@ -135,7 +137,7 @@ def judge_flights(frames: Frames) -> Check:
 
 
 _MOST = 0.5
-"""Fraction of the particles above which a finding is not a coincidence."""
+"""Fraction of the particles above which an agreement is not regarded as a coincidence."""
 _NEAR = 0.2
 """Distance within which a predicted position counts as found, in units of the median distance between
 neighbours. By chance, 0.6 % of the spheres and 3 % of the discs have a neighbour within this distance.
@@ -159,7 +161,7 @@ def continuous(frames: Frames, doubt: str | None, identified: bool) -> Frames:
 
 
 def _are_copied(frames: Frames, doubtful: bool) -> bool:
-    """Return True if all frames have the same velocities, and particles do not move by them.
+    """Return True if all frames have the same velocities, but displacements contradict them.
 
     If `doubtful` is True, equal velocities count as copies unless the times are known and all particles move
     by them.

@@ -24,7 +24,7 @@ _SAME = 1e-6
 class Contents:
     """Fields of T frames of N particles, as read from a file.
 
-    Missing fields have the value None.
+    Missing fields are set to None.
 
     positions, velocities : (T, N, 2 or 3), as stored.
     time : (T,).

@@ -24,8 +24,8 @@ _FRAMES = 64  # maximum number of values in memory
 def energy_line(scene: Scene, data: xr.Dataset) -> str:
     """Return a line that states the energy drift of a run.
 
-    In every scene the total energy, minus the energy exchanged by contacts, faces and kicks, is conserved.
-    Its drift is relative to the largest kinetic energy.
+    In every scene the total energy minus the energy that contacts, faces and kicks exchange with the
+    particles is conserved. Its drift is relative to the largest kinetic energy.
     """
     kinetic = data["kinetic_energy"].values
     try:

@@ -20,7 +20,7 @@ from gaspart.scene.scene import Scene
 
 @dataclass(frozen=True)
 class Frames:
-    """Data of T frames of N particles that can be checked.
+    """Data of T frames of N particles for the checks.
 
     positions : (T, N, d), on periodic axes inside the container [0, L], NaN for particles that are absent
         from a frame.

@@ -29,8 +29,8 @@ from gaspart.system import memory
 from gaspart.trajectory.recipe import read_recipe
 
 COPIES = 4
-"""Memory for reading a file divided by the size of the file: in double precision, as stored and in the
-container.
+"""Memory needed to read a file, divided by the size of the file: copies in double precision, as stored, and
+in the container.
 """
 SUFFIXES = (".nc", ".gsd", ".xyz")
 _READERS = {
@@ -151,8 +151,9 @@ def read_state(path: str | Path, scene: Scene) -> State:
 
     Notes
     -----
-    The particles of the file are sorted by their ids, if there are any. This order must be the order of the
-    scene. If radii and masses then disagree, particles are assigned by their radii and masses.
+    The particles of the file are sorted by their ids, if there are any. This order should be the order of the
+    scene. If radii and masses then differ from the scene, particles are assigned by
+    their radii and masses.
 
     Examples
     --------

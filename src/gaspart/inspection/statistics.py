@@ -1,8 +1,8 @@
 """Statistical checks: independent samples, speeds, contact values and diffusion of a trajectory.
 
-Velocities change by collisions, and positions change by flights. So velocities are measured against the
-number of collisions, and positions against the distance that particles have moved. Neither requires times or
-a law of motion, so files of all programs can be used.
+Velocities change by collisions, and positions change by flights. So the relaxation of velocities is measured
+by the number of collisions, and the relaxation of positions by the distance that particles have moved. Both
+measures require neither times nor a law of motion, so files of all programs can be used.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ _CHANGED = 0.05  # minimum change of a velocity that counts, in root-mean-square
 def count_collisions(frames: Frames) -> np.ndarray:
     """Compute a lower bound of the collisions (T,) per particle since the first frame.
 
-    Between consecutive frames it is the smaller of two numbers. The first is -ln of the fraction of particles
-    whose velocity has not changed (except by reflections at walls). The second is -(d/2) ln of the
+    Between consecutive frames the bound is the smaller of two numbers. The first is -ln of the fraction of
+    particles whose velocity has not changed (except by reflections at walls). The second is -(d/2) ln of the
     correlation of velocities, which decays as exp(-2s/d) in s collisions. The first number is too large with
     a thermostat, which slightly changes all velocities; the second is too large with walls.
     """
@@ -87,7 +87,7 @@ def decorrelated_frames(way: np.ndarray, distance: float, first: int = 0) -> lis
 def first_relaxed_frame(way: np.ndarray, distance: float) -> int | None:
     """Return the first frame in which particles have moved by `distance`, or None.
 
-    The displacement is a root mean square.
+    The displacement is the root mean square over the particles.
     """
     return next((n for n, moved in enumerate(way) if sum_squares(moved).mean() >= distance**2), None)
 
@@ -158,9 +158,9 @@ def judge_speeds(frames: Frames) -> list[Check]:
     of the homogeneous Boltzmann equation. The initial deviation is computed from the first frame. The test of
     Maxwell's distribution also requires relaxed positions. For spheres at a packing fraction of 0.3 that were
     inserted at random with Maxwellian velocities, the kurtosis deviates for some time: by -0.0044(5) after 6
-    collisions per particle, -0.0029(5) after 10 and -0.0003(13) after 15. After that they have moved by the
-    distance between neighbours. With the same velocities but relaxed positions, the first deviation is
-    -0.0006(7).
+    collisions per particle, -0.0029(5) after 10 and -0.0003(13) after 15. After 15 collisions the spheres
+    have moved by the distance between neighbours. With the same velocities but relaxed positions, the first
+    deviation is -0.0006(7).
     """
     names = SPEEDS
     if reason := why_not_speeds(frames):
@@ -344,7 +344,7 @@ def why_not(frames: Frames) -> str | None:
 
 
 def groups_of(frames: Frames) -> int:
-    """Return the number of groups of particles; their scatter gives the error."""
+    """Return the number of groups of particles whose scatter gives the error."""
     return min(frames.count, _GROUPS)
 
 

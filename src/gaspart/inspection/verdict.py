@@ -9,7 +9,9 @@ from gaspart.errors import visible
 
 _LONGEST = 1000  # number of characters
 LIMIT = 4.0
-"""Difference from theory, in standard errors, above which a check fails; by chance once in 16 000."""
+"""Difference from theory, in standard errors, above which a check fails. By chance, one of 16 000 checks
+exceeds it.
+"""
 
 
 @dataclass(frozen=True)

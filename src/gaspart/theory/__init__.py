@@ -1,9 +1,10 @@
-"""Theory of hard discs and spheres: formulas, provenance, range of validity.
+"""Theory of hard discs and spheres: formulas, their sources and their ranges of validity.
 
 The package is independent of the engines and imports only numpy. Every docstring names the source of its
-formula. "Exact" means a closed form. "Literature" names the parts that were derived again or tested here.
-"Computed" means numerical results of this project. Formulas that were not verified are marked. Arguments that
-are out of range raise SceneError, which is a ValueError.
+formula. "Exact" marks a formula that holds without approximation. "Literature" marks a published formula,
+with the parts that were derived again or tested here. "Computed" marks numerical results of this project.
+Formulas that were not verified are marked as such. Functions raise SceneError, which is a ValueError, if an
+argument is out of range.
 """
 
 from gaspart.public import attach as _attach

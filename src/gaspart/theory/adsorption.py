@@ -1,7 +1,8 @@
-"""Gases at walls that bind particles: step well, hard layer, flux from a wall.
+"""Gases at walls that bind particles: step well, layer of hard spheres, flux from a wall.
 
-Energies are in k_B T unless a temperature is among the arguments. A particle is in a well of width w if its
-centre is within w of the lowest position that it can reach.
+Energies are in k_B T unless a temperature is among the arguments. The potential of a step well is constant
+within the width w. A particle is in the well if its centre is less than w above the lowest position that it
+can reach.
 """
 
 import numpy as np
@@ -11,7 +12,9 @@ from gaspart.theory.geometry import Numbers, Values, check_ranges, checked_packi
 from gaspart.theory.tables import packing_fraction_at
 
 _EXACT = np.sqrt(0.75)
-"""Height above a layer of spheres of diameter 1, above which a point is near at most one sphere."""
+"""Height above a layer of spheres of diameter 1. Any higher point is within one diameter of at most one
+centre in the layer.
+"""
 
 
 @check_ranges
@@ -30,7 +33,7 @@ def well_ratio(depth: Numbers, width: Numbers, outside: Numbers) -> Values:
     Returns
     -------
     float or ndarray, [1]
-        Number of particles in the well divided by the number outside.
+        Number N_ads of particles in the well divided by the number N_gas outside.
 
     Raises
     ------
@@ -39,8 +42,8 @@ def well_ratio(depth: Numbers, width: Numbers, outside: Numbers) -> Values:
 
     Notes
     -----
-    (w / outside) e^{depth / k_B T} (exact). This is Langmuir's formula N_ads / N_gas = (A lambda / V)
-    e^{depth / k_B T} [1]_ with the width of the well instead of the thermal wavelength lambda.
+    The ratio is (w / outside) e^{depth / k_B T} (exact). Langmuir's formula is N_ads / N_gas = (A lambda / V)
+    e^{depth / k_B T} [1]_. Here the width of the well replaces the thermal wavelength lambda.
 
     References
     ----------
@@ -57,20 +60,20 @@ def well_ratio(depth: Numbers, width: Numbers, outside: Numbers) -> Values:
 
 @check_ranges
 def excess_in_well(held: Numbers, free: Numbers, diameter: float, width: float, outside: float) -> Values:
-    """Compute ln of N_ads / N_gas of spheres divided by the ratio of an ideal gas.
+    """Compute ln of the ratio N_ads / N_gas of spheres, relative to an ideal gas.
 
     Parameters
     ----------
     held : float or ndarray, [1/length^3]
-        Number density in the well.
+        Number density of the spheres in the well.
     free : float or ndarray, [1/length^3]
-        Number density outside.
+        Number density of the spheres outside the well.
     diameter : float, [length]
         Diameter sigma of a sphere.
     width : float, [length]
         Uniform thickness of the well, at least a diameter.
     outside : float, [length]
-        Uniform thickness of the space outside, at least a diameter.
+        Uniform thickness of the space outside the well, at least a diameter.
 
     Returns
     -------
@@ -84,9 +87,9 @@ def excess_in_well(held: Numbers, free: Numbers, diameter: float, width: float, 
 
     Notes
     -----
-    A sphere excludes other centres from a ball of radius sigma and volume 4 pi sigma^3 / 3. For a sphere at a
-    random distance from the surface of a layer of thickness t, the mean volume of this ball beyond the
-    surface is pi sigma^4 / (4 t) (exact).
+    A sphere excludes other centres from a ball of radius sigma and volume 4 pi sigma^3 / 3. Consider a sphere
+    at a random position in a layer of thickness t. The mean volume of the part of its ball beyond one surface
+    of the layer is pi sigma^4 / (4 t) (exact).
     """
     ball, beyond = particle_volume(3, 2.0 * diameter), 0.25 * np.pi * diameter**4
     in_well = held * (ball - 2.0 * beyond / width) + free * beyond / width
@@ -122,7 +125,7 @@ def length_in_langmuirs_formula(ratio: Numbers, depth: Numbers, outside: Numbers
 
 @check_ranges
 def planck_constant(length: Numbers, mass: Numbers, temperature: Numbers) -> Values:
-    """Compute the constant h for which a length is the thermal wavelength.
+    """Compute Planck's constant h for which a given length is the thermal wavelength.
 
     Parameters
     ----------
@@ -157,8 +160,8 @@ def scaled_particle_activity(packing_fraction: Numbers) -> Values:
     Returns
     -------
     ndarray, same shape as `packing_fraction`, [1]
-        Activity z w e^{depth / k_B T} pi sigma^2 / 4 of a layer of coverage eta in equilibrium with a gas of
-        activity z.
+        Dimensionless activity z w e^{depth / k_B T} pi sigma^2 / 4 of a layer of coverage eta in equilibrium
+        with a gas of activity z.
 
     Raises
     ------
@@ -167,8 +170,8 @@ def scaled_particle_activity(packing_fraction: Numbers) -> Values:
 
     Notes
     -----
-    eta / (1 - eta) exp[(3 eta - 2 eta^2) / (1 - eta)^2], from Z = 1 / (1 - eta)^2 [1]_ (tested to the second
-    order).
+    The activity is eta / (1 - eta) exp[(3 eta - 2 eta^2) / (1 - eta)^2]. It follows from Z = 1 / (1 - eta)^2
+    [1]_ (tested to the second order).
 
     References
     ----------
@@ -199,16 +202,18 @@ def layer_diameter(width: Numbers) -> Values:
 
     Notes
     -----
-    sqrt(1 - w^2 / 6). The heights of the centres are uniform and independent, so the mean square of their
-    difference is w^2 / 6. The formula is correct to first order in w^2 for neighbours in contact.
+    The diameter is sqrt(1 - w^2 / 6). The heights of the centres are uniform and independent, so the mean
+    square of the difference of two heights is w^2 / 6. The formula is correct to first order in w^2 for
+    neighbours in contact.
     """
     return np.sqrt(1.0 - np.asarray(width, dtype=float) ** 2 / 6.0)
 
 
 def excluded_in_front(packing_fraction: float, width: float) -> float:
-    """Compute the volume in front of a layer that a sphere in it closes.
+    """Compute the gas volume that a sphere in a layer excludes in front of the layer.
 
-    From this volume, each further sphere of diameter 1 in the layer excludes the centres of the gas.
+    Each further sphere of diameter 1 in the layer excludes the centres of gas spheres from this additional
+    volume.
 
     Parameters
     ----------
@@ -220,7 +225,7 @@ def excluded_in_front(packing_fraction: float, width: float) -> float:
     Returns
     -------
     float, [1]
-        Volume per sphere, in units of the cubed diameter.
+        Excluded volume per additional sphere, divided by the cube of the diameter.
 
     Raises
     ------
@@ -229,11 +234,12 @@ def excluded_in_front(packing_fraction: float, width: float) -> float:
 
     Notes
     -----
-    For a single sphere, the volume is the part of its ball of radius 1 in front of the layer: 2 pi / 3 if the
-    layer is thin. For more spheres it is smaller, because their balls overlap. At a height h above the middle
-    of the layer, a sphere of the gas needs a circle of radius R = sqrt(1 - h^2) without discs. The
-    probability of such a circle is exact up to R = 1/2. For larger R it follows from scaled-particle theory
-    [1]_. The volume is the derivative of the closed volume with respect to the number of discs.
+    For a single sphere, the volume is the part of its exclusion ball of radius 1 in front of the layer: 2 pi
+    / 3 if the layer is thin. For more spheres it is smaller, because their balls overlap. The layer is
+    described by discs in its middle plane. At a height h above this plane, a sphere of the gas fits only if a
+    circle of radius R = sqrt(1 - h^2) below it contains no disc centre. The probability of an empty circle is
+    exact up to R = 1/2. For larger R it follows from scaled-particle theory [1]_. The result is the
+    derivative of the total excluded volume with respect to the number of discs.
 
     References
     ----------
@@ -261,12 +267,12 @@ def layer_activity(activity: Numbers, packing_fraction: float, gas_density: floa
     Parameters
     ----------
     activity : float or ndarray, [1]
-        beta P w e^{depth / k_B T} pi / 4. P is the pressure of the gas; the density at contact with a hard
-        wall is beta P.
+        Activity beta P w e^{depth / k_B T} pi / 4, where P is the pressure of the gas. The density of the gas
+        at contact with a hard wall is beta P.
     packing_fraction : float, [1]
         Coverage eta of the layer, from 0 to 0.70.
     gas_density : float or ndarray, [1]
-        Number density of the gas, in units of the diameter of the spheres.
+        Number density of the gas times the cube of the diameter of the spheres.
     width : float, [1]
         Width w of the well, in diameters of the spheres.
 
@@ -282,16 +288,16 @@ def layer_activity(activity: Numbers, packing_fraction: float, gas_density: floa
 
     Notes
     -----
-    `activity` is correct for a single sphere in a thin well. The correction is of first order in the density
-    of the gas. A sphere excludes less additional volume in front of the layer if other spheres already
-    exclude part of it, see `excluded_in_front`.
+    The argument `activity` is correct for a single sphere in a thin well. The function corrects it to first
+    order in the density of the gas. Reason: a sphere excludes less additional volume in front of the layer if
+    other spheres already exclude a part of this volume, see `excluded_in_front`.
     """
     gained = 2.0 * np.pi / 3.0 - excluded_in_front(packing_fraction, width)
     return activity * layer_diameter(width) ** 2 * np.exp(gas_density * gained)
 
 
 def excess_of_few(activity: float, held: float, others: float) -> float:
-    """Compute the relative excess of discs in a layer in equilibrium with a small gas.
+    """Compute the relative excess of discs in a layer next to a small gas.
 
     Parameters
     ----------
@@ -309,10 +315,11 @@ def excess_of_few(activity: float, held: float, others: float) -> float:
 
     Notes
     -----
-    The activity of the gas decreases with each particle that the layer gains. The excess is (kappa_2 -
-    kappa_3) / (2 (others + kappa_2)) discs, to first order beyond Gaussian fluctuations. The cumulants of the
-    number of discs with an infinite gas are kappa_2 = S held and kappa_3 = (S^2 + S') held, with S = d ln eta
-    / d ln z and S' = dS / d ln z. An ideal layer has no such excess (exact, because the number is binomial).
+    The activity of the gas decreases with each particle that the layer gains. To first order beyond Gaussian
+    fluctuations, the excess is (kappa_2 - kappa_3) / (2 (others + kappa_2)) discs. In equilibrium with an
+    infinite gas, the cumulants of the number of discs are kappa_2 = S held and kappa_3 = (S^2 + S') held,
+    with S = d ln eta / d ln z and S' = dS / d ln z. An ideal layer has no such excess. This is exact, because
+    the number of particles in it is binomially distributed.
     """
     step = 0.05
     lower, middle, upper = np.log(
@@ -324,12 +331,12 @@ def excess_of_few(activity: float, held: float, others: float) -> float:
 
 @check_ranges
 def langmuir_coverage(activity: Numbers) -> Values:
-    """Compute the coverage of independent sites by Langmuir's isotherm.
+    """Compute the coverage of independent adsorption sites by Langmuir's isotherm.
 
     Parameters
     ----------
     activity : array_like, [1]
-        Product K of equilibrium constant and pressure.
+        Product K of the equilibrium constant and the pressure.
 
     Returns
     -------
@@ -374,7 +381,7 @@ def flux_density(speed: Numbers) -> Values:
 
 @check_ranges
 def slow_flux_share(speed: Numbers) -> Values:
-    """Compute the fraction of the particles leaving a wall that are slower than a normal speed.
+    """Compute the fraction of particles that leave a wall with less than a normal speed.
 
     Parameters
     ----------

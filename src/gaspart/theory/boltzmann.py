@@ -1,10 +1,10 @@
-"""Linearised Boltzmann operator of hard discs and spheres, in Sonine polynomials of velocity.
+"""Linearised Boltzmann operator of hard discs and spheres, in Sonine polynomials.
 
-Chapman and Cowling, The Mathematical Theory of Non-uniform Gases (1970). Velocities are in sqrt(k_B T / m),
-and frequencies in n sigma^(d-1) times this velocity unless noted. The collision integrals are exact
-quadratures, so results of kinetic theory are accurate to the order of the polynomials. In the Enskog
-equation, a homogeneous gas relaxes by the same operator multiplied by the contact value. So rates per
-collision of a particle do not depend on density.
+Chapman and Cowling, The Mathematical Theory of Non-uniform Gases (1970). Velocities are in units of sqrt(k_B
+T / m). Frequencies are in units of n sigma^(d-1) times this velocity unless noted. The collision integrals
+are computed by exact quadratures. So the only error of a result is due to the finite number of polynomials.
+In the Enskog equation, a homogeneous gas relaxes by the same operator multiplied by the contact value. So
+relaxation rates per collision of a particle do not depend on density.
 """
 
 from __future__ import annotations
@@ -20,16 +20,17 @@ from gaspart.theory.geometry import checked_dimension, unit_sphere_surface
 from gaspart.theory.rough import rough_ratio
 
 _FLUXES = {"viscosity": (2, 0), "conductivity": (1, 1)}
-"""Rank of the harmonic tensor and order of the Sonine polynomial of the stress and of the heat flux."""
+"""Rank of the harmonic tensor and order of the Sonine polynomial, for the stress and for the heat flux."""
 _ORDERS = 5
-"""Number of polynomials of a flux; a sixth polynomial changes the integral of the flux correlation by 3e-5.
+"""Number of polynomials that represent a flux. A sixth polynomial would change the integral of the flux
+correlation by 3e-5.
 """
 
 
 def collisions(
     dimension: int, nodes: int, restitution: float = 1.0
 ) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
-    """Return quadrature weights and velocities of all collisions of two Maxwellian particles.
+    """Return quadrature weights and velocities for collisions of two Maxwellian particles.
 
     Parameters
     ----------
@@ -49,8 +50,9 @@ def collisions(
 
     Notes
     -----
-    The normal is the last axis. Its direction has no influence, because the integrands are scalars. The
-    quadrature is exact for polynomials of a degree below 2 `nodes` in each component.
+    The normal of all collisions is the last axis. Its direction has no influence, because the integrands are
+    scalars. The quadrature is exact for polynomials whose degree in each velocity component is below 2
+    `nodes`.
     """
     from scipy.special import roots_hermitenorm, roots_laguerre
 
@@ -78,23 +80,24 @@ def brackets(
     met: tuple[np.ndarray, tuple[np.ndarray, ...]],
     tagged: bool = False,
 ) -> np.ndarray:
-    """Compute the collision integrals between Sonine polynomials times a harmonic tensor.
+    """Compute the collision integrals between products of Sonine polynomials and a harmonic tensor.
 
     Parameters
     ----------
     rank : int
         Rank of the harmonic tensor.
     orders : range
-        Orders k of the Sonine polynomials S_k(v^2/2), K of them.
+        Orders k of the K Sonine polynomials S_k(v^2/2).
     met : tuple
         Weights and velocities of `collisions`.
     tagged : bool, default False
-        True for one particle in a gas, False for the gas itself.
+        True for the distribution of a single tagged particle in a gas; False for the distribution of all
+        particles.
 
     Returns
     -------
     ndarray, shape (K, K), [1]
-        Collision integrals, with the tensors contracted.
+        Collision integrals, contracted over the components of the tensors.
     """
     from scipy.special import eval_genlaguerre
 
@@ -129,12 +132,12 @@ def _contraction(rank: int, v: np.ndarray, w: np.ndarray) -> np.ndarray:
 
 @lru_cache
 def flux_relaxation(quantity: str) -> tuple[np.ndarray, np.ndarray]:
-    """Compute rates and weights of the relaxation of the kinetic flux of discs.
+    """Compute decay rates and weights for the relaxation of a kinetic flux of discs.
 
     Parameters
     ----------
     quantity : {"viscosity", "conductivity"}
-        Transport coefficient, whose flux is the shear stress or the heat flux.
+        Transport coefficient. The corresponding flux is the shear stress or the heat flux.
 
     Returns
     -------
@@ -151,9 +154,10 @@ def flux_relaxation(quantity: str) -> tuple[np.ndarray, np.ndarray]:
     Notes
     -----
     The correlation of the flux after s collisions of a particle is sum w exp(-rate s). The spectrum of the
-    operator is continuous. The rates and weights form its Gauss quadrature, which gives the integral and the
-    mean time of the correlation to 1e-4. The integrals are the Sonine factors divided by the first rate. The
-    heat flux of discs relaxes half as fast as their stress.
+    operator is continuous. The rates and weights are a Gauss quadrature of this spectrum. The relative error
+    of the integral and of the mean time of the correlation is 1e-4. The integrals are the Sonine factors
+    divided by the decay rate in the first Sonine approximation. The heat flux of discs relaxes half as fast
+    as their stress.
     """
     rank, first = _FLUXES[quantity]
     orders = range(first, first + _ORDERS)
@@ -176,23 +180,23 @@ def flux_relaxation(quantity: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 _SHARE = 0.01
-"""Time step times the root-mean-square speed. In a step 0.4 % of the particles collide. A second collision of
-a particle within a step is lost; this concerns 0.2 % of all collisions.
+"""Time step times the root-mean-square speed. In a step 0.4 % of the particles collide. Second collisions of
+a particle within a step are neglected; they would be 0.2 % of all collisions.
 """
 
 
 @dataclass(frozen=True)
 class Homogeneous:
-    """Evolution of a homogeneous gas, at the start and after each of S - 1 steps.
+    """Evolution of a homogeneous gas: values at the start and after S - 1 steps.
 
     Parameters
     ----------
     collisions : ndarray, shape (S,), [1]
-        Collisions of a particle since the start.
+        Mean number of collisions per particle since the start.
     kurtosis : ndarray, shape (S,), [1]
-        <v^4>/<v^2>^2.
+        Ratio <v^4>/<v^2>^2.
     never_hit : ndarray, shape (S,), [1]
-        Fraction of the particles that have not collided.
+        Fraction of the particles that have not collided since the start.
     energy : ndarray, shape (S,), [1]
         Mean square of the speed divided by its initial value.
     """
@@ -206,7 +210,7 @@ class Homogeneous:
 def homogeneous_gas(
     count: int, dimension: int, collisions: float, restitution: float = 1.0, seed: int = 0
 ) -> Homogeneous:
-    """Simulate a gas of particles of speed 1 with isotropic directions.
+    """Simulate a gas of particles that start with speed 1 and isotropic directions.
 
     Parameters
     ----------
@@ -224,7 +228,7 @@ def homogeneous_gas(
     Returns
     -------
     Homogeneous
-        Collisions, kurtosis, fraction never hit, and energy after each step.
+        Collisions, kurtosis, fraction of particles without a collision, and energy after each step.
 
     Raises
     ------
@@ -261,17 +265,17 @@ def relaxing_speeds(count: int, times: np.ndarray, hits: float, seed: int = 0) -
     count : int
         Number of spheres.
     times : ndarray, shape (T,), [time]
-        Rising times.
+        Times in increasing order.
     hits : float, [1/length]
-        n pi d^2, the number density times the cross-section of two spheres. A particle of speed v collides
-        with particles at rest at this rate times v.
+        Number density times the collision cross-section, n pi d^2. A particle of speed v would collide with
+        particles at rest at the rate `hits` times v.
     seed : int, default 0
         Seed of the random numbers.
 
     Returns
     -------
     ndarray, shape (T, count), [length/time]
-        Speeds at these times.
+        Speeds of all spheres at these times.
     """
     rng = np.random.default_rng(seed)
     velocity = directions(rng, count, 3)
@@ -290,7 +294,7 @@ def relaxing_speeds(count: int, times: np.ndarray, hits: float, seed: int = 0) -
 def rough_discs(
     count: int, collisions: float, inertia: float, tangential: float, normal: float = 1.0, seed: int = 0
 ) -> np.ndarray:
-    """Simulate the ratio of the temperatures of cooling rough discs.
+    """Simulate the ratio of rotational to translational temperature of cooling rough discs.
 
     Parameters
     ----------
@@ -320,7 +324,7 @@ def rough_discs(
     Notes
     -----
     Velocities and spins initially have Maxwellian distributions, with the temperature ratio
-    `rough.rough_ratio`. During the run they become correlated.
+    `rough.rough_ratio`. Velocities and spins become correlated during the run.
     """
     rng = np.random.default_rng(seed)
     velocity, spin = rng.standard_normal((count, 2)), rng.standard_normal(count)  # spin: R omega
@@ -351,7 +355,7 @@ def rough_start(
     Returns
     -------
     collisions : ndarray, shape (S,), [1]
-        Collisions of a disc after each step.
+        Mean number of collisions per disc up to the end of each step.
     difference : ndarray, shape (S,), [1]
         T_tr - T_rot divided by the initial temperature.
     """
@@ -375,7 +379,7 @@ def _rough_step(
     tangential: float,
     normal: float,
 ) -> float:
-    """Advance rough discs by a step; change velocities and spins, and return the collisions per disc."""
+    """Advance rough discs by a step in place, and return the number of collisions per disc."""
     share = inertia * (1.0 + tangential) / (2.0 * inertia + 2.0)
     i, j, along, approach = _meetings(rng, velocity)
     across = np.stack([-along[:, 1], along[:, 0]], axis=1)
@@ -391,9 +395,10 @@ def _rough_step(
 def _meetings(
     rng: np.random.Generator, velocity: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return the collisions in a step.
+    """Draw the collisions of a step.
 
-    The collisions are arrays: the particles i and j (M,), unit normals (M, d), and speeds of approach (M,).
+    Returns arrays for the M collisions: the particles i and j (M,), unit normals (M, d), and speeds of
+    approach (M,).
     """
     step = _step(velocity)
     first, second = rng.permutation(len(velocity))[: len(velocity) // 2 * 2].reshape(2, -1)
@@ -409,7 +414,7 @@ def _step(velocity: np.ndarray) -> float:
 
 
 def directions(rng: np.random.Generator, count: int, dimension: int) -> np.ndarray:
-    """Return random unit vectors, shape (count, dimension).
+    """Draw random unit vectors, shape (count, dimension).
 
     Parameters
     ----------
@@ -463,8 +468,8 @@ def dot(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
     Notes
     -----
-    The sum is computed column by column. This is several times faster than numpy's sum over such a short
-    axis, with the same rounding.
+    The products are added column by column. This is several times faster than numpy's sum over such a short
+    axis, and gives the same rounding.
     """
     products = first[:, 0] * second[:, 0]
     for axis in range(1, first.shape[1]):
@@ -516,7 +521,8 @@ def tagged_paths(
     interval : float, [time]
         Length of an interval.
     hits : float, [1/length]
-        n pi a^2, with the number density n of the gas and the distance of contact a.
+        Number density n of the gas times the collision cross-section pi a^2, where a is the distance of
+        centres at contact.
     mass : float
         Mass of a sphere divided by the mass of a gas particle.
     count : int
@@ -554,8 +560,9 @@ def _advance(
 ) -> None:
     """Move all spheres for one interval, in place.
 
-    Hits are drawn at a rate that exceeds the hit rate of every sphere, and accepted with a probability
-    proportional to the speed of approach. So there is no time step and no error due to a time step.
+    Possible hits are drawn at a rate that exceeds the hit rate of every sphere. Each is accepted with a
+    probability proportional to the speed of approach. So the method has no time step and no error due to a
+    time step.
     """
     fastest = float(gas.max())
     flying, moving, remaining = np.arange(len(position)), velocity.copy(), np.full(len(position), interval)

@@ -1,6 +1,6 @@
 """Brownian motion of a large particle in a dilute gas: friction, diffusion and the Langevin equation.
 
-k_B = 1. Times, lengths and masses have any consistent units.
+Temperatures are in energy units (k_B = 1). Any consistent units of time, length and mass can be used.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ import numpy as np
 from gaspart.theory.geometry import Numbers, Values, check_ranges, checked_packing_fraction
 
 SONINE_EQUAL_MASSES = 1.01895
-"""Diffusion coefficient D of a particle with the mass of the gas particles, divided by the first Sonine
-approximation k_B T / (M rate) (derived again, as in `enskog`).
+"""Diffusion coefficient D of a particle that has the same mass as the gas particles, divided by its first
+Sonine approximation k_B T / (M rate) (derived again, as in `enskog`).
 """
 
 
@@ -52,8 +52,9 @@ def friction_rate(
 
     Notes
     -----
-    (8/3) n a^2 sqrt(2 pi mu k_B T) / M, with the reduced mass mu of the particle and a gas particle [1]_.
-    Exact for a dilute gas in equilibrium whose mean free path is much longer than the contact distance.
+    The rate is (8/3) n a^2 sqrt(2 pi mu k_B T) / M, where mu is the reduced mass of the particle and a gas
+    particle [1]_. This is exact for a dilute gas in equilibrium whose mean free path is much longer than the
+    contact distance.
 
     References
     ----------
@@ -97,9 +98,9 @@ def tagged_diffusion(rate: Numbers, mass: float, gas_mass: float = 1.0, temperat
 
     Notes
     -----
-    D = k_B T / (M rate) by the Langevin equation. For a particle with the mass of the gas particles, the
-    result is multiplied by 1.01895. For other masses the true correction is smaller, and vanishes for heavy
-    particles; it is neglected.
+    D = k_B T / (M rate) by the Langevin equation. If the particle has the same mass as the gas particles, the
+    result is multiplied by 1.01895. For heavier particles the correction is smaller and vanishes in the limit
+    of heavy particles. It is neglected unless the masses are equal.
 
     Examples
     --------
@@ -140,8 +141,9 @@ def langevin_msd(time: Numbers, diffusion: Numbers, rate: Numbers, dimension: in
 
     Notes
     -----
-    2 d D [t - (1 - exp(-g t)) / g], by Ornstein and Fuerth. The result is for an exponential velocity
-    autocorrelation with the rate g: ballistic at short times, 2 d D t at long times.
+    The mean-squared displacement is 2 d D [t - (1 - exp(-g t)) / g] (Ornstein and Fuerth). The velocity
+    autocorrelation is assumed to decay exponentially with the rate g. The motion is ballistic at short times,
+    and the result approaches 2 d D t at long times.
 
     Examples
     --------
@@ -184,8 +186,8 @@ def langevin_msd_from_rest(time: Numbers, diffusion: Numbers, rate: Numbers, dim
 
     Notes
     -----
-    2 d D [t - 2 (1 - exp(-g t)) / g + (1 - exp(-2 g t)) / (2 g)], by the same equation as `langevin_msd`. At
-    short times the result is 2 d D g^2 t^3 / 3.
+    The mean-squared displacement is 2 d D [t - 2 (1 - exp(-g t)) / g + (1 - exp(-2 g t)) / (2 g)], from the
+    same Langevin equation as `langevin_msd`. At short times the result is 2 d D g^2 t^3 / 3.
 
     Examples
     --------
@@ -233,9 +235,9 @@ def insertion_work(packing_fraction: Numbers, size_ratio: Numbers) -> Values:
 
     Notes
     -----
-    -ln(1 - eta) + 2 s eta / (1 - eta) + s^2 eta / (1 - eta)^2, scaled-particle theory [1]_ (tested against
-    the equation of state at s = 1). The last term is the pressure times the area of the disc, so the second
-    term is the line tension of its edge.
+    By scaled-particle theory, W / k_B T = -ln(1 - eta) + 2 s eta / (1 - eta) + s^2 eta / (1 - eta)^2 [1]_
+    (tested against the equation of state at s = 1). The last term is the pressure times the area of the disc.
+    The second term, which is proportional to the perimeter, is due to the line tension of the disc's edge.
 
     References
     ----------
@@ -266,7 +268,7 @@ def displaced_area(packing_fraction: Numbers, size_ratio: Numbers) -> Values:
     Returns
     -------
     ndarray, [1]
-        Displaced area of fluid divided by the area of a small disc, (dW/dmu) / eta.
+        Displaced area of fluid divided by the area of a disc of the fluid, (dW/dmu) / eta.
 
     Raises
     ------
@@ -275,10 +277,10 @@ def displaced_area(packing_fraction: Numbers, size_ratio: Numbers) -> Values:
 
     Notes
     -----
-    s^2 + 2 s (1 - eta) / (1 + eta) + (1 - eta)^2 / (1 + eta), scaled-particle theory (see `insertion_work`).
-    In a dilute gas the result is (s + 1)^2, because centres are excluded within the radius R + r. In a dense
-    fluid the result is smaller, because the fluid is attracted to the edge of the disc and fills a part of
-    this margin.
+    By scaled-particle theory (see `insertion_work`), the result is s^2 + 2 s (1 - eta) / (1 + eta) + (1 -
+    eta)^2 / (1 + eta). In a dilute gas the result is (s + 1)^2, because centres are excluded within the
+    radius R + r. In a dense fluid the result is smaller, because fluid accumulates at the edge of the disc
+    and fills a part of this margin.
 
     Examples
     --------

@@ -1,9 +1,10 @@
-"""Theory of an infinite plain gas, for the kinetic equation that an engine solves (`Engine.equation`).
+"""Theory of an infinite gas of equal particles, for the equation that an engine solves.
 
-"exact" is the dynamics of particles that collide when they touch. "boltzmann" is a gas of point particles.
-"enskog" is the model in which pairs at a distance of one diameter collide at a rate proportional to the
-contact value of the engine; correlated collisions are neglected. Each function takes a `Gas` and an equation,
-and returns NaN if the value is unknown.
+The equation is named as in `Engine.equation`: "exact" is the dynamics of particles that collide when they
+touch, "boltzmann" is the equation of a gas of point particles, and "enskog" is a model of collisions at a
+distance of one diameter. In this model, collisions occur at a rate proportional to the contact value of the
+engine, and correlations between collisions are neglected. Each function takes a `Gas` and an equation, and
+returns NaN if the value is unknown.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ EXACT, BOLTZMANN, ENSKOG = "exact", "boltzmann", "enskog"
 
 
 def contact_value(gas: Gas, equation: str) -> float:
-    """Return the pair distribution at contact that determines the collision rate."""
+    """Return the contact value of the pair distribution that determines the collision rate."""
     if equation == BOLTZMANN:
         return 1.0
     if equation == ENSKOG:
@@ -51,7 +52,7 @@ def collision_rate(gas: Gas, equation: str) -> float:
 def diffusion(gas: Gas, equation: str) -> float:
     """Compute the coefficient of self-diffusion of spheres; NaN for discs.
 
-    For the exact dynamics it is the result of Erpenbeck and Wood; for the other equations it is the
+    For the exact dynamics D is the result of Erpenbeck and Wood. For the other equations it is the
     coefficient of the kinetic equation.
     """
     if gas.dimension == 2 or (equation == EXACT and not _fluid(gas)):
@@ -72,7 +73,7 @@ def shear_viscosity(gas: Gas, equation: str) -> float:
 
 
 def bulk_viscosity(gas: Gas, equation: str) -> float:
-    """Compute Enskog's bulk viscosity; 0 for points."""
+    """Compute Enskog's bulk viscosity; 0 for point particles."""
     return float(theory.enskog_bulk_viscosity(**_enskog_arguments(gas, equation)))
 
 
@@ -89,7 +90,7 @@ def chemical_potential(gas: Gas, equation: str) -> float:
 
 
 def _fluid(gas: Gas) -> bool:
-    """Return True if the gas consists of spheres at a density at which transport was measured."""
+    """Return True if the density is in the range of the transport data for spheres."""
     return gas.packing_fraction <= theory.ERPENBECK_WOOD_HIGHEST
 
 
@@ -111,22 +112,22 @@ def _enskog_arguments(gas: Gas, equation: str) -> dict[str, Any]:
 
 
 def finite_compressibility_factor(gas: Gas) -> tuple[float, float]:
-    """Compute the relative difference of Z at fixed energy."""
+    """Compute the relative difference of Z between N and infinitely many particles."""
     fraction, dimension = gas.packing_fraction, gas.dimension
     shift = theory.finite_size_correction(fraction, dimension, gas.count, ensemble="canonical")
     return float(shift / theory.compressibility_factor(fraction, dimension)), 1.0
 
 
 def finite_collision_rate(gas: Gas) -> tuple[float, float]:
-    """Compute the relative difference of the collision rate of a particle at fixed energy."""
+    """Compute the relative difference of the collision rate between N and infinitely many particles."""
     factor = theory.collision_rate_finite_size_factor(gas.packing_fraction, gas.dimension, gas.count)
     return float(factor) - 1.0, 1.0
 
 
 def finite_diffusion(gas: Gas) -> tuple[float, float]:
-    """Compute the relative difference of D, by the correction of Yeh and Hummer.
+    """Compute the relative difference of D between a finite and an infinite container.
 
-    The correction is inversely proportional to the side length.
+    The difference is the correction of Yeh and Hummer. It is inversely proportional to the side length.
     """
     fraction, dimension = gas.packing_fraction, gas.dimension
     side = (gas.count * theory.particle_volume(dimension) / fraction) ** (1.0 / dimension)

@@ -1,9 +1,9 @@
 """Column of a gas in equilibrium under gravity: hydrostatics for a prescribed energy.
 
-The temperature of the column is the temperature at which it has this energy.
+The temperature of a column is the temperature at which the column has the prescribed energy.
 
 Heights are measured from the lowest possible position of a centre. Hard spheres and discs follow the
-reference equation of state. With `ideal`, the gas follows the Boltzmann equation, without a virial.
+reference equation of state. If `ideal` is True, the gas is ideal, as for the Boltzmann equation.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ from gaspart.theory.state import compressibility_factor, contact_value
 
 _POINTS = 1200
 _SCALES = 25.0
-"""Height above the floor, in scale heights, beyond which the density of a column is negligible."""
+"""Height above the floor beyond which the density of a column is negligible, in scale heights."""
 _ROUNDS = 40
 COMPARED = ("collision_rate", "temperature", "density")
-"""Observables by which columns are compared, besides pressures."""
+"""Observables, besides pressures, for which columns are compared."""
 
 
 @dataclass(frozen=True)
@@ -34,12 +34,12 @@ class Column:
     """Column of a gas in equilibrium under gravity.
 
     heights : (Z,), heights.
-    numbers : (S, Z), particles per height, for each kind of particle mass.
-    masses : (S,), masses of the kinds.
+    numbers : (S, Z), number of particles per unit of height, for each particle mass.
+    masses : (S,), different masses of particles.
     temperature : temperature.
     pull : acceleration of gravity.
     area : area of the cross-section.
-    diameter, dimension : diameter of the particles.
+    diameter, dimension : diameter of the particles, and dimension.
     ideal : True for an ideal gas (see the module).
     """
 
@@ -55,12 +55,12 @@ class Column:
 
     @cached_property
     def filled(self) -> np.ndarray:
-        """Packing fraction (Z,)."""
+        """Packing fraction (Z,) at each height."""
         return self.numbers.sum(axis=0) / self.area * particle_volume(self.dimension, self.diameter)
 
     @property
     def energy(self) -> float:
-        """Energy of all particles, kinetic and potential."""
+        """Total energy of all particles, kinetic and potential."""
         total = np.trapezoid(self.numbers, self.heights, axis=1)
         raised = np.trapezoid(self.numbers * self.heights, self.heights, axis=1)
         kinetic = 0.5 * self.dimension * self.temperature * total.sum()
@@ -68,9 +68,9 @@ class Column:
 
     @property
     def collisions(self) -> float:
-        """Collisions per time, up to a constant factor.
+        """Total collision rate, up to a constant factor.
 
-        The result is only for comparisons between columns of one scene.
+        The value can only be compared between columns of the same scene.
         """
         contact = 1.0 if self.ideal else contact_value(self.filled, self.dimension)
         speed = np.sqrt(1.0 / self.masses[:, None] + 1.0 / self.masses)
@@ -78,7 +78,7 @@ class Column:
         return math.sqrt(self.temperature) * float(np.trapezoid(pairs, self.heights))
 
     def pressure(self, top: bool) -> float:
-        """Compute the pressure on the floor, or at the top."""
+        """Compute the pressure on the floor or, if `top` is True, at the top."""
         at = -1 if top else 0
         ratio = 1.0 if self.ideal else compressibility_factor(self.filled[at], self.dimension)
         return float(self.numbers[:, at].sum() / self.area * self.temperature * ratio)
@@ -86,13 +86,13 @@ class Column:
 
 @dataclass(frozen=True)
 class GravityColumn:
-    """Scene with gravity along one axis with walls, for which columns are computed.
+    """Scene with gravity along one walled axis, for which columns are computed.
 
-    axis : number of the axis.
+    axis : index of the axis of gravity.
     low : True if the floor is the lower wall.
     pull : acceleration of gravity.
     height : height that is accessible to centres.
-    area : cross-section.
+    area : area of the cross-section.
     masses, counts : (S,), masses and numbers of particles of each kind.
     diameter : diameter of the particles.
     """
@@ -108,7 +108,7 @@ class GravityColumn:
     diameter: float
 
     def column(self, temperature: float, ideal: bool) -> Column:
-        """Compute the column at a temperature.
+        """Compute the column that has a given temperature.
 
         Raises ValueError if the density exceeds the range of the equation of state of the fluid.
         """
@@ -125,7 +125,7 @@ class GravityColumn:
         return Column(z, densities * self.area, *shape)
 
     def _reaches(self, temperature: float) -> float:
-        """Return the height of the gas: a close-packed bed plus an atmosphere above it.
+        """Return an upper limit of the gas height: a close-packed bed plus an atmosphere.
 
         The atmosphere consists of the lightest particles.
         """
@@ -133,9 +133,10 @@ class GravityColumn:
         return 2.0 * float(volume) + _SCALES * temperature / float(self.masses.min() * self.pull)
 
     def of_energy(self, energy: float, ideal: bool) -> Column:
-        """Compute the column whose temperature corresponds to an energy.
+        """Compute the column that has a given total energy.
 
-        Raises ValueError for the reasons of `column`, and for an energy that no temperature gives.
+        Raises ValueError under the conditions of `column`, and if the column has this energy at no
+        temperature.
         """
         if not energy > 0.0:
             raise ValueError(f"energy: {energy} (must be positive)")
@@ -156,9 +157,10 @@ class GravityColumn:
         return float(state.translational_energy + self.pull * (state.masses @ heights))
 
     def equilibrate(self, energy: float, heat: float | None, ideal: bool) -> Column:
-        """Compute the equilibrium column, at the temperature of its faces or for its energy.
+        """Compute the equilibrium column from the temperature of its faces or from its energy.
 
-        `heat` is the temperature of the faces, or None. Raises ValueError for the reasons of `of_energy`.
+        `heat` is the temperature of the faces. Without `heat`, the energy determines the column. Raises
+        ValueError under the conditions of `of_energy`.
         """
         return self.column(heat, ideal) if heat else self.of_energy(energy, ideal)
 
@@ -192,10 +194,11 @@ def gravity_column(scene: Scene) -> GravityColumn | None:
 def relative_change(
     observable: str, low: Column, high: Column, middle: Column, top: bool | None = None
 ) -> float:
-    """Compute the change of an observable between two columns, divided by its value in a third.
+    """Compute the change of an observable between two columns, relative to a third column.
 
-    observable : one of `COMPARED`, where density means the root mean square, or pressure.
-    top : for a pressure, True at the top and False on the floor.
+    observable : one of `COMPARED`, or "pressure". For a density, the root mean square of the change is
+        computed.
+    top : for a pressure, True for the top and False for the floor.
     """
     if observable == "density":
         profiles = [
@@ -215,9 +218,10 @@ def _value(column: Column, observable: str, top: bool | None) -> float:
 
 
 def compare_columns(real: Column, ideal: Column, observable: str, top: bool | None) -> float:
-    """Compute the relative difference of an observable between a column of ideal and of real gas.
+    """Compute the relative difference of an observable between a real and an ideal column.
 
-    `top` is used only for a pressure: True for the wall at the top, None for all walls together.
+    `top` is used only for a pressure: True for the wall at the top, False for the floor, None for all walls
+    together. For all walls together the result is the maximum over several observables.
     """
     if observable == "pressure" and top is not None:
         return relative_change(observable, real, ideal, real, top)

@@ -2,7 +2,7 @@
 
 In a homogeneous gas the local values are equal to the mean values. For a gas under gravity, the profiles
 follow from hydrostatics (`gaspart.theory.columns`), if theory covers the gas. For all other gases, a pilot
-run of the exact engine measures the values. The conditions are used to bound the errors of DSMC.
+run of the exact engine measures the values. The errors of DSMC are estimated from these conditions.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from gaspart.theory.discretisation import contact_values
 from gaspart.theory.rates import MEAN_SQUARE, cross_sections
 
 _FREE = 0.02
-"""Minimum fraction of the volume that is accessible to a pair where its contact value is evaluated."""
+"""Minimum accessible fraction of the volume for which a contact value is evaluated."""
 _HELD = 0.02
-"""Smallest fraction of the particles in a layer that counts in the shortest length scale."""
+"""Fraction of all particles, in the uppermost layers, that the shortest length scale does not include."""
 
 
 @dataclass(frozen=True)
@@ -35,12 +35,12 @@ class Conditions:
     Attributes
     ----------
     scene : scene
-    share : array (S,), fraction of all particles in each layer
-    crowding : (S,), density divided by the density of a gas that fills the accessible volume homogeneously
+    share : (S,), fraction of all particles in each layer
+    crowding : (S,), density divided by the density of a homogeneous gas in the accessible volume
     temperature : (S,), k_B T
     axis : axis of the layers, None for a homogeneous gas
     scale : shortest length along the axis over which density or temperature changes by a factor e
-    columns : under gravity, the columns of the real and of the ideal gas, None if theory does not cover them
+    columns : under gravity, the columns of the real and of the ideal gas; None if theory does not cover them
     """
 
     scene: Scene
@@ -53,7 +53,7 @@ class Conditions:
 
     @cached_property
     def free(self) -> np.ndarray:
-        """Accessible lengths for centres, shape (d,)."""
+        """Side lengths of the region that centres can reach, shape (d,)."""
         lower, upper = self.scene.reach(self.scene.smallest_radius)
         return np.subtract(upper, lower)
 
@@ -74,20 +74,20 @@ class Conditions:
 
     @cached_property
     def contact(self) -> np.ndarray:
-        """Contact value of an infinite gas, the maximum over all pairs of kinds, shape (S,)."""
+        """Contact value in an infinite gas, maximum over all pairs of kinds, shape (S,)."""
         radii, _, numbers = self._kinds
         d = self.scene.dimension
         return np.array([float(contact_values(numbers * ratio, radii, d).max()) for ratio in self.crowding])
 
     @cached_property
     def contact_of_few(self) -> np.ndarray:
-        """Contact value for the number of particles, shape (S,); inf if no pair fits.
+        """Contact value in a gas of N particles, shape (S,); inf if no pair fits.
 
         A particle of a pair in contact does not exclude volume from itself. So the result is the contact
         value of the other particles times 1 / (1 - v / V). Here v is the volume from which one particle of
         the pair excludes the centre of the other. The factor is exact for two particles. To first order in
-        the packing fraction of spheres the result is 1 + (5/2 + 3/N) eta: 4 eta for two particles, 5/2 eta
-        for many.
+        the packing fraction eta of spheres the result is 1 + (5/2 + 3/N) eta: 1 + 4 eta for two particles,
+        and 1 + 5/2 eta for many.
         """
         radii, _, numbers = self._kinds
         d, count = self.scene.dimension, self.scene.count
@@ -118,14 +118,14 @@ class Conditions:
 
     @property
     def contrast(self) -> float:
-        """Shortest mean free path of a homogeneous gas divided by the shortest one in these layers."""
+        """Shortest mean free path in a homogeneous gas divided by the shortest in the layers."""
         radii, _, numbers = self._kinds
         even = float(contact_values(numbers, radii, self.scene.dimension).max())
         return float((self.crowding * self.contact).max() / even)
 
     @cached_property
     def surfaces(self) -> float:
-        """Fraction of contacts with a missing neighbour because of a wall, to first order.
+        """Fraction of contacts at which a wall takes the place of a neighbour, to first order.
 
         This fraction is the largest diameter divided by the accessible length, summed over the axes with
         walls.
@@ -137,7 +137,7 @@ class Conditions:
 
     @property
     def quickened(self) -> float:
-        """Collision rate divided by the rate in a homogeneous gas at the initial temperature."""
+        """Collision rate divided by the collision rate in a homogeneous gas at the initial temperature."""
         kinds = self.scene.moving_kinds
         d = self.scene.dimension
         start = sum(kind.count * kind.initial_temperature(d) for kind in kinds) / self.scene.count
@@ -156,9 +156,9 @@ class Conditions:
         return abs(float(erpenbeck_wood_ratio(densest)) - 1.0) if densest > 0.0 else 0.0
 
     def of_points(self, observable: str, face: str | None) -> float | None:
-        """Compute the relative difference of an observable between point particles and finite particles.
+        """Compute the relative difference of an observable between point and finite particles.
 
-        `face` is the wall at which a pressure acts. Returns None if theory does not cover the column.
+        `face` is the wall on which a pressure acts. Returns None if theory does not cover the column.
         """
         return compare_columns(*self.columns, observable, self._top(face)) if self.columns else None
 
@@ -174,7 +174,7 @@ class Conditions:
 
 
 def known_conditions(scene: Scene, start: State) -> Conditions | None:
-    """Compute the local conditions from theory, or return None if theory does not cover the scene.
+    """Compute the local conditions from theory; None if theory does not cover the scene.
 
     The energy of the scene is computed from the initial state `start`.
     """
@@ -190,7 +190,7 @@ def known_conditions(scene: Scene, start: State) -> Conditions | None:
 
 
 def _is_even(scene: Scene) -> bool:
-    """Return True if a scene becomes homogeneous from any initial state."""
+    """Return True if a scene becomes homogeneous whatever its initial state."""
     law = scene.restitution
     uneven = [
         scene.gravity is not None,

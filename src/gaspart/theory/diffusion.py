@@ -1,7 +1,7 @@
 """Self-diffusion beyond Enskog: dense corrections, finite systems, and the long-time tail.
 
-Arguments are as in `enskog`: packing fraction (number or array), diameter, temperature (k_B = 1), mass,
-contact.
+The arguments are the same as in `enskog`: packing fraction (number or array), diameter, temperature (k_B =
+1), mass, and contact value.
 """
 
 import math
@@ -23,19 +23,20 @@ from gaspart.theory.geometry import (
 )
 
 ERPENBECK_WOOD_UNCERTAINTY = 0.007
-"""Relative uncertainty of `erpenbeck_wood_ratio` up to eta = 0.45: the largest difference from the table of
-Pieprzyk and others (2019)."""
+"""Relative uncertainty of `erpenbeck_wood_ratio` up to eta = 0.45: the greatest difference from the table of
+Pieprzyk and others (2019).
+"""
 ERPENBECK_WOOD_HIGHEST = 0.4915
-"""Largest packing fraction for `erpenbeck_wood_ratio`, where spheres freeze."""
+"""Maximum packing fraction of `erpenbeck_wood_ratio`; spheres freeze at this packing fraction."""
 VISCOSITY_RATIO_UNCERTAINTY = 0.02
-"""Relative standard uncertainty of `viscosity_ratio`: the largest value in its table."""
+"""Relative standard uncertainty of `viscosity_ratio`: the largest uncertainty in its table."""
 _SHIFT = 0.05  # relative uncertainty of the shift in a long container, see `diffusion_in_cube`
 _DENSE = 0.45, 0.03
 # Packing fraction above which the uncertainty is larger, and this uncertainty; the difference is 2 % at
 # 0.487.
 _ORDERED = 2.0
-"""Relative remainder of D in a short cube, divided by the relative remainder of the contact value, from the
-rows of `data/small_systems.csv` (tested).
+"""Relative change of D in a small cube that the known corrections do not include, divided by the same
+relative change of the contact value; from the rows of `data/small_systems.csv` (tested).
 """
 _VELOCITY_DECAY = {
     2: (
@@ -55,12 +56,12 @@ YEH_HUMMER_CONSTANT = 2.837297
 
 
 def erpenbeck_wood_ratio(packing_fraction: Numbers) -> Values:
-    """Compute the self-diffusion coefficient of spheres divided by Enskog's.
+    """Compute the self-diffusion coefficient of spheres divided by Enskog's coefficient.
 
     Parameters
     ----------
     packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.4915, the fluid.
+        Packing fraction eta, from 0 to 0.4915 (the range of the fluid).
 
     Returns
     -------
@@ -74,9 +75,9 @@ def erpenbeck_wood_ratio(packing_fraction: Numbers) -> Values:
 
     Notes
     -----
-    1 + 0.05403 y + 6.3656 y^2 - 10.9425 y^3 with y = rho sigma^3 / sqrt 2 [1]_. The coefficients were not
-    checked against the paper. The values differ from the table of D in [2]_, as quoted by a public script, by
-    at most 0.7 % up to eta = 0.45, and by 2 % at 0.487 (tested).
+    The ratio is 1 + 0.05403 y + 6.3656 y^2 - 10.9425 y^3 with y = rho sigma^3 / sqrt 2 [1]_. The coefficients
+    were not checked against the paper. The values differ from the table of D in [2]_, as quoted by a public
+    script, by at most 0.7 % up to eta = 0.45, and by 2 % at 0.487 (tested).
 
     References
     ----------
@@ -104,7 +105,7 @@ def erpenbeck_wood_diffusion(
     Parameters
     ----------
     packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.4915, the fluid.
+        Packing fraction eta, from 0 to 0.4915 (the range of the fluid).
     diameter : float, default 1.0, [length]
         Diameter sigma of a particle.
     temperature : float, default 1.0, [energy]
@@ -124,7 +125,7 @@ def erpenbeck_wood_diffusion(
 
     Notes
     -----
-    `erpenbeck_wood_ratio` times `enskog_diffusion`.
+    D is the product of `erpenbeck_wood_ratio` and `enskog_diffusion`.
 
     Examples
     --------
@@ -138,12 +139,12 @@ def erpenbeck_wood_diffusion(
 
 @check_ranges
 def viscosity_ratio(packing_fraction: Numbers) -> Values:
-    """Compute the shear viscosity of spheres divided by Enskog's.
+    """Compute the shear viscosity of spheres divided by Enskog's viscosity.
 
     Parameters
     ----------
     packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.4915, the fluid.
+        Packing fraction eta, from 0 to 0.4915 (the range of the fluid).
 
     Returns
     -------
@@ -157,9 +158,9 @@ def viscosity_ratio(packing_fraction: Numbers) -> Values:
 
     Notes
     -----
-    Measured by this program. The ratio is interpolated linearly between the rows of `data/viscosity_3d.csv`.
-    It is 1 up to eta = 0.3, where 1.00(1) was measured. The uncertainty is `VISCOSITY_RATIO_UNCERTAINTY`,
-    plus about 2 % between the rows.
+    The ratio was measured by this program. It is interpolated linearly between the rows of
+    `data/viscosity_3d.csv`. It is 1 up to eta = 0.3, where 1.00(1) was measured. The uncertainty is
+    `VISCOSITY_RATIO_UNCERTAINTY`, plus about 2 % between the rows.
 
     Examples
     --------
@@ -198,9 +199,9 @@ def yeh_hummer(length: Numbers, viscosity: Numbers, temperature: float = 1.0) ->
 
     Notes
     -----
-    2.837297 k_B T / (6 pi viscosity L) [1]_. The correction is hydrodynamic, so it is valid if the mean free
-    path is much shorter than L. In a gas, the relevant modes decay with nu + D instead of nu. This is
-    equivalent to a viscosity that is larger by rho D.
+    The correction is 2.837297 k_B T / (6 pi viscosity L) [1]_. It is hydrodynamic, so it holds only if the
+    mean free path is much shorter than L. In a gas, the relevant modes decay with nu + D instead of nu. This
+    is equivalent to a viscosity that is larger by rho D.
 
     References
     ----------
@@ -228,7 +229,7 @@ def diffusion_in_cube(
     Parameters
     ----------
     packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.4915, the fluid.
+        Packing fraction eta, from 0 to 0.4915 (the range of the fluid).
     length : float, [length]
         Side of the cube.
     diameter : float, default 1.0, [length]
@@ -253,13 +254,13 @@ def diffusion_in_cube(
 
     Notes
     -----
-    `erpenbeck_wood_diffusion` minus `yeh_hummer` for modes that decay with nu + D, with the viscosity from
-    `viscosity_ratio`. The relative uncertainty of the shift is 5 % plus two mean free paths divided by the
-    side, and at most a half. The second term matters if the container is not much longer than a mean free
-    path. (Tested with 49 values of 1372 to 530604 spheres from another program.) In a small cube, the
-    periodic images of a particle order the surrounding fluid. The relative change of D is twice
-    `finite_size_remainder`. (Tested with 44 rows of `small_systems` in larger cubes; in this table D is
-    relative to the centre of mass.)
+    D is `erpenbeck_wood_diffusion` minus the shift `yeh_hummer`. The shift is computed for modes that decay
+    with nu + D, and with the viscosity from `viscosity_ratio`. The relative uncertainty of the shift is 5 %
+    plus two mean free paths divided by the side, but at most a half. The second term matters if the container
+    is not much longer than a mean free path. (Tested with 49 values of 1372 to 530604 spheres from another
+    program.) In a small cube, the periodic images of a particle order the surrounding fluid. The relative
+    change of D by this order is twice `finite_size_remainder`. (Tested with 44 rows of `small_systems` in
+    larger cubes; in this table D is relative to the centre of mass.)
 
     Examples
     --------
@@ -311,8 +312,8 @@ def velocity_decay_rate(
     mass : float, default 1.0, [mass]
         Mass of a particle.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
-        state, or 1 in a gas of points.
+        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
+        points. Default: `contact_value`.
 
     Returns
     -------
@@ -326,8 +327,8 @@ def velocity_decay_rate(
 
     Notes
     -----
-    2 nu / d, with nu of `collision_rate` (exact in equilibrium). k_B T / (m rate) is D of Enskog theory in
-    the first Sonine approximation.
+    The rate is 2 nu / d, with the collision rate nu from `collision_rate` (exact in equilibrium). In the
+    first Sonine approximation of Enskog theory, D = k_B T / (m rate).
 
     Examples
     --------
@@ -366,8 +367,8 @@ def enskog_mean_squared_displacement(
     mass : float, default 1.0, [mass]
         Mass of a particle.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
-        state, or 1 in a gas of points.
+        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
+        points. Default: `contact_value`.
 
     Returns
     -------

@@ -42,7 +42,7 @@ def _density_and_contact(
 def _kinetic(
     dilute: float, factor: float, packing_fraction: Numbers, dimension: int, contact: Numbers | None
 ) -> Values:
-    """Return (dilute / chi) [1 + factor b chi / (d+2)]^2.
+    """Compute the kinetic part, (dilute / chi) [1 + factor b chi / (d+2)]^2.
 
     b is 2^(d-1) times the packing fraction.
     """
@@ -61,8 +61,8 @@ def kinetic_viscosity(packing_fraction: Numbers, dimension: int, contact: Number
     dimension : {2, 3}
         Discs or spheres.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
-        state, or 1 in a gas of points.
+        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
+        points. Default: `contact_value`.
 
     Returns
     -------
@@ -76,7 +76,7 @@ def kinetic_viscosity(packing_fraction: Numbers, dimension: int, contact: Number
 
     Notes
     -----
-    The first term of `enskog_viscosity`. The kinetic stress relaxes within a few collisions.
+    The result is the first term of `enskog_viscosity`. The kinetic stress relaxes within a few collisions.
     """
     return _kinetic(_DILUTE_VISCOSITY[dimension], 2.0, packing_fraction, dimension, contact)
 
@@ -91,8 +91,8 @@ def kinetic_conductivity(packing_fraction: Numbers, dimension: int, contact: Num
     dimension : {2, 3}
         Discs or spheres.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
-        state, or 1 in a gas of points.
+        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
+        points. Default: `contact_value`.
 
     Returns
     -------
@@ -106,7 +106,8 @@ def kinetic_conductivity(packing_fraction: Numbers, dimension: int, contact: Num
 
     Notes
     -----
-    The first term of `enskog_conductivity`. The kinetic heat flux relaxes within a few collisions.
+    The result is the first term of `enskog_conductivity`. The kinetic heat flux relaxes within a few
+    collisions.
     """
     return _kinetic(_DILUTE_CONDUCTIVITY[dimension], 3.0, packing_fraction, dimension, contact)
 
@@ -135,8 +136,8 @@ def collision_rate(
     mass : float, default 1.0, [mass]
         Mass of a particle.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
-        state, or 1 in a gas of points.
+        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
+        points. Default: `contact_value`.
 
     Returns
     -------
@@ -150,9 +151,10 @@ def collision_rate(
 
     Notes
     -----
-    nu = S rho sigma^(d-1) chi sqrt(k_B T / (pi m)) with S = 2 pi (2D), 4 pi (3D): 2 rho sigma chi sqrt(pi k_B
-    T / m) and 4 rho sigma^2 chi sqrt(pi k_B T / m). The formula is exact in equilibrium (velocities are
-    independent of positions), apart from the accuracy of chi. In a run of N particles, nu = 2 N_coll / (N t).
+    nu = S rho sigma^(d-1) chi sqrt(k_B T / (pi m)), with S = 2 pi in 2D and 4 pi in 3D. This is 2 rho sigma
+    chi sqrt(pi k_B T / m) in 2D and 4 rho sigma^2 chi sqrt(pi k_B T / m) in 3D. The formula is exact in
+    equilibrium, apart from the accuracy of chi, because velocities are independent of positions. In a run of
+    N particles, nu = 2 N_coll / (N t).
 
     Examples
     --------
@@ -190,8 +192,9 @@ def collision_rate_finite_size_factor(packing_fraction: Numbers, dimension: int,
 
     Notes
     -----
-    Contact value: the canonical Z_N - 1 divided by Z - 1, to first order in 1/N (see
-    `finite_size_correction`). Mean relative speed: see `enskog.approach_factor`.
+    The ratio is the product of two factors. The change of the contact value is the canonical Z_N - 1 divided
+    by Z - 1, to first order in 1/N (see `finite_size_correction`). The change of the mean relative speed is
+    `enskog.approach_factor`.
 
     Examples
     --------
@@ -206,7 +209,7 @@ def collision_rate_finite_size_factor(packing_fraction: Numbers, dimension: int,
 
 
 def approach_factor(dimension: int, count: int) -> float:
-    """Compute the mean speed of approach of few particles divided by its Maxwellian value.
+    """Compute the mean speed of approach among N particles divided by its Maxwellian value.
 
     Parameters
     ----------
@@ -222,8 +225,8 @@ def approach_factor(dimension: int, count: int) -> float:
 
     Notes
     -----
-    sqrt(d N / 2) Gamma(D/2) / Gamma((D+1)/2), for velocities uniform on the sphere in D = d (N-1) dimensions
-    (exact).
+    The ratio is sqrt(d N / 2) Gamma(D/2) / Gamma((D+1)/2) with D = d (N-1). It is exact, because the
+    velocities are uniformly distributed on a sphere in D dimensions.
 
     Examples
     --------
@@ -249,13 +252,13 @@ def mean_free_path(
     diameter : float, default 1.0, [length]
         Diameter sigma of a particle.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
-        state, or 1 in a gas of points.
+        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
+        points. Default: `contact_value`.
 
     Returns
     -------
     ndarray, same shape as `packing_fraction`, [length]
-        Mean free path; it is infinite at zero density.
+        Mean free path; infinite at zero density.
 
     Raises
     ------
@@ -264,8 +267,9 @@ def mean_free_path(
 
     Notes
     -----
-    Mean speed divided by the collision rate: 1 / (sqrt 2 pi rho sigma^2 chi) in 3D, 1 / (2 sqrt 2 rho sigma
-    chi) in 2D. Exact in equilibrium, with the accuracy of chi.
+    The mean free path is the mean speed divided by the collision rate: 1 / (sqrt 2 pi rho sigma^2 chi) in 3D,
+    and 1 / (2 sqrt 2 rho sigma chi) in 2D. The formula is exact in equilibrium, apart from the accuracy of
+    chi.
 
     Examples
     --------
@@ -302,8 +306,8 @@ def enskog_diffusion(
     mass : float, default 1.0, [mass]
         Mass of a particle.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
-        state, or 1 in a gas of points.
+        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
+        points. Default: `contact_value`.
 
     Returns
     -------
@@ -318,9 +322,9 @@ def enskog_diffusion(
     Notes
     -----
     D = c sqrt(k_B T / (pi m)) / (rho sigma^(d-1) chi). The constant c, which includes a Sonine factor, is
-    (3/8) 1.01895 in 3D and (1/2) 1.02710 in 2D. In 3D the formula is exact at zero density; `diffusion` has
-    the correction at higher density. In 2D it is D of the Enskog equation only. The true D does not exist,
-    because it grows like ln t.
+    (3/8) 1.01895 in 3D and (1/2) 1.02710 in 2D. In 3D the formula is exact at zero density; the module
+    `diffusion` contains the correction at higher density. In 2D the formula is the diffusion coefficient of
+    the Enskog equation. For real discs D does not exist, because D(t) grows as ln t.
 
     Examples
     --------
@@ -360,8 +364,8 @@ def enskog_bulk_viscosity(
     mass : float, default 1.0, [mass]
         Mass of a particle.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
-        state, or 1 in a gas of points.
+        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
+        points. Default: `contact_value`.
 
     Returns
     -------
@@ -375,9 +379,9 @@ def enskog_bulk_viscosity(
 
     Notes
     -----
-    (S / d^2) rho^2 sigma^(d+1) chi sqrt(m k_B T / pi), with S = 2 pi (2D), 4 pi (3D). It is exact within the
-    theory: the first-order change of the collisional pressure under uniform expansion, in which a pair at
-    contact has the mean normal velocity sigma div(u) / d.
+    The bulk viscosity is (S / d^2) rho^2 sigma^(d+1) chi sqrt(m k_B T / pi), with S = 2 pi in 2D and 4 pi in
+    3D. This is exact within the theory. It is the first-order change of the collisional pressure under
+    uniform expansion. A pair at contact then has the mean normal velocity sigma div(u) / d.
 
     Examples
     --------
@@ -415,8 +419,8 @@ def enskog_viscosity(
     mass : float, default 1.0, [mass]
         Mass of a particle.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
-        state, or 1 in a gas of points.
+        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
+        points. Default: `contact_value`.
 
     Returns
     -------
@@ -430,10 +434,11 @@ def enskog_viscosity(
 
     Notes
     -----
-    (eta_0 / chi) [1 + 2 b chi / (d+2)]^2 + bulk viscosity d / (d+2), where b is 2^(d-1) times the packing
-    fraction. The dilute value eta_0 is 0.17913 (3D) or 0.28829 (2D), times sqrt(m k_B T) / sigma^(d-1).
-    3D: eta_0 [1/chi + 0.8 b + 0.7615 b^2 chi]; 2D: eta_0 [1/chi + b + 0.8729 b^2 chi] (Gass). The formula is
-    accurate to a few per cent up to a packing fraction of 0.3 (3D), and too low for denser gases.
+    The viscosity is (eta_0 / chi) [1 + 2 b chi / (d+2)]^2 plus d / (d+2) times the bulk viscosity, where b is
+    2^(d-1) times the packing fraction. The dilute value eta_0 is 0.17913 (3D) or 0.28829 (2D), times sqrt(m
+    k_B T) / sigma^(d-1). Together this is eta_0 [1/chi + 0.8 b + 0.7615 b^2 chi] in 3D and eta_0 [1/chi + b +
+    0.8729 b^2 chi] in 2D (Gass). In 3D the formula is accurate to a few per cent up to a packing fraction of
+    0.3. In denser gases the result is too low.
 
     Examples
     --------
@@ -482,8 +487,9 @@ def enskog_longitudinal_viscosity(
 
     Notes
     -----
-    2 (d-1)/d shear viscosity + bulk viscosity. The longitudinal viscosity damps sound. In a gas between a
-    wall and a piston it produces heat at the rate longitudinal viscosity times (du/dx)^2 per volume.
+    The longitudinal viscosity is 2 (d-1)/d times the shear viscosity plus the bulk viscosity. It damps sound.
+    In a gas between a wall and a piston, it produces heat. The heat per volume and time is the longitudinal
+    viscosity times (du/dx)^2.
 
     Examples
     --------
@@ -520,8 +526,8 @@ def enskog_conductivity(
     mass : float, default 1.0, [mass]
         Mass of a particle.
     contact : array_like, [1], optional
-        Pair distribution at contact, chi. Default: `contact_value`. Contact value of another equation of
-        state, or 1 in a gas of points.
+        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
+        points. Default: `contact_value`.
 
     Returns
     -------
@@ -535,9 +541,10 @@ def enskog_conductivity(
 
     Notes
     -----
-    (lambda_0 / chi) [1 + 3 b chi / (d+2)]^2 + d / (2m) bulk viscosity, where b is 2^(d-1) times the packing
-    fraction. The dilute value lambda_0 is 0.67783 (3D) or 1.16192 (2D), times sqrt(T / m) / sigma^(d-1).
-    3D: lambda_0 [1/chi + 1.2 b + 0.7574 b^2 chi]; 2D: lambda_0 [1/chi + 1.5 b + 0.8716 b^2 chi].
+    The conductivity is (lambda_0 / chi) [1 + 3 b chi / (d+2)]^2 plus d / (2m) times the bulk viscosity, where
+    b is 2^(d-1) times the packing fraction. The dilute value lambda_0 is 0.67783 (3D) or 1.16192 (2D), times
+    sqrt(T / m) / sigma^(d-1). Together this is lambda_0 [1/chi + 1.2 b + 0.7574 b^2 chi] in 3D and lambda_0
+    [1/chi + 1.5 b + 0.8716 b^2 chi] in 2D.
 
     Examples
     --------
@@ -577,8 +584,9 @@ def transport_finite_size_factor(count: int, dimension: int, quantity: str) -> f
     Notes
     -----
     With D = d (N - 1), the mean square of the stress is multiplied by (1 - 1/N) D / (D + 2), and the mean
-    square of the heat flux by (1 - 1/N)^3 D^2 / ((D + 2)(D + 4)) (moments of the uniform distribution on a
-    sphere; to O(1/N^2)). Both fluxes decay more slowly by the factor 1 / (1 - 1/N), because a particle has N
+    square of the heat flux by (1 - 1/N)^3 D^2 / ((D + 2)(D + 4)) (from moments of the uniform distribution on
+    a sphere, with errors of order 1/N^2). Both fluxes decay more slowly by the factor 1 / (1 - 1/N), because
+    a particle has N
     - 1 partners.
 
     Examples

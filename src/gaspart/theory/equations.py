@@ -1,7 +1,7 @@
 """Equations of state by name: Z = P / (rho k_B T) against packing fraction.
 
 Every function returns the dimensionless compressibility factor Z with the shape of `packing_fraction`, and
-raises SceneError, a ValueError, outside its range. `state` defines the reference equation.
+raises SceneError, a ValueError, outside its range. The module `state` defines the reference equation.
 """
 
 import numpy as np
@@ -42,9 +42,10 @@ def van_der_waals(packing_fraction: Numbers, dimension: int) -> Values:
 
     Notes
     -----
-    Z = 1 / (1 - b_2 eta), the proposal P = N k_B T / (V - N b) of source A, with b = B2. The equation is
-    exact only to first order in eta: its b_3 is b_2^2, which is 28 % too high in 2D and 60 % too high in 3D.
-    Its pressure diverges far below close packing. In one dimension it is exact.
+    Z = 1 / (1 - b_2 eta), from the equation P = N k_B T / (V - N b) that source A proposes, with b = B2. The
+    equation is exact only to first order in eta: its coefficient b_3 is b_2^2, which is 28 % too high in 2D
+    and 60 % too high in 3D. Its pressure diverges far below close packing. In one dimension the equation is
+    exact.
 
     Examples
     --------
@@ -153,7 +154,7 @@ def kolafa_labik_malijevsky(packing_fraction: Numbers) -> Values:
     The equation is a polynomial in x = eta / (1 - eta), fitted to simulations and to B2 ... B6 [1]_. The data
     are at rho sigma^3 = 0.20 to 1.03 and have a relative error below 4e-5 with 95 % confidence (literature:
     abstract of the article). A public program for Enskog theory uses the same coefficients. A test shows that
-    they give B4, B5 and B6.
+    the coefficients reproduce B4, B5 and B6.
 
     References
     ----------
@@ -189,7 +190,7 @@ def percus_yevick_virial(packing_fraction: Numbers) -> Values:
 
     Notes
     -----
-    Z = (1 + 2 eta + 3 eta^2) / (1 - eta)^2, exact within this theory.
+    Z = (1 + 2 eta + 3 eta^2) / (1 - eta)^2. This solution of the theory is exact.
 
     Examples
     --------
@@ -221,7 +222,7 @@ def percus_yevick_compressibility(packing_fraction: Numbers) -> Values:
 
     Notes
     -----
-    Z = (1 + eta + eta^2) / (1 - eta)^3, exact within this theory.
+    Z = (1 + eta + eta^2) / (1 - eta)^3. This solution of the theory is exact.
 
     Examples
     --------
@@ -325,9 +326,9 @@ def santos_haro_yuste(packing_fraction: Numbers) -> Values:
 
     Notes
     -----
-    Z = 1 / [1 - 2 eta + (2 eta_c - 1) eta^2 / eta_c^2], with eta_c at close packing [1]_. It is the simplest
-    equation with the correct B2 and a pole at close packing. The equation is accurate to 1.6 % up to eta =
-    0.55.
+    Z = 1 / [1 - 2 eta + (2 eta_c - 1) eta^2 / eta_c^2], where eta_c is the packing fraction at close packing
+    [1]_. This is the simplest equation with the correct B2 and a pole at close packing. The equation is
+    accurate to 1.6 % up to eta = 0.55.
 
     References
     ----------
@@ -365,8 +366,8 @@ def liu(packing_fraction: Numbers) -> Values:
     Notes
     -----
     Z = (1 + eta^2/8 + eta^3/18 - 4 eta^4/21) / (1 - eta)^2 [1]_ (literature through SklogWiki, which prints
-    eta^4/18). The power 3 agrees with the virial series and with the tabulated values (tested). The equation
-    is within 3e-4 of the virial reference up to eta = 0.4, and within 1e-3 up to 0.7.
+    eta^4/18). The term eta^3/18 agrees with the virial series and with the tabulated values (tested). The
+    equation is within 3e-4 of the virial reference up to eta = 0.4, and within 1e-3 up to 0.7.
 
     References
     ----------

@@ -1,7 +1,7 @@
 """Hard spheres between two flat hard walls: density profile and pressure by density functional theory.
 
-Diameter 1 and k_B T = 1; densities in 1 / sigma^3. The width H of a slit is the distance between the surfaces
-of its walls, so centres can move over H - 1.
+The unit of length is the diameter sigma, the unit of energy k_B T. The width H of a slit is the distance
+between the surfaces of its walls, so the space accessible to centres has the width H - 1.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from gaspart.theory.geometry import (
 
 _RADIUS = 0.5
 _MIXING = 0.015
-"""Fraction of a change that is applied far from the solution. With larger fractions the iteration oscillates
-in slits narrower than two diameters.
+"""Fraction of the computed change of the density that is applied far from the solution. With larger fractions
+the iteration oscillates in slits narrower than two diameters.
 """
 _NEAR, _NEAR_MIXING, _REMEMBERED = 0.3, 0.05, 5
 """Largest change, in units of the bulk density, that counts as near the solution; the fraction of a change
@@ -68,9 +68,10 @@ def white_bear_slit(
 
     Notes
     -----
-    White Bear functional [1]_. It is solved by damped iteration, and near the solution by Anderson mixing
-    [2]_. Its bulk pressure is Carnahan and Starling's, which is 0.3 % too low at eta = 0.35. The theory obeys
-    the contact theorem exactly, so rho(0) is the pressure on the walls.
+    The profile minimizes the White Bear functional [1]_. It is found by damped iteration and, near the
+    solution, by Anderson mixing [2]_. The bulk pressure of the functional is Carnahan and Starling's, which
+    is 0.3 % too low at eta = 0.35. The theory obeys the contact theorem exactly, so the pressure on the walls
+    is rho(0).
 
     References
     ----------
@@ -128,10 +129,10 @@ def white_bear_slit(
 
 
 def _anderson(moves: list[np.ndarray], changes: list[np.ndarray]) -> np.ndarray:
-    """Return the next step towards the solution, by Anderson's mixing.
+    """Return the next step towards the solution by Anderson mixing.
 
-    The requested changes of the last steps are treated as linear functions, and combined to minimize the
-    change.
+    The computed change is treated as a linear function of the solution. The last steps are combined such that
+    the change is as small as possible.
     """
     if not moves:
         return _NEAR_MIXING * changes[-1]
@@ -177,9 +178,9 @@ def _bulk_measures(density: float) -> tuple[float, float]:
 def _derivatives(
     n3: np.ndarray, n2: np.ndarray, vector: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the derivatives of the free energy density with respect to n_3, n_2 and n_V2.
+    """Compute the derivatives of the free energy density with respect to n_3, n_2 and n_V2.
 
-    The other weighted densities are expressed by these.
+    All other weighted densities are functions of n_3, n_2 and n_V2.
     """
     void = 1.0 - n3
     logarithm = np.log(void)
@@ -230,7 +231,7 @@ def cluster_integrals(order: int, dimension: int, samples: int, seed: int = 0) -
     Returns
     -------
     ndarray, shape (d + 1,), [1]
-        Integrals of U_n / n! times 1, e_1, e_1 e_2 (and e_1 e_2 e_3), for the diameter 1.
+        Integrals of U_n / n! times 1, e_1, e_1 e_2 (and in 3D e_1 e_2 e_3), for the diameter 1.
 
     Raises
     ------
@@ -266,7 +267,7 @@ def cluster_integrals(order: int, dimension: int, samples: int, seed: int = 0) -
 
 @cache
 def _graphs(order: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return Ursell's function and the number of spanning trees of each graph of overlaps.
+    """Compute Ursell's function and the number of spanning trees of each graph of overlaps.
 
     A graph is an integer with one bit per pair. U_n is the sum of (-1)^edges over the connected subgraphs
     that contain all n vertices. A tree is a connected subgraph with n - 1 edges.
@@ -295,10 +296,10 @@ def _graphs(order: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _random_trees(rng: np.random.Generator, order: int, samples: int) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return the edges of random trees, uniform among the labelled trees (Pruefer code).
+    """Draw random trees, uniformly among the labelled trees, by their Pruefer code.
 
-    Each edge is a leaf and its parent, both of shape (samples,). The parent is placed before the leaf, except
-    for the first leaf, whose parent is the origin.
+    Returns the edges. Each edge is a leaf and its parent, both of shape (samples,). The parent is placed
+    before the leaf, except for the first leaf, whose parent is the origin.
     """
     code = rng.integers(0, order, (samples, order - 2))
     rows = np.arange(samples)

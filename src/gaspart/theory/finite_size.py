@@ -1,4 +1,4 @@
-r"""Pairs of few particles in a periodic container: closed form, table, and expansion in 1/N.
+r"""Contact value of N particles in a periodic container: closed form, table, expansion in 1/N.
 
 The container is a square or a cube.
 
@@ -13,9 +13,9 @@ where nu_1 is `collision_rate` for a contact value of 1, and f is `speeds.mean_s
 canonical compressibility factor, which `gaspart.analysis.compressibility_factor` measures.
 
 The expansion in 1/N (`state.finite_size_correction`) neglects terms that decrease exponentially with the side
-of the container. They arise because the periodic images of a particle order the surrounding fluid. In dense
-or small systems these terms are the largest ones. `finite_size_remainder` estimates their size from the
-table.
+of the container. These terms arise because the periodic images of a particle order the surrounding fluid. In
+dense or small systems they are larger than the terms of the expansion. `finite_size_remainder` estimates
+their size from the table.
 """
 
 import math
@@ -52,8 +52,8 @@ three of the excluded spheres around the periodic images overlap.
 _REMAINDER = {2: (14.665, -39.404, 28.652, 2.17, -3.62), 3: (13.094, -46.965, 46.633, 1.953, -3.727)}
 """Coefficients a0, a1, a2, b0, b1 of `finite_size_remainder`, by maximum likelihood. The fit uses the rows of
 `data/small_systems.csv` with at least 4 particles and a side of at least 2.2 diameters
-(`benchmarks/small_systems.py fit`): 95 rows of discs with deviations up to 3.9 standard deviations, and 66
-rows of spheres with deviations up to 3.2.
+(`benchmarks/small_systems.py fit`): 95 rows for discs with deviations up to 3.9 standard deviations, and 66
+rows for spheres with deviations up to 3.2.
 """
 _SHORTEST = 2.2
 """Side in diameters below which the expansion in 1/N is not used, because a particle interacts with its own
@@ -71,8 +71,8 @@ def pair_contact_value(packing_fraction: Numbers, dimension: int) -> Values:
     Parameters
     ----------
     packing_fraction : array_like, [1]
-        Packing fraction eta of both particles: up to pi/4 for discs and 0.3702 for spheres, where the side of
-        the container is sqrt(2) diameters.
+        Packing fraction eta of both particles together: up to pi/4 for discs and 0.3702 for spheres. At this
+        limit the side of the container is sqrt(2) diameters.
     dimension : {2, 3}
         Discs or spheres.
 
@@ -88,10 +88,10 @@ def pair_contact_value(packing_fraction: Numbers, dimension: int) -> Values:
 
     Notes
     -----
-    The result is exact. The centre of the second particle is anywhere outside of the spheres of radius sigma
-    around the first particle and its images. So g = V s / (V - v), with the volume v of these spheres in the
-    container and the fraction s of their surface that no image covers. At L >= 2 sigma the spheres do not
-    overlap, and g = 1 / (1 - 2^(d-1) eta).
+    The result is exact. The centre of the second particle can be anywhere outside of the spheres of radius
+    sigma around the first particle and its images. So g = V s / (V - v). Here v is the volume of these
+    spheres in the container, and s is the fraction of their surface that no sphere around another image
+    covers. At L >= 2 sigma the spheres do not overlap, and g = 1 / (1 - 2^(d-1) eta).
 
     Examples
     --------
@@ -140,11 +140,11 @@ def finite_size_remainder(packing_fraction: Numbers, dimension: int, side: Numbe
 
     Notes
     -----
-    exp(a - b L). a is a polynomial of second order in eta, and ln b a polynomial of first order. They
-    describe the amplitude and the decay of correlations between images at a distance L. The coefficients
-    maximize the likelihood of the differences between the table (`small_systems`) and the expansion, assumed
-    to be normally distributed with this standard deviation. The differences change sign with the side. The
-    result is infinite below 2.2 diameters.
+    The standard deviation is exp(a - b L), where a is a polynomial of second order in eta, and ln b a
+    polynomial of first order. Correlations between images at a distance L have the amplitude exp(a) and decay
+    with the rate b. The coefficients maximize the likelihood of the differences between the table
+    (`small_systems`) and the expansion. The differences are assumed to be normally distributed with this
+    standard deviation. The differences change sign with the side. The result is infinite below 2.2 diameters.
 
     Examples
     --------
@@ -163,7 +163,7 @@ def finite_size_remainder(packing_fraction: Numbers, dimension: int, side: Numbe
 def finite_contact_value(
     packing_fraction: float, dimension: int, count: int, side: float | None = None
 ) -> tuple[float, float]:
-    """Compute the contact value of a number of particles in a periodic container, and its uncertainty.
+    """Compute the contact value of N particles in a periodic container, and its uncertainty.
 
     Parameters
     ----------
@@ -190,12 +190,12 @@ def finite_contact_value(
 
     Notes
     -----
-    In a square or cube, two particles have a closed form (`pair_contact_value`). For the particle numbers in
-    the table (`small_systems`), the ratio to the expansion is interpolated linearly in eta. Its uncertainty
-    is the difference from a parabola. In all other cases, and if it has the smaller uncertainty, the
-    expansion in 1/N is used (`finite_size_correction`). Its uncertainty combines the uncertainty of the
-    equation of state, `finite_size_remainder`, and the square of the relative correction for the next order
-    in 1/N.
+    For two particles in a square or cube, the closed form is used (`pair_contact_value`). For the particle
+    numbers in the table (`small_systems`), the ratio of the tabulated value to the expansion is interpolated
+    linearly in eta. The uncertainty of the ratio is the difference from an interpolation by a parabola. In
+    all other cases, and also if its uncertainty is smaller, the expansion in 1/N is used
+    (`finite_size_correction`). The uncertainty of the expansion combines the uncertainty of the equation of
+    state, `finite_size_remainder`, and the square of the relative correction for the next order in 1/N.
 
     Examples
     --------
@@ -225,7 +225,7 @@ def finite_contact_value(
 def insertion_potential(
     packing_fraction: float, dimension: int, count: int, side: float
 ) -> tuple[float, float]:
-    """Compute -ln P with the probability P that a further particle fits at a random position.
+    """Compute -ln P; P is the probability that a further particle fits at a random position.
 
     Parameters
     ----------
@@ -252,11 +252,12 @@ def insertion_potential(
 
     Notes
     -----
-    The result is the sum of `excess_chemical_potential` and `insertion_finite_size_correction`. The remainder
-    of Z is R, `finite_size_remainder` times Z - 1. With the free energy F_N of N particles, the difference
-    F_(N+1) - F_N has the remainder R + (integral of R / eta over eta). The uncertainty combines both
-    remainders, the uncertainty of the equation of state, and the square of the relative correction. A single
-    particle excludes exactly the fraction 2^d eta of the container.
+    The result is the sum of `excess_chemical_potential` and `insertion_finite_size_correction`. Let R be the
+    neglected remainder of Z, which is `finite_size_remainder` times Z - 1. With the free energy F_N of N
+    particles, the difference F_(N+1) - F_N has the remainder R + (integral of R / eta over eta). The
+    uncertainty combines both terms of this remainder, the uncertainty of the equation of state, and the
+    square of the relative correction. For a single particle the result is exact: it excludes the fraction 2^d
+    eta of the container.
 
     Examples
     --------
@@ -306,9 +307,9 @@ def _expansion(eta: float, dimension: int, count: int, side: float) -> tuple[flo
 
 
 def _interpolate_table(eta: float, dimension: int, count: int) -> list[tuple[float, float]]:
-    """Return the contact value between rows of the table, and its uncertainty.
+    """Interpolate the contact value between rows of the table, with its uncertainty.
 
-    The result is empty outside of the rows.
+    The result is empty if eta is outside the range of the rows.
     """
     fractions, factors, errors = _factors(dimension, count)
     if len(fractions) < 3 or eta > fractions[-1]:
@@ -323,7 +324,7 @@ def _interpolate_table(eta: float, dimension: int, count: int) -> list[tuple[flo
 
 @cache
 def _factors(dimension: int, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return packing fractions, and the ratios of contact values in the table to the expansion.
+    """Return packing fractions, and the ratios of tabulated contact values to the expansion.
 
     The ratios have errors. The first row is the limit 1 at zero density.
     """

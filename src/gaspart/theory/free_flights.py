@@ -1,4 +1,4 @@
-"""Distribution of the free-flight times of a particle between its collisions.
+"""Distribution of the time of free flight of a particle between two collisions.
 
 All functions take `packing_fraction`, dimension 2 or 3, and the diameter, temperature (k_B = 1) and mass of
 the particles. Range: the collision rate at a given speed is exact in equilibrium at zero density. At higher
@@ -19,7 +19,7 @@ from gaspart.theory.speeds import maxwell_pdf, mean_speed
 _SPEEDS = 160
 """Number of points of the quadrature over speeds."""
 _FASTEST = 8.0
-"""Highest speed of the quadrature in thermal speeds; a fraction of less than exp(-32) of the particles is
+"""Highest speed of the quadrature in thermal speeds. A fraction of less than exp(-32) of the particles is
 faster.
 """
 
@@ -63,11 +63,11 @@ def collision_rate_at_speed(
     Notes
     -----
     nu(v) is `collision_rate` times u divided by the mean relative speed of all pairs. Here u is the mean
-    relative speed of a particle with speed v. The mean u is over Maxwellian velocities of the partner. With c
-    = v / sqrt(2 k_B T / m), and u in units of that speed, u = exp(-c^2) / sqrt(pi) + (c + 1 / (2 c)) erf(c)
-    in 3D, and u = sqrt(pi)/2 exp(-c^2 / 2) [(1 + c^2) I_0(c^2 / 2) + c^2 I_1(c^2 / 2)] in 2D, the mean of
-    Rice's distribution. The mean of nu(v) over all speeds is nu. The formula is exact in equilibrium at zero
-    density. At higher density it is multiplied by chi, as in Enskog theory.
+    relative speed between a particle of speed v and partners with Maxwellian velocities. Let the unit of
+    speed be sqrt(2 k_B T / m), and c the speed v in this unit. Then u = exp(-c^2) / sqrt(pi) + (c + 1 / (2
+    c)) erf(c) in 3D. In 2D, u is the mean of Rice's distribution, sqrt(pi)/2 exp(-c^2 / 2) [(1 + c^2) I_0(c^2
+    / 2) + c^2 I_1(c^2 / 2)]. The mean of nu(v) over all speeds is nu. The formula is exact in equilibrium at
+    zero density. At higher density it is multiplied by chi, as in Enskog theory.
 
     Examples
     --------
@@ -128,12 +128,12 @@ def free_time_pdf(
 
     Notes
     -----
-    int f nu(v)^2 exp(-nu(v) t) dv / nu, with f Maxwell's distribution and nu(v) of `collision_rate_at_speed`.
-    The distribution of speeds before a collision is f(v) nu(v). The distribution after a collision is the
-    same, because the motion is reversible. The mean of the distribution is 1 / nu. It decreases more slowly
-    than an exponential, because slow particles collide less often. The integral is computed by Gauss-Legendre
-    quadrature to 1e-9. Consecutive collisions are assumed to be independent. At a packing fraction of 0.05
-    the shortest flights are 2 % less frequent.
+    The density is int f nu(v)^2 exp(-nu(v) t) dv / nu, where f is Maxwell's distribution of speeds and nu(v)
+    is `collision_rate_at_speed`. The distribution of speeds before a collision is f(v) nu(v). The
+    distribution after a collision is the same, because the motion is reversible. The mean of the distribution
+    is 1 / nu. The density decreases more slowly than an exponential, because slow particles collide less
+    often. The integral is computed by Gauss-Legendre quadrature to 1e-9. Consecutive collisions are assumed
+    to be independent. At a packing fraction of 0.05 the shortest flights are 2 % less frequent.
 
     Examples
     --------

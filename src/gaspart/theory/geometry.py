@@ -17,7 +17,7 @@ from gaspart.scene.limits import ball_volume
 
 
 Numbers: TypeAlias = float | np.ndarray
-"""A number, or an array of them."""
+"""A number, or an array of numbers."""
 Values: TypeAlias = Any
 """Result of a function of `Numbers`: a number for numbers, an array of the same shape for arrays."""
 
@@ -40,11 +40,11 @@ _RANGES = {
     "side_over_diameter": (1.0, math.inf, "must be finite and at least 1"),
     "count": (1.0, math.inf, "must be finite and at least 1"),
 }
-"""Smallest and largest allowed value for each argument name, and the rule in words."""
+"""For each argument name, the smallest and largest allowed values, and the rule in words."""
 
 
 def check_ranges(function: Callable[P, R]) -> Callable[P, R]:
-    """Return a function that raises SceneError for an argument outside of its range.
+    """Decorate a formula so that it raises SceneError for an argument outside of its range.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ def checked_packing_fraction(packing_fraction: Numbers, largest: float) -> np.nd
 
 
 def unit_sphere_surface(dimension: int) -> float:
-    """Return the surface of the unit ball: 2 pi in 2D, 4 pi in 3D (exact)."""
+    """Return the surface of the unit ball: 2 pi in 2D, 4 pi in 3D."""
     return {2: 2.0 * math.pi, 3: 4.0 * math.pi}[checked_dimension(dimension)]
 
 
@@ -174,7 +174,7 @@ def particle_volume(dimension: int, diameter: float = 1.0) -> float:
 
     Notes
     -----
-    pi sigma^2 / 4 of a disc, pi sigma^3 / 6 of a sphere (exact).
+    The area of a disc is pi sigma^2 / 4, the volume of a sphere pi sigma^3 / 6 (exact).
 
     Examples
     --------

@@ -1,1 +1,1 @@
-"""Theory for a run, for the equation of its engine and its number of particles."""
+"""Theoretical values for a run, from its engine's equation and its number of particles."""

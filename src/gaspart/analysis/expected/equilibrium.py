@@ -33,28 +33,28 @@ Expected: TypeAlias = tuple[Any, Any, str]
 """Values, their uncertainties, and the source of the theory."""
 OF_NUMBER = "of this number of particles"
 LEAST_OF_MIXTURE = 10
-"""Minimum number of particles of several sizes for which a theory is stated; the terms of second order in 1/N
-are unknown.
+"""Minimum number of particles of a mixture for which a theoretical value is given, because the terms of
+second order in 1/N are unknown.
 """
 SOURCES = {EXACT: "Enskog", BOLTZMANN: "Boltzmann equation", ENSKOG: "Enskog equation"}
-"""Names of the kinetic theory of each equation; for the exact dynamics, Enskog's theory is an approximation.
+"""Name of the kinetic theory for each equation. For the exact dynamics, Enskog's theory is an approximation.
 """
 
 
 def engine_of(run: Run) -> Engine | None:
-    """Return the engine of a run; None if the frames do not state it."""
+    """Return the engine of a run; None if the frames do not name the engine."""
     text = run.data.attrs.get("engine")
     return engine_from_dict(json.loads(text)) if text else None
 
 
 def equation_of(run: Run) -> str:
-    """Return the equation that a run's engine solves; `EXACT` for a run without an engine."""
+    """Return the equation that a run's engine solves; `EXACT` if the engine is unknown."""
     engine = engine_of(run)
     return engine.equation if engine else EXACT
 
 
 def bias_of(run: Run, kind: str) -> float:
-    """Return the relative error due to cells and time steps, as computed by the engine."""
+    """Return the relative systematic error due to cells and time steps, as computed by the engine."""
     engine = engine_of(run)
     return engine.bias(run.scene, kind) if engine else 0.0
 
@@ -62,7 +62,7 @@ def bias_of(run: Run, kind: str) -> float:
 def partners(run: Run) -> float:
     """Return (N - 1) / N, the number of collision partners divided by N.
 
-    A particle has N - 1 partners, but the equation of state assumes N.
+    A particle has N - 1 partners, whereas the theory for an infinite system assumes N.
     """
     return 1.0 - 1.0 / run.count
 
@@ -70,7 +70,7 @@ def partners(run: Run) -> float:
 def contact_of_number(run: Run, packing_fraction: float, dimension: int) -> tuple[float, float] | None:
     """Return the contact value of the N particles of a periodic gas, and its uncertainty.
 
-    Return None if theory does not give it, for few particles at a high density
+    Return None if the theory does not apply: for few particles at a high density
     (`theory.finite_contact_value`).
     """
     lengths = np.array(run.scene.container.lengths)
@@ -86,8 +86,8 @@ def contact_of_number(run: Run, packing_fraction: float, dimension: int) -> tupl
 def scale_of_number(run: Run, mixture: Mixture) -> float | None:
     """Return the contact value for N particles divided by the value for infinitely many particles.
 
-    The ratio for equal particles is used. Return None for fewer than `LEAST_OF_MIXTURE` particles, or if the
-    ratio for equal particles is unknown.
+    For a mixture, the ratio for equal particles is used. Return None for fewer than `LEAST_OF_MIXTURE`
+    particles, or if the ratio for equal particles is unknown.
     """
     eta, d = mixture.packing_fraction, mixture.dimension
     if run.count < LEAST_OF_MIXTURE or (contact := contact_of_number(run, eta, d)) is None:
@@ -99,9 +99,9 @@ _SANTOS = "Santos, Yuste and Lopez de Haro 2002, an approximation"
 
 
 def compressibility_factor(run: Run) -> Expected | None:
-    """Compute the expected Z at fixed energy.
+    """Compute the expected compressibility factor Z at fixed energy.
 
-    By the Boltzmann equation Z is 1. By the Enskog equation Z is exact for the N (N - 1) / 2 pairs.
+    For the Boltzmann equation Z is 1. For the Enskog equation the result is exact, with N (N - 1) / 2 pairs.
     """
     equation = equation_of(run)
     if equation == BOLTZMANN:
@@ -136,10 +136,10 @@ def _enskog_contacts(mixture: Mixture) -> tuple[np.ndarray, np.ndarray, np.ndarr
 
 
 def _pairs_of_enskog(mixture: Mixture) -> float:
-    """Compute Z - 1 of the Enskog model.
+    """Compute Z - 1 of a mixture in the Enskog model.
 
-    Z - 1 = (S / 2 d N V) sum over pairs N_i (N_j - delta_ij) sigma_ij^d g_ij, with S the surface of a unit
-    sphere.
+    Z - 1 = (S / 2 d N V) sum over pairs N_i (N_j - delta_ij) sigma_ij^d g_ij, where S is the surface of a
+    unit sphere.
     """
     d, (numbers, distances, contacts) = mixture.dimension, _enskog_contacts(mixture)
     diameters = np.diag(distances)
@@ -165,7 +165,7 @@ def collision_rate(run: Run) -> Expected | None:
 
 
 def contact_values(run: Run) -> Expected | None:
-    """Compute the expected g_ij of N particles, with N_i (N_j - delta_ij) pairs."""
+    """Compute the expected contact values g_ij of a finite number of particles."""
     mixture = _mixture_of_species(run)
     if mixture is None or (scale := scale_of_number(run, mixture)) is None:
         return None
@@ -174,9 +174,9 @@ def contact_values(run: Run) -> Expected | None:
 
 
 def pair_rates(run: Run) -> Expected | None:
-    """Compute the expected collisions of a particle of the first species with each second species.
+    """Compute the expected collision rate of a particle of the first species of each pair.
 
-    The particle has N_j - delta_ij partners.
+    Only collisions with the second species j count. The particle has N_j - delta_ij partners of this species.
     """
     mixture = None if run.is_subset else _mixture_of_species(run)
     if mixture is None or (scale := scale_of_number(run, mixture)) is None:
@@ -188,7 +188,7 @@ def pair_rates(run: Run) -> Expected | None:
 
 
 def _mixture_of_species(run: Run) -> Mixture | None:
-    """Return the mixture, if each species has a single size and differs from all others."""
+    """Return the mixture of a run, if its species are distinct and have single sizes."""
     mixture = run.mixture
     if mixture is None or len(mixture.counts) != len(run.scene.species) or equation_of(run) != EXACT:
         return None
@@ -196,10 +196,10 @@ def _mixture_of_species(run: Run) -> Mixture | None:
 
 
 def wall_pressure(run: Run, touched: np.ndarray) -> Expected | None:
-    """Compute the expected pressure on two walls a given distance apart.
+    """Compute the expected pressure on two walls at a fixed distance.
 
-    For hard particles it is the pressure of the fluid between hard walls. For point particles it is N k_B T
-    divided by the accessible volume. `touched` (d,) are the side lengths of the accessible volume.
+    For hard particles the result is the pressure of the fluid between hard walls. For point particles it is N
+    k_B T divided by the accessible volume. `touched` (d,) are the side lengths of the accessible volume.
     """
     walled, lengths = ~run.periodic, np.array(run.scene.container.lengths)
     gas, equation = run.scene.gas, equation_of(run)
@@ -222,7 +222,7 @@ def wall_pressure(run: Run, touched: np.ndarray) -> Expected | None:
 
 
 def wall_force(run: Run) -> Expected | None:
-    """Compute the expected pressure times the area of each face."""
+    """Compute the expected force on each face: the expected pressure times the area of the face."""
     touched = np.subtract(*run.scene.reach(run.scene.largest_moving_radius)[::-1])
     pressure = wall_pressure(run, touched)
     if pressure is None:
@@ -234,8 +234,8 @@ def wall_force(run: Run) -> Expected | None:
 def pressure_tensor(run: Run, temperature: float) -> Expected | None:
     """Compute the expected pressure tensor.
 
-    The diagonal is n k_B T [(1 - 1/N) + Z_N - 1], where the first term is the flight of N - 1 particles about
-    the centre of mass.
+    The diagonal components are n k_B T [(1 - 1/N) + Z_N - 1]. The term 1 - 1/N is the kinetic part:
+    velocities are relative to the centre of mass.
     """
     gas, equation = run.fluid, equation_of(run)
     if gas is None:
@@ -253,10 +253,10 @@ def pressure_tensor(run: Run, temperature: float) -> Expected | None:
 
 
 def speeds(run: Run, edges: np.ndarray, mass: float | None, fixed: bool) -> Expected | None:
-    """Compute Maxwell's density (bins,) of speeds between edges; None unless all particles have one mass.
+    """Compute Maxwell's density (bins,) of speeds; None unless all particles have the same mass.
 
-    If `fixed` is True, the kinetic energy is constant, and the exact distribution for this number of
-    particles is used.
+    The bins lie between `edges`. If `fixed` is True, the kinetic energy is constant, and the exact
+    distribution for the finite number of particles is used.
     """
     if mass is None:
         return None
@@ -269,10 +269,10 @@ def speeds(run: Run, edges: np.ndarray, mass: float | None, fixed: bool) -> Expe
 
 
 def describe(name: str, run: Run, *arguments: Any, **keywords: Any) -> dict[str, Any]:
-    """Return units and label of an observable, and its theory for a run.
+    """Return the units and the label of an observable, and its theoretical value for a run.
 
-    The theory consists of values, their uncertainties, and a source; it may be absent. `arguments` and
-    `keywords` are passed to the theory's function after the run.
+    The theory consists of values, their uncertainties, and a source. It is absent if no theory exists. The
+    theory's function is called with the run, `arguments` and `keywords`.
     """
     about: dict[str, Any] = dict(observables.about(name, run.dimension))
     stated = observables.OBSERVABLES[name].theory

@@ -1,6 +1,6 @@
 """Theory of steady states: mean velocity along an axis, and fluxes to walls.
 
-The gas is at rest, sheared, between sliding plates, or driven along plates by a force.
+The gas may be at rest, sheared, between sliding plates, or driven along plates by a force.
 """
 
 from __future__ import annotations
@@ -25,22 +25,23 @@ from gaspart.theory.heat import INTERPOLATED, TEMPERATURE_JUMP
 
 
 FREE, FLUID = 100.0, 0.1
-"""Knudsen number above which the gas is free-molecular, and Knudsen number below which it is a continuum."""
+"""Knudsen number above which the gas counts as free-molecular, and Knudsen number below which it counts as a
+continuum.
+"""
 _FIRST = 0.3
-"""Relative change of a free-molecular flux due to collisions, multiplied by the Knudsen number.
-
-Adding the resistances of both limits gives 0.27 for the heat flux of spheres, 0.18 for the heat flux of
-discs, and 0.50 for a stress.
+"""Upper estimate of the relative change of a free-molecular flux due to collisions, multiplied by the Knudsen
+number. The sum of the resistances of both limits gives 0.27 for the heat flux of spheres, 0.18 for the heat
+flux of discs, and 0.50 for a stress.
 """
 _DILUTE = 0.02
 """Maximum packing fraction at which Enskog's coefficients and the equation of state apply to the gas."""
 _POINTS = 1e-4
-"""Factor by which diameters are scaled to model point particles: the mean free path is kept and the packing
-fraction becomes negligible.
+"""Factor by which diameters are scaled to model point particles. The mean free path is unchanged, but the
+packing fraction becomes negligible.
 """
 _EQUAL = 1e-12
 _PLAIN = {"thermal", "sliding", "accommodation", "centres_to_walls"}
-"""Features that a scene of equal smooth and elastic particles between plates may have."""
+"""Features that a scene of equal smooth elastic particles between plates may have."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ class Plates:
     density : mean number density in this gap.
     temperatures : temperatures of the low and the high plate.
     slide : (d,), velocity of the high plate relative to the low one.
-    components : velocity components that the plates draw at random.
+    components : velocity components that the plates change by drawing them at random.
     accommodation : accommodation coefficients of the low and the high plate.
     knudsen : Knudsen number: mean free path divided by the gap width.
     """
@@ -73,15 +74,15 @@ class Plates:
 
     @property
     def accommodating(self) -> bool:
-        """True if both plates draw a new velocity at every hit, as the continuum theory assumes."""
+        """True if both plates draw a new velocity at every hit; the continuum theory assumes this."""
         return min(self.accommodation) == 1.0
 
     @property
     def freedom(self) -> float:
-        """Mean free path divided by the flight length between two hits that draw a new velocity.
+        """Mean free path divided by the path between two hits at which new velocities are drawn.
 
-        The plate with the smaller accommodation determines this ratio. The ratio equals the Knudsen number if
-        both plates draw a new velocity at every hit.
+        The plate with the smaller accommodation coefficient determines this ratio. If both plates draw a new
+        velocity at every hit, the ratio is the Knudsen number.
         """
         return self.knudsen * min(self.accommodation)
 
@@ -93,12 +94,12 @@ class Plates:
 
     @property
     def filled(self) -> float:
-        """Packing fraction in the gap."""
+        """Packing fraction of the gas in the gap."""
         return float(theory.packing_fraction(self.density, self.dimension, self.diameter))
 
 
 def heat_flux(run: Run, faces: np.ndarray) -> Expected | None:
-    """Compute the steady heat flux (face,) into the faces, per area and time.
+    """Compute the steady heat (face,) that flows into faces, per area and time.
 
     `faces` are the numbers of the faces.
     """
@@ -118,7 +119,7 @@ def heat_flux(run: Run, faces: np.ndarray) -> Expected | None:
 
 
 def wall_shear(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None:
-    """Compute the steady flux of momentum (face, component) into the faces, per area and time.
+    """Compute the steady momentum (face, component) that faces receive, per area and time.
 
     The components are along `axes`.
     """
@@ -137,9 +138,9 @@ def wall_shear(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None
 
 
 def plates_of(run: Run, driven: bool = False) -> Plates | None:
-    """Return the plates of a run; None for any other scene.
+    """Return the plates of a run; None unless the gas is between two plates.
 
-    If `driven` is True, return the plates of a gas that a force drives along them.
+    If `driven` is True, the gas must be one that a force drives along the plates.
     """
     scene, thermal = run.scene, run.scene.faces_of(Thermal)
     numbers = [number for number, _ in thermal]
@@ -173,9 +174,9 @@ def plates_of(run: Run, driven: bool = False) -> Plates | None:
 
 
 def _free_path(density: float, diameter: float, run: Run) -> float:
-    """Return the mean free path of spheres by the equation of the run.
+    """Return the mean free path of spheres for the equation of the run.
 
-    The result is 0 above the density range of the theory.
+    The result is 0 if the density exceeds the range of the theory.
     """
     if equation_of(run) == BOLTZMANN:
         scaled = density / _POINTS ** (run.dimension - 1)
@@ -188,7 +189,7 @@ def _free_path(density: float, diameter: float, run: Run) -> float:
 
 
 def _in_equilibrium(run: Run) -> bool:
-    """Return True if all sources of energy have one temperature and are at rest."""
+    """Return True if all sources of energy are at rest and have the same temperature."""
     scene = run.scene
     faces = [face for _, face in scene.faces_of(Thermal)]
     still = len(faces) == len(scene.faces) and not any(face.slides for face in faces)
@@ -227,7 +228,7 @@ def _heat_between_plates(plates: Plates, points: bool) -> tuple[float, float, st
 
 
 def _stress_between_plates(plates: Plates, run: Run) -> tuple[float, float, str] | None:
-    """Compute the shear stress on sliding plates of one temperature."""
+    """Compute the shear stress on sliding plates that have the same temperature."""
     speed, temperature = float(np.hypot.reduce(plates.slide)), plates.temperatures[0]
     gas = plates.density, speed, temperature, plates.mass, plates.accommodation
     free = float(theory.free_molecular_stress(*gas))
@@ -247,14 +248,14 @@ def _stress_between_plates(plates: Plates, run: Run) -> tuple[float, float, str]
 
 
 def dilute(plates: Plates, run: Run) -> bool:
-    """Return True if the coefficients of a dilute gas apply to the run."""
+    """Return True if the transport coefficients of a dilute gas apply to the run."""
     return equation_of(run) == BOLTZMANN or plates.filled < _DILUTE
 
 
 def heating_of(plates: Plates) -> float:
-    """Compute the frictional rise of the temperature midway between sliding plates, divided by T.
+    """Compute the relative rise of the temperature midway between sliding plates by friction.
 
-    For spheres it is 2/15 m u^2 in units of k_B T; u is half of the relative speed of the plates.
+    For spheres the rise is 2/15 m u^2 in units of k_B T, where u is half of the relative speed of the plates.
     """
     square = float((plates.slide**2).sum())
     return plates.mass * square / (30.0 * max(plates.temperatures))
@@ -266,7 +267,7 @@ def _describe_interpolation(quantity: str) -> str:
 
 
 def _friction(plates: Plates, run: Run) -> Expected | None:
-    """Compute the frictional heat flux into each plate, half of the work of the stress."""
+    """Compute the heat flux into each plate by friction: half of the power of the stress."""
     if not plates.equal or (stress := _stress_between_plates(plates, run)) is None:
         return None
     value, error, source = stress
@@ -275,9 +276,9 @@ def _friction(plates: Plates, run: Run) -> Expected | None:
 
 
 def _weight_on_faces(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None:
-    """Compute the component of the gas' weight along each of two faces, half of the total.
+    """Compute the stress on two faces along which a force drives the gas.
 
-    The value is exact.
+    Each face bears half of the total force on the gas. The value is exact.
     """
     scene, driven = run.scene, run.scene.driven_axes
     equal = len(faces) == 2 and faces[0] // 2 == faces[1] // 2 and len(scene.faces) == 2
@@ -316,9 +317,10 @@ def velocity(run: Run, axis: int, positions: np.ndarray) -> Expected | None:
 
 
 def _drift(run: Run) -> np.ndarray:
-    """Compute the velocity (d, 1) of the centre of mass, relative to a sheared flow.
+    """Compute the velocity (d, 1) of the centre of mass.
 
-    The velocity is 0 along axes on which the momentum is not conserved.
+    In a sheared gas, the velocity is relative to the flow. The component along an axis is set to 0 if the
+    momentum along this axis is not conserved.
     """
     velocities = run.velocities
     if run.scene.shear_rate is not None:
@@ -330,7 +332,7 @@ def _drift(run: Run) -> np.ndarray:
 
 
 def _between_plates(plates: Plates, run: Run, axis: int, positions: np.ndarray) -> Expected | None:
-    """Compute the velocity between plates that have one temperature or do not slide."""
+    """Compute the velocity between plates that have the same temperature or do not slide."""
     velocities = dict(run.scene.sliding_faces)
     ends = [velocities.get(2 * plates.axis + side) for side in (0, 1)]
     rest = (0.0,) * run.dimension
@@ -358,11 +360,12 @@ def _between_plates(plates: Plates, run: Run, axis: int, positions: np.ndarray) 
 
 
 def _channel_velocity(plates: Plates, run: Run, axis: int, positions: np.ndarray) -> Expected | None:
-    """Compute the velocity of a gas that a force drives along resting plates of one temperature.
+    """Compute the velocity of a gas that a force drives along resting, equally hot plates.
 
     The uncertainty includes the next order of the slip, the packing fraction, and half of the frictional
-    heating of the gas. With the maximum velocity u, the heating in units of k_B T is 4/45 m u^2 in the
-    middle. At the plates it is 32/45 m u^2 times the temperature jump coefficient times the Knudsen number.
+    heating of the gas. In units of k_B T, the heating in the middle is 4/45 m u^2, where u is the maximum
+    velocity. The heating at the plates is 32/45 m u^2 times the temperature jump coefficient times the
+    Knudsen number.
     """
     slow = not plates.slide.any() and plates.equal and axis == plates.axis
     if not slow or plates.dimension == 2 or not 0.0 < plates.knudsen <= FLUID or not dilute(plates, run):
@@ -383,9 +386,9 @@ def _channel_velocity(plates: Plates, run: Run, axis: int, positions: np.ndarray
 
 
 def flux(run: Run, axis: int, position: float, members: np.ndarray, beyond: np.ndarray) -> Expected | None:
-    """Compute the number of particles (component,) that cross a plane across an axis per time.
+    """Compute the net number (component,) of particles that cross a plane per time.
 
-    members : (n,), the particles that are counted.
+    members : (n,), the particles that are counted when they cross the plane.
     beyond : (T,), number of these particles beyond the plane.
     """
     scene = run.scene
@@ -412,7 +415,8 @@ def flux(run: Run, axis: int, position: float, members: np.ndarray, beyond: np.n
 def _zero_flux(run: Run) -> Expected | None:
     """Return the zero flux of a steady state.
 
-    Return None if particles start in a region, or if the container has a piston, because gas then flows.
+    Return None if particles start in a part of the container, or if a face is a piston, because gas then
+    flows.
     """
     scene = run.scene
     if scene.is_open or scene.has_piston or any(kind.region is not None for kind in scene.species):
@@ -428,10 +432,10 @@ def _path(run: Run) -> float:
 
 
 def opening(scene: Scene, axis: int, position: float, radius: float) -> float | None:
-    """Compute the area between interior walls in a plane that particle centres can cross.
+    """Compute the area of the openings between interior walls through which centres can pass.
 
-    In two dimensions it is a length. Return None if no wall lies in the plane, or if a plate is not parallel
-    to the axes.
+    The walls lie in a plane across the axis. In two dimensions the area is a length. Return None if no wall
+    lies in the plane, or if a plate is not parallel to the axes.
     """
     across = [k for k in range(scene.dimension) if k != axis]
     near, length = 1e-9 * scene.container.lengths[axis], scene.container.lengths[axis]
@@ -450,7 +454,7 @@ def opening(scene: Scene, axis: int, position: float, radius: float) -> float | 
 
 
 def _open_area(shadows: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> float:
-    """Compute the measure of a box outside of the boxes `shadows` (W, 2, k)."""
+    """Compute the uncovered area or length of a box, outside all `shadows` (W, 2, k)."""
     edges = [
         np.unique(np.clip(np.append(shadows[:, :, k], [lower[k], upper[k]]), lower[k], upper[k]))
         for k in range(len(lower))

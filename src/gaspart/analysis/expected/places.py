@@ -21,9 +21,10 @@ at 0.65 and for 16 spheres at 0.48.
 
 
 def radial_distribution(run: Run, distance: np.ndarray, width: float) -> Expected | None:
-    """Compute the expected g(r) (distance,): the contact value for hard particles, 1 for points.
+    """Compute the expected g(r) (distance,): the contact value for hard particles, 1 for point particles.
 
-    The contact value is returned only for the first bins beyond the diameter; `width` is the bin width.
+    For hard particles only the first bins beyond the diameter have a theoretical value. `width` is the bin
+    width.
     """
     equation, gas = equation_of(run), run.fluid
     if equation == BOLTZMANN:
@@ -38,7 +39,7 @@ def radial_distribution(run: Run, distance: np.ndarray, width: float) -> Expecte
 
 
 def _of_points(run: Run, values: Any) -> Expected | None:
-    """Return values for a gas of independent positions: smooth, elastic point particles without a field."""
+    """Return the values if positions are independent: smooth elastic point particles without a field."""
     if run.mixture is None and run.scene.gas is None:
         return None
     return values, 0.0, "Boltzmann equation: independent places"
@@ -61,8 +62,8 @@ def structure_factor(run: Run, wave_number: np.ndarray) -> Expected | None:
 def partial_structure_factors(run: Run, wave_number: np.ndarray) -> Expected | None:
     """Compute the expected partial structure factors (pair, wave_number).
 
-    The factors are known for spheres if each species has a single size. For point particles, a factor is 1 if
-    both species are the same and 0 otherwise.
+    The factors are known for spheres if each species has a single size. For point particles, the factor of a
+    species with itself is 1 and the factor of two different species is 0.
     """
     equation, mixture, species = equation_of(run), run.mixture, run.scene.species
     pairs = pairs_of(run.scene)
@@ -85,11 +86,11 @@ def partial_structure_factors(run: Run, wave_number: np.ndarray) -> Expected | N
 
 
 def chemical_potential(run: Run) -> Expected | None:
-    """Compute the expected chemical potential of insertion into a finite number of particles.
+    """Compute the expected chemical potential for insertion into a finite number of particles.
 
-    For hard particles it follows from the equation of state. For point particles it is exact: no point may be
-    nearer to the inserted position than the sum of the radii. It is a scalar for equal particles, otherwise
-    it has shape (species,).
+    For hard particles the chemical potential follows from the equation of state. For point particles the
+    result is exact, because no particle may be nearer to the inserted position than the sum of the radii. The
+    result is a scalar for equal particles; otherwise it has the shape (species,).
     """
     equation, mixture = equation_of(run), run.mixture
     if equation == ENSKOG or mixture is None:
@@ -114,7 +115,10 @@ def chemical_potential(run: Run) -> Expected | None:
 
 
 def _into_points(run: Run, diameters: np.ndarray, counts: np.ndarray) -> Any | None:
-    """Compute the chemical potential for independent positions, if no particle overlaps with two images."""
+    """Compute the chemical potential of insertion among particles at independent positions.
+
+    Return None if the container is so small that a particle could overlap with two images of another.
+    """
     between = 0.5 * np.add.outer(diameters, diameters)
     covered = np.array(
         [theory.particle_volume(run.dimension, 2.0 * diameter) for diameter in between.ravel()]
@@ -137,8 +141,8 @@ def temperature(run: Run) -> Expected | None:
 def density(run: Run, axis: int, edges: np.ndarray, species: int | None) -> Expected | None:
     """Compute the expected density (bins,) of all particles, if they are equal.
 
-    The density is uniform, or hydrostatic along the axis of gravity; for point particles the barometric law
-    holds.
+    Without gravity along the axis the density is uniform. With gravity it is hydrostatic; for point particles
+    it follows the barometric law.
     """
     scene, kinds = run.scene, run.scene.kinds
     field = 0.0 if scene.gravity is None else scene.gravity[axis]

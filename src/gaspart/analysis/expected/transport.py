@@ -27,13 +27,15 @@ from gaspart.theory.discretisation import contact_values
 from gaspart.theory.modes import diffusion_by_modes
 
 _WINDOW = 12.0, 24.0
-"""Default window for the slope that gives D, in collisions of a particle; see `analysis.diffusion`."""
+"""Default first and last lag of the slope that gives D, in collisions of a particle; see
+`analysis.diffusion`.
+"""
 
 
 def mean_squared_displacement(run: Run, time: np.ndarray, axes: bool = False) -> Expected | None:
-    """Compute the expected displacement (lag,) from the linear Boltzmann equation.
+    """Compute the expected mean-squared displacement (lag,) from the linear Boltzmann equation.
 
-    If `axes` is True, the result is the displacement along each axis.
+    If `axes` is True, the result is the mean-squared displacement along each axis.
     """
     gas = None if run.is_subset else run.moving_fluid
     if gas is None:
@@ -46,7 +48,7 @@ def mean_squared_displacement(run: Run, time: np.ndarray, axes: bool = False) ->
 
 
 def velocity_autocorrelation(run: Run, time: np.ndarray) -> Expected | None:
-    """Compute the expected autocorrelation (lag,), with the exact initial decay."""
+    """Compute the expected velocity autocorrelation (lag,), with the exact initial decay."""
     gas = None if run.is_subset else run.moving_fluid
     if gas is None:
         return None
@@ -85,13 +87,13 @@ def diffusion_in_cube(
 ) -> Expected | None:
     """Compute D of spheres in a periodic cube, for the engine of a scene.
 
-    The default engine solves the exact dynamics. For hard spheres, D is the value of Erpenbeck and Wood minus
-    two corrections: the finite-size correction of Yeh and Hummer, and the contribution of the modes of the
-    container after the window of the slope. Half of the latter is uncertain. For a kinetic equation, D is the
-    value of this equation plus the contribution of the flow in the container, which the cells of the engine
-    resolve. The uncertainty consists of half of both corrections and the bias of the engine. Return None for
-    discs, for spheres denser than the fluid, and for a cube so small that the periodic images order the
-    fluid.
+    Without an engine, the exact dynamics is assumed. For the exact dynamics, D is the value of Erpenbeck and
+    Wood minus two corrections: the finite-size correction of Yeh and Hummer, and the contribution of the
+    modes of the container after the window of the slope. Half of the second correction is uncertain. For a
+    kinetic equation, D is the value of this equation plus the contribution of the flow in the container,
+    which the cells of the engine resolve. The uncertainty consists of half of both corrections and the
+    systematic error of the engine. Return None for discs, for spheres denser than the fluid, and for a cube
+    so small that the periodic images order the fluid.
     """
     if gas.dimension == 2 or gas.packing_fraction > theory.ERPENBECK_WOOD_HIGHEST:
         return None
@@ -128,7 +130,7 @@ def _after_window(gas: Gas, window: np.ndarray | tuple[float, float]) -> float:
 
 
 def mutual_diffusion(run: Run) -> Expected | None:
-    """Compute Enskog's mutual diffusion coefficient in the first approximation.
+    """Compute the mutual diffusion coefficient in Enskog's first approximation.
 
     The contact values depend on the equation of the engine.
     """
@@ -155,8 +157,8 @@ def _transport(
 ) -> Expected | None:
     """Compute a transport coefficient from fluctuations of N particles at fixed energy.
 
-    In a dilute gas the coefficients are lower than in an infinite gas, by a factor that
-    `theory.transport_finite_size_factor` knows for some kinds.
+    In a dilute gas of N particles the coefficients are smaller than in an infinite gas.
+    `theory.transport_finite_size_factor` gives this factor for some kinds of coefficients.
     """
     gas, equation = run.fluid, equation_of(run)
     if gas is None or not temperature > 0.0:
@@ -181,7 +183,7 @@ def bulk_viscosity(run: Run, temperature: float) -> Expected | None:
 def thermal_conductivity(run: Run, temperature: float) -> Expected | None:
     """Compute the expected thermal conductivity from fluctuations.
 
-    For point particles of several masses or sizes it is the value of Chapman and Enskog.
+    For a mixture of point particles the result is the value of Chapman and Enskog.
     """
     mixture = run.mixture
     if run.scene.alike or mixture is None or not temperature > 0.0:
@@ -197,7 +199,7 @@ def thermal_conductivity(run: Run, temperature: float) -> Expected | None:
 def shear_viscosity(run: Run, temperature: float) -> Expected | None:
     """Compute the expected shear viscosity from fluctuations.
 
-    For a sheared gas it is the response to a small shear rate.
+    For a sheared gas the result is the response to a small shear rate.
     """
     if run.scene.shear_rate is None:
         return _transport(run, temperature, bulk.shear_viscosity, "viscosity")

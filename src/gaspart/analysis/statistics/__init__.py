@@ -2,8 +2,9 @@
 
 Conventions: `error` is one standard deviation of the estimate. Errors passed to a fit are standard deviations
 of independent Gaussian scatter. They are treated as exact unless their degrees of freedom are passed. Arrays
-are one-dimensional and of equal length unless noted. A `p_value` is the probability of a chi-square at least
-as large if the model holds. Inputs that are too short, of unequal length or not finite raise ValueError.
+are one-dimensional and of equal length unless noted. A `p_value` is the probability that chi-square would be
+at least as large as observed if the model were correct. Functions raise ValueError if their inputs are too
+short, of unequal length, or not finite.
 """
 
 from gaspart.analysis.statistics.blocks import (

@@ -1,4 +1,4 @@
-"""Correlated series: error of the mean, its test with blocks, and autocorrelation time."""
+"""Correlated series: error of the mean, test of this error with blocks, and autocorrelation time."""
 
 from __future__ import annotations
 
@@ -45,18 +45,21 @@ def positive_freedoms(freedoms: ArrayLike, size: int) -> np.ndarray:
 
 
 ORDER = 1.25
-"""Order of the autoregressive process fitted to n samples, divided by the cube root of n."""
+"""Order of the autoregressive process that is fitted to n samples, divided by the cube root of n."""
 _ROUNDING = 1e-12
-"""Relative difference below which samples count as equal; it is the rounding error of differences of sums."""
+"""Relative difference below which samples count as equal. It allows for the rounding error of differences of
+sums.
+"""
 
 
 @dataclass(frozen=True)
 class CorrelatedMean:
     """Mean of a correlated series, with errors from blocks.
 
-    `errors[k]` is the standard error from blocks of `lengths[k]` samples. `flat` is True if the error from
-    blocks no longer grows with the block length by more than its own uncertainty. The series is then long
-    enough. `block_length` is the shortest such length, and `blocks` the number of these blocks.
+    `errors[k]` is the standard error from blocks of `lengths[k]` samples. `flat` is True if, beyond some
+    block length, the error no longer grows by more than its own uncertainty. The series is then long enough.
+    `block_length` is the shortest block length for which this holds, and `blocks` is the number of blocks of
+    this length.
     """
 
     estimate: Estimate
@@ -79,12 +82,12 @@ def correlated_mean(series: ArrayLike, minimum_blocks: int = 16) -> CorrelatedMe
 
     Blocks show whether the series is long enough (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461 (1989)). The
     error from blocks of 1, 2, 4 ... samples grows until the blocks are independent. The error from n blocks
-    has the relative uncertainty 1 / sqrt(2 (n-1)). The error is flat from the shortest block length for which
-    the following holds: no longer block length gives an error that is larger by more than the uncertainty of
-    this error. The error from these blocks
-    is not used as the result. It would be too small on average, by 5 to 40 % for 16 to 300 autocorrelation
-    times, because it is the first error that is not clearly too small. At least `minimum_blocks` (>= 4)
-    samples are needed. Samples at the start that do not fill a block are excluded from the blocks.
+    has the relative uncertainty 1 / sqrt(2 (n-1)). The error is flat from the shortest block length that
+    satisfies a condition: every greater block length gives an error that is larger at most by its own
+    uncertainty. The error from these blocks is not used as the result, because it is the first error that is
+    not clearly too small. On average it would be too small by 5 to 40 % for 16 to 300 autocorrelation times.
+    At least `minimum_blocks` (>= 4) samples are needed. Samples at the start that do not fill a block do not
+    belong to any block.
     """
     if minimum_blocks < 4:
         raise ValueError(f"minimum_blocks: {minimum_blocks} (must be at least 4)")
@@ -118,29 +121,30 @@ def correlated_mean(series: ArrayLike, minimum_blocks: int = 16) -> CorrelatedMe
 
 
 def slow_mean(series: ArrayLike, minimum_blocks: int = 16) -> Estimate:
-    """Return the mean and its error of a series whose correlations may decay as 1/t.
+    """Compute the mean of a series whose correlations may decay as 1/t, and its error.
 
-    Particles of all speeds cross a container, and slow particles stay in it for a long time. So without
-    collisions the number of particles inside has correlations L / t over a time t. The sum of these
-    correlations grows as the logarithm of the length of the run. An autoregressive fit of finite order does
-    not include this growth. Therefore the squared error of the mean of blocks, multiplied by the block
-    length, is fitted by a linear function of the logarithm of this length. The fit uses blocks between a
-    quarter of the longest length and the longest length. The fit is extrapolated to the length of the series.
-    The result is the larger of this error and the error of `correlated_mean`.
+    Particles cross a container at all speeds, and slow particles stay in it for a long time. So without
+    collisions, the correlation of the number of particles inside decays with the time difference t as L / t,
+    where L is the length of the container. The sum of these correlations grows as the logarithm of the length
+    of the run. An autoregressive fit of finite order does not include this growth. Therefore the squared
+    error of the mean of blocks, multiplied by the block length, is fitted by a linear function of the
+    logarithm of this length. The fit uses blocks between a quarter of the longest length and the longest
+    length. The fit is extrapolated to the length of the series. The result is the larger of this error and
+    the error of `correlated_mean`.
 
     Parameters
     ----------
     series : array_like, shape (n,)
         Samples, at least 4 times `minimum_blocks`. For fewer samples the function returns `correlated_mean`.
     minimum_blocks : int
-        Minimum number of the longest blocks.
+        Minimum number of blocks of the greatest length.
 
     Returns
     -------
     Estimate
-        The degrees of freedom are at most this number of blocks. For free particles, the distribution of
-        deviations divided by errors is 1.01 to 1.13 times as wide as Student's distribution in runs of at
-        least 100 crossing times, and 1.2 times as wide in runs of 8 crossing times
+        The mean with its error. The number of degrees of freedom is at most `minimum_blocks`. For free
+        particles, the distribution of deviations divided by errors is 1.01 to 1.13 times as wide as Student's
+        distribution in runs of at least 100 crossing times, and 1.2 times as wide in runs of 8 crossing times
         (`tests/analysis/test_statistics.py`). With `correlated_mean` the factors are 1.2 to 1.65.
     """
     plain = correlated_mean(series, minimum_blocks)
@@ -156,12 +160,12 @@ def slow_mean(series: ArrayLike, minimum_blocks: int = 16) -> Estimate:
 
 
 def autocorrelation_time(series: ArrayLike) -> float:
-    """Compute the integrated autocorrelation time 1/2 + sum of rho(k), in samples.
+    """Compute the integrated autocorrelation time in samples: 1/2 + the sum of rho(k).
 
-    The time is 1/2 for independent samples, and less for anticorrelated samples.
+    The autocorrelation time is 1/2 for independent samples, and smaller for anticorrelated samples.
 
-    A series of n samples contains n / (2 time) independent samples: the squared error of its mean, by
-    `correlated_mean`, is 2 time / n times its variance. For a constant series the result is 1/2.
+    For n samples, the squared error of the mean from `correlated_mean` is the variance times 2 time / n. So
+    the series is equivalent to n / (2 time) independent samples. For a constant series the result is 1/2.
     """
     series = series_of("series", series, 4)
     spectrum = _spectrum(series)[0]
@@ -169,18 +173,18 @@ def autocorrelation_time(series: ArrayLike) -> float:
 
 
 def count_changes(series: np.ndarray) -> int:
-    """Count the changes between consecutive samples that exceed rounding."""
+    """Count the changes between consecutive samples that are larger than rounding errors."""
     return int(np.count_nonzero(np.abs(np.diff(series)) > _ROUNDING * np.abs(series).max()))
 
 
 def common_freedom(series: np.ndarray) -> float:
     """Compute common degrees of freedom for the errors of several similarly correlated series.
 
-    If the correlation time of a series is too small by chance, its error is too small and its degrees of
-    freedom are too many. The mean autocorrelation of all series gives a common number of degrees of freedom.
-    For 40 cells of a dense fluid over 13 correlation times, 1.8 % of the values deviate by more than three
-    standard deviations if each fit has its own degrees of freedom, and 0.7 % if these are at most the common
-    number (`tests/analysis/test_small_numbers.py`).
+    If the estimated correlation time of a series is too small by chance, its error is too small and its
+    number of degrees of freedom too large. The mean autocorrelation of all series therefore gives a common
+    number of degrees of freedom. For 40 cells of a dense fluid over 13 correlation times, 1.8 % of the values
+    deviate by more than three standard deviations if each series has its own number of degrees of freedom. If
+    this number is limited to the common number, only 0.7 % do so (`tests/analysis/test_small_numbers.py`).
 
     series : (n, m), m series of n samples; constant series are ignored. The result is infinite if all series
         are constant.
@@ -199,7 +203,7 @@ def common_freedom(series: np.ndarray) -> float:
 
 
 def _order(number: int) -> int:
-    """Return the order of the autoregressive process for a number of samples."""
+    """Return the order of the autoregressive process that is fitted to `number` samples."""
     return round(ORDER * number ** (1.0 / 3.0))
 
 
@@ -208,8 +212,8 @@ def _spectrum(series: np.ndarray) -> tuple[float, float]:
 
     The degrees of freedom of this estimate are also returned.
 
-    Autocovariances relative to a measured mean are too small by their sum divided by n. So they are shifted
-    by a first estimate of the sum, and the fit is repeated.
+    Autocovariances relative to the measured mean are too small by their sum divided by the number n of
+    samples. So a first estimate of this sum divided by n is added to them, and the fit is repeated.
     """
     number = series.size
     order = _order(number)
@@ -226,8 +230,8 @@ def _spectrum(series: np.ndarray) -> tuple[float, float]:
 def _autoregression(covariances: np.ndarray) -> tuple[float, float]:
     """Compute the spectrum at frequency 0 of an autoregressive process, S = E / A^2.
 
-    The arguments are the autocovariances of the process. The relative uncertainty of A is also returned: n
-    times its variance divided by A^2. In the recursion of Levinson and Durbin, E is the variance of the
+    `covariances` are the autocovariances of the process. The relative variance of A is also returned: n times
+    the variance of A divided by A^2. In the recursion of Levinson and Durbin, E is the variance of the
     prediction error, and A is 1 minus the sum of the coefficients. The covariance matrix of the coefficients
     is E / n times the inverse covariance matrix of the values. The sum of the elements of this inverse is the
     sum of A^2 / E over the lower orders.
@@ -251,7 +255,7 @@ def _autoregression(covariances: np.ndarray) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Histogram:
-    """Counts in bins of equal expected count, and their chi-square."""
+    """Counts in bins that have the same expected count, and their chi-square."""
 
     chi_square: float
     degrees_of_freedom: int
@@ -263,10 +267,10 @@ class Histogram:
 def histogram_chi_square(samples: ArrayLike, cdf: Callable[[np.ndarray], Any], bins: int) -> Histogram:
     """Compute chi-square of independent samples against a distribution with cumulative function `cdf`.
 
-    No parameter is fitted.
+    No parameter of the distribution is fitted.
 
-    The bins have equal probability, because cdf(samples) is uniform on [0, 1]. At least 5 samples per bin are
-    required.
+    The bins divide the values of cdf(samples), which are uniform on [0, 1], into equal intervals. So all bins
+    have the same probability. At least 5 samples per bin are required.
     """
     from scipy.special import chdtrc
 

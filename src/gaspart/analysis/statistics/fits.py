@@ -18,9 +18,9 @@ from gaspart.analysis.statistics.blocks import positive_errors, positive_freedom
 class Fit:
     """Parameters of a linear least-squares fit.
 
-    `freedoms` are the degrees of freedom of the errors of the parameters. `chi_square` divided by
-    `degrees_of_freedom` follows Fisher's distribution with `degrees_of_freedom` and `error_freedom`. If the
-    caller passes no errors, there is no test, and `p_value` is NaN.
+    `freedoms` are the degrees of freedom of the errors of the parameters. For a correct model, `chi_square`
+    divided by `degrees_of_freedom` follows Fisher's F distribution with `degrees_of_freedom` and
+    `error_freedom`. If the caller passes no errors, the fit cannot be tested, and `p_value` is NaN.
     """
 
     values: np.ndarray
@@ -51,7 +51,7 @@ class Fit:
 class PowerLaw:
     """Power law y = amplitude x^exponent.
 
-    `exponent_freedom` are the degrees of freedom of the exponent's error.
+    `exponent_freedom` is the number of degrees of freedom of the exponent's error.
     """
 
     exponent: float
@@ -70,7 +70,7 @@ class PowerLaw:
 
 
 Values = ArrayLike | Estimate
-"""Values, or an Estimate of an array, which includes errors and degrees of freedom."""
+"""Values without errors, or an Estimate of an array, which includes errors and degrees of freedom."""
 
 
 def fit_linear(
@@ -80,12 +80,13 @@ def fit_linear(
 
     The design has the shape (points, parameters).
 
-    With errors, the covariance follows from them, and chi-square tests the model. Without errors, all points
-    have equal weight. The covariance is scaled by the scatter of the residuals, so there is no test.
-    `freedoms` are the degrees of freedom of the errors, one number for all points or one per point. They are
-    needed if the errors come from the scatter of a few samples; see `_of_estimated_errors`. If y is an
-    Estimate, it provides both. Raises ValueError if there are fewer points than parameters (or equally many,
-    without errors), or if the columns are dependent.
+    If errors are passed, the covariance of the parameters follows from them, and chi-square tests the model.
+    Without errors, all points have equal weight, and the covariance follows from the scatter of the
+    residuals. The model is then not tested. `freedoms` are the degrees of freedom of the errors: one number
+    for all points, or one for each point. They are needed if the errors come from the scatter of a few
+    samples; see `_of_estimated_errors`. If y is an Estimate, it provides the errors and their degrees of
+    freedom. Raises ValueError if there are fewer points than parameters (or equally many, without errors), or
+    if the columns are dependent.
     """
     y, errors, freedoms = _with_errors(y, errors, freedoms)
     y = series_of("y", y, 1)
@@ -123,14 +124,14 @@ def fit_linear(
 
 
 def _with_errors(y: Values, errors: ArrayLike | None, freedoms: ArrayLike) -> tuple:
-    """Return values, their errors and degrees of freedom."""
+    """Return values, their errors, and the degrees of freedom of the errors."""
     return (y.value, y.error, y.freedom) if isinstance(y, Estimate) else (y, errors, freedoms)
 
 
 def _of_estimated_errors(
     shares: np.ndarray, basis: np.ndarray, covariance: np.ndarray, few: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, float, float]:
-    """Return the covariance of a fit whose errors are estimates, and the parameters of its test.
+    """Return the covariance of a fit to points with estimated errors, and parameters of its test.
 
     The results are the covariance, the degrees of freedom of the parameters, the factor by which chi-square
     is too large, and the second degrees of freedom of the test.
@@ -139,12 +140,12 @@ def _of_estimated_errors(
     - basis : (points, parameters), orthonormal columns that span the columns of the weighted design.
     - few : (points,), reciprocal degrees of freedom of the errors.
 
-    A point with an underestimated error has too much weight and also makes the covariance too small. To first
-    order in `few`, each effect changes its contribution by the fraction 2 few (1 - leverage) (for the
-    weighted mean: Meier, Biometrics 9, 59 (1953)). With f - 2 instead of f degrees of freedom, as in the mean
-    of 1 / chi-square, the errors are accurate to a few per cent for f >= 3; for smaller f, f / 3 is used. The
-    degrees of freedom follow Welch and Satterthwaite. The test follows Welch, Biometrika 38, 330 (1951); for
-    linear models Johansen, Biometrika 67, 85 (1980).
+    A point with an underestimated error has too much weight, and also makes the covariance too small. To
+    first order in `few`, each of these two effects changes the contribution of the point by the fraction 2
+    few (1 - leverage) (for the weighted mean: Meier, Biometrics 9, 59 (1953)). With f - 2 instead of f
+    degrees of freedom, as in the mean of 1 / chi-square, the errors are accurate to a few per cent for f >=
+    3; for smaller f, f / 3 is used. The degrees of freedom follow Welch and Satterthwaite. The test follows
+    Welch, Biometrika 38, 330 (1951); for linear models Johansen, Biometrika 67, 85 (1980).
     """
     free = 1.0 - np.clip((basis**2).sum(axis=1), 0.0, 1.0)
     with np.errstate(divide="ignore"):
@@ -222,8 +223,8 @@ def fit_curve(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Fit the parameters of function(x, *parameters) to values with known errors.
 
-    Returns the parameters and their covariance. Raises ValueError if an error is not positive and finite
-    (scipy then returns the starting values), and RuntimeError if the fit does not converge.
+    Returns the parameters and their covariance. Raises ValueError if an error is not positive and finite,
+    because scipy would then return the starting values. Raises RuntimeError if the fit does not converge.
     """
     from scipy.optimize import curve_fit
 
@@ -239,7 +240,10 @@ def fit_curve(
 
 @dataclass(frozen=True)
 class Combination:
-    """Weighted mean of independent values, with a test of their scatter against their errors; see `Fit`."""
+    """Weighted mean of independent values, and a test of their scatter; see `Fit`.
+
+    Chi-square tests if the scatter of the values agrees with their errors.
+    """
 
     value: float
     error: float
@@ -258,7 +262,7 @@ class Combination:
 def mean_of(values: ArrayLike) -> Estimate:
     """Compute the mean of N independent numbers, at least two, and its standard error.
 
-    The error follows from their scatter, with N - 1 degrees of freedom.
+    The error follows from the scatter between the numbers and has N - 1 degrees of freedom.
     """
     values = series_of("values", values, 2)
     error = float(values.std(ddof=1) / math.sqrt(values.size))
@@ -274,11 +278,11 @@ def average(estimates: Estimate | Sequence[Estimate]) -> Estimate:
 
 
 def means_of(samples: ArrayLike, sizes: ArrayLike | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """Compute means over axis 0 of N independent samples (N, ...), and standard errors.
+    """Compute the means of N independent samples (N, ...) over axis 0, and their standard errors.
 
-    The errors follow from the scatter. `sizes` (N,) are the numbers of equally weighted items in each sample.
-    The means are then over all items, independent of their grouping, and the variance of a sample is
-    inversely proportional to its size.
+    The errors follow from the scatter between the samples. If each sample is itself a mean over several
+    items, `sizes` (N,) are the numbers of items. The result is then the mean over all items with equal
+    weights. The variance of a sample is assumed to be inversely proportional to its size.
     """
     values = np.asarray(samples)
     if sizes is None or np.ptp(sizes) == 0.0:
@@ -292,8 +296,8 @@ def means_of(samples: ArrayLike, sizes: ArrayLike | None = None) -> tuple[np.nda
 def histogram_means(samples: ArrayLike, sizes: ArrayLike | None = None) -> tuple[np.ndarray, np.ndarray]:
     """Compute means of N histograms (N, bins), with NaN for unknown errors.
 
-    A bin has no scatter if it has the same value in all samples, for example an empty bin. A bin without
-    scatter gives no information on its error. If no bin has any scatter, all errors are 0.
+    A bin has no scatter if its value is the same in all samples, for example if it is always empty. The error
+    of a bin without scatter is unknown. If no bin has any scatter, all errors are 0.
     """
     means, errors = means_of(samples, sizes)
     if errors.any():
@@ -302,14 +306,15 @@ def histogram_means(samples: ArrayLike, sizes: ArrayLike | None = None) -> tuple
 
 
 def steady_mean(series: ArrayLike, *changes: ArrayLike) -> Estimate:
-    """Compute the steady current through a system that stores energy, from means in K blocks.
+    """Compute the steady current through a system that stores energy, from block means.
 
-    Each of `changes` (K,) is the change of a bounded quantity, such as the stored energy, during each block.
-    Energy stored in one block is returned in another. So blocks are anticorrelated, and their scatter exceeds
-    the scatter of the long-time mean. Therefore the currents are regressed on the changes by least squares.
-    The result is the current in a block without a change. It differs from the plain mean by a bounded amount
-    divided by the length of the run. The degrees of freedom are K - 1 - len(changes). Raises ValueError for
-    the reasons of `fit_linear`.
+    The series contains the mean currents in K blocks. Each array (K,) in `changes` is the change of a bounded
+    quantity, such as the stored energy, during each block. Energy that is stored in one block is returned in
+    another. So the means of the blocks are anticorrelated, and their scatter overestimates the error of the
+    long-time mean. Therefore the currents are regressed on the changes by least squares. The result is the
+    fitted current in a block without a change of these quantities. It differs from the mean over all blocks
+    by a bounded amount divided by the length of the run. The number of degrees of freedom is K - 1 -
+    len(changes). Raises ValueError under the conditions of `fit_linear`.
     """
     series = series_of("series", series, 2)
     design = [np.ones(series.size)]
@@ -322,7 +327,7 @@ def steady_mean(series: ArrayLike, *changes: ArrayLike) -> Estimate:
 
 
 def combine(values: Values, errors: ArrayLike | None = None, freedoms: ArrayLike = math.inf) -> Combination:
-    """Compute the mean weighted by 1 / error^2, with chi-square about the mean; see `fit_linear`."""
+    """Compute the mean weighted by 1 / error^2, and chi-square about the mean; see `fit_linear`."""
     number = len(values) if isinstance(values, Estimate) else np.size(values)
     fit = fit_linear(np.ones((number, 1)), values, errors, freedoms)
     mean = fit.estimate(0)
@@ -347,14 +352,14 @@ def combine_estimates(estimates: Estimate | Sequence[Estimate]) -> Estimate:
 
 
 def bootstrap(function: Callable[..., float], samples: ArrayLike, repeats: int = 1000) -> Estimate:
-    """Compute function(samples) and its standard error from resampled data.
+    """Compute function(samples), and its standard error by the bootstrap.
 
-    Data are resampled with replacement along axis 0.
+    The samples are resampled with replacement along axis 0.
 
-    Equal samples give equal errors. `function` returns one number. The scatter of resampled means of n
-    samples is smaller than the standard error by the factor sqrt(1 - 1/n), so it is divided by this factor.
-    The error has n - 1 degrees of freedom (Efron and Tibshirani, An introduction to the bootstrap (1993),
-    section 5.3).
+    The random numbers are always the same, so identical samples give identical errors. `function` must return
+    a single number. The scatter between resampled means of n samples is smaller than the standard error by
+    the factor sqrt(1 - 1/n), so the scatter is divided by this factor. The error has n - 1 degrees of freedom
+    (Efron and Tibshirani, An introduction to the bootstrap (1993), section 5.3).
     """
     samples = np.asarray(samples)
     if samples.shape[0] < 2:
@@ -367,12 +372,12 @@ def bootstrap(function: Callable[..., float], samples: ArrayLike, repeats: int =
 
 
 def jackknife(function: Callable[..., Any], *samples: ArrayLike) -> tuple[Any, Any]:
-    """Compute function(means of the samples) with its standard error by the jackknife.
+    """Compute function(means of the samples), and its standard error by the jackknife.
 
-    Each block is left out once. The samples are arrays whose axis 0 runs over the same n independent blocks
-    (at least two); `function` takes their means over blocks and returns a number or an array. For smooth
-    functions the error is correct to first order and includes correlations between the samples (Tukey 1958).
-    Returns (value, error) as arrays.
+    Each block is omitted once. The samples are arrays whose axis 0 runs over the same n independent blocks
+    (at least two). `function` receives the means of the arrays over the blocks and returns a number or an
+    array. For smooth functions the error is correct to first order and includes correlations between the
+    samples (Tukey 1958). Returns (value, error) as arrays.
     """
     series = [np.asarray(sample, dtype=float) for sample in samples]
     blocks = series[0].shape[0]
@@ -395,15 +400,15 @@ def jackknife(function: Callable[..., Any], *samples: ArrayLike) -> tuple[Any, A
 
 
 FLAT = 0.05
-"""Maximum relative excess of a cost over the minimum within a flat minimum."""
+"""Maximum relative excess of the cost over its minimum that still counts as part of a flat minimum."""
 
 
 @dataclass(frozen=True)
 class Optimum:
     """Minimum of a cost: its position, the 95 % interval of the position, and its cost.
 
-    The object also records if the minimum lies between the points, and the interval in which the cost exceeds
-    the minimum by less than FLAT.
+    Two further properties state if the minimum lies between the points, and the interval in which the
+    relative excess of the cost over its minimum is less than FLAT.
     """
 
     location: float
@@ -418,12 +423,12 @@ class Optimum:
 def optimum(x: ArrayLike, cost: ArrayLike, within: float = 3.0) -> Optimum:
     """Find the minimum sqrt(b / c) of a cost a + b/x + c x.
 
-    Such a cost falls steeply and rises slowly. The three terms are fitted to the points near the minimum.
-    These are the points with a cost below `within` times the smallest cost, and at least the four cheapest
-    points. The interval is computed for the logarithm of the position, by error propagation from the relative
-    scatter about the curve. `interior` is True if b and c are positive and the minimum lies between the
-    points. Otherwise the position is the cheapest point and the intervals are from 0 to inf, because no
-    minimum was measured.
+    As a function of x, such a cost falls steeply and rises slowly. The three terms are fitted to the points
+    near the minimum: to all points with a cost below `within` times the smallest cost, but at least to the
+    four cheapest points. The interval of the position is computed for its logarithm, by error propagation
+    from the relative scatter of the points about the curve. `interior` is True if b and c are positive and
+    the minimum lies between the points. Otherwise the points determine no minimum: the position is the x of
+    the cheapest point, and the intervals extend from 0 to inf.
     """
     x = series_of("x", x, 4)
     cost = series_of("cost", cost, 4)
