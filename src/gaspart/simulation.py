@@ -619,7 +619,8 @@ class Simulation:
         Returns
         -------
         dict of str to ndarray
-            The arrays by name, shape (N, ...); with `at` shape (T, N, ...) and "time", shape (T,).
+            The arrays by name, of shape (N, ...). With `at`, their shape is (T, N, ...), and "time" of shape
+            (T,) is included.
 
         Raises
         ------

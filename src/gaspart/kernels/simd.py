@@ -75,7 +75,7 @@ class Lanes:
         return self._than("==", other)
 
     def rotate(self, step: int) -> Lanes:
-        """Rotate the lanes by some steps."""
+        """Rotate the lanes by a number of positions."""
         indices = ir.Constant(ir.VectorType(_INT, WIDTH), [(n + step) % WIDTH for n in range(WIDTH)])
         return Lanes(self.builder, self.builder.shuffle_vector(self.value, self.value, indices))
 

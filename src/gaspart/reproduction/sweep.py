@@ -85,9 +85,10 @@ def sweep(
         The scene whose parameters are varied.
     over : mapping of str to sequence
         Values of each varied key; without any key there is one point. A key is one of three kinds. For a
-        single species in a container, it is a key of a gas in a config, such as "packing_fraction", "count",
-        "radius", "side" or "temperature". It may be a setting of the engine, such as "time_step". Otherwise
-        it is the position of a value in a scene file, such as "gravity" or "species.0.mass".
+        single species in a container, the parameter is named by a key of a gas in a config, such as
+        "packing_fraction", "count", "radius", "side" or "temperature". It may be a setting of the engine,
+        such as "time_step". Otherwise it is the position of a value in a scene file, such as "gravity" or
+        "species.0.mass".
     observables : iterable of str
         Names of observables as in `gaspart measure`.
     folder : str or Path

@@ -340,8 +340,8 @@ class Facts:
     def drags_faces(self) -> bool:
         """True if runs tally the momentum that particles transfer parallel to faces.
 
-        This momentum is tallied for faces that draw tangential velocities, if one of these faces slides, or
-        if a force drives the gas along them.
+        This momentum is tallied for faces that give particles random tangential velocities. The condition is
+        that one of these faces slides, or that a force drives the gas along them.
         """
         rubs = any(not face.smooth for face in self.faces.values())
         return bool(self.sliding_faces) or (rubs and bool(self.driven_axes))

@@ -259,8 +259,8 @@ def diffusion_in_cube(
     plus two mean free paths divided by the side, but at most a half. The second term matters if the container
     is not much longer than a mean free path. (Tested with 49 values of 1372 to 530604 spheres from another
     program.) In a small cube, the periodic images of a particle order the surrounding fluid. The relative
-    change of D by this order is twice `finite_size_remainder`. (Tested with 44 rows of `small_systems` in
-    larger cubes; in this table D is relative to the centre of mass.)
+    change of D by this order is twice `finite_size_remainder`. This was tested with the 44 rows of the table
+    `small_systems` that are for larger cubes. In this table D is relative to the centre of mass.
 
     Examples
     --------

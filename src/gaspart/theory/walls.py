@@ -1,9 +1,9 @@
 r"""Hard particles between hard walls: effect of a finite container on the pressure on its walls.
 
 The container has walls on w of its d axes. Centres move only within l_k = L_k - sigma on each of these axes.
-The thermodynamics of the fluid applies to the volume V that centres can reach. The fluid has the surface
-tension gamma at the plane of the centres, the free energy tau of an edge (3D; of a corner in 2D), and the
-free energy kappa of a corner (3D). With these the grand potential is
+The thermodynamics of the fluid applies to the volume V that centres can reach. The surface tension gamma
+refers to the plane that the centres can reach. The free energy tau belongs to an edge in 3D and to a corner
+in 2D. The free energy kappa belongs to a corner in 3D. With these the grand potential is
 
 .. math:: \Omega / V = -P + \gamma s_1 + \tau s_2 + \kappa s_3, \quad
           s_1 = \sum_i 2 / l_i, \quad s_2 = \sum_{i<j} 4 / l_i l_j, \quad s_3 = 8 / l_1 l_2 l_3 .

@@ -1,8 +1,8 @@
 """Open faces: particles that leave through them, and particles that enter from reservoirs.
 
-All attempts to enter, at all faces, form one Poisson process. Attempt n uses the random words of the counter
-n. These words determine its position, its velocity, and the time to the next attempt. An engine decides
-whether an attempt succeeds.
+All attempts to enter, at all faces, form one Poisson process. Attempt n uses the random words that the
+generator returns for the counter n. These words determine its position, its velocity, and the time to the
+next attempt. An engine decides whether an attempt succeeds.
 
 If a particle leaves, its number becomes free. In the event-driven engine, an entering particle receives the
 lowest free number. Free numbers are counted in blocks, so that the search is short. Its result depends only

@@ -107,7 +107,9 @@ def _far(column: Field, stretch: Stretch, radius: float, settings: dict) -> np.n
 def _fluid(
     column: Field, density: np.ndarray, temperature: float, settings: dict
 ) -> Callable[[np.ndarray], float | np.ndarray]:
-    """Return the packing fraction by hydrostatics, without layers, as a function of height.
+    """Return the hydrostatic packing fraction as a function of height.
+
+    The layers at the floor are neglected.
 
     The fluid has the actual number of discs.
     """
