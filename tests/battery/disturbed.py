@@ -38,7 +38,7 @@ IMPULSE_STEPS = tuple(gp.TimeStepped(0.01, **more) for more in ({}, {"boxes_per_
 
 
 def dsmc(step=0.125, cells=2, model="boltzmann", threads=(1,)):
-    """The same DSMC by several numbers of threads."""
+    """Engines of equal settings with several numbers of threads."""
     return tuple(gp.DSMC(step, cells, model, threads=n) for n in threads)
 
 

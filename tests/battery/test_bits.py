@@ -1,4 +1,4 @@
-"""The same bits, however a run is made: each kind of scene by each way to make it (`disturbed` has the rows).
+"""Bits that do not depend on how a run is made: each kind of scene by each way (`disturbed` has the rows).
 
 A row's engines differ in their search, their partition or their threads. What differs with them is the work.
 """
@@ -18,7 +18,7 @@ from gaspart.engines import ENGINES
 EVERY = ROWS | of_battery()
 PIECES = 60
 UNITS = {"mass": 2.0**20, "length": 2.0**-5, "time": 2.0**-10}
-"""What one of the old units is in new ones: fifth powers of powers of two, for viscoelastic particles."""
+"""Old units in new ones: fifth powers of powers of two, which viscoelastic particles need."""
 
 pytestmark = pytest.mark.filterwarnings("ignore:gaspart")  # of steps and cells that are too large
 
@@ -52,7 +52,7 @@ def test_searches_and_threads_change_no_bit(row):
 
 @rows(lambda row: True)
 def test_splits_and_checkpoints_change_no_bit(row):
-    """One run is restored at each stop; the other one goes in small pieces, and is looked at, after each of
+    """A run is restored at each stop; another goes in small pieces, and is looked at, after each of
     two. The tally begins anew at the first stop."""
     first, *ends = row.ends
     whole, parts = row.simulation(), row.simulation()
@@ -82,6 +82,7 @@ LOST = {
     "piston": "a piston",
     "vibrations": "vibrating scatterers",
     "entry_next": "open faces",
+    "present": "dsmc, open faces",
     "per_area": "two masses",
     "stress": "stress, mixture",
     "sums": "discs",

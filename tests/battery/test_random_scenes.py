@@ -140,7 +140,7 @@ def energy_of(scene, piston, axis, high, place, velocity):
 
 
 def check_moving_wall(sim):
-    """What it has is what the gases have lost, and each particle is still on its side."""
+    """The wall has the energy that the gases have lost, and each particle is still on its side."""
     (wall,), state, start, tally = sim.scene.walls, sim.state, sim.initial_state, sim.tally
     axis = int(wall.start[0] != wall.end[0])
     place, velocity = state.piston

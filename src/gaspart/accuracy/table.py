@@ -3,11 +3,11 @@
 Columns: ``dimension``, ``packing_fraction``; ``engine`` is `event`, `step` (four passes and rewinding, the
 standard settings), `dsmc` or `dsmc enskog` (the two models of DSMC). ``precision`` and ``time_step`` are its
 settings. The time step is in diameters divided by the thermal speed (kT / m)^(1/2). For DSMC its unit is the
-default step, a fifth of a mean free time; for `event` it is 0; ``quantity``, its ``value`` and standard
-``error``. Quantities: ``seconds``, the CPU time for one exact contact of two particles;
-``bias_<observable>``, the relative error; ``noise_<observable>``, the relative variance of an estimate
-multiplied by the number of contacts; ``price_<feature>``, the time per event with a feature divided by the
-time without it. Observables: Z, collision_rate, D. Other errors follow from theory
+default step, a fifth of a mean free time; for `event` it is 0. The other columns are ``quantity``, its
+``value`` and its standard ``error``. Quantities: ``seconds``, the CPU time for one exact contact of two
+particles; ``bias_<observable>``, the relative error; ``noise_<observable>``, the relative variance of an
+estimate multiplied by the number of contacts; ``price_<feature>``, the time per event with a feature divided
+by the time without it. Observables: Z, collision_rate, D. Other errors follow from theory
 (`gaspart.accuracy.tabulated`).
 """
 

@@ -70,7 +70,7 @@ class EventLog:
         return dict(zip(self._keys, map(np.concatenate, parts), strict=True))
 
 
-# Identity of a checkpoint, which tells to which simulation it belongs.
+# Identity of a checkpoint: the simulation to which it belongs.
 #
 # A checkpoint may be restored only in this simulation.
 

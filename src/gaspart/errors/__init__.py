@@ -20,7 +20,7 @@ _ITEMS, _DEPTH, _BITS = 12, 4, 256  # limits in messages: items, nesting, bits o
 
 
 class OneLine(Exception):
-    """Exception whose message is one line that tells a user everything about the error."""
+    """Exception whose message describes the error completely, in one line."""
 
     def _render_traceback_(self) -> list[str]:
         """Return the lines that IPython and notebooks print instead of a traceback."""

@@ -335,7 +335,10 @@ def diffusion_error(step: float, scene: Scene, gas_rates: Rates) -> float:
 
 
 def lost_collisions(engine: DSMC, cells: tuple[int, ...], scene: Scene) -> float:
-    """Return an upper bound of the fraction of collisions that the Enskog model misses."""
+    """Return an upper bound of the fraction of collisions that the Enskog model misses.
+
+    With a single cell the model misses none.
+    """
     number = math.prod(cells)
     return CELL_LOSS * number / scene.count if engine.model == "enskog" and number > 1 else 0.0
 

@@ -301,7 +301,10 @@ def per_area_fields(momentum: np.ndarray, heat: np.ndarray, walls: int) -> dict[
 
 
 class EventPerAreaPart(TallyPart):
-    """Momentum and heat per accessible area, for the event-driven engine."""
+    """Momentum and heat per accessible area, for the event-driven engine.
+
+    Masses are in units of `unit_mass`.
+    """
 
     kernel: PerArea
 

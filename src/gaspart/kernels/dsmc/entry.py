@@ -1,7 +1,8 @@
 """Entry of particles from reservoirs behind open faces.
 
-A reservoir is a gas of point particles, so every attempt to enter succeeds. A particle enters at its own time
-within a step and flies for the rest of this step. Its first collisions take place at the end of the step.
+The gas of a reservoir has no excluded volume, so every attempt to enter succeeds. A particle enters at its
+own time within a step and flies for the rest of this step. Its first collisions take place at the end of the
+step.
 """
 
 from numpy import int64

@@ -84,7 +84,7 @@ class Workspace(NamedTuple):
     wall_key : (2,), words of 64 bits for the random numbers of thermal faces
     flights : (threads, 2), two particles in the form of the event-driven engine, see
         `kernels.model.flight_dtype`
-    inverse_mass, inverse_inertia : (threads, 2), inverse masses of these particles
+    inverse_mass, inverse_inertia : (threads, 2), inverse masses and moments of inertia of these particles
     pair_spins : (threads, 2, 3), spins of these particles
     sums : (threads, 2, 2), sums of the collision law
     counts : (threads, 8), see the names at the top of the module
