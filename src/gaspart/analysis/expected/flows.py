@@ -12,7 +12,7 @@ from functools import reduce
 import numpy as np
 
 from gaspart import theory
-from gaspart.analysis.expected.equilibrium import Expected, equation_of
+from gaspart.analysis.expected.equilibrium import Expected, bias_of, equation_of
 from gaspart.analysis.run import Run
 from gaspart.scene.faces import Thermal
 from gaspart.scene.scene import Scene
@@ -114,6 +114,7 @@ def heat_flux(run: Run, faces: np.ndarray) -> Expected | None:
     if conduction is None:
         return None
     flux, error, source = conduction
+    error = math.hypot(error, flux * bias_of(run, "fluxes"))
     towards_high = 1.0 if plates.temperatures[0] > plates.temperatures[1] else -1.0
     return np.where(faces % 2 == 1, towards_high, -towards_high) * flux, error, source
 
@@ -223,12 +224,21 @@ def _heat_between_plates(plates: Plates, points: bool) -> tuple[float, float, st
     except ValueError:  # the theory's own estimate of the Knudsen number is slightly larger
         return None
     is_known = points or plates.filled < _DILUTE
-    error = flux * plates.knudsen**2 if is_known else math.nan
+    thinner = 3.0 * hot / (hot + math.sqrt(hot * cold) + cold)  # mean density over density at the hot plate
+    error = flux * (thinner * plates.knudsen) ** 2 if is_known else math.nan
     return flux, error, f"Fourier's law with Enskog's conductivity and temperature jumps, {at}"
 
 
 def _stress_between_plates(plates: Plates, run: Run) -> tuple[float, float, str] | None:
     """Compute the shear stress on sliding plates that have the same temperature."""
+    if (stress := _stress_of_equation(plates, run)) is None:
+        return None
+    value, error, source = stress
+    return value, math.hypot(error, value * bias_of(run, "fluxes")), source
+
+
+def _stress_of_equation(plates: Plates, run: Run) -> tuple[float, float, str] | None:
+    """Compute the stress without the error of cells and time steps."""
     speed, temperature = float(np.hypot.reduce(plates.slide)), plates.temperatures[0]
     gas = plates.density, speed, temperature, plates.mass, plates.accommodation
     free = float(theory.free_molecular_stress(*gas))
@@ -354,7 +364,8 @@ def _between_plates(plates: Plates, run: Run, axis: int, positions: np.ndarray) 
     gap = plates.length + 2.0 * theory.VELOCITY_SLIP * path
     middle = 0.5 * run.scene.container.lengths[axis]
     values = mean + np.multiply.outer(plates.slide, (positions - middle) / gap)
-    wrong = np.abs(plates.slide)[:, None] * (plates.knudsen**2 + heating_of(plates))
+    slip = 2.0 * theory.VELOCITY_SLIP * plates.knudsen * bias_of(run, "fluxes")
+    wrong = np.abs(plates.slide)[:, None] * (plates.knudsen**2 + heating_of(plates) + slip)
     near = np.abs(positions - middle) > 0.5 * plates.length - 2.0 * path  # beyond is the Knudsen layer
     return np.where(near, np.nan, values), wrong, "linear flow with slip"
 
@@ -362,10 +373,10 @@ def _between_plates(plates: Plates, run: Run, axis: int, positions: np.ndarray) 
 def _channel_velocity(plates: Plates, run: Run, axis: int, positions: np.ndarray) -> Expected | None:
     """Compute the velocity of a gas that a force drives along resting, equally hot plates.
 
-    The uncertainty includes the next order of the slip, the packing fraction, and half of the frictional
-    heating of the gas. In units of k_B T, the heating in the middle is 4/45 m u^2, where u is the maximum
-    velocity. The heating at the plates is 32/45 m u^2 times the temperature jump coefficient times the
-    Knudsen number.
+    The uncertainty includes the next order of the slip, the packing fraction, the error of cells and steps,
+    and half of the frictional heating of the gas. In units of k_B T, the heating in the middle is 4/45 m u^2,
+    where u is the maximum velocity. The heating at the plates is 32/45 m u^2 times the temperature jump
+    coefficient times the Knudsen number.
     """
     slow = not plates.slide.any() and plates.equal and axis == plates.axis
     if not slow or plates.dimension == 2 or not 0.0 < plates.knudsen <= FLUID or not dilute(plates, run):
@@ -381,7 +392,9 @@ def _channel_velocity(plates: Plates, run: Run, axis: int, positions: np.ndarray
     warmer = plates.mass * float(fastest @ fastest) / temperature
     warmer *= 4.0 / 45.0 + 32.0 / 45.0 * TEMPERATURE_JUMP * plates.knudsen
     dense = 0.0 if equation_of(run) == BOLTZMANN else plates.filled
-    wrong = np.abs(fastest)[:, None] * (8.0 * plates.knudsen**2 + 0.5 * warmer + dense)
+    wrong = np.abs(fastest)[:, None] * (
+        8.0 * plates.knudsen**2 + 0.5 * warmer + dense + bias_of(run, "fluxes")
+    )
     return np.where(near, np.nan, values[:, :-1]), wrong, "Poiseuille's flow with slip"
 
 
