@@ -88,6 +88,16 @@ def is_running(process: int) -> bool:
     return True
 
 
+def python_with_this_package(code: str) -> list[str]:
+    """Return arguments of the interpreter that run code with this copy of the package.
+
+    Nothing is imported from the working folder (-P), where a user's file may have the name of a module.
+    """
+    folder = str(Path(__file__).parents[1])
+    found = f"import sys; sys.path.insert(0, {folder!r}); import gaspart; del sys.path[0]"
+    return ["-P", "-c", f"{found}; {code}"]
+
+
 def descriptor_path(file: IO[bytes]) -> str:
     """Return an ASCII path of an open file, for libraries that accept only UTF-8 names.
 
