@@ -22,7 +22,7 @@ from typing import Any
 
 from gaspart.errors import SceneError, SimulationError
 from gaspart.interruption import defer_signals, exit_on_signals
-from gaspart.system import POSIX, python_with_this_package
+from gaspart.system import python_with_this_package
 
 _LOOK = 0.1  # seconds between two checks for signals while processes run
 _PATIENCE = 60.0  # seconds that a process has for its checkpoint before it is killed
@@ -37,12 +37,6 @@ class Lost:
 
     def __str__(self) -> str:
         return f"its process ended with code {self.code}"
-
-
-def require_processes(key: str, count: int) -> None:
-    """Raise SceneError if several processes are requested and the system cannot connect to them."""
-    if count > 1 and not POSIX:
-        raise SceneError(key, count, f"more than one process needs Linux or macOS; {key}=1")
 
 
 def in_threads(function: Callable[[Any], Any], items: Iterable[Any], threads: int) -> list[Any]:

@@ -1,6 +1,8 @@
 """Jobs as copies of a process that has loaded their modules, beside jobs that start by themselves."""
 
+import json
 import os
+import runpy
 import signal
 import socket
 import subprocess
@@ -215,6 +217,20 @@ def test_clients_that_send_nothing_or_a_part_stop_no_other_and_leave_no_descript
         connection.close()
     assert server.run("print('ran')").stdout == "ran\n"
     assert len(list(descriptors.iterdir())) == before
+
+
+def test_a_client_that_is_killed_at_once_takes_its_job_along(server, tmp_path):
+    """The client has not read that its job has started."""
+    script = tmp_path / "script.py"
+    script.write_text("import os, time; open('process', 'w').write(str(os.getpid())); time.sleep(60)")
+    client = runpy.run_path(str(ROOT / "workflow/scripts/_client.py"))
+    with socket.socket(socket.AF_UNIX) as connection:
+        connection.connect("\0" + server.command.split()[-1])
+        request = json.loads(client["describe_process"]([str(script)])) | {"folder": str(tmp_path)}
+        socket.send_fds(connection, [f"{json.dumps(request)}\n".encode()], [0, 1, 2])
+        while not (tmp_path / "process").exists() or not (tmp_path / "process").read_text():
+            time.sleep(0.02)
+    assert is_gone(int((tmp_path / "process").read_text()))
 
 
 def test_processes_of_other_users_are_refused(monkeypatch):

@@ -71,4 +71,5 @@ def limits(resource):
     return [name for name in dir(resource) if name.startswith("RLIMIT_")]
 
 
-sys.exit(main(*sys.argv[1:]))
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))

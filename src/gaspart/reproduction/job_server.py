@@ -99,8 +99,8 @@ class _Client:
         self._request = b""
         self._files: list[int] = []
 
-    def receive(self) -> None:
-        """Receive a part of the request, and start the job when the request is complete.
+    def receive(self) -> int:
+        """Receive a part of the request; when it is complete, start the job and return its process.
 
         Raises OSError if the client has ended, belongs to another user, or asks for what a fork cannot do.
         """
@@ -110,7 +110,7 @@ class _Client:
         if not data or not is_own_process(self.connection):
             raise ConnectionResetError
         if not data.endswith(b"\n"):
-            return
+            return 0
         request = json.loads(self._request)
         if len(self._files) != 3 or not _is_as_loaded(request["environment"]):
             raise ConnectionAbortedError
@@ -122,10 +122,14 @@ class _Client:
         finally:
             signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
         self._close_files()
+        return self.process
 
     def pass_on(self) -> None:
         """Send the job the signals that its client received. Raises OSError if the client has ended."""
-        numbers = self.connection.recv(64)
+        try:
+            numbers = self.connection.recv(64)
+        except ConnectionResetError:  # the client was killed before it read that the job has started
+            numbers = b""
         for number in numbers or [signal.SIGKILL]:
             with suppress(ProcessLookupError):
                 os.kill(self.process, number)
@@ -196,10 +200,8 @@ def _answer(client: _Client, jobs: dict[int, _Client], selector: selectors.BaseS
     try:
         if client.process:
             client.pass_on()
-        else:
-            client.receive()
-            if client.process:
-                jobs[client.process] = client
+        elif process := client.receive():
+            jobs[process] = client
     except (OSError, ValueError):  # the end of the job, if there is one, is still awaited
         selector.unregister(client.connection)
         if not client.process:
