@@ -109,7 +109,10 @@ def _stamp(kernels: list[Kernel]) -> Path | None:
     folder = next(filter(None, folders), None)
     if folder is None or not kernels:
         return None
-    return Path(folder).parent / _STORED / hashlib.sha256(str(kernels).encode()).hexdigest()[:24]
+    from gaspart.kernels.compile.policy import source_digest
+
+    compiled = f"{source_digest()} {kernels}"
+    return Path(folder).parent / _STORED / hashlib.sha256(compiled.encode()).hexdigest()[:24]
 
 
 def compile_kernels(send: Callable[[Any], None], kernels: list[Kernel]) -> int:

@@ -13,7 +13,7 @@ import pytest
 
 import gaspart
 from gaspart.kernels.compile import sources
-from gaspart.kernels.compile.sources import STORE, file_digests, tree_digest
+from gaspart.kernels.compile.sources import STORE, closure_digests, file_digests, tree_digest
 
 SOURCE = '''"""A module."""
 LIMIT = 3.0
@@ -145,6 +145,32 @@ def is_compiled(function):
     return any(
         "kernel" in ast.unparse(one) or "helper" in ast.unparse(one) for one in function.decorator_list
     )
+
+
+def test_a_kernel_is_compiled_again_if_and_only_if_a_module_that_it_needs_has_changed(tmp_path):
+    folder = tmp_path / "kernels"
+    shutil.copytree(Path(gaspart.__file__).parent / "kernels", folder)
+    before = closure_digests(folder)
+
+    def changed(name):
+        path = folder / name
+        text = path.read_text()
+        path.write_text(f"{text}\nADDED = 1\n")
+        after = closure_digests(folder)
+        path.write_text(text)
+        return {str(Path(key).relative_to(folder)) for key in before if before[key] != after[key]}
+
+    assert changed("drawing/ray_tracing.py") == {"drawing/ray_tracing.py"}
+    assert changed("event/loop.py") == {"event/loop.py"}
+    contact = changed("physics/contact.py")
+    assert contact >= {"event/loop.py", "step/resolve.py"}
+    assert "drawing/ray_tracing.py" not in contact and "analysis/waves.py" not in contact
+    policy = changed("compile/policy.py")
+    assert not [
+        path
+        for path in folder.rglob("*.py")
+        if "kernels.compile.policy import" in path.read_text() and str(path.relative_to(folder)) not in policy
+    ]
 
 
 PROGRAM = """
