@@ -156,6 +156,7 @@ def test_a_kernel_is_compiled_again_if_and_only_if_a_module_that_it_needs_has_ch
         path = folder / name
         text = path.read_text()
         path.write_text(f"{text}\nADDED = 1\n")
+        closure_digests.cache_clear()
         after = closure_digests(folder)
         path.write_text(text)
         return {str(Path(key).relative_to(folder)) for key in before if before[key] != after[key]}
@@ -174,7 +175,7 @@ def test_a_kernel_is_compiled_again_if_and_only_if_a_module_that_it_needs_has_ch
 
 
 PROGRAM = """
-from gaspart.kernels.compile.policy import source_digest
+from gaspart.kernels.compile.sources import source_digest
 from gaspart.kernels.physics.rng import log_of
 from gaspart.reproduction.points.modules import digest, kernel_digest
 log_of(2.0)

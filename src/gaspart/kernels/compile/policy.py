@@ -7,16 +7,14 @@ not notice changes of a helper in another file.
 
 from __future__ import annotations
 
-import hashlib
 import warnings
 from collections.abc import Callable
-from functools import cache, wraps
-from pathlib import Path
+from functools import wraps
 from typing import Any, TypeVar, cast
 
 from gaspart.interruption import prevent_interruption
 from gaspart.kernels.compile.cache import load_numba, report_unwritable, usable_cache
-from gaspart.kernels.compile.sources import closure_digests
+from gaspart.kernels.compile.sources import source_digest
 
 numba = load_numba()
 TESTED = "0.67", "0.68"
@@ -35,17 +33,6 @@ else:
         stacklevel=2,
     )
 F = TypeVar("F", bound=Callable)
-_KERNELS = Path(__file__).parents[1]
-
-
-@cache
-def source_digest() -> str:
-    """Return a short hash of all modules of `kernels`, which contain all compiled code.
-
-    These modules contain no other code. Docstrings and comments do not change the hash.
-    """
-    return hashlib.sha256("".join(closure_digests(_KERNELS).values()).encode()).hexdigest()[:16]
-
 
 _UNWRAPPED = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 _CACHE = usable_cache("kernels" if _tested else source_digest())

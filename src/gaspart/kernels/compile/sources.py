@@ -24,6 +24,7 @@ from gaspart.system import is_own
 
 STORE = "trees.json"
 _IMPORT = re.compile(r"^[ \t]*from (gaspart\.kernels[\w.]*) import (\([^)]*\)|[^\n]*)", re.MULTILINE)
+KERNELS = Path(__file__).parents[1]
 MOST_STORED = 20_000
 """Maximum number of stored hashes, about thirty versions of the package."""
 _DIGEST = re.compile(r"[0-9a-f]{32}")
@@ -49,7 +50,17 @@ def file_digests(paths: Iterable[Path]) -> list[str]:
     return digests
 
 
-def closure_digests(folder: Path) -> dict[str, str]:
+@cache
+def source_digest() -> str:
+    """Return a short hash of all modules of `kernels`, which contain all compiled code.
+
+    These modules contain no other code. Docstrings and comments do not change the hash.
+    """
+    return hashlib.sha256("".join(closure_digests().values()).encode()).hexdigest()[:16]
+
+
+@cache
+def closure_digests(folder: Path = KERNELS) -> dict[str, str]:
     """Return for each file of `kernels` the hash of all modules of `kernels` that it needs, itself included.
 
     Only these modules can change the machine code of its functions.
