@@ -1,4 +1,4 @@
-"""Planted errors are caught, each by the cell that it names: all in `make test-all`, a tenth in `make test`."""
+"""Planted errors are caught, each by the cell that it names: a tenth of them in `make test`."""
 
 import hashlib
 import random
@@ -56,7 +56,7 @@ def test_planted_errors_are_caught(plant):
 
 
 def sample():
-    """Return a tenth of the planted errors, chosen by the sources of gaspart: the same for all at one commit."""
+    """Return a tenth of the planted errors; it follows from the sources of gaspart."""
     sources = sorted(Path(gaspart.__file__).parent.rglob("*.py"))
     seed = hashlib.sha256("".join(file_digests(sources)).encode()).hexdigest()
     return random.Random(seed).sample(PLANTS, len(PLANTS) // SHARE)
