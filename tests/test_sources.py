@@ -7,9 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import gaspart as gp
 from gaspart.kernels.physics.contact import contact_root, exchange, tangential_impulse
 from gaspart.reproduction.families.registry import families
+from gaspart.reproduction.jobs.pack import GROWTH
 from gaspart.reproduction.report.page import statements
+from gaspart.state.compression import compress
 from gaspart.yaml_text import read_yaml
 
 ROOT = Path(__file__).parents[1]
@@ -18,6 +21,8 @@ VERDICTS = {"confirmed", "corrected", "contradicted", "open", "followed", "repla
 
 
 def test_each_statement_has_a_verdict_and_evidence_that_exists():
+    keys = {key for document in DOCUMENTS for entry in document["statements"] for key in entry}
+    assert keys == {"at", "verdict", "figure", "says", "why"}
     known = read_yaml(ROOT / "workflow/report/references.yaml")
     shown = statements(DOCUMENTS, [])
     assert len(shown) >= 90 and {one["source"] for one in shown} == {"source A", "source B", "source C"}
@@ -91,6 +96,17 @@ def test_the_partition_function_of_discs_has_no_unit_with_two_powers_of_h_only()
     length, momentum = 3.0, 5.0  # units changed by these factors, hence h by their product
     ratio = {power: (length**2) * (momentum**2) / (length * momentum) ** power for power in (2, 3)}
     assert ratio[2] == 1.0 and ratio[3] != 1.0
+
+
+@pytest.mark.thorough
+def test_slowly_growing_spheres_pass_the_63_per_cent_of_source_a():
+    side = (256 * pi / 6.0 / 0.6) ** (1.0 / 3.0)
+    container = gp.Container(lengths=(side, side, side), boundary="periodic")
+    scene = gp.Scene(
+        container=container, species=[gp.Species(count=256, radius=0.5, arrangement="compressed")]
+    )
+    packing = compress(scene, 1, GROWTH / 32.0, until="jammed")
+    assert 0.66 < packing.packing_fraction < pi / sqrt(18.0)
 
 
 def test_two_shells_of_half_boxes_hold_every_partner_at_the_cost_that_the_page_states():
