@@ -13,6 +13,8 @@ import gaspart as gp
 from gaspart.engines.dsmc.defaults import LONGEST, MOST, ROOM, rates, reach_of
 from gaspart.engines.dsmc.resolution import EPOCH
 
+pytestmark = pytest.mark.thorough
+
 
 def driven(speed=0.01, power=0.05, interval=0.1, count=150):
     """A granular gas that starts cold and is heated 1e4 times."""
