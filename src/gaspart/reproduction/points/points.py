@@ -202,8 +202,8 @@ def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
             {**named, "minProperties": 1, "additionalProperties": record(EXPERIMENT)}, "what is simulated"
         ),
         "effort": positive(
-            "multiple of the replicas of every point, or else of the length of its runs; uncertainties fall as "
-            "the inverse root of the effort",
+            "multiple of the replicas of every point, or else of the length of its runs; uncertainties fall "
+            "as the inverse root of the effort",
             maximum=100,
             default=1.0,
         ),
