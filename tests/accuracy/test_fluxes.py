@@ -31,7 +31,10 @@ def own_cache(tmp_path, monkeypatch):
 COUETTE = gp.Scene(
     gp.Container((6.0, 6.0, 6.0), boundary=("wall", "periodic", "periodic")),
     [gp.Species(100, 0.2, temperature=1.0)],
-    faces={f"x_{side}": gp.Thermal(1.0, velocity=(0.0, v, 0.0)) for side, v in (("low", -1.0), ("high", 1.0))},
+    faces={
+        "x_low": gp.Thermal(1.0, velocity=(0.0, -1.0, 0.0)),
+        "x_high": gp.Thermal(1.0, velocity=(0.0, 1.0, 0.0)),
+    },
 )
 """Symmetry makes the stress along z zero, and the velocity along z everywhere."""
 
