@@ -28,6 +28,7 @@ SLIDING = between(gp.Thermal(1.0), gp.Thermal(1.0, velocity=(2.0, 0.0)))
 def own_cache(tmp_path, monkeypatch):
     monkeypatch.setattr(pilot, "cache_directory", lambda: tmp_path / "cache")
 
+
 COUETTE = gp.Scene(
     gp.Container((6.0, 6.0, 6.0), boundary=("wall", "periodic", "periodic")),
     [gp.Species(100, 0.2, temperature=1.0)],

@@ -251,7 +251,6 @@ def test_pilots_are_compared_in_the_same_component():
     assert raised_bias(candidate, apart, [exact, apart]) > 0.09
 
 
-
 def test_cost_follows_from_noise_and_bias():
     """Of an accuracy a and a bias b: noise / (a - b)^2, and its equilibration."""
 
