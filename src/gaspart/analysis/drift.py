@@ -206,11 +206,13 @@ def _of_particles(run: Run, slow: dict[int, np.ndarray], count: float, thermal: 
     for n, axis in enumerate(axes):
         if axis not in slow:
             continue
-        spread = math.sqrt(float((values[k + n] - values[n] ** 2).mean()))
+        spread = math.sqrt(max(0.0, float((values[k + n] - values[n] ** 2).mean())))
         if axis in scene.moving_axes:  # the whole gas expands
             spread = 2.0 * scene.container.lengths[axis] / math.sqrt(12.0)
         scatter = spread / math.sqrt(count)
-        series[f"the mean position along {'xyz'[axis]}"] = Series(values[n], scatter, *slow[axis], thermal)
+        series[f"the mean position along {'xyz'[axis]}"] = Series(
+            values[n], scatter, slow[axis][0], slow[axis][1], thermal
+        )
     met = 2.0 * float(run.growth("collisions")) / count * float(run.time[-1] - run.time[0])
     isolated = exchange_scatter(scene, count) == 0.0
     axial = math.inf if isolated else min((axis[0] for axis in slow.values()), default=math.inf)

@@ -86,17 +86,21 @@ def measure(
     >>> list(measured)
     ['Z', 'collision_rate']
     """
-    if isinstance(start, str):
-        rule = "must be a time; the names of several observables are a list, such as "
-        raise SceneError("start", start, rule + repr([observable, start]))
+    third: object = start
+    if isinstance(third, str):
+        rule = f"must be a time; several observables are a list, such as {[observable, third]}"
+        raise SceneError("start", third, rule)
     names = [observable] if isinstance(observable, str) else list(observable)
     names = [observable_name(name) for name in names]
-    runs = run_files(source) if isinstance(source, str | Path) else source
-    if isinstance(runs, list | tuple) and len(runs) > 1:
+    runs: list[Source] = [source]  # type: ignore[list-item]
+    if isinstance(source, str | Path):
+        runs = [*run_files(source)]
+    elif isinstance(source, list | tuple):
+        runs = [*source]
+    if len(runs) != 1:
         results = {name: replicas(name, runs, start, end, **selection) for name in names}
     else:
-        only = runs[0] if isinstance(runs, list | tuple) and runs else source
-        with open_frames(only, any(OBSERVABLES[name].needs == "pairs" for name in names)) as data:
+        with open_frames(runs[0], any(OBSERVABLES[name].needs == "pairs" for name in names)) as data:
             results = {name: measure_single(data, name, start, end, **selection) for name in names}
             with until_time(data, end) as part:
                 drift = drift_of(part, start=start)
