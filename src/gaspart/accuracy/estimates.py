@@ -127,14 +127,22 @@ def components(data: xr.Dataset, observable: str, start: float | None = None) ->
         points = int(is_known.sum()), is_known.size
         value, error = np.array(_norm(value[is_known])), np.array(_norm(error[is_known]))
         freedom = np.array(LEAST_FREEDOM)
-    scales = np.abs(np.ravel(value))
-    if declared.relative_to == "norm":  # some components vanish on average
-        scales = np.full_like(scales, _norm(value))
+    scales = scales_of(observable, np.ravel(value))
     columns = zip(names, np.ravel(value), scales, np.ravel(error) ** 2 * time, np.ravel(freedom), strict=True)
     return {
         name: Component(float(mean), float(scale), time, float(spectrum), freedom=float(free), points=points)
         for name, mean, scale, spectrum, free in columns
     }
+
+
+def scales_of(observable: str, values: np.ndarray) -> np.ndarray:
+    """Return the values (n,) to which the relative errors of an observable's components refer.
+
+    Each refers to its own value, or, if some components vanish on average, to the root mean square of all.
+    """
+    if OBSERVABLES[observable].relative_to == "norm":
+        return np.full(len(values), _norm(values))
+    return np.abs(values)
 
 
 def of_face(name: str, face: str | None) -> bool:

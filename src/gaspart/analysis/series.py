@@ -60,11 +60,11 @@ def collision_rate(run: Run) -> np.ndarray:
 
 
 def face_impulses(run: Run) -> np.ndarray:
-    """Compute the momentum (T - 1, 2d) given to each face in each interval.
+    """Compute the momentum (T - 1, 2d) given to each face in each interval, positive outwards.
 
     The momentum is 0 along axes without walls.
     """
-    return np.asarray(np.abs(run.increments("wall_impulse")[:, : 2 * run.dimension]))
+    return np.asarray(run.increments("wall_impulse")[:, : 2 * run.dimension])
 
 
 def face_pressures(run: Run) -> np.ndarray:
