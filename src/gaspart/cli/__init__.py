@@ -33,6 +33,7 @@ _COMMANDS = {
     "film": ("view", "a film (.mp4, .gif) of a trajectory"),
     "films": ("view", "films of the scenes of the gallery, such as for slides"),
     "view": ("view", "an interactive page (.html) of a trajectory"),
+    "play": ("play", "a page (.html) on which a gas runs in any browser"),
     "collisions": ("collisions", "run a scene and write a data set of its collisions"),
     "export": ("export", "a frame as a state for other programs (.gsd, .data)"),
     "theory": ("theory", "values of theory, with sources"),
