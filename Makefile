@@ -1,11 +1,12 @@
 # make            set up, reproduce every figure, write results/report.html, print the verdicts
 # make first      set up, three figures of the sources: results/first.html, in some two minutes
-# make test       set up, run all tests (among them the whole workflow, small); OPTIONS=... are options of pytest
-# make check-all  the linters, the tests, 2500 new random scenes for each property of the engines, and the slow tests
+# make test       set up, run the tests that catch most per second; OPTIONS=... are options of pytest
+# make test-all   all tests: the whole workflow, small, with its digests, all kernels, 2500 new random scenes each, Slurm
+# make digests    the simulations of the whole workflow, small, compared bit for bit with tests/workflow/digests.json
 # make precise    all figures from longer runs: results/precise/report.html
 # make smoke      all figures, small: results/smoke/report.html
 # make docs       the documentation site, with executed notebooks: results/docs/html/index.html; after a complete
-#                 reproduction also docs/gallery.png, the picture of the README, and docs/figures, its small pictures
+#                 reproduction also docs/gallery.png, the picture of the README
 # make wheel      dist/gaspart-...whl, for this version of Python, with compiled kernels for the scenes of `gaspart new`
 # make archive    all figures, and archive.zip, the file to deposit
 # make benchmark  the speed of the engines on this machine, which should run nothing else: results/tables/performance.csv
@@ -20,7 +21,7 @@
 SHELL := /bin/bash
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := all
-.PHONY: all first setup test check-all precise smoke wheel archive benchmark referees coverage lint report docs clean distclean
+.PHONY: all first setup test test-all digests precise smoke wheel archive benchmark referees coverage lint report docs clean distclean
 
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 CORES ?= all
@@ -72,9 +73,12 @@ unexport PYTHONDONTWRITEBYTECODE
 test: setup
 	.venv/bin/python -m pytest --numprocesses=auto --timeout=1500 --timeout-method=signal $(OPTIONS)
 
-check-all: lint test
-	.venv/bin/python -m pytest --numprocesses=auto -m hypothesis --hypothesis-profile=search
-	.venv/bin/python -m pytest -m thorough
+test-all: setup
+	.venv/bin/python -m pytest --numprocesses=auto -m "" --hypothesis-profile=search $(OPTIONS)
+
+digests: setup
+	$(SNAKEMAKE) --quiet rules --configfile config/smoke.yaml -- points
+	.venv/bin/python tests/workflow/digests.py results/smoke/points
 
 precise: setup
 	$(SNAKEMAKE) --quiet rules --configfile config/precise.yaml
@@ -123,7 +127,6 @@ lint: setup
 	.venv/bin/python -m ruff format --check .
 	.venv/bin/python -m mypy
 	.venv/bin/lint-imports --no-cache
-	PYTHONPATH=tests .venv/bin/python -m style.baseline
 	.venv/bin/python -m snakefmt --check Snakefile workflow
 	.venv/bin/python -m snakemake --lint
 
@@ -144,7 +147,6 @@ results/docs/extra/play/index.html: docs/play.py docs/play.html src/gaspart/rend
 
 docs: setup results/docs/symmetries.csv results/docs/exact_values.csv results/docs/extra/play/index.html
 	.venv/bin/python docs/gallery.py results docs/gallery.png
-	.venv/bin/python docs/thumbnails.py results
 	.venv/bin/python -m sphinx --quiet --fail-on-warning --jobs auto docs results/docs/html
 	@echo "documentation: results/docs/html/index.html"
 

@@ -7,7 +7,6 @@ from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, ClassVar
 
 from gaspart.errors import SceneError
-from gaspart.errors.guidance import with_guidance
 from gaspart.keys import (
     POSITIVE,
     choice,
@@ -57,7 +56,6 @@ def _check_matter(particle: Species | Particle) -> None:
         raise SceneError("vibration", particle.vibration, "requires fixed: true")
 
 
-@with_guidance
 @dataclass(frozen=True)
 class Species:
     """Particles of one kind, whose positions the program chooses.
@@ -319,7 +317,6 @@ class Species:
         return self.mass * (self.speed or 0.0) ** 2 / dimension
 
 
-@with_guidance
 @dataclass(frozen=True)
 class Particle:
     """A single particle at a given position.
