@@ -107,14 +107,14 @@ def components(data: xr.Dataset, observable: str, start: float | None = None) ->
     A scalar or a curve has one component, "". For a curve, value and error are root mean squares. Raises the
     same SceneError as the function of `gaspart.analysis`.
     """
-    from gaspart.analysis.measuring import measure
+    from gaspart.analysis.frames import measure_single
     from gaspart.analysis.run import open_run
 
     with open_run(data, start, sheared=True, varying=True) as run:
         if OBSERVABLES[observable].of_impulses:
             return _on_walls(run, observable)
         time = float(run.time[-1] - run.time[0])
-    declared, result = OBSERVABLES[observable], measure(data, observable, start)
+    declared, result = OBSERVABLES[observable], measure_single(data, observable, start)
     parts = [np.asarray(of, dtype=float) for of in (result.estimate, result.error, _freedom(result))]
     value, error, freedom = np.broadcast_arrays(*parts)
     is_known, names, points = np.isfinite(value) & np.isfinite(error), [""], (1, 1)

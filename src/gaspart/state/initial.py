@@ -317,9 +317,9 @@ def in_flow(scene: Scene, masses: np.ndarray, positions: np.ndarray, velocities:
 def _make_exact(scene: Scene, velocities: np.ndarray) -> None:
     """Rescale velocities of the species with `exact_temperature`.
 
-    First, their mean velocity is subtracted along axes with conserved momentum. Then one factor for each
-    group of `_apart` makes the mean of m v^2 / kT per degree of freedom of the group equal to 1. The sums have
-    the same rounding on every machine. Raises SceneError if there is no degree of freedom.
+    First, their mean velocity is subtracted along axes with conserved momentum. Then a factor for each group
+    of `_apart` makes the mean of m v^2 / kT per degree of freedom of the group equal to 1. The sums have the
+    same rounding on every machine. Raises SceneError if there is no degree of freedom.
     """
     first, parts = len(scene.particles), []
     for kind in scene.species:
