@@ -48,8 +48,8 @@ def last_state(path: str | Path) -> State:
     Notes
     -----
     The state is exact if the run was made with `keep_checkpoint`. Otherwise positions, velocities and spins
-    are from the last frame, in single precision, and a warning is issued. The motion of a piston and the displacement of sheared
-    images are exact.
+    are from the last frame, in single precision, and a warning is issued. The motion of a piston and the
+    displacement of sheared images are exact.
 
     Examples
     --------
