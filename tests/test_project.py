@@ -50,7 +50,8 @@ def test_every_dependency_has_a_lower_bound_that_the_locked_version_satisfies(na
 
 
 def test_both_environments_have_the_same_versions():
-    locks = [(ROOT / f"{name}.txt").read_text(encoding="utf-8") for name in ("environment", "environment-dev")]
+    names = "environment.txt", "environment-dev.txt"
+    locks = [(ROOT / name).read_text(encoding="utf-8") for name in names]
     small, large = (set(re.findall(r"^[\w.-]+==[^ \\]+", lock, re.MULTILINE)) for lock in locks)
     assert len(small) > 50 and small < large
 
