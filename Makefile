@@ -141,11 +141,13 @@ results/docs/symmetries.csv: $(MEASURED) $(wildcard tests/battery/*.py) | setup
 results/docs/exact_values.csv: $(MEASURED) $(wildcard tests/exact/*) | setup
 	PYTHONPATH=tests .venv/bin/python -m exact.table
 
-# Recorded runs that one can play with, in some two minutes.
-results/docs/extra/play/index.html: docs/play.py docs/play.html src/gaspart/rendering/view.html $(MEASURED) | setup
-	.venv/bin/python docs/play.py results/docs/extra/play
+# Pages on which gases run, of the templates that share five kinds of kernels, in some two minutes.
+RUNNING = $(addprefix results/docs/extra/play/,$(addsuffix .html,gas heat cooling rough melting atmosphere shock piston))
+$(RUNNING): results/docs/extra/play/%.html: $(wildcard src/gaspart/rendering/*) $(MEASURED) | setup
+	mkdir -p $(@D)
+	.venv/bin/gaspart play --template $* -o $@ --force
 
-docs: setup results/docs/symmetries.csv results/docs/exact_values.csv results/docs/extra/play/index.html
+docs: setup results/docs/symmetries.csv results/docs/exact_values.csv $(RUNNING)
 	.venv/bin/python docs/gallery.py results docs/gallery.png
 	.venv/bin/python -m sphinx --quiet --fail-on-warning --jobs auto docs results/docs/html
 	@echo "documentation: results/docs/html/index.html"

@@ -150,24 +150,8 @@ def render(
     if not clock:
         colours = colours_of(particles, colour, fastest)
         return picture(particles, size, colours, direction=direction).view(Picture)
-    return draw_labelled(particles, time, size, colour, fastest, direction)
-
-
-def draw_labelled(
-    particles: DrawnParticles,
-    time: float,
-    size: tuple[int, int],
-    colour: str | np.ndarray,
-    fastest: float | None = None,
-    direction: tuple[float, float] = CAMERA,
-    paths: Sequence[np.ndarray] = (),
-) -> Picture:
-    """Draw a picture with parameters, legend, time and scale.
-
-    `paths` are arrays (M, 2), drawn over discs.
-    """
     labels = Labels(size, particles.parameters, legend_of(particles, colour, fastest), particles.surfaces)
-    image = picture(particles, labels.inner, colours_of(particles, colour, fastest), paths, direction)
+    image = picture(particles, labels.inner, colours_of(particles, colour, fastest), direction=direction)
     scale = pixels_per_length(particles, labels.inner, direction)
     return labels.add_to(image, f"{time:.4g}", scale).view(Picture)
 
