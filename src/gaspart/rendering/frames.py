@@ -6,7 +6,7 @@ import base64
 import html
 import io
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import lru_cache
 from itertools import pairwise
@@ -18,7 +18,7 @@ import numpy as np
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of
 from gaspart.rendering.particles import DrawnParticles, Labels, colours_of, legend_of
-from gaspart.rendering.pictures import CAMERA, SIZE, checked_camera, checked_size, picture, pixels_per_length
+from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, picture, pixels_per_length
 from gaspart.rendering.surfaces import surfaces_of
 from gaspart.scene.faces import Piston, Vibrating
 from gaspart.scene.scene import Scene
