@@ -15,7 +15,6 @@ from gaspart.analysis.estimate import concise
 from gaspart.analysis.observables import name_of
 from gaspart.analysis.statistics import correlated_mean, slow_mean
 from gaspart.errors import SceneError
-from gaspart.errors.guidance import with_guidance
 from gaspart.scene.faces import wall_of
 
 if TYPE_CHECKING:
@@ -62,7 +61,6 @@ class ByFace(xr.Dataset):
         return super().sel(*indexers, **named)
 
 
-@with_guidance
 class Observable(ByFace):
     """Result of a function of `gaspart.analysis`, a Dataset.
 

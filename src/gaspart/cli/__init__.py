@@ -162,7 +162,8 @@ def _describe_unrecognised(words: list[str], parser: Parser) -> str:
     """Return the message about words that a command does not accept."""
     options = [argument.partition("=")[0] for argument in words if argument.startswith("-")]
     if options:
-        return f"{options[0]}: {unknown_word(options[0], parser.options(), 'option')}"
+        rule = unknown_word(options[0], parser.options(), "option").partition("; known are")
+        return f"{options[0]}: {rule[0]}" + (f"; see `{parser.prog} --help`" if rule[1] else "")
     return f"{' '.join(words)}: too many arguments; see `{parser.prog} --help`"
 
 
