@@ -77,8 +77,12 @@ unexport PYTHONDONTWRITEBYTECODE
 	@touch $@
 
 # A test that waits for ever fails by its name, and the others go on. Slow tests and searches have no such limit.
+# Tests of few particles run their kernels as plain Python first: to compile each would take longer.
+TEST = .venv/bin/python -m pytest --numprocesses=auto --timeout=1500 --timeout-method=signal
 test: develop
-	.venv/bin/python -m pytest --numprocesses=auto --timeout=1500 --timeout-method=signal $(OPTIONS)
+	NUMBA_DISABLE_JIT=1 $(TEST) -m interpreted --hypothesis-profile=few tests/engines tests/battery $(OPTIONS)
+	PYTHONPATH=tests .venv/bin/python -m battery.compile_kernels
+	$(TEST) -m "not thorough and not interpreted" $(OPTIONS)
 
 test-all: develop
 	.venv/bin/python -m pytest --numprocesses=auto -m "" --hypothesis-profile=search $(OPTIONS)
@@ -148,11 +152,13 @@ results/docs/symmetries.csv: $(MEASURED) $(wildcard tests/battery/*.py) | develo
 results/docs/exact_values.csv: $(MEASURED) $(wildcard tests/exact/*) | develop
 	PYTHONPATH=tests .venv/bin/python -m exact.table
 
-# Recorded runs that one can play with, in some two minutes.
-results/docs/extra/play/index.html: docs/play.py docs/play.html src/gaspart/rendering/view.html $(MEASURED) | develop
-	.venv/bin/python docs/play.py results/docs/extra/play
+# Pages on which gases run, of the templates that share five kinds of kernels, in some two minutes.
+RUNNING = $(addprefix results/docs/extra/play/,$(addsuffix .html,gas heat cooling rough melting atmosphere shock piston))
+$(RUNNING): results/docs/extra/play/%.html: $(wildcard src/gaspart/rendering/*) $(MEASURED) | develop
+	mkdir -p $(@D)
+	.venv/bin/gaspart play --template $* -o $@ --force
 
-docs: develop results/docs/symmetries.csv results/docs/exact_values.csv results/docs/extra/play/index.html
+docs: develop results/docs/symmetries.csv results/docs/exact_values.csv $(RUNNING)
 	.venv/bin/python docs/gallery.py results docs/gallery.png
 	.venv/bin/python -m sphinx --quiet --fail-on-warning --jobs auto docs results/docs/html
 	@echo "documentation: results/docs/html/index.html"

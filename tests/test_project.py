@@ -60,7 +60,7 @@ def test_what_a_message_says_to_install_is_an_extra():
     texts = [path.read_text(encoding="utf-8") for path in (ROOT / "src").rglob("*.py")]
     calls = [call for text in texts for call in re.findall(r'optional\("(\w+)[\w.]*", "(\w+)"', text)]
     provided = {"freud": "freud-analysis", "gsd": "gsd", "imageio_ffmpeg": "imageio-ffmpeg"}
-    provided |= {"rocrate": "rocrate", "ipywidgets": "ipywidgets"}
+    provided |= {"rocrate": "rocrate"}
     assert {module for module, _ in calls} == set(provided)
     core = {requirement.name for requirement in requirements()}
     for module, extra in calls:
