@@ -12,7 +12,7 @@ import json
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import fields
+from dataclasses import fields, replace
 from itertools import count, islice
 from math import nan
 from pathlib import Path
@@ -21,6 +21,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import xarray as xr
 
+from gaspart.accuracy.conditions import keeps_energy
 from gaspart.analysis.drift import drift_of
 from gaspart.analysis.observables import OBSERVABLES, observable_name
 from gaspart.engines import Engine, engine_to_dict, resolve_engine
@@ -144,8 +145,10 @@ def sweep(
 
     Notes
     -----
-    If some of radius, packing fraction and count vary, the others keep their values as far as possible. A
-    complete trajectory is not simulated again. An interrupted trajectory is continued.
+    If some of radius, packing fraction and count vary, the others keep their values as far as possible. If
+    runs conserve their energy, species with a `temperature` have exactly this temperature at the start;
+    otherwise each point would have another energy. A complete trajectory is not simulated again. An
+    interrupted trajectory is continued.
 
     Examples
     --------
@@ -163,7 +166,7 @@ def sweep(
     axes = _axes(over, engine)
     names = _names(observables, axes)
     point = _length(duration, until, at_most, samples, equilibration)
-    point |= {**_settings(scene, axes, engine), **_contents(names, correlations, point)}
+    point |= {**_settings(_with_equal_energies(scene), axes, engine), **_contents(names, correlations, point)}
     point["replicas"] = POINT["replicas"].check("replicas", replicas)
     varied = {key if key in _point_keys(engine) else PREFIX + key: values for key, values in axes.items()}
     config: dict[str, Any] = {
@@ -194,6 +197,15 @@ def sweep(
 
 
 # The request of a sweep as settings of points: plain values, checked as the keys of a config.
+
+
+def _with_equal_energies(scene: Scene) -> Scene:
+    """Return the scene with exact temperatures if a run conserves the energy of its drawn velocities."""
+    drawn = [kind for kind in scene.species if kind.temperature is not None and not kind.fixed]
+    if not keeps_energy(scene) or sum(kind.count for kind in drawn) < 2:
+        return scene
+    exact = [replace(kind, exact_temperature=kind in drawn) for kind in scene.species]
+    return replace(scene, species=exact)
 
 
 def _axes(over: object, engine: Engine) -> dict[str, list]:
