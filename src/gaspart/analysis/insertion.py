@@ -336,7 +336,7 @@ def _is_sampled(probability: np.ndarray, error: float) -> bool:
 
 def _with_note(result: Observable) -> Observable:
     """Add a note to a result whose error is unknown."""
-    unknown = np.isnan(result.estimate).values
+    unknown = np.isnan(result.estimate.values)
     if unknown.any():
         result.attrs["note"] = f"no place was free for species {', '.join(map(str, np.flatnonzero(unknown)))}"
     elif np.isnan(result.error).any():

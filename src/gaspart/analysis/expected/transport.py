@@ -15,6 +15,7 @@ from gaspart.analysis.expected.equilibrium import (
     Expected,
     engine_of,
     equation_of,
+    is_relaxed,
 )
 from gaspart.analysis.run import Run
 from gaspart.engines import Engine
@@ -37,7 +38,7 @@ def mean_squared_displacement(run: Run, time: np.ndarray, axes: bool = False) ->
     If `axes` is True, the result is the mean-squared displacement along each axis.
     """
     gas = None if run.is_subset else run.moving_fluid
-    if gas is None:
+    if gas is None or not is_relaxed(run):
         return None
     equation = equation_of(run)
     contact = bulk.contact_value(gas, equation)
@@ -50,7 +51,7 @@ def mean_squared_displacement(run: Run, time: np.ndarray, axes: bool = False) ->
 def velocity_autocorrelation(run: Run, time: np.ndarray) -> Expected | None:
     """Compute the expected velocity autocorrelation (lag,), with the exact initial decay."""
     gas = None if run.is_subset else run.moving_fluid
-    if gas is None:
+    if gas is None or not is_relaxed(run):
         return None
     equation = equation_of(run)
     rate = float(theory.velocity_decay_rate(**gas.parameters, contact=bulk.contact_value(gas, equation)))
