@@ -45,7 +45,15 @@ def mean_squared_displacement(run: Run, time: np.ndarray, axes: bool = False) ->
     curve = theory.enskog_mean_squared_displacement(time, **gas.parameters, contact=contact)
     source = SOURCES[equation]
     curve = curve / (run.dimension if axes else 1)
-    return Expected(curve, math.nan, f"{source}, linear Boltzmann equation")
+    return Expected(curve, curve * _memory(gas, equation), f"{source}, linear Boltzmann equation")
+
+
+def _memory(gas: Gas, equation: str) -> float:
+    """Return the relative change of D by correlated collisions; NaN if it is unknown."""
+    if equation != EXACT:
+        return math.nan
+    ratio = bulk.diffusion(gas, EXACT) / bulk.diffusion(gas, ENSKOG)
+    return abs(ratio - 1.0)
 
 
 def velocity_autocorrelation(run: Run, time: np.ndarray) -> Expected | None:
