@@ -163,3 +163,48 @@ def test_images_that_cannot_be_counted_end_a_run_with_a_line():
         gp.SimulationError, match=r"at time 3 a particle has crossed the container 2\^31 times"
     ):
         sim.advance(until=3.0)
+
+
+def rate_in_slit(scene, model):
+    """Collisions per time of a dilute gas between walls of z. Each kind is uniform in what its centres reach.
+
+    Boltzmann: pairs collide where both are. Enskog: the centres are a contact distance apart in any direction.
+    """
+    x, y, width = scene.container.lengths
+    total, cosines = 0.0, np.linspace(-1.0, 1.0, 1001)
+    for n, first in enumerate(scene.species):
+        heights = np.linspace(first.radius, width - first.radius, 1001)
+        for second in scene.species[n:]:
+            same = first is second
+            pairs = first.count * (second.count - same) / (2.0 if same else 1.0)
+            sigma = first.radius + second.radius
+            room = width - 2.0 * min(first.radius, second.radius)
+            part = 1.0
+            if model == "enskog":
+                room, ends = width - 2.0 * second.radius, heights[:, None] + sigma * cosines
+                part = ((ends >= second.radius) & (ends <= width - second.radius)).mean()
+            speed = math.sqrt(16.0 / math.pi)  # mean relative speed for masses and temperature of 1
+            total += pairs * math.pi * sigma**2 * speed * part / (x * y * room)
+    return total
+
+
+@pytest.mark.parametrize(
+    ("model", "cells", "side"),
+    [
+        ("boltzmann", (1, 1, 4), 40.0),
+        ("boltzmann", (2, 2, 9), 40.0),
+        pytest.param("enskog", (1, 1, 4), 160.0, marks=pytest.mark.thorough),
+    ],
+)
+def test_particles_of_two_sizes_collide_as_often_as_their_room_says(model, cells, side):
+    """The large ones reach three quarters of the slit, and a part of the outermost cells."""
+    container = gp.Container((side, side, 8.0), ("periodic", "periodic", "wall"))
+    species = [gp.Species(100, r, temperature=1.0, exact_temperature=True) for r in (0.2, 1.0)]
+    scene = gp.Scene(container, species)
+    sim = advanced(scene, 3000, settle=50, model=model, cells_per_side=cells)
+    assert sim._dynamics._workspace.counts[:, 2].sum() == 0  # chances above 1
+    found = sim.tally.collisions
+    expected = rate_in_slit(scene, model) * sim.tally.time
+    lost = sim.engine.bias(scene, "rates")
+    assert found == pytest.approx(expected, abs=3.0 * math.sqrt(found) + lost * found)
+    assert found > 5000
