@@ -19,7 +19,7 @@ from gaspart.analysis.measuring import measure
 from gaspart.cli import main
 from gaspart.cli.advise import _lines, _shortfall
 from gaspart.engines import EventDriven
-from gaspart.engines.dsmc.defaults import CELL_LOSS
+from gaspart.engines.dsmc.cells import CELL_LOSS
 from gaspart.engines.engine import Candidate
 from gaspart.state import initial
 from gaspart.theory.columns import gravity_column
@@ -195,7 +195,7 @@ def test_bounds_come_from_theory():
     dense = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(43, 0.5, temperature=1.0)])
     _, refused = candidates_of(dense, "pressure")
     lost = gp.DSMC(model="enskog", cells_per_side=2).bias(BOX, "rates")
-    assert lost == pytest.approx(CELL_LOSS * 4 / BOX.count)
+    assert lost == pytest.approx(CELL_LOSS[BOX.dimension] * 4 / BOX.count)
     assert gp.DSMC(model="enskog", cells_per_side=1).bias(BOX, "rates") == 0.0
     assert list(refused) == ["dsmc enskog"] and "known up to 0.4" in refused["dsmc enskog"]
     able, refused = candidates_of(DILUTE, "rdf")
@@ -217,9 +217,9 @@ def known(value, accuracy, time=1.0, **more):
 
 def test_pilots_that_differ_raise_the_bound():
     event, other = EventDriven(), gp.DSMC(model="enskog")
-    exact = Pilot(event, 1.0, component=known(2.0, 0.01))
-    alike = Pilot(other, 1.0, component=known(2.03, 0.01))
-    apart = Pilot(other, 1.0, component=known(2.2, 0.01))
+    exact = Pilot(event, 1.0, components={"": known(2.0, 0.01)})
+    alike = Pilot(other, 1.0, components={"": known(2.03, 0.01)})
+    apart = Pilot(other, 1.0, components={"": known(2.2, 0.01)})
     candidate = Candidate(other, model=0.003)
     assert raised_bias(candidate, alike, [exact, alike]) == 0.003
     raised = 0.1 + 1.96 * math.hypot(0.01, 0.01)
@@ -233,6 +233,22 @@ def test_pilots_that_differ_raise_the_bound():
     made = plan.Plan(trials.target, 0.02, tuple(options), {}, 2.0, 1, (exact, apart), trials.differing)
     (line,) = [one for one in _lines(made, "gas.yaml") if one.startswith("pilots differ")]
     assert "DSMC: 2.2 against 2 by the event-driven engine" in line
+
+
+def test_pilots_are_compared_in_the_same_component():
+    """The stress on two plates has opposite signs, and symmetry makes its other component vanish."""
+
+    def pilot(engine, *values):
+        parts = {name: Component(v, 2.0, 1.0, 1e-4) for name, v in zip("abc", values, strict=True)}
+        return Pilot(engine, 1.0, components=parts)
+
+    other = gp.DSMC(model="enskog")
+    exact, alike = pilot(EventDriven(), -2.02, 2.0, 0.01), pilot(other, -2.0, 2.01, -0.01)
+    candidate = Candidate(other, model=0.003)
+    assert exact.value == -2.02 and exact.accuracy == pytest.approx(0.005)
+    assert raised_bias(candidate, alike, [exact, alike]) == 0.003
+    apart = pilot(other, -2.2, 2.2, 0.0)
+    assert raised_bias(candidate, apart, [exact, apart]) > 0.09
 
 
 def test_cost_follows_from_noise_and_bias():

@@ -46,6 +46,7 @@ def flown(scene, axis, states):
     )
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", SCENES)
 def test_the_tally_is_the_momentum_that_particles_carry_through_planes(name):
     scene, axis = SCENES[name]
@@ -56,6 +57,7 @@ def test_the_tally_is_the_momentum_that_particles_carry_through_planes(name):
     assert found == pytest.approx(wanted, abs=(5e-3 if scene.gravity else 1e-10) * np.abs(wanted).max())
 
 
+@pytest.mark.interpreted
 def test_halves_of_a_gas_add_up_to_it_in_any_order_of_its_particles():
     start = started(FALLING, "z").initial_state
     halves = replace(FALLING, species=[replace(MIXTURE[0], count=8), replace(MIXTURE[0], count=4)])
@@ -87,12 +89,14 @@ REFUSED = {
 }
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("reason", REFUSED)
 def test_scenes_without_equilibrium_at_one_temperature_are_refused(reason):
     with pytest.raises(gp.SceneError, match=reason):
         gp.Simulation(REFUSED[reason], gp.EventDriven(), tallies=[ImpulseTally("z", BINS)])
 
 
+@pytest.mark.interpreted
 def test_other_engines_axes_and_numbers_of_bins_are_refused():
     asked = [ImpulseTally("z", BINS)]
     with pytest.raises(gp.SceneError, match='needs the "event" or "step" engine'):

@@ -42,6 +42,7 @@ def momentum(sim):
     return sim.state.velocities[np.isfinite(sim.state.masses)].sum(axis=0)
 
 
+@pytest.mark.thorough
 def test_the_bottom_takes_the_weight_and_contacts_lose_its_work():
     """Along the slope to rounding in each part of the run, across it but for a grain that rests on others
     between two parts; and in the steady state with what the flow keeps, whose share falls with time."""
@@ -67,6 +68,7 @@ def test_the_bottom_takes_the_weight_and_contacts_lose_its_work():
     assert sim.tally.dissipated_energy == pytest.approx(work, rel=0.05)
 
 
+@pytest.mark.thorough
 def test_the_flow_is_sheared_and_faster_on_a_steeper_slope():
     mean = []
     for angle in (16.0, 20.0, 24.0):

@@ -175,6 +175,21 @@ def test_arrangements_that_share_a_lattice_do_not_mix():
         gp.Scene(gp.Container((8.0, 8.0, 8.0)), kinds)
 
 
+def test_random_particles_fill_the_space_between_a_lattice():
+    electrons = gp.Species(200, 0.02, temperature=1.0)
+    scatterers = gp.Species(160, 0.5, fixed=True, arrangement="lattice")
+    scene = gp.Scene(gp.Container((40.0, 20.0), ("wall", "periodic")), [electrons, scatterers])
+    state = initial_state(scene, seed=1)
+    assert np.array_equal(state.positions, initial_state(scene, seed=1).positions)
+    apart = np.abs(state.positions[:, None] - state.positions)
+    apart[..., 1] = np.minimum(apart[..., 1], 20.0 - apart[..., 1])
+    apart = np.linalg.norm(apart, axis=-1)
+    np.fill_diagonal(apart, np.inf)
+    assert (apart >= state.radii[:, None] + state.radii).all()
+    nearest = apart[200:, 200:].min(axis=1)
+    assert np.allclose(nearest, nearest[0]) and nearest[0] > 2.0  # all at one distance: a lattice
+
+
 # The deepest overlap of particles of any sizes.
 
 
@@ -218,6 +233,22 @@ def test_a_large_particle_does_not_make_all_small_ones_neighbours():
 def scene(boundary="periodic", exact=True, count=50, **more):
     gas = gp.Species(count, 0.3, mass=2.0, temperature=1.7, exact_temperature=exact)
     return gp.Scene(gp.Container((12.0, 9.0, 15.0), boundary), [gas], **more)
+
+
+@pytest.mark.parametrize("boundary", ["wall", "periodic"])
+def test_gases_in_separate_regions_have_each_their_exact_temperature(boundary):
+    """Regions may touch. Species that share a region share one factor."""
+    regions = ((0.0, 0.0), (10.0, 10.0)), ((10.0, 0.0), (20.0, 10.0))
+    species = [
+        gp.Species(50, 0.3, temperature=t, mass=m, exact_temperature=True, region=region)
+        for t, m, region in ((1.0, 1.0, regions[0]), (3.0, 2.0, regions[1]), (3.0, 0.5, regions[1]))
+    ]
+    made = initial_state(gp.Scene(gp.Container((20.0, 10.0), boundary), species), 1)
+    scaled = (made.velocities**2).sum(axis=1) * made.masses / np.repeat((1.0, 3.0, 3.0), 50)
+    left, right = scaled[:50].sum(), scaled[50:].sum()
+    share = 2.0 * np.array([50.0, 125.0]) / 175.0 * (boundary == "periodic")
+    assert [left, right] == pytest.approx([100.0 - share[0], 200.0 - share[1]], rel=1e-12)
+    assert abs(scaled[50:100].sum() / 100.0 - 1.0) > 1e-3
 
 
 @pytest.mark.parametrize(

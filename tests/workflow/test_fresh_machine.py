@@ -1,18 +1,16 @@
 """`make` on a fresh machine: by an ordinary user, in a path with a space, offline once set up, and twice."""
 
-import json
 import os
 import shutil
 import subprocess
-from pathlib import Path
 
 import pytest
-from digests import digests
+from digests import digests, known
 from machine import OFFLINE, folder_of_user, give, ordinary_user, why_not
 from workspace import ROOT, copy_of_project, leave_one_figure
 
 pytestmark = [pytest.mark.workflow, pytest.mark.thorough]
-KNOWN = json.loads((Path(__file__).parent / "digests.json").read_text())
+KNOWN = known()
 FIGURE = "virial_discs"
 
 
@@ -23,7 +21,8 @@ def clone():
         copy = home / "a fresh clone"
         copy.mkdir()
         copy_of_project(copy)
-        for name in ("Makefile", "pyproject.toml", "environment.txt", "README.md", "LICENSE"):
+        locks = "environment.txt", "environment-dev.txt"
+        for name in ("Makefile", "pyproject.toml", *locks, "README.md", "LICENSE"):
             shutil.copy2(ROOT / name, copy)
         leave_one_figure(copy, FIGURE)
         give(home)

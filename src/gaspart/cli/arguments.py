@@ -6,7 +6,6 @@ import argparse
 import sys
 from collections.abc import Callable, Iterable
 from contextlib import suppress
-from pathlib import Path
 from textwrap import fill
 from typing import Any, NoReturn, TypeVar
 
@@ -42,6 +41,10 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Raise UsageError with a message of argparse."""
         raise UsageError(message + (f"; see `{self.prog} --help`" if "are required" in message else ""))
+
+    def _print_message(self, message: str, file: Any = None) -> None:
+        """Print a text; argparse itself ignores errors, such as that of a full disk."""
+        print(message, end="", file=file)
 
     def options(self) -> list[str]:
         """Return all options, such as --seed."""
@@ -126,18 +129,6 @@ def add_output(parser: argparse.ArgumentParser, meaning: str, overwrite: str) ->
 def add_trajectory(parser: argparse.ArgumentParser) -> None:
     """Add the argument of a command that reads a trajectory."""
     parser.add_argument("trajectory", metavar="FILE", help="trajectory of gaspart (.nc)")
-
-
-def run_files(name: str) -> list[str]:
-    """Return the files of the run that a command names: the file itself, or all replicas."""
-    from gaspart.trajectory.opening import partial_path, replica_path
-    from gaspart.trajectory.replicas import files_of
-
-    path = Path(name)
-    alone = path.exists() or partial_path(path).exists() or not path.name
-    first = path if alone else replica_path(path, 1)
-    is_replicated = first != path and (first.exists() or partial_path(first).exists())
-    return [str(file) for file in files_of(path)] if is_replicated else [name]
 
 
 def config_command(command: str) -> Callable:

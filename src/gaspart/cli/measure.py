@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import io
+import json
 import os
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -12,7 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gaspart.analysis.flow import ABOUT
-from gaspart.analysis.measuring import measure, until_time
+from gaspart.analysis.frames import until_time
+from gaspart.analysis.measuring import measure
+from gaspart.analysis.observable import remark_of
 from gaspart.analysis.observables import ALIASES, OBSERVABLES, observable_name, selecting, selections
 from gaspart.cli.arguments import (
     Parser,
@@ -21,13 +24,15 @@ from gaspart.cli.arguments import (
     list_names,
     print_line,
     real,
-    run_files,
     set_command,
     several,
 )
 from gaspart.cli.progress import waiting
+from gaspart.engines import engine_from_dict
 from gaspart.errors import SceneError
 from gaspart.files import FileKind, begins_with, output_path, writing
+from gaspart.scene.scene import Scene
+from gaspart.yaml_text import parse_yaml
 
 if TYPE_CHECKING:
     from gaspart.analysis.observable import Observable
@@ -36,8 +41,6 @@ _FIELD = "field"
 """Word on the command line that requests a field (a property in cells) instead of an observable."""
 _SEEDS = "seeds"
 """Attribute that contains the remark about the energy of a single run."""
-_DRIFT = "drift"
-"""Attribute that contains the remark that a single run is not steady."""
 _ROWS = 12  # maximum number of printed points of a curve
 _TITLE = "# gaspart measure"
 _TABLE = FileKind("a table written by gaspart measure", begins_with(_TITLE.encode()))
@@ -130,11 +133,14 @@ def _split_words(options: argparse.Namespace) -> tuple[list[str], list[str]]:
 
 
 def _measure(options: argparse.Namespace) -> None:
+    from gaspart.trajectory.replicas import run_files
+
     stated, names = _split_words(options)
     files = [file for name in stated for file in run_files(name)]
     write = _writer(options, names)
     selected = {key: getattr(options, key) for key in selections()}
     selection = {key: value for key, value in selected.items() if value is not None}
+    remarks: set[str] = set()
     for name, observable in _measure_each(
         files, names, (options.start, options.end), selection, _field_of(options)
     ):
@@ -144,9 +150,14 @@ def _measure(options: argparse.Namespace) -> None:
             _print_curve(name, observable)
         else:
             _print_scalar(name, observable)
-        for note in (observable.attrs[key] for key in ("note", _SEEDS, _DRIFT) if key in observable.attrs):
+        for note in (observable.attrs[key] for key in ("note", _SEEDS) if key in observable.attrs):
             print_line(f"({note})")
+        if (remark := remark_of(observable)) and remark not in remarks:
+            print_line(remark)
+        remarks.add(remark)
         write(observable)
+    for remark in _of_engine(files[0]):
+        print_line(f"({remark})")
 
 
 def _field_of(options: argparse.Namespace) -> dict[str, Any]:
@@ -194,17 +205,19 @@ def _measure_each(
                     observable = _measure_field(trajectory, times, selection | field)
                 else:
                     observable = measure(trajectory, name, *times, **selection)
-                    observable.attrs |= _of_seeds(trajectory, name) | _of_drift(trajectory, name, times)
+                    observable.attrs |= _of_seeds(trajectory, name)
             yield name, observable
 
 
-def _of_drift(trajectory: Any, name: str, times: tuple[float | None, float | None]) -> dict[str, str]:
-    """Return a remark if the measured part of a run is not steady."""
-    from gaspart.analysis.series import drift_of
+def _of_engine(file: str) -> list[str]:
+    """Return remarks about notable errors of the engine of a run."""
+    from gaspart.trajectory.reading import open_trajectory
 
-    with until_time(trajectory, times[1]) as part:
-        drift = drift_of(part, times[0], "position" in OBSERVABLES[name].along)
-    return {_DRIFT: f"not steady: {drift}"} if drift else {}
+    with open_trajectory(file) as trajectory:
+        if "engine" not in trajectory.attrs:
+            return []
+        engine = engine_from_dict(json.loads(trajectory.attrs["engine"]))
+        return engine.remarks(Scene.from_dict(parse_yaml(trajectory.attrs["scene"])))
 
 
 def _of_seeds(trajectory: Any, name: str) -> dict[str, str]:
@@ -226,12 +239,15 @@ def _measure_field(
     Raises SceneError for a selection that does not apply to fields, and under the same conditions as
     `gaspart.analysis.field`.
     """
+    from gaspart.analysis.drift import drift_of
     from gaspart.analysis.fields import field
 
     for key in set(chosen) - {"of", "axes", "cells", "species"}:
         raise SceneError(key, chosen[key], f"cannot be chosen for {_FIELD}, whose cells are along --axes")
     with until_time(trajectory, times[1]) as part:
-        return field(part, start=times[0], **chosen)
+        result, drift = field(part, start=times[0], **chosen), drift_of(part, start=times[0])
+    result.attrs |= {"drift": drift} if drift else {}
+    return result
 
 
 def _print_field(observable: Observable) -> None:

@@ -143,6 +143,10 @@ class Engine:
         """Return relative errors that are known before a run, by name."""
         return {}
 
+    def remarks(self, scene: Scene) -> list[str]:
+        """Return remarks about notable errors of settings and model; runs and measurements state them."""
+        return []
+
     def bias(self, scene: Scene, kind: str) -> float:
         """Return an upper bound of the relative error of a quantity due to the settings.
 
@@ -202,6 +206,10 @@ class Engine:
         paths : True if the observable depends on the paths of particles
         """
         return {}
+
+    def added_bulk_viscosity(self, scene: Scene) -> float:
+        """Return the bulk viscosity of a dilute gas, which is due to cells alone."""
+        return 0.0
 
     def cells_along(self, scene: Scene) -> int:
         """Return the largest number of DSMC cells along an axis; 0 for other engines."""

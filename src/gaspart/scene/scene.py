@@ -16,7 +16,6 @@ from typing import Any
 
 import gaspart
 from gaspart.errors import SceneError
-from gaspart.errors.guidance import with_guidance
 from gaspart.keys import (
     declare,
     describe,
@@ -52,7 +51,6 @@ DRAWN = 20_000
 _ABSENT = ("fixed", "exact_temperature", "walls", "faces")
 
 
-@with_guidance
 @dataclass(frozen=True)
 class Scene(Facts):
     """The system to simulate: a container, its particles and everything that acts on them.
@@ -166,7 +164,8 @@ class Scene(Facts):
             check_region(self.container, f"species[{n}].region", kind)
         arrangements = {kind.arrangement for kind in self.species}
         for shared in arrangements & set(SHARED):
-            if self.particles or arrangements != {shared}:
+            beside = {"random"} if shared == "lattice" and not self.particles else set()
+            if self.particles or arrangements - beside != {shared}:
                 raise SceneError("arrangement", shared, "is shared by all particles of a scene")
         earlier = Nearby(
             self.container, max((2.0 * particle.radius for particle in self.particles), default=0.0)

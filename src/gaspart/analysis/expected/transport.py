@@ -187,8 +187,15 @@ def _transport(
 
 
 def bulk_viscosity(run: Run, temperature: float) -> Expected | None:
-    """Compute the expected bulk viscosity from fluctuations."""
-    return _transport(run, temperature, bulk.bulk_viscosity)
+    """Compute the expected bulk viscosity from fluctuations.
+
+    In the Boltzmann equation it is 0, and the result is the value of the engine's cells.
+    """
+    expected, engine = _transport(run, temperature, bulk.bulk_viscosity), engine_of(run)
+    if expected is None or engine is None or engine.equation != BOLTZMANN:
+        return expected
+    added = engine.added_bulk_viscosity(run.scene)
+    return Expected(expected.value + added, 0.0, f"{expected.source}, transfer within cells")
 
 
 def thermal_conductivity(run: Run, temperature: float) -> Expected | None:
