@@ -84,7 +84,8 @@ def test_words_are_sorted_into_files_and_names(paths, capsys):
 
 def test_displacement_and_diffusion_along_each_axis(paths, capsys, tmp_path):
     head, *lines = printed(capsys, paths[0], "msd", "--per-axis")
-    assert head.split() == ["lag", *(word for k in "xyz" for word in ("msd", k, "error", "theory", "its", "error"))]
+    of_axis = "msd {} error theory its error"
+    assert head.split() == ["lag", *" ".join(map(of_axis.format, "xyz")).split()]
     found = gp.analysis.mean_squared_displacement(paths[0], per_axis=True)
     assert float(lines[1].split()[5]) == pytest.approx(
         float(found.estimate.sel(axis="y").sel(lag=float(lines[1].split()[0]), method="nearest")), rel=1e-4
