@@ -125,7 +125,7 @@ def test_scatterers_end_the_free_flights_of_points(dimension):
     """The mean free path is 4 V / S in three dimensions and pi A / L in two (Cauchy)."""
     fixed = gp.Species(8, 0.4, fixed=True)
     scene = gp.Scene(gp.Container((4.0,) * dimension, "periodic"), [fixed, gp.Species(9, 1e-9, speed=1.0)])
-    free = 4.0**dimension - 8.0 * gp.theory.particle_volume(dimension, 0.4)
+    free = 4.0**dimension - 8.0 * gp.theory.particle_volume(dimension, 0.8)
     path = math.pi * free / (8.0 * 0.8 * math.pi) if dimension == 2 else free / (8.0 * math.pi * 0.16)
     assert scales(scene).mean_free_path == pytest.approx(path, rel=1e-6)
     found = Target(scene, "vacf").frequency
