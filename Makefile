@@ -1,7 +1,8 @@
 # make            set up, reproduce every figure, write results/report.html, print the verdicts
 # make first      set up, three figures of the sources: results/first.html, in some two minutes
-# make test       set up, run all tests (among them the whole workflow, small); OPTIONS=... are options of pytest
-# make check-all  the linters, the tests, 2500 new random scenes for each property of the engines, and the slow tests
+# make test       set up, run the tests that catch most per second; OPTIONS=... are options of pytest
+# make test-all   all tests: the whole workflow, small, with its digests, all kernels, 2500 new random scenes each, Slurm
+# make digests    the simulations of the whole workflow, small, compared bit for bit with tests/workflow/digests.json
 # make precise    all figures from longer runs: results/precise/report.html
 # make smoke      all figures, small: results/smoke/report.html
 # make docs       the documentation site, with executed notebooks: results/docs/html/index.html; after a complete
@@ -20,7 +21,7 @@
 SHELL := /bin/bash
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := all
-.PHONY: all first setup test check-all precise smoke wheel archive benchmark referees coverage lint report docs clean distclean
+.PHONY: all first setup test test-all digests precise smoke wheel archive benchmark referees coverage lint report docs clean distclean
 
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 CORES ?= all
@@ -72,9 +73,12 @@ unexport PYTHONDONTWRITEBYTECODE
 test: setup
 	.venv/bin/python -m pytest --numprocesses=auto --timeout=1500 --timeout-method=signal $(OPTIONS)
 
-check-all: lint test
-	.venv/bin/python -m pytest --numprocesses=auto -m hypothesis --hypothesis-profile=search
-	.venv/bin/python -m pytest -m thorough
+test-all: setup
+	.venv/bin/python -m pytest --numprocesses=auto -m "" --hypothesis-profile=search $(OPTIONS)
+
+digests: setup
+	$(SNAKEMAKE) --quiet rules --configfile config/smoke.yaml -- points
+	.venv/bin/python tests/workflow/digests.py results/smoke/points
 
 precise: setup
 	$(SNAKEMAKE) --quiet rules --configfile config/precise.yaml

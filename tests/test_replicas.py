@@ -21,8 +21,9 @@ RUN = ["run", "scene.yaml", "-o", "run.nc", "--seed", "1", "--sample-interval", 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """Two replicas, in processes."""
+    """Two replicas, in processes that import nothing from the working folder."""
     folder = tmp_path_factory.mktemp("replicas")
+    (folder / "queue.py").write_text("raise SystemExit('this file was executed')")
     GAS.to_file(folder / "scene.yaml")
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import errno
+import fcntl
 import hashlib
 import os
 import re
 import secrets
 import socket
 import stat
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass
@@ -17,7 +19,7 @@ from typing import BinaryIO
 
 from gaspart.errors import SceneError
 from gaspart.interruption import scratch_file
-from gaspart.system import NO_LINK, OPEN_AS_IT_IS, is_own, is_running, rename_to_new
+from gaspart.system import is_own, is_running, rename_to_new
 
 _SPECIAL_FILES = {stat.S_IFIFO: "a pipe", stat.S_IFSOCK: "a socket", stat.S_IFLNK: "a link"}
 _SCRATCH = re.compile(r"\.gaspart-[0-9a-f]{12}-(\d+)-[0-9a-f]{8}\.partial")
@@ -69,7 +71,7 @@ def open_regular(path: str | Path, follow: bool = True) -> BinaryIO:
     NUL.
     """
     _require_regular(os.stat(path, follow_symlinks=follow), path)  # opening some devices has side effects
-    flags = OPEN_AS_IT_IS | (0 if follow else NO_LINK)
+    flags = os.O_NONBLOCK | (0 if follow else os.O_NOFOLLOW)
     file = open(path, "rb", opener=lambda name, mode: os.open(name, mode | flags))  # noqa: SIM115
     try:
         _require_regular(os.fstat(file.fileno()), path)
@@ -171,7 +173,7 @@ def writing(path: str | Path, kind: FileKind | None = None, overwrite: bool = Fa
         may_replace(path, kind, overwrite)
         with scratch_beside(path) as scratch:
             yield scratch
-            with scratch.open("r+b") as file:  # Windows cannot sync a file that is open for reading only
+            with scratch.open("rb") as file:
                 os.fsync(file.fileno())
             place(scratch, path, kind, overwrite)
     except OSError as error:
@@ -223,39 +225,44 @@ def is_remainder(path: Path) -> bool:
     return stat.S_ISREG(status.st_mode) and status.st_nlink == 1 and is_own(status)
 
 
-def _is_lock(path: Path) -> bool:
-    """Return True for a lock file of filelock on a file system without locks.
-
-    The name of such a file begins with the number of a process.
-    """
-    with open_regular(path) as file:
-        return file.read(1).isdigit()
-
-
-_LOCK = FileKind("a lock", _is_lock)
+_LOCK = FileKind("a lock", lambda path: False)  # an empty file, which counts as any kind
+_NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.EINVAL)
+"""Errors of a file system without locks, such as some network disks."""
 
 
 @contextmanager
 def only_process(path: Path, wait: bool = False) -> Iterator[None]:
     """Hold the lock of a path, so that no other process holds it within the block.
 
-    The lock is the file `path`.lock. The system releases it whenever the process ends. Raises BlockingIOError
-    if another process holds the lock, unless `wait` is set. Raises SceneError if a file of this name is not a
-    lock. May raise OSError.
+    The lock is the file `path`.lock. The system releases it whenever the process ends. On a file system
+    without locks there is a warning and no lock. Raises BlockingIOError if another process holds the lock,
+    unless `wait` is set. Raises SceneError if a file of this name is not a lock. May raise OSError.
     """
-    from filelock import FileLock, Timeout  # importing takes 0.3 s
-
     file = path.with_name(f"{path.name}.lock")
     may_replace(file, _LOCK, overwrite=True)
-    lock = FileLock(file)
+    descriptor = _lock(file, wait)
     try:
-        lock.acquire(blocking=wait)
-    except Timeout:
-        raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN), str(file)) from None
-    with scratch_file(file):
-        try:
+        with scratch_file(file):
             yield
-        finally:
-            with suppress(OSError):  # Windows removes an open file only when it is released
-                file.unlink()  # before the release: another process may then hold the lock
-            lock.release()
+    finally:
+        with suppress(OSError):
+            file.unlink()  # before the release: another process may then hold the lock
+        os.close(descriptor)
+
+
+def _lock(file: Path, wait: bool) -> int:
+    """Open and lock a file, and return its descriptor."""
+    while True:
+        descriptor = os.open(file, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+        except OSError as error:
+            if error.errno in _NO_LOCKS:
+                rule = f"cannot be locked ({error.strerror}): do not let two processes write it"
+                warnings.warn(f"gaspart: {file.with_suffix('')}: {rule}", stacklevel=4)
+                return descriptor
+            os.close(descriptor)
+            raise
+        if os.fstat(descriptor).st_nlink:
+            return descriptor
+        os.close(descriptor)  # its former holder has removed it

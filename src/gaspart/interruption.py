@@ -107,15 +107,13 @@ def exit_on_signals(announce: Callable[[str], None] | None = None) -> None:
         return
     _process.watched = True
     reader, writer = os.pipe()
-    if hasattr(os, "set_blocking"):  # missing on Windows before Python 3.12
-        os.set_blocking(writer, False)
+    os.set_blocking(writer, False)
     signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
     threading.Thread(target=_watch, args=(reader,), name="signals", daemon=True).start()
     for number in SIGNALS:
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _defer_to_thread)
-            if hasattr(signal, "siginterrupt"):  # some C libraries do not repeat interrupted calls
-                signal.siginterrupt(number, False)
+            signal.siginterrupt(number, False)  # some C libraries do not repeat interrupted calls
 
 
 def _defer_to_thread(signum: int, frame: object) -> None:

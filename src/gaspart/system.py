@@ -1,84 +1,57 @@
-"""Differences between operating systems.
+"""Differences between Linux and macOS.
 
-Other modules use this module, and otherwise only Python functions that exist on all systems. The tests
-simulate a system without the functions that are missing on Windows and macOS (`tests/test_system.py`). The
-code was not run on these systems.
+Other modules use this module, and otherwise only functions that exist on both systems. The code was not run
+on macOS.
 """
 
 from __future__ import annotations
 
 import ctypes
 import errno
-import math
 import os
+import resource
 import sys
-import threading
 from pathlib import Path
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:  # this module is imported before signals are handled, so it must not import slowly
     from typing import IO
 
-POSIX = os.name == "posix"
-OPEN_AS_IT_IS = getattr(os, "O_NONBLOCK", 0)
-"""Flag of `os.open`: return at once, even for a pipe. Windows has no such flag."""
-NO_LINK = getattr(os, "O_NOFOLLOW", 0)
-"""Flag of `os.open`: reject a link. On systems without this flag, the caller must check before opening."""
 _HERE, _NO_REPLACE = -100, 1
 """AT_FDCWD and RENAME_NOREPLACE of Linux's renameat2."""
-_position = threading.Lock()
 
 
 def memory() -> int | None:
-    """Return the memory of this machine in bytes; None if it is unknown, as on Windows."""
+    """Return the memory of this machine in bytes; None if it is unknown."""
     try:
         return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    except (AttributeError, ValueError, OSError):
+    except (ValueError, OSError):
         return None
 
 
 def largest_memory() -> float:
-    """Return the peak memory of this process in bytes; nan if unknown."""
-    try:
-        import resource
-    except ImportError:
-        return math.nan
+    """Return the peak memory of this process in bytes."""
     unit = 1 if sys.platform == "darwin" else 1024
     return float(unit * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 
 
 def user() -> str:
     """Return a short name of this user, for a folder next to other users' folders."""
-    if hasattr(os, "getuid"):
-        return str(os.getuid())
-    from getpass import getuser
-
-    return getuser()
+    return str(os.getuid())
 
 
 def is_own(status: os.stat_result) -> bool:
-    """Return True if a file belongs to this user; always True on Windows.
-
-    Files on Windows have no user number.
-    """
-    return not hasattr(os, "geteuid") or status.st_uid == os.geteuid()
+    """Return True if a file belongs to this user."""
+    return status.st_uid == os.geteuid()
 
 
 def is_private(status: os.stat_result) -> bool:
-    """Return True if no other user may write to a file or folder; True on Windows.
-
-    On Windows the file mode does not show this.
-    """
-    return is_own(status) and not (POSIX and status.st_mode & 0o022)
+    """Return True if a file or folder belongs to this user, and no other user may write to it."""
+    return is_own(status) and not status.st_mode & 0o022
 
 
 def is_running(process: int) -> bool:
-    """Return True if a process with this number exists, or if its existence is unknown.
-
-    On Windows the existence of a process is always unknown.
-    """
-    if not POSIX:  # on Windows, signal 0 is Ctrl-C
-        return True
+    """Return True if a process with this number exists."""
     try:
         os.kill(process, 0)
     except ProcessLookupError:
@@ -86,6 +59,16 @@ def is_running(process: int) -> bool:
     except (PermissionError, OverflowError):
         return True
     return True
+
+
+def python_with_this_package(code: str) -> list[str]:
+    """Return arguments of the interpreter that run code with this copy of the package.
+
+    Nothing is imported from the working folder (-P), where a user's file may have the name of a module.
+    """
+    folder = str(Path(__file__).parents[1])
+    found = f"import sys; sys.path.insert(0, {folder!r}); import gaspart; del sys.path[0]"
+    return ["-P", "-c", f"{found}; {code}"]
 
 
 def descriptor_path(file: IO[bytes]) -> str:
@@ -107,44 +90,11 @@ def path_for_others(file: IO[bytes]) -> str:
     return path if os.path.exists(path) else str(file.name)
 
 
-def read_at(descriptor: int, size: int, offset: int) -> bytes:
-    """Read up to `size` bytes at `offset`, without moving the file position.
-
-    May raise OSError.
-    """
-    if hasattr(os, "pread"):
-        return os.pread(descriptor, size, offset)
-    with _position:
-        before = os.lseek(descriptor, 0, os.SEEK_CUR)
-        os.lseek(descriptor, offset, os.SEEK_SET)
-        try:
-            return os.read(descriptor, size)
-        finally:
-            os.lseek(descriptor, before, os.SEEK_SET)
-
-
-def write_at(descriptor: int, data: bytes, offset: int) -> None:
-    """Write a few bytes at `offset`, without moving the file position. May raise OSError."""
-    if hasattr(os, "pwrite"):
-        os.pwrite(descriptor, data, offset)
-        return
-    with _position:
-        before = os.lseek(descriptor, 0, os.SEEK_CUR)
-        os.lseek(descriptor, offset, os.SEEK_SET)
-        try:
-            os.write(descriptor, data)
-        finally:
-            os.lseek(descriptor, before, os.SEEK_SET)
-
-
 def rename_to_new(old: Path, new: Path) -> None:
     """Rename a file or folder without replacing an existing one.
 
     Raises FileExistsError if the path exists.
     """
-    if not POSIX:  # on systems where this never replaces a file
-        os.rename(old, new)
-        return
     rename = getattr(ctypes.CDLL(None, use_errno=True), "renameat2", None)
     if rename and rename(_HERE, os.fsencode(old), _HERE, os.fsencode(new), _NO_REPLACE) == 0:
         return

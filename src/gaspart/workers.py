@@ -22,7 +22,7 @@ from typing import Any
 
 from gaspart.errors import SceneError, SimulationError
 from gaspart.interruption import defer_signals, exit_on_signals
-from gaspart.system import POSIX
+from gaspart.system import python_with_this_package
 
 _LOOK = 0.1  # seconds between two checks for signals while processes run
 _PATIENCE = 60.0  # seconds that a process has for its checkpoint before it is killed
@@ -37,12 +37,6 @@ class Lost:
 
     def __str__(self) -> str:
         return f"its process ended with code {self.code}"
-
-
-def require_processes(key: str, count: int) -> None:
-    """Raise SceneError if several processes are requested and the system cannot connect to them."""
-    if count > 1 and not POSIX:
-        raise SceneError(key, count, f"more than one process needs Linux or macOS; {key}=1")
 
 
 def in_threads(function: Callable[[Any], Any], items: Iterable[Any], threads: int) -> list[Any]:
@@ -124,7 +118,8 @@ class _Worker:
     def __init__(self, number: int, function: Callable[..., Any], arguments: tuple) -> None:
         self.number = number
         self.connection, there = Pipe()
-        command = [sys.executable, "-m", "gaspart.workers", str(there.fileno())]
+        serving = f"from {__name__} import serve; serve({there.fileno()})"
+        command = [sys.executable, *python_with_this_package(serving)]
         self._process = subprocess.Popen(
             command, stdin=subprocess.DEVNULL, pass_fds=[there.fileno()], start_new_session=True
         )
@@ -178,7 +173,7 @@ def _end(running: list[_Worker]) -> None:
     running.clear()
 
 
-def _serve(descriptor: int) -> None:
+def serve(descriptor: int) -> None:
     """Perform the call that is received, and send its result or its error."""
     exit_on_signals(announce=lambda line: None)  # the parent process reports it
     other, sending = connection.Connection(descriptor), threading.Lock()
@@ -201,7 +196,3 @@ def _end_with(other: connection.Connection) -> None:
     with suppress(EOFError, OSError):
         other.recv_bytes()  # there are no further messages
     os.kill(os.getpid(), SIGTERM)
-
-
-if __name__ == "__main__":
-    _serve(int(sys.argv[1]))

@@ -144,6 +144,23 @@ def test_like_pairs_of_few_particles_have_fewer_partners(tmp_path):
     assert float(rates.sel(pair="0-0")) / infinite[0, 0] == pytest.approx(0.9, rel=0.03)
 
 
+@pytest.mark.parametrize(("name", "least"), [("Z", 1.0), ("collision_rate", 0.0), ("pressure", math.nan)])
+def test_a_theory_beside_an_engine_has_the_error_of_the_engine(name, least):
+    """Of what collisions contribute: of Z - 1, of the rate, of the pressure beyond that of points."""
+    scene = gas(3, 64, 0.2, boundary="wall" if name == "pressure" else "periodic", exact_temperature=True)
+    errors, engine = [], gp.TimeStepped(time_step=0.1)
+    for each in (gp.EventDriven(), engine):
+        simulation = gp.Simulation(scene, each, seed=1)
+        simulation.advance(duration=8.0)
+        found = measure(simulation, name)
+        errors.append(found[f"{found.attrs['quantity']}_theory_error"].values.min())
+    if name == "pressure":
+        least = 64.0 * np.prod(scene.container.lengths - np.ones(3)) ** -1.0
+    changed = engine.bias(scene, "rates") * (found.theory.values.min() - least)
+    assert changed > 0.005 * least
+    assert errors[1] == pytest.approx(math.hypot(errors[0], changed), rel=0.05)
+
+
 def test_each_bulk_theory_is_that_of_its_contact_value():
     dilute, dense = Gas(3, 1e-6, 100, 1.0, 1.0), Gas(3, 0.3, 100, 1.0, 1.0)
     for name in {one.bulk for one in OBSERVABLES.values()} - {""}:

@@ -56,11 +56,13 @@ def test_heat_of_free_flight(engine, drift):
 
 def test_heat_between_free_flight_and_a_fluid():
     """A fluid whose flux differs by more than 8 % from either limit."""
-    found = A.heat_flux(made(plates(1000, 1.0, hot=2.0), 400.0))
+    scene = plates(1000, 1.0, hot=2.0)
+    found = A.heat_flux(made(scene, 400.0))
     free = float(gp.theory.free_molecular_flux(6.25, 2.0, 1.0, 3))
     flux = float(found.theory[1])
     assert "Sherman" in found.attrs["source"] and 0.7 * free < flux < 0.85 * free
-    assert float(found["heat_flux_theory_error"][1]) == pytest.approx(INTERPOLATED * flux)
+    unsure = math.hypot(INTERPOLATED, ENGINES["dsmc"].bias(scene, "fluxes"))
+    assert float(found["heat_flux_theory_error"][1]) == pytest.approx(unsure * flux)
     assert (off(found) < 3.0).all() and (found.error < 0.03 * flux).all()
 
 

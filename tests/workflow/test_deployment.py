@@ -4,11 +4,10 @@ import json
 import re
 import shutil
 import zipfile
-from pathlib import Path
 
 import pytest
 from crates import faults
-from digests import digests
+from digests import digests, known
 from workspace import ROOT, Workspace, copy_of_project
 
 from gaspart.cli import main
@@ -28,7 +27,7 @@ module gaspart:
 use rule * from gaspart
 """
 FIGURE = "wall_pressure"
-KNOWN = json.loads((Path(__file__).parent / "digests.json").read_text())
+KNOWN = known()
 OWN = re.search(
     r"^```yaml\n(# my_gas\.yaml\n.*?)^```$",
     (ROOT / "docs/adding-a-figure.md").read_text(encoding="utf-8"),

@@ -1,18 +1,16 @@
 """`make` on a fresh machine: by an ordinary user, in a path with a space, offline once set up, and twice."""
 
-import json
 import os
 import shutil
 import subprocess
-from pathlib import Path
 
 import pytest
-from digests import digests
+from digests import digests, known
 from machine import OFFLINE, folder_of_user, give, ordinary_user, why_not
 from workspace import ROOT, copy_of_project, leave_one_figure
 
 pytestmark = [pytest.mark.workflow, pytest.mark.thorough]
-KNOWN = json.loads((Path(__file__).parent / "digests.json").read_text())
+KNOWN = known()
 FIGURE = "virial_discs"
 
 

@@ -1,13 +1,12 @@
 """A disk that is really full, for a run and for the workflow: one clear line, and later the same bits."""
 
-import json
 import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
-from digests import digests
+from digests import digests, known
 from machine import OWN_DISKS, why_not
 from workspace import SMOKE, copy_of_project
 
@@ -16,7 +15,7 @@ pytestmark = [
     pytest.mark.thorough,
     pytest.mark.skipif(why_not(OWN_DISKS) is not None, reason=str(why_not(OWN_DISKS))),
 ]
-KNOWN = json.loads((Path(__file__).parent / "digests.json").read_text())
+KNOWN = known()
 TARGET = "results/smoke/figures/virial_discs.png"
 # A small disk, full but for some kilobytes; then the same command again when there is room.
 TWICE = """

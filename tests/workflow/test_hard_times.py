@@ -1,20 +1,18 @@
 """What takes a minute: a workflow that is killed, and points that fail."""
 
-import json
 import os
 import re
 import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import pytest
-from digests import digests
+from digests import digests, known
 from workspace import SMOKE, copy_of_project
 
 pytestmark = [pytest.mark.workflow, pytest.mark.thorough]
-KNOWN = json.loads((Path(__file__).parent / "digests.json").read_text())
+KNOWN = known()
 TARGET = "results/smoke/figures/virial_discs.png"
 
 

@@ -1,6 +1,5 @@
 """The workflow through a real Slurm: the same bits, though the node is lost in the middle of a job."""
 
-import json
 import os
 import subprocess
 import sys
@@ -10,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from cluster import cluster, output_of, why_not
-from digests import digests
+from digests import digests, known
 from workspace import SMOKE, copy_of_project, leave_one_figure
 
 pytestmark = [
@@ -19,6 +18,7 @@ pytestmark = [
     pytest.mark.skipif(why_not() is not None, reason=str(why_not())),
 ]
 EXPERIMENT = "virial_discs"
+KNOWN = known()
 PROFILE = ["--workflow-profile", "profiles/slurm", "--slurm-init-seconds-before-status-checks", "3"]
 
 
@@ -45,9 +45,8 @@ def test_a_grid_through_slurm_ends_in_the_same_bits_though_its_node_is_lost(fres
         thief.join()
     assert done.returncode == 0, done.stdout[-5000:]
     assert lost, "no simulation was seen running"
-    known = json.loads((Path(__file__).parent / "digests.json").read_text())
     made = digests(fresh.path / "results/smoke/points")
-    assert made and made == {name: known[name] for name in made}
+    assert made and made == {name: KNOWN[name] for name in made}
     assert all(name.startswith(EXPERIMENT) for name in made)
 
 

@@ -1,13 +1,12 @@
 """The small workflow, all of it: figures, claims with verdicts, the report, and the physics bit for bit."""
 
 import csv
-import json
 import re
 from pathlib import Path
 
 import pytest
 from browser import CHROMIUM, found_by
-from digests import digests
+from digests import digests, known
 
 from gaspart.reproduction import job_time
 from gaspart.reproduction.claims import CLAIM_KINDS, VERDICTS
@@ -18,23 +17,31 @@ from gaspart.yaml_text import read_yaml
 pytestmark = pytest.mark.workflow
 
 ROOT = Path(__file__).parents[2]
-FIGURES = list(read_yaml(ROOT / "config/config.yaml")["figures"])
+ALL = read_yaml(ROOT / "config/config.yaml")
 
 
 def test_every_figure_of_the_table_is_in_the_config():
-    assert set(FIGURES) == set(families())
+    assert set(ALL["figures"]) == set(families())
 
 
-@pytest.mark.parametrize("figure", FIGURES)
-def test_every_figure_is_drawn_twice_and_has_a_claim_with_a_verdict(smoke, figure):
+def test_the_run_has_each_kind_of_job(smoke):
+    config = smoke.config
+    shown = {name for block in config["figures"].values() for name in block["experiments"]}
+    assert {config["experiments"][name].get("job", "simulate") for name in shown} == {
+        experiment.get("job", "simulate") for experiment in ALL["experiments"].values() if experiment
+    }
+
+
+def test_every_figure_is_drawn_twice_and_has_a_claim_with_a_verdict(smoke):
     results = smoke.path / "results/smoke"
-    png = (results / f"figures/{figure}.png").read_bytes()
-    assert png.startswith(b"\x89PNG")
-    assert len(png) > 5_000
-    assert "<svg" in (results / f"figures/{figure}.svg").read_text()
+    for figure in smoke.figures:
+        png = (results / f"figures/{figure}.png").read_bytes()
+        assert png.startswith(b"\x89PNG")
+        assert len(png) > 5_000
+        assert "<svg" in (results / f"figures/{figure}.svg").read_text()
     with (results / "tables/claims.csv").open(newline="") as file:
-        claims = [row for row in csv.DictReader(file) if row["figure"] == figure]
-    assert claims
+        claims = list(csv.DictReader(file))
+    assert {claim["figure"] for claim in claims} == set(smoke.figures)
     for claim in claims:
         assert claim["verdict"] in VERDICTS
         assert claim["kind"] in CLAIM_KINDS
@@ -45,10 +52,10 @@ def test_every_figure_is_drawn_twice_and_has_a_claim_with_a_verdict(smoke, figur
 def test_the_budget_has_the_time_and_the_decided_claims_of_every_figure(smoke, monkeypatch):
     monkeypatch.chdir(smoke.path)
     found = {one.figure: one for one in budgets("config/smoke.yaml")}
-    assert set(found) == set(FIGURES)
+    assert set(found) == set(smoke.figures)
     logs = Path("results/smoke/logs")
     names = [log.relative_to(logs).with_suffix("").parts for log in logs.rglob("*.log")]
-    assert len(names) > 300
+    assert len(names) > 5 * len(found)
     used = {name: job_time.read_used(logs.parent, *name) for name in names}
     assert not [name for name, one in used.items() if not (one and one.seconds > 0.0 and one.memory > 1.0)]
     with (smoke.path / "results/smoke/tables/claims.csv").open(newline="") as file:
@@ -63,33 +70,33 @@ def test_the_budget_has_the_time_and_the_decided_claims_of_every_figure(smoke, m
 
 def test_every_figure_is_drawn_for_a_column_of_a_journal_and_is_legible(smoke):
     results = smoke.path / "results/smoke"
-    for figure in FIGURES:
+    for figure in smoke.figures:
         assert (results / f"figures/journal/{figure}.png").stat().st_size > 5_000
     journal = results / "figures/journal"
     assert [path.name for path in journal.glob("*.pdf")] == ["virial_discs.pdf"]  # on request
     assert (journal / "virial_discs.pdf").read_bytes().startswith(b"%PDF")
     logs = list((results / "logs/draw").iterdir())
-    assert len(logs) == len(FIGURES)
+    assert len(logs) == len(smoke.figures)
     assert not [line for log in logs for line in log.read_text().splitlines() if "not legible" in line]
 
 
 def test_the_report_holds_every_figure_and_its_pictures_lie_beside_it(smoke):
     path = smoke.path / "results/smoke/report.html"
     page = path.read_text()
-    for figure in FIGURES:
+    for figure in smoke.figures:
         assert f'<section class="figure" id="{figure}"' in page
     files = set(re.findall(r'(?:src|srcset|href|poster)="([^"#:]+)"', page))
-    assert len(files) >= 4 * len(FIGURES)
+    assert len(files) >= 4 * len(smoke.figures)
     assert not [file for file in files if not (path.parent / file).exists()]
     assert path.stat().st_size < 1.5e6 and 'name="viewport"' in page
     shown = sum((path.parent / file).stat().st_size for file in files)
-    assert shown < 0.8e6 * len(FIGURES)
+    assert shown < 0.8e6 * len(smoke.figures)
 
 
 def test_the_report_in_one_file_needs_no_other(smoke):
     path = smoke.path / "results/smoke/report-in-one-file.html"
     addresses = re.findall(r'(?:src|srcset|poster)="([^"]+)"', path.read_text())
-    assert len(addresses) > 2 * len(FIGURES) and all(one.startswith("data:") for one in addresses)
+    assert len(addresses) > 2 * len(smoke.figures) and all(one.startswith("data:") for one in addresses)
     assert path.stat().st_size < 10e6
 
 
@@ -158,7 +165,7 @@ def test_the_report_reads_and_clicks_on_a_phone_and_on_a_desk(smoke, tmp_path, w
     assert found["shown"] == ["agrees"] * sum(row["verdict"] == "agrees" for row in claims)
     assert found["verdicts"] and found["folded"] and found["unfolded"]
     assert found["dots"] == sum(row["kind"] != "family" for row in claims)
-    assert len(found["images"]) >= 2 * len(FIGURES) and min(found["images"]) > 0
+    assert len(found["images"]) >= 2 * len(smoke.figures) and min(found["images"]) > 0
     assert found["films"] == len(list((smoke.path / "results/smoke/animations").glob("*.mp4")))
     assert found["width"] <= width and found["font"] >= 12.0
     assert found["first"] == "which-engine" and found["chosen"] == ["0", "0"]
@@ -180,6 +187,7 @@ def test_nothing_half_written_is_left(smoke):
 
 
 def test_the_simulations_are_these_bits(smoke):
-    """Made anew by: python tests/workflow/digests.py results/smoke/points > tests/workflow/digests.json"""
-    known = json.loads((Path(__file__).parent / "digests.json").read_text())
-    assert digests(smoke.path / "results/smoke/points") == known
+    """Written by: python tests/workflow/digests.py results/smoke/points --renew."""
+    made, expected = digests(smoke.path / "results/smoke/points"), known()
+    shown = {name for name in expected if name.partition("/")[0] in smoke.config["experiments"]}
+    assert made == {name: expected[name] for name in shown}

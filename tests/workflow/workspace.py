@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from gaspart.reproduction.config import merged_with_default
-from gaspart.yaml_text import write_yaml
+from gaspart.yaml_text import read_yaml, write_yaml
 
 ROOT = Path(__file__).parents[2]
 PARTS = ["Snakefile", "config", "profiles", "src", "workflow"]
@@ -49,6 +49,16 @@ class Workspace:
         rows = re.findall(r"^(\w+) +(\d+)$", table[1], re.MULTILINE)
         return {rule: int(number) for rule, number in rows}
 
+    @property
+    def config(self):
+        """The config of the smoke workflow here."""
+        return merged_with_default(self.path / "config/smoke.yaml")[0]
+
+    @property
+    def figures(self):
+        """The names of its figures."""
+        return list(self.config["figures"])
+
     def edit(self, path, old, new):
         """Replace text in a file of this copy; returns a function that puts it back."""
         file = self.path / path
@@ -77,3 +87,15 @@ def leave_one_figure(path, figure, **point):
         config[kind] = {figure: config[kind][figure]}
     config["experiments"][figure]["point"].update(point)
     write_yaml(path / "config/config.yaml", config | {"animations": {}, "run": None})
+
+
+def keep_figures(folder, figures):
+    """Remove all figures but these from the configs of a copy, with their experiments."""
+    config, _ = merged_with_default(folder / "config/smoke.yaml")
+    experiments = {name for figure in figures for name in config["figures"][figure]["experiments"]}
+    experiments |= {film["experiment"] for film in config["animations"].values() if film}
+    for path in (folder / "config/config.yaml", folder / "config/smoke.yaml"):
+        own = read_yaml(path)
+        for kind, kept in (("figures", figures), ("experiments", experiments)):
+            own[kind] = {name: block for name, block in own.get(kind, {}).items() if name in kept}
+        write_yaml(path, own)

@@ -26,7 +26,7 @@ from gaspart.engines import Engine, engine_to_dict, reference_engine
 from gaspart.engines.engine import Candidate
 from gaspart.errors import SceneError, SimulationError
 from gaspart.kernels.compile.cache import cache_directory
-from gaspart.kernels.compile.policy import source_digest
+from gaspart.kernels.compile.sources import source_digest
 from gaspart.simulation import Simulation
 from gaspart.state.given import state_at_time_zero
 from gaspart.theory.conditions import Conditions

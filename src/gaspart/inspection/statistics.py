@@ -15,6 +15,7 @@ import numpy as np
 from gaspart import theory
 from gaspart.analysis.diffusion import linear_lags, settled_slope
 from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.expected.equilibrium import with_discretisation
 from gaspart.analysis.expected.transport import diffusion_in_cube
 from gaspart.analysis.flow import sum_squares
 from gaspart.analysis.pairs import pair_counts
@@ -375,11 +376,11 @@ def expected_diffusion(frames: Frames, window: tuple[float, float]) -> tuple[flo
 
     The values are for the equation of the engine, if the file names an engine.
     """
-    prediction = diffusion_in_cube(
-        _gas(frames), float(frames.lengths[0]), frames.engine, frames.scene, window
-    )
+    gas, engine, scene = _gas(frames), frames.engine, frames.scene
+    prediction = diffusion_in_cube(gas, float(frames.lengths[0]), engine, scene, window)
     assert prediction is not None, "see `why_not`"
-    return prediction
+    prediction = with_discretisation(prediction, engine, scene, "paths")
+    return prediction.value, prediction.error, prediction.source
 
 
 def _interval(frames: Frames) -> float:

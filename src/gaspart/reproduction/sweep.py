@@ -43,7 +43,7 @@ from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.recipe import multiple
 from gaspart.trajectory.run_options import required_contents
 from gaspart.trajectory.until import Until
-from gaspart.workers import in_processes, require_processes
+from gaspart.workers import in_processes
 from gaspart.yaml_text import dump_yaml
 
 EXPERIMENT = "points"
@@ -430,7 +430,6 @@ def make_all(
         for point in ordered:
             report(point, _make(point, overwrite))
         return
-    require_processes("workers", workers)
     for representative in {variant(point): point for point in ordered}.values():
         with suppress(SceneError, SimulationError):  # an error of this point only
             compile_kernels(compile_task(representative))  # otherwise each process would compile them

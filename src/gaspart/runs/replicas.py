@@ -21,7 +21,7 @@ from gaspart.trajectory.opening import partial_path
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.replicas import beside, path_of_all, replica_paths
 from gaspart.trajectory.run import WriteOptions, begun
-from gaspart.workers import Lost, in_processes, require_processes
+from gaspart.workers import Lost, in_processes
 
 Examined: TypeAlias = "Callable[[list[AccuracyStatus]], None] | None"
 Send: TypeAlias = Callable[[Any], None]
@@ -131,7 +131,6 @@ def _carry_out(
             rule = f"replica {number + 1} of {path}: {result}; the same command continues it"
             raise SimulationError(rule)
 
-    require_processes("replicas", len(calls))
     plain = replace(options, progress=None, examiner=None), options.progress is not None
     set_note("the same command continues it")
     in_processes(function, [(*call, *plain) for call in calls], len(calls), finish, receive)

@@ -20,7 +20,6 @@ import numpy as np
 from gaspart.engines import ENGINES, Engine
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.tally import Tally
-from gaspart.system import read_at, write_at
 from gaspart.trajectory.correlator import meaning_of
 from gaspart.trajectory.run_options import KEPT, tallied_fields
 
@@ -340,7 +339,7 @@ def damaged_frame(file: int, header: bytes, numbers: range, checksum: int | None
     at_once = max(1, _CHUNK // size)
     for first in range(numbers.start, numbers.stop, at_once):
         count = min(at_once, numbers.stop - first)
-        data = memoryview(read_at(file, count * size, len(header) + first * size))
+        data = memoryview(os.pread(file, count * size, len(header) + first * size))
         for n in range(count):
             frame = data[n * size : (n + 1) * size]
             if len(frame) < size or frame[-WORD:] != _frame_checksum(frame, first + n, header_checksum):
@@ -352,7 +351,7 @@ def frames_of(file: BinaryIO, header: bytes, count: int) -> Iterator[memoryview]
     """Yield the bytes of the first `count` frames of an open file."""
     size = frame_bytes(header)
     for n in range(count):
-        yield memoryview(bytearray(read_at(file.fileno(), size, len(header) + n * size)))
+        yield memoryview(bytearray(os.pread(file.fileno(), size, len(header) + n * size)))
 
 
 class CheckedFrames:
@@ -411,7 +410,7 @@ class Frames:
         except OSError:
             self._file.truncate(0)
             raise
-        write_at(self._file.fileno(), header[: len(MAGIC)], 0)
+        os.pwrite(self._file.fileno(), header[: len(MAGIC)], 0)
 
     def append(self, values: dict[str, np.ndarray | float]) -> None:
         """Write a frame, with a value for every variable of the layout.
@@ -439,7 +438,7 @@ class Frames:
             unwritten = unwritten[self._file.write(unwritten) :]
 
     def _count_frames(self) -> None:
-        write_at(self._file.fileno(), struct.pack(">I", self.count), FRAME_COUNT_AT)
+        os.pwrite(self._file.fileno(), struct.pack(">I", self.count), FRAME_COUNT_AT)
 
     def sync(self) -> None:
         """Wait until all data are on disk."""

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from gaspart.kernels.compile import cache
+from gaspart.kernels.compile.sources import source_digest
 from gaspart.workers import in_processes
 
 Kernel = tuple[str, str, tuple]
@@ -109,7 +110,8 @@ def _stamp(kernels: list[Kernel]) -> Path | None:
     folder = next(filter(None, folders), None)
     if folder is None or not kernels:
         return None
-    return Path(folder).parent / _STORED / hashlib.sha256(str(kernels).encode()).hexdigest()[:24]
+    compiled = f"{source_digest()} {kernels}"
+    return Path(folder).parent / _STORED / hashlib.sha256(compiled.encode()).hexdigest()[:24]
 
 
 def compile_kernels(send: Callable[[Any], None], kernels: list[Kernel]) -> int:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, BinaryIO
 from gaspart.errors import SceneError
 from gaspart.files import FileKind, may_replace, only_process, open_regular
 from gaspart.scene.scene import Scene
-from gaspart.system import NO_LINK, descriptor_path
+from gaspart.system import descriptor_path
 from gaspart.trajectory import amber
 from gaspart.trajectory.amber import CheckedFrames, damaged_frame, frame_count
 
@@ -99,7 +99,7 @@ def _alone(partial: Path) -> Iterator[None]:
 
 def _open_or_create(path: str, flags: int) -> int:
     """Open a file, or create it if it does not exist; links are rejected."""
-    return os.open(path, flags | os.O_CREAT | NO_LINK, 0o666)
+    return os.open(path, flags | os.O_CREAT | os.O_NOFOLLOW, 0o666)
 
 
 def replica_path(path: Path, number: int) -> Path:

@@ -228,7 +228,7 @@ class Recipe(Contents):
 
         revision : git revision of the program; "" without a revision.
         """
-        from gaspart.kernels.compile.policy import source_digest
+        from gaspart.kernels.compile.sources import source_digest
 
         scene, versions = self.scene, provenance.versions()
         groups = [len(scene.species)] * len(scene.particles) + list(range(len(scene.species)))

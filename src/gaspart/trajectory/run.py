@@ -406,7 +406,6 @@ def _finish(recipe: Recipe, path: Path, options: WriteOptions) -> None:
             # again: another process may have finished or begun a run before the lock
             if not is_finished(recipe, path, options.examiner, options.overwrite):
                 _record(recipe, simulation, file, path, options)
-                file.close()  # Windows cannot rename open files
                 place(partial, path, TRAJECTORY, options.overwrite or is_beginning(path, recipe))
                 if not options.keep_checkpoint:
                     remove_checkpoint(checkpoint)

@@ -13,7 +13,7 @@ import pytest
 
 import gaspart
 from gaspart.kernels.compile import sources
-from gaspart.kernels.compile.sources import STORE, file_digests, tree_digest
+from gaspart.kernels.compile.sources import STORE, closure_digests, file_digests, tree_digest
 
 SOURCE = '''"""A module."""
 LIMIT = 3.0
@@ -147,8 +147,35 @@ def is_compiled(function):
     )
 
 
+def test_a_kernel_is_compiled_again_if_and_only_if_a_module_that_it_needs_has_changed(tmp_path):
+    folder = tmp_path / "kernels"
+    shutil.copytree(Path(gaspart.__file__).parent / "kernels", folder)
+    before = closure_digests(folder)
+
+    def changed(name):
+        path = folder / name
+        text = path.read_text()
+        path.write_text(f"{text}\nADDED = 1\n")
+        closure_digests.cache_clear()
+        after = closure_digests(folder)
+        path.write_text(text)
+        return {str(Path(key).relative_to(folder)) for key in before if before[key] != after[key]}
+
+    assert changed("drawing/ray_tracing.py") == {"drawing/ray_tracing.py"}
+    assert changed("event/loop.py") == {"event/loop.py"}
+    contact = changed("physics/contact.py")
+    assert contact >= {"event/loop.py", "step/resolve.py"}
+    assert "drawing/ray_tracing.py" not in contact and "analysis/waves.py" not in contact
+    policy = changed("compile/policy.py")
+    assert not [
+        path
+        for path in folder.rglob("*.py")
+        if "kernels.compile.policy import" in path.read_text() and str(path.relative_to(folder)) not in policy
+    ]
+
+
 PROGRAM = """
-from gaspart.kernels.compile.policy import source_digest
+from gaspart.kernels.compile.sources import source_digest
 from gaspart.kernels.physics.rng import log_of
 from gaspart.reproduction.points.modules import digest, kernel_digest
 log_of(2.0)

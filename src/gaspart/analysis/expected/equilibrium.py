@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from importlib import import_module
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from gaspart.analysis.flow import FLOW
 from gaspart.analysis.run import Run
 from gaspart.engines import Engine, engine_from_dict
 from gaspart.scene.gas import Mixture
+from gaspart.scene.scene import Scene
 from gaspart.theory import bulk, discretisation
 from gaspart.theory.bulk import BOLTZMANN, ENSKOG, EXACT
 from gaspart.theory.geometry import unit_sphere_surface
@@ -25,12 +26,25 @@ from gaspart.trajectory.pairs import pairs_of
 #
 # The DSMC engine solves the Boltzmann or the Enskog equation, so its runs are compared with these equations,
 # not with hard spheres. Values for a finite number N of particles use the temperature k_B T of the d (N - 1)
-# translational degrees of freedom relative to the centre of mass. The uncertainty includes the errors of
-# cells and time steps of the engine. It is NaN if it is unknown, for example for an approximation.
+# translational degrees of freedom relative to the centre of mass. `expect` adds the errors of cells and time
+# steps of the engine to the uncertainty of each theory.
 
 
-Expected: TypeAlias = tuple[Any, Any, str]
-"""Values, their uncertainties, and the source of the theory."""
+class Expected(NamedTuple):
+    """Theory of an observable, without the errors of the engine.
+
+    value, error : values and their uncertainties; an uncertainty is NaN if it is unknown
+    source : source of the theory
+    collisional : contribution of collisions to the values, which the cells and steps of an engine change.
+        Default: the whole values
+    """
+
+    value: Any
+    error: Any
+    source: str
+    collisional: Any = None
+
+
 OF_NUMBER = "of this number of particles"
 LEAST_OF_MIXTURE = 10
 """Minimum number of particles of a mixture for which a theoretical value is given, because the terms of
@@ -53,10 +67,17 @@ def equation_of(run: Run) -> str:
     return engine.equation if engine else EXACT
 
 
-def bias_of(run: Run, kind: str) -> float:
-    """Return the relative systematic error due to cells and time steps, as computed by the engine."""
-    engine = engine_of(run)
-    return engine.bias(run.scene, kind) if engine else 0.0
+def with_discretisation(
+    expected: Expected, engine: Engine | None, scene: Scene | None, kind: str
+) -> Expected:
+    """Add the errors of cells and steps to the uncertainty of a theory.
+
+    kind : kind of error, as in `Engine.bias`
+    """
+    if engine is None or scene is None or not (bias := engine.bias(scene, kind)):
+        return expected
+    changed = expected.value if expected.collisional is None else expected.collisional
+    return expected._replace(error=np.hypot(expected.error, np.abs(changed) * bias))
 
 
 def partners(run: Run) -> float:
@@ -105,25 +126,26 @@ def compressibility_factor(run: Run) -> Expected | None:
     """
     equation = equation_of(run)
     if equation == BOLTZMANN:
-        return 1.0, 0.0, "Boltzmann equation: particles without extent"
+        return Expected(1.0, 0.0, "Boltzmann equation: particles without extent", 0.0)
     gas, mixture = run.moving_fluid, run.mixture
     if equation == ENSKOG:
         if mixture is None:
             return None
         beyond = _pairs_of_enskog(mixture)
-        return 1.0 + beyond, beyond * bias_of(run, "rates"), f"Enskog equation, {OF_NUMBER}"
+        return Expected(1.0 + beyond, 0.0, f"Enskog equation, {OF_NUMBER}", beyond)
     if gas is not None:
         eta, d = gas.packing_fraction, gas.dimension
         if (contact := contact_of_number(run, eta, d)) is None:
             return None
         scale = 2.0 ** (d - 1) * eta * partners(run)
-        return 1.0 + scale * contact[0], scale * contact[1], f"equation of state of the fluid, {OF_NUMBER}"
+        beyond, error = scale * contact[0], scale * contact[1]
+        return Expected(1.0 + beyond, error, f"equation of state of the fluid, {OF_NUMBER}", beyond)
     if mixture is None or run.scene.gas is not None:
         return None
     if (scale := scale_of_number(run, mixture)) is None:
         return None
-    value = 1.0 + (theory.mixture_compressibility_factor(*mixture.sizes) - 1.0) * scale * partners(run)
-    return value, math.nan, f"{_SANTOS}, corrected for the number of particles"
+    beyond = (theory.mixture_compressibility_factor(*mixture.sizes) - 1.0) * scale * partners(run)
+    return Expected(1.0 + beyond, math.nan, f"{_SANTOS}, corrected for the number of particles", beyond)
 
 
 def _enskog_contacts(mixture: Mixture) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -157,11 +179,11 @@ def collision_rate(run: Run) -> Expected | None:
     eta, d = gas.packing_fraction, gas.dimension
     value = bulk.collision_rate(gas, equation) * mean_speed_factor(d * (run.count - 1)) * partners(run)
     if equation != EXACT:
-        return value, value * bias_of(run, "rates"), f"{SOURCES[equation]}, {OF_NUMBER}"
+        return Expected(value, 0.0, f"{SOURCES[equation]}, {OF_NUMBER}")
     if (contact := contact_of_number(run, eta, d)) is None:
         return None
     value /= bulk.contact_value(gas, equation)
-    return value * contact[0], value * contact[1], "Enskog's rate, exact in equilibrium"
+    return Expected(value * contact[0], value * contact[1], "Enskog's rate, exact in equilibrium")
 
 
 def contact_values(run: Run) -> Expected | None:
@@ -170,7 +192,7 @@ def contact_values(run: Run) -> Expected | None:
     if mixture is None or (scale := scale_of_number(run, mixture)) is None:
         return None
     values = theory.mixture_contact_values(*mixture.sizes) * scale
-    return [values[pair] for pair in pairs_of(run.scene)], np.nan, f"contact values of {_SANTOS}"
+    return Expected(_by_pair(run, values), np.nan, f"contact values of {_SANTOS}")
 
 
 def pair_rates(run: Run) -> Expected | None:
@@ -184,7 +206,12 @@ def pair_rates(run: Run) -> Expected | None:
     rates = theory.mixture_collision_rates(*mixture.sizes, temperature=run.temperature, masses=mixture.masses)
     rates = rates * (1.0 - np.diag(1.0 / np.array(mixture.counts)))
     rates *= scale * mean_speed_factor(run.freedom)
-    return [rates[pair] for pair in pairs_of(run.scene)], np.nan, f"contact values of {_SANTOS}"
+    return Expected(_by_pair(run, rates), np.nan, f"contact values of {_SANTOS}")
+
+
+def _by_pair(run: Run, values: np.ndarray) -> np.ndarray:
+    """Return the elements (pair,) of a matrix (S, S) of species."""
+    return np.array([values[pair] for pair in pairs_of(run.scene)])
 
 
 def _mixture_of_species(run: Run) -> Mixture | None:
@@ -206,7 +233,8 @@ def wall_pressure(run: Run, touched: np.ndarray) -> Expected | None:
     if gas is None or equation == ENSKOG:
         return None
     if equation == BOLTZMANN:
-        return run.count * run.temperature / float(touched.prod()), 0.0, "Boltzmann equation: an ideal gas"
+        value = run.count * run.temperature / float(touched.prod())
+        return Expected(value, 0.0, "Boltzmann equation: an ideal gas", 0.0)
     sides = lengths[walled]
     if run.scene.centres_to_walls or np.ptp(sides) > 1e-9 * sides.max():
         return None
@@ -218,7 +246,8 @@ def wall_pressure(run: Run, touched: np.ndarray) -> Expected | None:
     except ValueError:  # above the density range of the theory
         return None
     unit = run.temperature / gas.diameter**gas.dimension
-    return value * unit, error * unit, "fluid between hard walls"
+    ideal = run.count * run.temperature / float(touched.prod())
+    return Expected(value * unit, error * unit, "fluid between hard walls", value * unit - ideal)
 
 
 def wall_force(run: Run) -> Expected | None:
@@ -228,7 +257,8 @@ def wall_force(run: Run) -> Expected | None:
     if pressure is None:
         return None
     areas = np.array([np.delete(touched, axis).prod() for axis in run.scene.walled_axes]).repeat(2)
-    return pressure[0] * areas, pressure[1] * areas, pressure[2]
+    share = None if pressure.collisional is None else pressure.collisional * areas
+    return Expected(pressure.value * areas, pressure.error * areas, pressure.source, share)
 
 
 def pressure_tensor(run: Run, temperature: float) -> Expected | None:
@@ -241,15 +271,18 @@ def pressure_tensor(run: Run, temperature: float) -> Expected | None:
     if gas is None:
         return None
     eta, d = gas.packing_fraction, gas.dimension
+    unit = np.eye(d).ravel()
     ideal = gas.count / run.scene.container.volume * temperature * partners(run)
     if equation != EXACT:
-        pressure = ideal * (1.0 + bulk.excess(gas, equation))
-        return pressure * np.eye(d).ravel(), math.nan, f"{SOURCES[equation]}, {OF_NUMBER}"
+        beyond = ideal * bulk.excess(gas, equation)
+        source = f"{SOURCES[equation]}, {OF_NUMBER}"
+        return Expected((ideal + beyond) * unit, math.nan, source, beyond * unit)
     if (contact := contact_of_number(run, eta, d)) is None:
         return None
     scale = 2.0 ** (d - 1) * eta
-    pressure, error = ideal * (1.0 + scale * contact[0]), ideal * scale * contact[1]
-    return pressure * np.eye(d).ravel(), error * np.ones(d * d), f"equation of state, {OF_NUMBER}"
+    beyond, error = ideal * scale * contact[0], ideal * scale * contact[1]
+    source = f"equation of state, {OF_NUMBER}"
+    return Expected((ideal + beyond) * unit, error * np.ones(d * d), source, beyond * unit)
 
 
 def speeds(run: Run, edges: np.ndarray, mass: float | None, fixed: bool) -> Expected | None:
@@ -262,25 +295,36 @@ def speeds(run: Run, edges: np.ndarray, mass: float | None, fixed: bool) -> Expe
         return None
     law = theory.maxwell_cdf(edges, run.dimension, run.temperature, mass, int(run.freedom) if fixed else None)
     source = f"Maxwell's distribution{', of this number at fixed energy' if fixed else ''}"
-    return np.diff(law) / np.diff(edges), 0.0, source
+    return Expected(np.diff(law) / np.diff(edges), 0.0, source, 0.0)
 
 
 # Description of an observable of a run: units, label, and expected value.
 
 
+def expect(name: str, run: Run, *arguments: Any, **keywords: Any) -> Expected | None:
+    """Return the theory of an observable of a run; None if no theory exists.
+
+    The uncertainty includes the errors of the cells and steps of the engine. The theory's function is called
+    with the run, `arguments` and `keywords`.
+    """
+    declared = observables.OBSERVABLES[name]
+    if not declared.theory or run.about != FLOW:  # the theory describes motion relative to the flow
+        return None
+    module, function = declared.theory.split(".")
+    compute = getattr(import_module(f"gaspart.analysis.expected.{module}"), function)
+    expected: Expected | None = compute(run, *arguments, **keywords)
+    if expected is None or not declared.discretised:
+        return expected
+    return with_discretisation(expected, engine_of(run), run.scene, declared.discretised)
+
+
 def describe(name: str, run: Run, *arguments: Any, **keywords: Any) -> dict[str, Any]:
     """Return the units and the label of an observable, and its theoretical value for a run.
 
-    The theory consists of values, their uncertainties, and a source. It is absent if no theory exists. The
-    theory's function is called with the run, `arguments` and `keywords`.
+    For the arguments see `expect`. The theory consists of values, their uncertainties, and a source. It
+    is absent if no theory exists.
     """
     about: dict[str, Any] = dict(observables.about(name, run.dimension))
-    stated = observables.OBSERVABLES[name].theory
-    if not stated or run.about != FLOW:  # the theory describes motion relative to the flow
+    if (expected := expect(name, run, *arguments, **keywords)) is None:
         return about
-    module, function = stated.split(".")
-    expect = getattr(import_module(f"gaspart.analysis.expected.{module}"), function)
-    if (expected := expect(run, *arguments, **keywords)) is None:
-        return about
-    value, error, source = expected
-    return {**about, "theory": (value, error), "source": source}
+    return {**about, "theory": (expected.value, expected.error), "source": expected.source}

@@ -104,7 +104,7 @@ def heat_flux(run: Run, faces: np.ndarray) -> Expected | None:
     `faces` are the numbers of the faces.
     """
     if _in_equilibrium(run):
-        return np.zeros(len(faces)), 0.0, "equilibrium"
+        return Expected(np.zeros(len(faces)), 0.0, "equilibrium")
     plates = plates_of(run)
     if plates is None:
         return None
@@ -113,9 +113,8 @@ def heat_flux(run: Run, faces: np.ndarray) -> Expected | None:
     conduction = _heat_between_plates(plates, equation_of(run) == BOLTZMANN)
     if conduction is None:
         return None
-    flux, error, source = conduction
     towards_high = 1.0 if plates.temperatures[0] > plates.temperatures[1] else -1.0
-    return np.where(faces % 2 == 1, towards_high, -towards_high) * flux, error, source
+    return _times(conduction, np.where(faces % 2 == 1, towards_high, -towards_high))
 
 
 def wall_shear(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None:
@@ -131,10 +130,15 @@ def wall_shear(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None
     stress = _stress_between_plates(plates, run)
     if stress is None:
         return None
-    value, error, source = stress
     direction = plates.slide[axes] / np.hypot.reduce(plates.slide)
     signs = np.where(faces % 2 == 1, -1.0, 1.0)
-    return np.multiply.outer(signs, direction) * value, error * np.abs(direction), source
+    return _times(stress, np.multiply.outer(signs, direction))
+
+
+def _times(expected: Expected, factors: np.ndarray) -> Expected:
+    """Return a theory multiplied by factors."""
+    share = None if expected.collisional is None else expected.collisional * factors
+    return Expected(expected.value * factors, expected.error * np.abs(factors), expected.source, share)
 
 
 def plates_of(run: Run, driven: bool = False) -> Plates | None:
@@ -200,7 +204,7 @@ def _in_equilibrium(run: Run) -> bool:
     return still and is_isothermal and not (run.dissipates or scene.thermostat or scene.driven_axes)
 
 
-def _heat_between_plates(plates: Plates, points: bool) -> tuple[float, float, str] | None:
+def _heat_between_plates(plates: Plates, points: bool) -> Expected | None:
     """Compute the heat flux from the hot to the cold plate."""
     hot, cold = max(plates.temperatures), min(plates.temperatures)
     fractions = plates.accommodation if plates.temperatures[0] == hot else plates.accommodation[::-1]
@@ -209,7 +213,8 @@ def _heat_between_plates(plates: Plates, points: bool) -> tuple[float, float, st
     )
     at = f"Knudsen number {plates.knudsen:.2g}"
     if plates.freedom > FREE:
-        return float(free), float(free) * _FIRST / plates.freedom, f"free flight between plates, {at}"
+        error = float(free) * _FIRST / plates.freedom
+        return Expected(float(free), error, f"free flight between plates, {at}", error)
     is_full = plates.components == "all" and plates.accommodating
     if plates.dimension == 2 or not is_full or not plates.knudsen > 0.0:
         return None
@@ -217,34 +222,35 @@ def _heat_between_plates(plates: Plates, points: bool) -> tuple[float, float, st
     gap = (plates.length, plates.density / scale**2, hot, cold, plates.diameter * scale)
     if plates.knudsen > FLUID:
         flux = unit * scale**2 * theory.interpolated_flux(*gap)
-        return flux, flux * INTERPOLATED, f"{_describe_interpolation('heat')}, {at}"
+        return Expected(flux, flux * INTERPOLATED, f"{_describe_interpolation('heat')}, {at}")
     try:
         flux = unit * scale**2 * theory.conducting_slab(*gap).flux
     except ValueError:  # the theory's own estimate of the Knudsen number is slightly larger
         return None
     is_known = points or plates.filled < _DILUTE
     error = flux * plates.knudsen**2 if is_known else math.nan
-    return flux, error, f"Fourier's law with Enskog's conductivity and temperature jumps, {at}"
+    return Expected(flux, error, f"Fourier's law with Enskog's conductivity and temperature jumps, {at}")
 
 
-def _stress_between_plates(plates: Plates, run: Run) -> tuple[float, float, str] | None:
+def _stress_between_plates(plates: Plates, run: Run) -> Expected | None:
     """Compute the shear stress on sliding plates that have the same temperature."""
     speed, temperature = float(np.hypot.reduce(plates.slide)), plates.temperatures[0]
     gas = plates.density, speed, temperature, plates.mass, plates.accommodation
     free = float(theory.free_molecular_stress(*gas))
     at = f"Knudsen number {plates.knudsen:.2g}"
     if plates.freedom > FREE:
-        return free, free * 2.0 * _FIRST / plates.freedom, f"free flight between plates, {at}"
+        error = free * 2.0 * _FIRST / plates.freedom
+        return Expected(free, error, f"free flight between plates, {at}", error)
     if plates.dimension == 2 or not plates.accommodating or not dilute(plates, run):
         return None
     unit = math.sqrt(plates.mass * temperature)
     gap = (plates.length, plates.density, speed, plates.diameter)
     if plates.knudsen > FLUID:
         stress = unit * float(theory.interpolated_stress(*gap))
-        return stress, stress * INTERPOLATED, f"{_describe_interpolation('stress')}, {at}"
+        return Expected(stress, stress * INTERPOLATED, f"{_describe_interpolation('stress')}, {at}")
     stress = unit * float(theory.slip_flow_stress(*gap))
     error = stress * (plates.knudsen**2 + heating_of(plates))
-    return stress, error, f"Enskog's viscosity with slip, {at}"
+    return Expected(stress, error, f"Enskog's viscosity with slip, {at}")
 
 
 def dilute(plates: Plates, run: Run) -> bool:
@@ -270,9 +276,9 @@ def _friction(plates: Plates, run: Run) -> Expected | None:
     """Compute the heat flux into each plate by friction: half of the power of the stress."""
     if not plates.equal or (stress := _stress_between_plates(plates, run)) is None:
         return None
-    value, error, source = stress
     half = 0.5 * float(np.hypot.reduce(plates.slide))
-    return np.full(2, half * value), half * error, f"half the work of the stress: {source}"
+    work = _times(stress, np.full(2, half))
+    return work._replace(source=f"half the work of the stress: {stress.source}")
 
 
 def _weight_on_faces(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None:
@@ -291,7 +297,7 @@ def _weight_on_faces(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected 
     sides = np.subtract(*scene.reach(scene.largest_radius)[::-1])
     area = float(np.delete(sides, faces[0] // 2).prod())
     pull = np.where(run.periodic, scene.gravity or 0.0, 0.0)[axes] * float(run.masses.sum()) / (2.0 * area)
-    return np.tile(pull, (2, 1)), 0.0, "balance of momentum"
+    return Expected(np.tile(pull, (2, 1)), 0.0, "balance of momentum", 0.0)
 
 
 _ROUNDING = 1e-6
@@ -304,7 +310,7 @@ def velocity(run: Run, axis: int, positions: np.ndarray) -> Expected | None:
     if scene.shear_rate is not None:
         middle = np.tile(0.5 * np.array(scene.container.lengths), (len(positions), 1))
         middle[:, axis] = positions
-        return flow(scene, middle).T + _drift(run), 0.0, "the flow of sheared images"
+        return Expected(flow(scene, middle).T + _drift(run), 0.0, "the flow of sheared images", 0.0)
     if plates := plates_of(run):
         return _between_plates(plates, run, axis, positions)
     if plates := plates_of(run, driven=True):
@@ -313,7 +319,7 @@ def velocity(run: Run, axis: int, positions: np.ndarray) -> Expected | None:
         return None
     if not run.moving.all():
         return None
-    return np.repeat(_drift(run), len(positions), axis=1), 0.0, "equilibrium"
+    return Expected(np.repeat(_drift(run), len(positions), axis=1), 0.0, "equilibrium", 0.0)
 
 
 def _drift(run: Run) -> np.ndarray:
@@ -339,14 +345,15 @@ def _between_plates(plates: Plates, run: Run, axis: int, positions: np.ndarray) 
     low, high = (np.array(face.velocity if face else rest) for face in ends)
     mean = np.repeat(0.5 * (low + high)[:, None], len(positions), axis=1)
     if not plates.slide.any():
-        return mean, 0.0, "the gas is at rest between the plates"
+        return Expected(mean, 0.0, "the gas is at rest between the plates", 0.0)
     if not plates.equal or len(set(plates.accommodation)) > 1:
         return None
     if axis != plates.axis:
-        return mean, 0.0, "the mean of both plates, by symmetry"
+        return Expected(mean, 0.0, "the mean of both plates, by symmetry", 0.0)
     if plates.freedom > FREE:
         error = np.abs(plates.slide)[:, None] / plates.freedom
-        return mean, error, "free flight between plates: half of the particles come from each"
+        source = "free flight between plates: half of the particles come from each"
+        return Expected(mean, error, source, error)
     fluid = plates.accommodating and plates.knudsen <= FLUID and dilute(plates, run)
     if plates.dimension == 2 or not fluid:
         return None
@@ -356,7 +363,7 @@ def _between_plates(plates: Plates, run: Run, axis: int, positions: np.ndarray) 
     values = mean + np.multiply.outer(plates.slide, (positions - middle) / gap)
     wrong = np.abs(plates.slide)[:, None] * (plates.knudsen**2 + heating_of(plates))
     near = np.abs(positions - middle) > 0.5 * plates.length - 2.0 * path  # beyond is the Knudsen layer
-    return np.where(near, np.nan, values), wrong, "linear flow with slip"
+    return Expected(np.where(near, np.nan, values), wrong, "linear flow with slip", values - mean)
 
 
 def _channel_velocity(plates: Plates, run: Run, axis: int, positions: np.ndarray) -> Expected | None:
@@ -382,7 +389,7 @@ def _channel_velocity(plates: Plates, run: Run, axis: int, positions: np.ndarray
     warmer *= 4.0 / 45.0 + 32.0 / 45.0 * TEMPERATURE_JUMP * plates.knudsen
     dense = 0.0 if equation_of(run) == BOLTZMANN else plates.filled
     wrong = np.abs(fastest)[:, None] * (8.0 * plates.knudsen**2 + 0.5 * warmer + dense)
-    return np.where(near, np.nan, values[:, :-1]), wrong, "Poiseuille's flow with slip"
+    return Expected(np.where(near, np.nan, values[:, :-1]), wrong, "Poiseuille's flow with slip")
 
 
 def flux(run: Run, axis: int, position: float, members: np.ndarray, beyond: np.ndarray) -> Expected | None:
@@ -409,7 +416,7 @@ def flux(run: Run, axis: int, position: float, members: np.ndarray, beyond: np.n
     rates = numbers / sides * speed * area
     spent = abs(int(beyond[-1]) - int(beyond[0])) / max(1.0, numbers.max())
     source = f"free flight through an opening of {area:.4g}"
-    return np.array([rates[0] - rates[1]]), float(rates.max()) * spent, source
+    return Expected(np.array([rates[0] - rates[1]]), float(rates.max()) * spent, source)
 
 
 def _zero_flux(run: Run) -> Expected | None:
@@ -421,7 +428,7 @@ def _zero_flux(run: Run) -> Expected | None:
     scene = run.scene
     if scene.is_open or scene.has_piston or any(kind.region is not None for kind in scene.species):
         return None
-    return np.zeros(1), 0.0, "a steady state between walls"
+    return Expected(np.zeros(1), 0.0, "a steady state between walls")
 
 
 def _path(run: Run) -> float:

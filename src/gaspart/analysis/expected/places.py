@@ -35,14 +35,14 @@ def radial_distribution(run: Run, distance: np.ndarray, width: float) -> Expecte
     eta, d = gas.packing_fraction, gas.dimension
     if (contact := contact_of_number(run, eta, d)) is None:
         return None
-    return np.where(near, contact[0], np.nan), np.nan, "g at contact, from Z of this number"
+    return Expected(np.where(near, contact[0], np.nan), np.nan, "g at contact, from Z of this number")
 
 
 def _of_points(run: Run, values: Any) -> Expected | None:
     """Return the values if positions are independent: smooth elastic point particles without a field."""
     if run.mixture is None and run.scene.gas is None:
         return None
-    return values, 0.0, "Boltzmann equation: independent places"
+    return Expected(values, 0.0, "Boltzmann equation: independent places", 0.0)
 
 
 def structure_factor(run: Run, wave_number: np.ndarray) -> Expected | None:
@@ -56,7 +56,7 @@ def structure_factor(run: Run, wave_number: np.ndarray) -> Expected | None:
     if equation == ENSKOG or gas is None or gas.dimension == 2:
         return None
     law = theory.verlet_weis_structure_factor(wave_number * gas.diameter, gas.packing_fraction)
-    return law, np.nan, "Verlet and Weis"
+    return Expected(law, np.nan, "Verlet and Weis")
 
 
 def partial_structure_factors(run: Run, wave_number: np.ndarray) -> Expected | None:
@@ -79,10 +79,11 @@ def partial_structure_factors(run: Run, wave_number: np.ndarray) -> Expected | N
         total = structure_factor(run, wave_number)
         assert total is not None
         parts = np.sqrt(counts / counts.sum())
-        return same + np.array([[parts[a] * parts[b]] for a, b in pairs]) * (total[0] - 1.0), *total[1:]
+        factors = np.array([[parts[a] * parts[b]] for a, b in pairs])
+        return total._replace(value=same + factors * (total.value - 1.0))
     diameters = [2.0 * kind.radius for kind in species]
     factors = theory.percus_yevick_partial_factors(wave_number, mixture.packing_fraction, diameters, counts)
-    return np.array([factors[:, a, b] for a, b in pairs]), np.nan, "Percus and Yevick, Lebowitz"
+    return Expected(np.array([factors[:, a, b] for a, b in pairs]), np.nan, "Percus and Yevick, Lebowitz")
 
 
 def chemical_potential(run: Run) -> Expected | None:
@@ -98,20 +99,23 @@ def chemical_potential(run: Run) -> Expected | None:
     eta, d, diameters, counts = mixture.sizes[0], mixture.dimension, mixture.diameters, mixture.counts
     if equation == BOLTZMANN:
         potential = _into_points(run, np.array(diameters), np.array(counts))
-        return None if potential is None else (potential, 0.0, "insertion among independent places")
+        source = "insertion among independent places"
+        return None if potential is None else Expected(potential, 0.0, source, 0.0)
     if run.scene.alike:
         side = min(run.scene.container.lengths) / diameters[0]
         try:
-            return *theory.insertion_potential(eta, d, run.count, side), "Gibbs and Duhem, of this number"
+            value, error = theory.insertion_potential(eta, d, run.count, side)
         except ValueError:
             return None
+        return Expected(value, error, "Gibbs and Duhem, of this number")
     if scale_of_number(run, mixture) is None:
         return None
     sizes, which = np.unique(diameters, return_inverse=True)
     numbers = np.bincount(which, counts)
     value = theory.mixture_chemical_potentials(eta, d, sizes, numbers)
     value += theory.mixture_insertion_correction(eta, d, sizes, numbers)
-    return value[which], np.nan, "equation of state of Santos, Yuste and Lopez de Haro, of these numbers"
+    source = "equation of state of Santos, Yuste and Lopez de Haro, of these numbers"
+    return Expected(value[which], np.nan, source)
 
 
 def _into_points(run: Run, diameters: np.ndarray, counts: np.ndarray) -> Any | None:
@@ -135,7 +139,7 @@ def temperature(run: Run) -> Expected | None:
     scene = run.scene
     if scene.faces or scene.face_temperatures or run.dissipates or scene.thermostat or scene.moving_wall:
         return None
-    return run.temperature, 0.0, "equilibrium"
+    return Expected(run.temperature, 0.0, "equilibrium")
 
 
 def density(run: Run, axis: int, edges: np.ndarray, species: int | None) -> Expected | None:
@@ -155,7 +159,7 @@ def density(run: Run, axis: int, edges: np.ndarray, species: int | None) -> Expe
         return None  # not in equilibrium, or of unknown temperature
     if not field:
         bound = equation_of(run) == EXACT and scene.conserved_axes[axis] and run.count < _LEAST_UNIFORM
-        return None if bound else (scene.number_density, 0.0, "uniform")
+        return None if bound else Expected(scene.number_density, 0.0, "uniform")
     return _barometric_density(run, axis, edges, field)
 
 
@@ -181,4 +185,4 @@ def _barometric_density(run: Run, axis: int, edges: np.ndarray, field: float) ->
     if field > 0.0:
         total = total[-1] - total[::-1]
     share = np.diff(np.interp(edges, z, total))
-    return share / np.diff(edges), np.nan, source
+    return Expected(share / np.diff(edges), np.nan, source)

@@ -13,7 +13,6 @@ from gaspart.analysis.expected.equilibrium import (
     OF_NUMBER,
     SOURCES,
     Expected,
-    bias_of,
     engine_of,
     equation_of,
 )
@@ -44,7 +43,8 @@ def mean_squared_displacement(run: Run, time: np.ndarray, axes: bool = False) ->
     contact = bulk.contact_value(gas, equation)
     curve = theory.enskog_mean_squared_displacement(time, **gas.parameters, contact=contact)
     source = SOURCES[equation]
-    return curve / (run.dimension if axes else 1), math.nan, f"{source}, linear Boltzmann equation"
+    curve = curve / (run.dimension if axes else 1)
+    return Expected(curve, math.nan, f"{source}, linear Boltzmann equation")
 
 
 def velocity_autocorrelation(run: Run, time: np.ndarray) -> Expected | None:
@@ -55,7 +55,8 @@ def velocity_autocorrelation(run: Run, time: np.ndarray) -> Expected | None:
     equation = equation_of(run)
     rate = float(theory.velocity_decay_rate(**gas.parameters, contact=bulk.contact_value(gas, equation)))
     source = SOURCES[equation]
-    return gas.temperature / gas.mass * np.exp(-rate * time), math.nan, f"{source}, exact initial decay"
+    decay = gas.temperature / gas.mass * np.exp(-rate * time)
+    return Expected(decay, math.nan, f"{source}, exact initial decay")
 
 
 def diffusion(
@@ -68,10 +69,9 @@ def diffusion(
     """
     if ends is not None:
         displacement = mean_squared_displacement(run, ends, axes=True)
-        return displacement and (
-            0.5 * float(np.diff(displacement[0])[0] / np.diff(ends)[0]),
-            *displacement[1:],
-        )
+        if displacement is None:
+            return None
+        return displacement._replace(value=0.5 * float(np.diff(displacement.value)[0] / np.diff(ends)[0]))
     gas, sides = run.moving_fluid, run.scene.container.lengths
     if gas is None or np.ptp(sides) > 1e-6 * sides[0]:
         return None
@@ -91,7 +91,7 @@ def diffusion_in_cube(
     Wood minus two corrections: the finite-size correction of Yeh and Hummer, and the contribution of the
     modes of the container after the window of the slope. Half of the second correction is uncertain. For a
     kinetic equation, D is the value of this equation plus the contribution of the flow in the container,
-    which the cells of the engine resolve. The uncertainty consists of half of both corrections and the
+    which the cells of the engine resolve. The uncertainty consists of half of both corrections, without the
     systematic error of the engine. Return None for discs, for spheres denser than the fluid, and for a cube
     so small that the periodic images order the fluid.
     """
@@ -103,7 +103,8 @@ def diffusion_in_cube(
         except ValueError:  # the periodic images of a particle order the fluid
             return None
         late = _after_window(gas, window)
-        return value + late, math.hypot(error, 0.5 * late), "Erpenbeck and Wood, Yeh and Hummer"
+        error = math.hypot(error, 0.5 * late)
+        return Expected(value + late, error, "Erpenbeck and Wood, Yeh and Hummer")
     value = bulk.diffusion(gas, engine.equation)
     density = float(theory.number_density(gas.packing_fraction, 3, gas.diameter))
     spreading = bulk.shear_viscosity(gas, engine.equation) / (gas.mass * density) + value
@@ -113,8 +114,8 @@ def diffusion_in_cube(
         / gas.mass
         * diffusion_by_modes(side, gas.count, 3, engine.cells_along(scene), path, spreading)
     )
-    error = math.hypot(0.5 * added, engine.bias(scene, "paths") * value)
-    return value + added, error, f"{SOURCES[engine.equation]}, with the flow that its cells resolve"
+    source = f"{SOURCES[engine.equation]}, with the flow that its cells resolve"
+    return Expected(value + added, 0.5 * added, source, value)
 
 
 def _after_window(gas: Gas, window: np.ndarray | tuple[float, float]) -> float:
@@ -149,7 +150,7 @@ def mutual_diffusion(run: Run) -> Expected | None:
         eta, d, diameters, counts, temperature=run.temperature, masses=masses, contact=contact
     )
     source = SOURCES[equation]
-    return value, math.nan, f"{source}, first approximation"
+    return Expected(value, math.nan, f"{source}, first approximation")
 
 
 def _transport(
@@ -169,10 +170,11 @@ def _transport(
     if equation == EXACT:
         measured = coefficient is bulk.shear_viscosity and gas.dimension == 3
         error = theory.VISCOSITY_RATIO_UNCERTAINTY * value if measured else math.nan
-        return value, error, f"Enskog{', and the ratio measured in a dense gas' if measured else ''}"
+        source = f"Enskog{', and the ratio measured in a dense gas' if measured else ''}"
+        return Expected(value, error, source)
     if kind:
         value *= theory.transport_finite_size_factor(gas.count, gas.dimension, kind)
-    return value, value * bias_of(run, "fluxes"), f"{SOURCES[equation]}, {OF_NUMBER}"
+    return Expected(value, 0.0, f"{SOURCES[equation]}, {OF_NUMBER}")
 
 
 def bulk_viscosity(run: Run, temperature: float) -> Expected | None:
@@ -193,7 +195,7 @@ def thermal_conductivity(run: Run, temperature: float) -> Expected | None:
     value = theory.dilute_mixture_conductivity(
         mixture.diameters, mixture.counts, temperature, masses=mixture.masses
     )
-    return value, math.nan, f"{SOURCES[BOLTZMANN]}, first approximation"
+    return Expected(value, math.nan, f"{SOURCES[BOLTZMANN]}, first approximation")
 
 
 def shear_viscosity(run: Run, temperature: float) -> Expected | None:
@@ -208,4 +210,4 @@ def shear_viscosity(run: Run, temperature: float) -> Expected | None:
         return None
     value = float(bulk.shear_viscosity(replace(gas, temperature=temperature), equation))
     source = SOURCES[equation]
-    return value, math.nan, f"{source}, of a small shear rate"
+    return Expected(value, math.nan, f"{source}, of a small shear rate")

@@ -139,11 +139,11 @@ def load_numba(ours: bool = False) -> ModuleType:
 
 # Kernels that are shipped with the package: machine code that was compiled when the wheel was built.
 #
-# The code runs on every processor of the level x86-64-v3. The path of a file contains the hash of the
-# sources, a hash of the numba release, the function, the types of its arguments, and the Python version. So a
-# file for a different combination is never found. The list of the files contains their sha256. A file is as
-# trustworthy as the modules of the package, because both are installed in the same place. A file that differs
-# from the list is not executed.
+# The code runs on every processor of the level x86-64-v3. The name of a file contains the function, the
+# Python version, and a hash of the sources, the numba release and the types of its arguments. So a file for a
+# different combination is never found. The list of the files contains their sha256. A file is as trustworthy
+# as the modules of the package, because both are installed in the same place. A file that differs from the
+# list is not executed.
 
 
 FOLDER = Path(__file__).parents[1] / "shipped"

@@ -22,6 +22,7 @@ from typing import Any, ClassVar
 
 from gaspart.files import scratch_beside
 from gaspart.kernels.compile.cache import load_numba, report_unwritable, shipped_content, shipped_key
+from gaspart.kernels.compile.sources import KERNELS, closure_digests
 from gaspart.system import is_own
 
 caching: Any = load_numba().core.caching
@@ -54,28 +55,27 @@ def _own_content(path: str) -> bytes | None:
         return None
 
 
-_KERNELS = Path(__file__).parents[1]
-
-
 class KernelLocator(caching.UserProvidedCacheLocator):
     """Locator of the folder of a function's files, shared by all copies of the package.
 
-    For functions of `kernels` the hash of the sources, which names the cache, suffices. numba also uses the
-    hash of the file, the line number and the bytecode, which change with comments and docstrings.
+    For functions of `kernels` the hash of the modules that their module needs suffices. numba uses the hash
+    of the file, the line number and the bytecode, which change with comments and docstrings.
     """
 
     def __init__(self, folder: Path, function: Callable) -> None:
         self._py_file = inspect.getfile(function)
         self._lineno = function.__code__.co_firstlineno
         self._cache_path = str(folder / Path(self._py_file).parent.name)
-        self.digested = Path(self._py_file).is_relative_to(_KERNELS)
+        self.digested = Path(self._py_file).is_relative_to(KERNELS)
         if not os.path.exists(self._py_file):
             raise OSError(0, f"{function.__qualname__} is not from a file")
         _make_folder(self._cache_path)
 
     def get_source_stamp(self) -> Any:
-        """Return the part of the stamp that is not in the hash of the sources."""
-        return None if self.digested else super().get_source_stamp()
+        """Return the hash of what the function was compiled from."""
+        if self.digested:
+            return closure_digests()[self._py_file]
+        return super().get_source_stamp()
 
     def get_disambiguator(self) -> str:
         """Return the suffix that distinguishes functions of one name in a file; "" for `kernels`."""

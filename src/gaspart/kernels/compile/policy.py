@@ -1,22 +1,20 @@
 """Compile policy of all kernels.
 
 Kernels use IEEE arithmetic in the written order (no fastmath). So the same source gives the same bits on
-every x86-64 machine. They are cached on disk under a hash of the sources, because numba does not notice
-changes of a helper in another file.
+every x86-64 machine. They are cached on disk under a hash of the modules that they need, because numba does
+not notice changes of a helper in another file.
 """
 
 from __future__ import annotations
 
-import hashlib
 import warnings
 from collections.abc import Callable
-from functools import cache, wraps
-from pathlib import Path
+from functools import wraps
 from typing import Any, TypeVar, cast
 
 from gaspart.interruption import prevent_interruption
 from gaspart.kernels.compile.cache import load_numba, report_unwritable, usable_cache
-from gaspart.kernels.compile.sources import file_digests
+from gaspart.kernels.compile.sources import source_digest
 
 numba = load_numba()
 TESTED = "0.67", "0.68"
@@ -35,25 +33,9 @@ else:
         stacklevel=2,
     )
 F = TypeVar("F", bound=Callable)
-_KERNELS = Path(__file__).parents[1]
-
-
-@cache
-def source_digest() -> str:
-    """Return a short hash of all modules of `kernels`, which contain all compiled code.
-
-    These modules contain no other code. Docstrings and comments do not change the hash.
-    """
-    paths = sorted(_KERNELS.rglob("*.py"))
-    digest = hashlib.sha256()
-    for path, content in zip(paths, file_digests(paths), strict=True):
-        digest.update(path.relative_to(_KERNELS).as_posix().encode())
-        digest.update(content.encode())
-    return digest.hexdigest()[:16]
-
 
 _UNWRAPPED = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-_CACHE = usable_cache(source_digest())
+_CACHE = usable_cache("kernels" if _tested else source_digest())
 
 
 def _compile(function: F, part: bool = False, **options: Any) -> F:

@@ -23,6 +23,8 @@ from gaspart.kernels.compile.cache import cache_directory, obstacle
 from gaspart.system import is_own
 
 STORE = "trees.json"
+_IMPORT = re.compile(r"^[ \t]*from (gaspart\.kernels[\w.]*) import (\([^)]*\)|[^\n]*)", re.MULTILINE)
+KERNELS = Path(__file__).parents[1]
 MOST_STORED = 20_000
 """Maximum number of stored hashes, about thirty versions of the package."""
 _DIGEST = re.compile(r"[0-9a-f]{32}")
@@ -46,6 +48,45 @@ def file_digests(paths: Iterable[Path]) -> list[str]:
     if added:
         _store(added)
     return digests
+
+
+@cache
+def source_digest() -> str:
+    """Return a short hash of all modules of `kernels`, which contain all compiled code.
+
+    These modules contain no other code. Docstrings and comments do not change the hash.
+    """
+    return hashlib.sha256("".join(closure_digests().values()).encode()).hexdigest()[:16]
+
+
+@cache
+def closure_digests(folder: Path = KERNELS) -> dict[str, str]:
+    """Return for each file of `kernels` the hash of all modules of `kernels` that it needs, itself included.
+
+    Only these modules can change the machine code of its functions.
+    """
+    paths = sorted(folder.rglob("*.py"))
+    names = [".".join(("gaspart.kernels", *path.relative_to(folder).with_suffix("").parts)) for path in paths]
+    own = dict(zip(names, file_digests(paths), strict=True))
+    imports = {name: _imports(path) & own.keys() for name, path in zip(names, paths, strict=True)}
+    result = {}
+    for name, path in zip(names, paths, strict=True):
+        needed, queue = {name}, [name]
+        while queue:
+            new = imports[queue.pop()] - needed
+            needed |= new
+            queue.extend(new)
+        text = "".join(f"{module} {own[module]} " for module in sorted(needed))
+        result[str(path)] = hashlib.sha256(text.encode()).hexdigest()[:16]
+    return result
+
+
+def _imports(path: Path) -> set[str]:
+    """Return the modules of `kernels` that a file imports, and all names that could be such modules."""
+    modules = set()
+    for base, names in _IMPORT.findall(path.read_text(encoding="utf-8")):
+        modules |= {base, *(f"{base}.{name}" for name in re.findall(r"\w+", names))}
+    return modules
 
 
 def tree_digest(source: bytes) -> str:

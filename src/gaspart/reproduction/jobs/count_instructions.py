@@ -109,7 +109,7 @@ def count_instructions(scene: Scene) -> PointData:
                     module.write_text(strip_features(module.read_text(encoding="utf-8")), encoding="utf-8")
             environment = {"PYTHONPATH": str(package.parent), "GASPART_CACHE": str(package.parent / "cache")}
             done = subprocess.run(
-                [sys.executable, "-m", __name__, json.dumps(scene.to_dict())],
+                [sys.executable, "-P", "-m", __name__, json.dumps(scene.to_dict())],
                 env={**os.environ, **environment},
                 capture_output=True,
                 text=True,

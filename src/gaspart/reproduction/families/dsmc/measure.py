@@ -170,7 +170,7 @@ def _dense(point: Point, settings: dict) -> dict[str, Any]:
     excess, rate = [], []
     for run in _runs(point):
         series, theories = series_of(run), (compressibility_factor(run), collision_rate(run))
-        z, own = (expected[0] for expected in theories if expected)
+        z, own = (expected.value for expected in theories if expected)
         excess.append((series.z.mean() - 1.0) / (z - 1.0))
         rate.append(series.rate.mean() / own)
     return {

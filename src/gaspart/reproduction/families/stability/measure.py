@@ -7,7 +7,6 @@ of a gas: growth of echoes, and of the distance of neighbouring runs.
 from __future__ import annotations
 
 import math
-import os
 import time
 import warnings
 from collections.abc import Callable, Iterable, Sequence
@@ -188,11 +187,8 @@ def run_guarded(work: Callable, items: Sequence, limit: float) -> list:
     """Return `work(item)` for each item, in order, or None.
 
     An item that takes more than `limit` seconds, or ends its process, has the result None. Compiled code
-    cannot be interrupted. Therefore it runs in a child process, which can be killed. Raises SceneError on
-    systems that cannot fork processes, such as Windows.
+    cannot be interrupted. Therefore it runs in a child process, which can be killed.
     """
-    if not hasattr(os, "fork"):
-        raise SceneError("system", os.name, "this figure needs one that forks processes: Linux or macOS")
     results: list = []
     context = get_context("fork")
     while len(results) < len(items):

@@ -22,7 +22,7 @@ from gaspart.accuracy.table import PRECISIONS
 from gaspart.accuracy.tabulated import model_error
 from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.expected.equilibrium import collision_rate
+from gaspart.analysis.expected.equilibrium import expect
 from gaspart.analysis.observables import OBSERVABLES as declared
 from gaspart.analysis.statistics import mean_of
 from gaspart.engines import DSMC, Engine, EventDriven, TimeStepped
@@ -261,9 +261,9 @@ class Cells:
 
 def cells_of(point: Point) -> Cells:
     """Return the effect of cells in a run of the Enskog model, relative to its equation."""
-    ((replica, expected),) = ((series_of(run), collision_rate(run)) for run in runs(point))
+    ((replica, expected),) = ((series_of(run), expect("collision_rate", run)) for run in runs(point))
     assert expected is not None
-    rate, uncertainty, _ = expected
+    rate, uncertainty = expected.value, expected.error
     contacts = 0.5 * point.scene.count * rate * replica.interval
     variances = {
         name: float(series.var(ddof=1) / series.mean() ** 2) * contacts
