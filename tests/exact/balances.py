@@ -1,6 +1,6 @@
-"""Balances of each run, whatever its gas does: momentum, energy and bodies that the counters of faces account for.
+"""Balances of each run, whatever its gas does: what counters of faces say of momentum, energy and bodies.
 
-A balance is (what both sides are apart by, the error of rounding), or a text: why it does not hold or is not tallied.
+A balance is (difference of both sides, error of rounding), or a text: why it does not hold.
 """
 
 import numpy as np
@@ -12,12 +12,12 @@ SINGLE = 1e-6
 """Relative error of sums of numbers in single precision."""
 WEIGHTS = 0.1
 """Effect of blocks that differ in length by one interval, in errors of the mean."""
-DOUBLE = 1e-9
+DOUBLE = 1e-8
 """Relative error of sums over a run in double precision."""
 
 
 def momentum(kind, data):
-    """Return what the momentum has changed by, beyond gravity and what faces have been given along each axis."""
+    """Return by what the momentum has changed, beyond gravity and what faces have been given."""
     if kind.opened or kind.sheared or kind.moving_face or not kind.case.empty:
         return "bodies, or walls inside, take momentum that is not tallied"
     momenta, sizes = _momenta(data)
@@ -41,7 +41,7 @@ def momentum(kind, data):
 
 
 def energy(kind, data):
-    """Return what the energy has changed by, beyond what faces, contacts and kicks have taken."""
+    """Return by what the energy has changed, beyond what faces, contacts and kicks have taken."""
     if kind.sheared or kind.moving_face or kind.case.box.wells.any() or "vibrat" in str(kind.faces):
         return "a face works on the gas, or a potential steps"
     taken = data["wall_energy"].values.sum(axis=1) + data["dissipated_energy"].values
@@ -59,7 +59,7 @@ def energy(kind, data):
 
 
 def impulses(kind, data):
-    """Return what the force on each face differs by from its impulses over the time, without bodies at rest."""
+    """Return by what the force on each face differs from its impulses over the time."""
     if kind.sheared or kind.case.periodic.all() or "sticky" in str(kind.faces):
         return "faces that no impulse describes"
     try:
@@ -73,15 +73,19 @@ def impulses(kind, data):
     mean = (impulse[-1] - impulse[start]) / (time[-1] - time[start])
     faces = [int(np.flatnonzero(data["face"].values == face)[0]) for face in found["face"].values]
     error = SINGLE * np.abs(mean).max() + WEIGHTS * found["wall_force_error"].values
-    return np.nan_to_num(found["wall_force"].values, nan=np.inf) - mean[faces], np.nan_to_num(error, nan=SINGLE)
+    return np.nan_to_num(found["wall_force"].values, nan=np.inf) - mean[faces], np.nan_to_num(
+        error, nan=SINGLE
+    )
 
 
 def bodies(kind, data):
-    """Return what the number of bodies has changed by, beyond entries and exits."""
+    """Return by what the number of bodies has changed, beyond entries and exits."""
     if not kind.opened:
         return "the number of bodies is constant"
     number = np.isfinite(data["coordinates"].values[:, :, 0]).sum(axis=1)
-    opened = [n for n, face in enumerate(data["face"].values) if str(face).replace(" ", "_") in kind.open_faces]
+    opened = [
+        n for n, face in enumerate(data["face"].values) if str(face).replace(" ", "_") in kind.open_faces
+    ]
     moved = (data["entries"].values - data["wall_hits"].values)[:, opened].sum(axis=1)
     return (number - number[0] - moved).astype(float), np.array(0.5)
 

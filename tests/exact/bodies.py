@@ -37,7 +37,7 @@ class Group(NamedTuple):
 class Case:
     """A scene, parsed from YAML, as the sampler needs it.
 
-    radii: of all moving bodies, where they differ within a species; load: force of a loaded piston, 0 without;
+    radii: of all moving bodies, if they differ within a species; load: force of a loaded piston, or 0;
     activity: per volume, 0 without open faces; drawn: fixed bodies at places that a run draws.
     """
 
@@ -147,7 +147,7 @@ class Case:
 
 
 def _radii(species):
-    """Return the radii of a species: quantiles at equally spaced probabilities, of the mean that is stated."""
+    """Return the radii of a species: quantiles at equally spaced probabilities, scaled to their mean."""
     count, spread = species["count"], species.get("polydispersity", 0.0)
     p = (np.arange(count)[::-1] + 0.5) / count
     if species.get("radius_distribution", "lognormal") == "uniform":

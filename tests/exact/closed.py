@@ -28,8 +28,10 @@ def two_body_z(d, diameter, volume):
 
 
 def crystal_z(count, diameter, lengths):
-    """Return Z of a crystal of spheres near close packing, and its error: 3 / alpha + 2.56, alpha = V / V_0 - 1
-    (Alder, Hoover and Young, J. Chem. Phys. 49, 3688 (1968)), of 3 (N - 1) degrees of freedom.
+    """Return Z of a crystal of spheres near close packing, and its error.
+
+    Z = 3 / alpha + 2.56, alpha = V / V_0 - 1 (Alder, Hoover and Young, J. Chem. Phys. 49, 3688 (1968)), of
+    3 (N - 1) degrees of freedom.
     """
     packed = count * diameter**3 / math.sqrt(2.0)
     alpha = float(np.prod(lengths)) / packed - 1.0

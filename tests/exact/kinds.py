@@ -143,6 +143,12 @@ class Kind:
         return filled < 1e-3 * self.case.box.lengths.prod()
 
     @property
+    def wide(self):
+        """True if a container is so many diameters wide that waves down to a diameter are too many."""
+        largest = 2.0 * max(group.radius for group in self.case.groups)
+        return bool((self.case.box.lengths / largest).prod() > 1e5) and not self.points
+
+    @property
     def integrable(self):
         """True if each body keeps its speed for ever, so that means over time are those of its start."""
         return self.points and not self.exchanges

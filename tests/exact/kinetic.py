@@ -1,7 +1,7 @@
-"""Closed forms of the gases of kinetic equations, in a box with gravity: bodies that do not exclude each other.
+"""Closed forms of the gases of kinetic equations in a box with gravity.
 
-Places are independent, so that the density is a product over the axes. The Enskog equation multiplies the rates
-by contact values at the packing fraction of a uniform gas.
+Bodies do not exclude each other: places are independent, and the density is a product over the axes. The
+Enskog equation multiplies the rates by contact values at the packing fraction of a uniform gas.
 """
 
 import itertools

@@ -274,7 +274,9 @@ def _contact_values(kind):
 
 def _z(kind):
     if "crystal" in kind.run and kind.equation == "exact":
-        return _number(*closed.crystal_z(kind.case.count, 2.0 * kind.case.groups[0].radius, kind.case.box.lengths))
+        return _number(
+            *closed.crystal_z(kind.case.count, 2.0 * kind.case.groups[0].radius, kind.case.box.lengths)
+        )
     if kind.name == "two_periodic" and kind.equation == "exact":
         return _number(closed.two_body_z(2, 2.0 * kind.case.groups[0].radius, kind.case.box.lengths.prod()))
     return {}

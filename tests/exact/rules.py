@@ -175,6 +175,12 @@ def undefined(observable, kind):
 
 def unknown(observable, kind):
     """Return why no exact value of a defined observable is known, None if there must be one."""
+    if observable == "wall_shear" and kind.driven and len({one.radius for one in kind.case.groups}) > 1:
+        return "how much each size carries has no closed form"
+    if observable == "wall_shear" and not (kind.equilibrium or kind.driven or kind.points):
+        return "a sheared gas of bodies that collide has no closed form"
+    if observable == "msd" and kind.points and kind.exchanges:
+        return "flights from thermal faces have no simple law"
     if kind.case.drawn and observable in OF_ALL_PLACES:
         return "the places of the fixed bodies are drawn"
     if "crystal" in kind.run and kind.equation == "exact" and observable in OF_STRUCTURE:
@@ -185,7 +191,12 @@ def unknown(observable, kind):
         "short" in kind.run or (kind.name == "halves" and observable == "mutual_diffusion")
     ):
         return None  # the first terms in the time; D_12 of halves is the D of a particle
-    if kind.equation == "enskog" and not kind.dilute and observable in OF_PLACES and not kind.case.periodic.all():
+    if (
+        kind.equation == "enskog"
+        and not kind.dilute
+        and observable in OF_PLACES
+        and not kind.case.periodic.all()
+    ):
         return "the local contact values of the model at walls have no closed form"
     if kind.integrable and observable not in OF_PARTICLES:
         return "each point keeps its speed: means over time are those of the start"

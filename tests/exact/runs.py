@@ -43,7 +43,7 @@ def refusals(name):
 
 
 def _offered(kind):
-    """Return all engines: the stepped one with a step whose error is small, the kinetic ones as a user has them."""
+    """Return engines: the stepped one with a step of a small error, the kinetic ones by default."""
     step = kind.run["interval"] / math.ceil(kind.run["interval"] / time_step(kind))
     found = {"event": gp.EventDriven()}
     if kind.run["duration"] <= MOST_STEPS * step:

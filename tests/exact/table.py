@@ -44,8 +44,8 @@ EQUAL = 1e-6
 
 @dataclass(frozen=True)
 class Cell:
-    """State of a cell: "value" (the deviation is that of its worst part), "refused", "not modelled", "unknown"
-    (these for the reason `text`), or "wrong", `text` stating how."""
+    """State of a cell: "value" (the deviation is that of its worst part), "wrong" (`text` states how), or
+    "refused", "not modelled" and "unknown" for the reason `text`."""
 
     observable: str
     scene: str
@@ -113,7 +113,7 @@ def cell_of(observable, kind, engine="event", seed=runs.SEED, longer=1.0, finer=
 
 
 def _balance(place, balance):
-    """Return the cell of a balance, from both sides and the error of rounding; None if it does not hold there."""
+    """Return the cell of a balance."""
     if isinstance(balance, str):
         return Cell(*place, "unknown", balance)
     apart, error = balance
@@ -123,7 +123,7 @@ def _balance(place, balance):
 
 
 def _beside_theory(observable, data):
-    """Return the numbers and the deviation of a run's own theory from it, None if they agree within their errors.
+    """Return how a run deviates from its own theory, as a text and a number; None if they agree.
 
     A theory without an uncertainty is an approximation, which is not compared.
     """
@@ -156,6 +156,8 @@ def unmeasured(observable, kind, engine):
         require_modelled(observable, scene, settings)
     except SceneError as error:
         return f"{error.key}: {error.rule}"
+    if kind.wide and "structure" in observable:
+        return "waves down to a diameter are too many in so wide a container"
     needs = OBSERVABLES[observable].needs
     if needs == "fluxes" and "correlations" not in runs.options(kind, scene, settings):
         return "the engine does not tally the stress of such a scene"

@@ -42,7 +42,7 @@ def computed(kind):
     if not (kind.equilibrium or kind.points):
         return {}
     case = kind.case
-    if case.drawn or "crystal" in kind.run or "transport" in kind.run:
+    if case.drawn or "crystal" in kind.run:
         return {}
     number = CONFIGURATIONS * (8 if case.count < FEW else 1)
     found = {}
@@ -55,7 +55,7 @@ def computed(kind):
         found |= values_of_gaps(kind, case, kept)
     found["density"] = densities(case, kept)
     if case.periodic.all() and case.empty and kind.equilibrium:
-        found |= periodic_values(case, kept)
+        found |= periodic_values(kind, case, kept)
     if case.activity:
         found["number"] = {"": block_mean(kept.numbers - len(case.fixed))}
     return found
@@ -169,7 +169,7 @@ def densities(case, kept):
     return found
 
 
-def periodic_values(case, kept):
+def periodic_values(kind, case, kept):
     """Return g(r), S(k), order and chemical potentials of a periodic container with nothing inside."""
     few = kept._replace(positions=kept.positions[:: max(1, len(kept.positions) // 4000)])
     largest = 2.0 * kept.radii.max()
@@ -178,7 +178,7 @@ def periodic_values(case, kept):
         furthest = float(REACH * case.box.lengths.min())
         g, error = static.radial_distribution(case, few, furthest, SHELLS)
         found["rdf"] = {f"furthest={furthest!r},bins={SHELLS}": _curve(g, error)}
-    if largest > 1e-3:
+    if largest > 1e-3 and not kind.wide:
         highest = float(10.0 / largest)
         numbers, s, error = static.structure_factors(case, few, highest, WAVE_BINS)
         which = f"highest={highest!r},bins={WAVE_BINS}"
