@@ -127,7 +127,6 @@ lint: setup
 	.venv/bin/python -m ruff format --check .
 	.venv/bin/python -m mypy
 	.venv/bin/lint-imports --no-cache
-	PYTHONPATH=tests .venv/bin/python -m style.baseline
 	.venv/bin/python -m snakefmt --check Snakefile workflow
 	.venv/bin/python -m snakemake --lint
 

@@ -25,6 +25,7 @@ from gaspart.public import read_stub
 from gaspart.reproduction.claims.table import fill_caption
 from gaspart.reproduction.families.registry import families, titles
 from gaspart.reproduction.reference import pages as reference
+from gaspart.yaml_text import read_yaml
 
 ROOT = Path(__file__).parents[1]
 GROUPS = {
@@ -229,6 +230,43 @@ def referees():
     return {"referees.rst": text + heading("What is not judged", "-") + NOT_JUDGED}
 
 
+SOURCES = """\
+Every statement of the three documents that gaspart reproduces, in our words, with its verdict. *Corrected*:
+right but for what the evidence states. *Followed* and *replaced*: how gaspart treats a proposal. Numbers are
+those of the last reproduction.
+
+"""
+
+
+def sources():
+    """Return the page of the sources' statements, workflow/report/sources.yaml."""
+    text = heading("The sources on trial") + SOURCES
+    references = read_yaml(ROOT / "workflow/report/references.yaml")
+    for document in read_yaml(ROOT / "workflow/report/sources.yaml"):
+        about = references[document["source"]]
+        text += heading(document["source"].capitalize(), "-")
+        text += f"{' & '.join(about['authors'])}, {about['where']}\n\n"
+        rows = []
+        for entry in document["statements"]:
+            figure = entry.get("figure", "")
+            link = f" :ref:`{figure} <figure-{figure}>`" if figure else ""
+            why = fill_caption(entry["why"], judged(figure), "(see the claims)")
+            cells = {key: " ".join(entry[key].split()) for key in ("at", "says", "verdict")}
+            rows.append({**cells, "why": " ".join(why.split()) + link})
+        columns = {"place": "{at}", "statement": "{says}", "verdict": "{verdict}", "evidence": "{why}"}
+        text += table(columns, rows)
+    return {"sources.rst": text}
+
+
+def judged(figure):
+    """Return the judged claims of a figure; [] if the workflow has not run."""
+    path = ROOT / f"results/claims/{figure}.csv"
+    if not path.exists():
+        return []
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
 def paper():
     """Return the page of method and results: workflow/report/paper.md with the numbers of judged claims.
 
@@ -266,6 +304,7 @@ def write(folder):
         **gallery(folder),
         **figures(folder),
         **referees(),
+        **sources(),
         **paper(),
         **reference(),
         **changelog(),

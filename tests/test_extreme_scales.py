@@ -10,6 +10,8 @@ from malformed import within
 
 import gaspart as gp
 
+pytestmark = pytest.mark.thorough
+
 LIMIT = 5.0
 """Processor time of a case in s."""
 LONGEST = 1000

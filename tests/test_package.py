@@ -20,6 +20,8 @@ from packaging.utils import parse_wheel_filename
 
 import gaspart as gp
 
+pytestmark = pytest.mark.thorough
+
 ROOT = Path(__file__).parents[1]
 GENERATED = ("__pycache__", ".egg-info", ".pyc", ".partial")
 

@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 from site_pages import CHROMIUM, found_on
 
+pytestmark = pytest.mark.thorough
+
 ROOT = Path(__file__).parents[1]
 needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
 

@@ -17,6 +17,8 @@ from gaspart.cli import commands, lines
 from gaspart.cli.new import templates
 from gaspart.reproduction.families.registry import families
 
+pytestmark = pytest.mark.thorough
+
 ROOT = Path(__file__).parents[1]
 needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
 TOO_WIDE = """

@@ -19,7 +19,7 @@ from gaspart.analysis.measuring import measure
 from gaspart.cli import main
 from gaspart.cli.advise import _lines, _shortfall
 from gaspart.engines import EventDriven
-from gaspart.engines.dsmc.defaults import CELL_LOSS
+from gaspart.engines.dsmc.cells import CELL_LOSS
 from gaspart.engines.engine import Candidate
 from gaspart.state import initial
 from gaspart.theory.columns import gravity_column
@@ -195,7 +195,7 @@ def test_bounds_come_from_theory():
     dense = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(43, 0.5, temperature=1.0)])
     _, refused = candidates_of(dense, "pressure")
     lost = gp.DSMC(model="enskog", cells_per_side=2).bias(BOX, "rates")
-    assert lost == pytest.approx(CELL_LOSS * 4 / BOX.count)
+    assert lost == pytest.approx(CELL_LOSS[BOX.dimension] * 4 / BOX.count)
     assert gp.DSMC(model="enskog", cells_per_side=1).bias(BOX, "rates") == 0.0
     assert list(refused) == ["dsmc enskog"] and "known up to 0.4" in refused["dsmc enskog"]
     able, refused = candidates_of(DILUTE, "rdf")

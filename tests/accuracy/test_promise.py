@@ -23,6 +23,8 @@ from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
 from gaspart.simulation import Simulation
 
+pytestmark = pytest.mark.thorough
+
 SCENES = 60
 ALLOWED = 7
 """Misses among 60 that a promise of 95 % allows: more have a chance of 1 %."""

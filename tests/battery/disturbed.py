@@ -4,7 +4,7 @@ split and restored, in which units. A row for each kind of scene; `test_bits` ha
 from dataclasses import dataclass, replace
 
 import numpy as np
-from battery.kinds_of_runs import KINDS, runs, start_of
+from battery.kinds_of_runs import KINDS, SEED, engines, runs
 from scenes import gas
 
 import gaspart as gp
@@ -341,9 +341,9 @@ def of_battery():
     """Engine and kind -> row of the battery's runs, each of which is a kind of scene under an engine."""
     rows = {}
     for engine, name in runs()[0]:
-        start, kind = start_of(engine, name), KINDS[name]
+        kind = KINDS[name]
         ends = tuple(kind.interval * n for n in (3, 11, 32))
-        record = not start.scene.is_open
-        settings = {"engines": (start.engine,), "seed": start.seed, "sees": "", "record": record}
-        rows[f"{engine}: {name}"] = Row(start.scene, ends, until=0.0, **settings)
+        settings = {"engines": (engines(kind.interval)[engine],), "seed": SEED, "sees": ""}
+        settings["record"] = not kind.scene.is_open
+        rows[f"{engine}: {name}"] = Row(kind.scene, ends, until=0.0, **settings)
     return rows

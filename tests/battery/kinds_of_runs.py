@@ -6,6 +6,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
+import pytest
 
 import gaspart as gp
 from gaspart.analysis.run import repeat_run
@@ -189,6 +190,26 @@ def runs():
             else:
                 found.append((engine, name))
     return found, refused
+
+
+_EVENT = ("periodic", "walls", "gravity", "lees_edwards", "plates", "piston", "thermostat", "mixture", "open")
+_EVENT += ("wind", "two", "ten")
+CANONICAL = [
+    *(("event", name) for name in _EVENT),
+    *(("step", name) for name in ("periodic", "walls", "plates", "mixture")),
+    *(("dsmc boltzmann", name) for name in ("periodic", "plates", "mixture")),
+    *(("dsmc enskog", name) for name in ("periodic", "mixture")),
+]
+"""Runs whose kernels `make test` compiles; the other kinds are in `make test-all`."""
+
+
+def by_run(chosen):
+    """A parameter for each of these runs; those that are not canonical are thorough."""
+    marks = [() if run in CANONICAL else pytest.mark.thorough for run in chosen]
+    return pytest.mark.parametrize(
+        ("engine", "name"),
+        [pytest.param(*run, id=" ".join(run), marks=mark) for run, mark in zip(chosen, marks, strict=True)],
+    )
 
 
 @dataclass(frozen=True)

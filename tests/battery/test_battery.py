@@ -8,7 +8,7 @@ from itertools import product
 
 import pytest
 from battery import table
-from battery.kinds_of_runs import KINDS, engines, recorded, runs
+from battery.kinds_of_runs import CANONICAL, KINDS, by_run, engines, recorded, runs
 from battery.observed import MEANS, SAMPLED, SINGLE, WITHOUT_NAME, names
 
 from gaspart.analysis.observables import observables_with
@@ -30,7 +30,7 @@ ELSEWHERE = {
 """Features of scenes that the battery has not, and the tests of their symmetries."""
 
 
-@pytest.mark.parametrize(("engine", "name"), RUNS, ids=[f"{engine} {name}" for engine, name in RUNS])
+@by_run(RUNS)
 def test_observables_change_as_they_state(engine, name):
     broken = [cell for cell in table.cells(engine, name) if cell.state == "broken"]
     assert not broken, "\n".join(
@@ -39,7 +39,7 @@ def test_observables_change_as_they_state(engine, name):
     )
 
 
-@pytest.mark.parametrize(("engine", "name"), RUNS, ids=[f"{engine} {name}" for engine, name in RUNS])
+@by_run(RUNS)
 def test_runs_from_the_same_state_are_the_same(engine, name):
     broken = [pair for pair in table.pairs(engine, name) if pair.state == "broken"]
     assert not broken, "\n".join(f"{pair.symmetry}: {pair.text} {pair.deviation:.2g}" for pair in broken)
@@ -50,7 +50,7 @@ EXCHANGE += ("thermostat", "parted", "warm", "ramp")
 CONSERVING = [(engine, name) for engine, name in RUNS if name in EXCHANGE]
 
 
-@pytest.mark.parametrize(("engine", "name"), CONSERVING, ids=[" ".join(run) for run in CONSERVING])
+@by_run(CONSERVING)
 def test_the_energy_less_what_was_exchanged_is_constant(engine, name):
     """The referee is a face or a contact that is forgotten: then it is not."""
     data, scene = recorded(engine, name)["frames"], KINDS[name].scene
@@ -68,12 +68,18 @@ def test_nothing_is_left_out():
     present = {feature for kind in KINDS.values() for feature in kind.scene.features}
     assert present | set(ELSEWHERE) == set(FEATURES)
     assert set(RUNS) | set(NOT_MODELLED) == set(product(engines(1.0), KINDS))
+    assert set(CANONICAL) <= set(RUNS)
+
+
+@pytest.mark.thorough
+def test_every_run_has_every_cell():
     everything = set(product(names(), table.SYMMETRIES))
     for engine, name in RUNS:
         counted = Counter((cell.observable, cell.symmetry) for cell in table.cells(engine, name))
         assert set(counted) == everything and set(counted.values()) == {1}, (engine, name)
 
 
+@pytest.mark.thorough
 def test_every_observable_is_tested_by_every_symmetry_somewhere():
     """A reason that holds everywhere would hide that a cell is never looked at."""
     tested = {

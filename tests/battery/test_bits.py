@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from battery import kinds_of_runs
 from battery.disturbed import ROWS, of_battery
 from battery.scaling import engine_in_units, scaled, scene_in_units, state_in_units, tally_in_units
 from exact.planting import Plant, planted
@@ -23,10 +24,19 @@ UNITS = {"mass": 2.0**20, "length": 2.0**-5, "time": 2.0**-10}
 pytestmark = pytest.mark.filterwarnings("ignore:gaspart")  # of steps and cells that are too large
 
 
+CANONICAL = {"discs", "everything", "a piston", "open faces", "stress, mixture", "steps, all faces", "dsmc"}
+CANONICAL |= {f"{engine}: {name}" for engine, name in kinds_of_runs.CANONICAL}
+"""Rows whose kernels `make test` compiles."""
+
+
+def tiered(name, *values):
+    """The parameters of a row, which is thorough if it is not canonical."""
+    return pytest.param(*values, id=name, marks=() if name in CANONICAL else pytest.mark.thorough)
+
+
 def rows(chosen):
     """The rows of a test."""
-    names = [name for name, row in EVERY.items() if chosen(row)]
-    return pytest.mark.parametrize("row", [EVERY[name] for name in names], ids=names)
+    return pytest.mark.parametrize("row", [tiered(name, row) for name, row in EVERY.items() if chosen(row)])
 
 
 @rows(lambda row: len(row.engines) > 1)
@@ -92,7 +102,7 @@ LOST = {
 """Array of a checkpoint -> a row that needs it."""
 
 
-@pytest.mark.parametrize(("key", "name"), LOST.items(), ids=LOST)
+@pytest.mark.parametrize(("key", "name"), [tiered(name, key, name) for key, name in LOST.items()])
 def test_an_array_that_a_checkpoint_loses_is_noticed(key, name):
     """The referee of the rows: with this error planted, they fail."""
     whole = "if key in required:"

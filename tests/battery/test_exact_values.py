@@ -9,6 +9,8 @@ import pytest
 import gaspart as gp
 from gaspart.trajectory.reading import open_trajectory
 
+pytestmark = pytest.mark.thorough
+
 PERIODIC = "periodic"
 
 

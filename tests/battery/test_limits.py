@@ -16,6 +16,8 @@ from gaspart.errors import SceneError
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
+pytestmark = pytest.mark.thorough
+
 COUNTS = (2, 5, 20, 100, 500)
 FRACTION, COLLISIONS = 1e-3, 4000
 """Packing fraction and collisions of a dilute gas: 5/2 of the fraction is what the theory omits."""

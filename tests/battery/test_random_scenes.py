@@ -62,6 +62,7 @@ def each_random(name, check, strategy, examples):
     settings(max_examples=examples)(given(strategy, st.integers(0, 2**32))(check))()
 
 
+@pytest.mark.thorough
 @every_kind
 def test_all_searches_give_the_same_events(name):
     kind = KINDS[name]
@@ -86,6 +87,7 @@ def test_all_searches_give_the_same_events(name):
     each_random(name, check, kind.scenes, kind.examples)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", [name for name, kind in KINDS.items() if kind.larger is not None])
 def test_books_are_kept(name):
     kind = KINDS[name]

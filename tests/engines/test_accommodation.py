@@ -9,6 +9,8 @@ import gaspart as gp
 from gaspart.analysis.expected.flows import plates_of
 from gaspart.analysis.run import open_run
 
+pytestmark = pytest.mark.thorough
+
 A = gp.analysis
 GAP, SIDE = 10.0, 4.0
 ENGINES = {"event": gp.EventDriven(), "dsmc": gp.DSMC(0.25, 1, "boltzmann")}

@@ -6,6 +6,8 @@ import pytest
 import gaspart as gp
 from gaspart.engines.event.tally import QUIET, Epochs
 
+pytestmark = pytest.mark.thorough
+
 
 def alone(side, restitution=None, radius=0.5, velocity=(1.0, 0.3), boundary="wall"):
     particle = gp.Particle((0.4 * side, 0.5 * side), velocity, radius)

@@ -9,6 +9,8 @@ from scenes import closest, gas
 
 import gaspart as gp
 
+pytestmark = pytest.mark.thorough
+
 
 def pile(count=20, side=8.0, normal=0.9, tangential=-1.0, duration=None, **rest):
     """Discs that fall into a box."""

@@ -9,6 +9,8 @@ import gaspart as gp
 from gaspart import theory
 from gaspart.cli import main
 
+pytestmark = pytest.mark.thorough
+
 PLATES = {name: gp.Thermal(1.0) for name in ("x_low", "x_high")}
 PERIODIC = gp.Container((8.0, 7.0), "periodic")
 FIXED = [gp.Particle((4.0, 3.5), (0.0, 0.0), 0.5, fixed=True)]

@@ -9,6 +9,8 @@ import pytest
 import gaspart as gp
 from gaspart import theory
 
+pytestmark = pytest.mark.thorough
+
 ACROSS = ("wall", "periodic", "periodic")
 
 

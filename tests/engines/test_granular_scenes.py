@@ -8,6 +8,8 @@ from scenes import closest
 
 import gaspart as gp
 
+pytestmark = pytest.mark.thorough
+
 TIME = 100.0
 EVENTS = 200  # contacts of each particle
 ROUNDING = 1e-9

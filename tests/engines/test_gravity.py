@@ -9,6 +9,8 @@ from scenes import gas
 
 import gaspart as gp
 
+pytestmark = pytest.mark.thorough
+
 
 def thrown(
     position, velocity, gravity=(0.0, -1.0), lengths=(10.0, 10.0), radius=0.5, boundary="wall", search="boxes"

@@ -11,6 +11,8 @@ from engines.planes import carried, rows_of
 import gaspart as gp
 from gaspart.state.tally import ImpulseTally
 
+pytestmark = pytest.mark.thorough
+
 BINS = 7
 MIXTURE = [gp.Species(12, 0.3, temperature=1.0), gp.Species(6, 0.2, mass=3.0, temperature=1.0)]
 BOX, FLAT = gp.Container((3.0, 3.0, 4.0)), gp.Container((7.0, 5.0), ("wall", "periodic"))

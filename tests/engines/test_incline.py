@@ -10,6 +10,8 @@ import gaspart as gp
 from gaspart.cli.new import templates
 from gaspart.yaml_text import parse_yaml
 
+pytestmark = pytest.mark.thorough
+
 SCENE = gp.Scene.from_dict(parse_yaml(templates()["incline"].text))
 PULL = np.array(SCENE.gravity)
 

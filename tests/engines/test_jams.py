@@ -8,6 +8,8 @@ from scenes import closest
 
 import gaspart as gp
 
+pytestmark = pytest.mark.thorough
+
 COUNT = 4  # of discs in a row
 
 

@@ -8,6 +8,8 @@ import pytest
 import gaspart as gp
 from gaspart.scene.shear import flow
 
+pytestmark = pytest.mark.thorough
+
 SEARCHES = {
     "direct": gp.EventDriven(search="direct"),
     "boxes": gp.EventDriven(search="boxes"),

@@ -13,6 +13,8 @@ from scenes import gas
 
 import gaspart as gp
 
+pytestmark = pytest.mark.thorough
+
 LENGTHS = np.array([11.0, 9.0])
 GRAVITY = np.array([0.05, -0.2])
 ENDS = np.array([[3.0, 2.0], [6.5, 5.0]])

@@ -11,6 +11,8 @@ import pytest
 import gaspart as gp
 from gaspart.trajectory.last_state import last_state
 
+pytestmark = pytest.mark.thorough
+
 EVENT = gp.EventDriven()
 WALL_NUMBER = 4
 """Of the interior wall in two dimensions, after the faces."""

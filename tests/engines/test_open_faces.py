@@ -14,6 +14,8 @@ import gaspart as gp
 from gaspart import theory
 from gaspart.errors import SimulationError
 
+pytestmark = pytest.mark.thorough
+
 LENGTHS = (8.0, 4.0, 4.0)
 POINT = 1e-3
 """A radius with which hardly any particles collide."""

@@ -10,6 +10,8 @@ import pytest
 import gaspart as gp
 from gaspart.state.tally import PairImpulseTally
 
+pytestmark = pytest.mark.thorough
+
 ASKED = PairImpulseTally(1.6, 6, 0.4)
 FLAT = gp.Scene(
     gp.Container((5.0, 4.0), "periodic"),

@@ -8,6 +8,8 @@ import pytest
 
 import gaspart as gp
 
+pytestmark = pytest.mark.thorough
+
 SIDE, RADIUS = 12.0, 0.5
 _PARTED = 1e-9  # time after a contact from which the next one is looked for
 

@@ -7,6 +7,8 @@ from scenes import sent
 
 import gaspart as gp
 
+pytestmark = pytest.mark.thorough
+
 
 @pytest.mark.parametrize("boxes_per_side", [1, 2, 3, 4, 7, 11])
 def test_interior_walls_are_there_in_any_number_of_sectors(boxes_per_side):

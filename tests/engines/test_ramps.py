@@ -8,6 +8,8 @@ import pytest
 
 import gaspart as gp
 
+pytestmark = pytest.mark.thorough
+
 LENGTH, WIDTH, COLD, HOT, COUNT = 16.0, 4.0, 1.0, 4.0, 400
 ENGINES = {"event": gp.EventDriven(), "dsmc": gp.DSMC(0.5, 1, "boltzmann")}
 BLOCKS = 32

@@ -5,6 +5,8 @@ import pytest
 
 import gaspart as gp
 
+pytestmark = pytest.mark.thorough
+
 GAP = 1e-6  # below each disc of a column
 
 

@@ -11,6 +11,8 @@ from scenes import gas
 import gaspart as gp
 from gaspart import theory
 
+pytestmark = pytest.mark.thorough
+
 
 def test_smooth_and_elastic_is_the_plain_engine():
     scene = gas(3, 50, 0.1)

@@ -6,6 +6,8 @@ import pytest
 
 import gaspart as gp
 
+pytestmark = pytest.mark.thorough
+
 ENGINES = {
     "event": gp.EventDriven(),
     "dsmc": gp.DSMC(time_step=0.25, cells_per_side=1),

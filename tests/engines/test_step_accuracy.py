@@ -7,6 +7,8 @@ from scenes import gas
 import gaspart as gp
 from gaspart import theory
 
+pytestmark = pytest.mark.thorough
+
 
 def measured(eta, time_step, particle_steps, **settings):
     """Relative errors of Z and of the collision rate of spheres, each with its standard error."""

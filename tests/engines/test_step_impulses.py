@@ -12,6 +12,8 @@ from engines.test_impulses import BOX, FALLING, MIXTURE, REFUSED, SCENES
 import gaspart as gp
 from gaspart.state.tally import ImpulseTally
 
+pytestmark = pytest.mark.thorough
+
 BINS = 7
 STEP = 2.0**-8
 HALLS = gp.Container((5.0, 4.0, 3.0), ("periodic", "wall", "periodic"))

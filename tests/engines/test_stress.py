@@ -14,6 +14,8 @@ from gaspart.state.tally import StressTally
 from gaspart.trajectory.recipe import Recipe, read_recipe
 from gaspart.trajectory.run import simulation_of
 
+pytestmark = pytest.mark.thorough
+
 CUBE, FLAT = gp.Container((4.0,) * 3, "periodic"), gp.Container((9.0, 7.0), "periodic")
 PAIR = [gp.Species(20, 0.3, temperature=1.0), gp.Species(10, 0.2, mass=3.0, temperature=1.0)]
 SCENES = {

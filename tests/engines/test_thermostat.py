@@ -11,6 +11,8 @@ from scenes import gas
 
 import gaspart as gp
 
+pytestmark = pytest.mark.thorough
+
 
 def driven(dimension=2, count=20, law=None, power=0.3, interval=0.37, boundary="periodic", temperature=1.0):
     scene = gas(dimension, count, 0.1, boundary, temperature=temperature)

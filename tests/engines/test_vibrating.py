@@ -11,6 +11,8 @@ from scipy.optimize import brentq
 
 import gaspart as gp
 
+pytestmark = pytest.mark.thorough
+
 SINE, SAWTOOTH = gp.Vibrating(0.2, 1.3), gp.Vibrating(0.15, 0.7, "sawtooth")
 DOWN = (0.0, -1.0)
 _PARTED = 1e-5  # time after a bounce at which the ball is clear of the face: less than any bounce lasts

@@ -8,6 +8,8 @@ import pytest
 
 import gaspart as gp
 
+pytestmark = pytest.mark.thorough
+
 FACES = {"x_high": gp.Thermal(1.0)}  # so that all scenes here need the same kernels
 
 

@@ -7,6 +7,8 @@ import pytest
 import gaspart as gp
 from gaspart.kernels.physics.contact import fifth_root, restitution_of
 
+pytestmark = pytest.mark.thorough
+
 LAW = gp.Restitution(0.8, -0.5, reference_speed=2.0)
 ROOM = gp.Container((40.0, 40.0))
 

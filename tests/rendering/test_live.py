@@ -13,6 +13,8 @@ import gaspart as gp
 from gaspart.rendering.live import live
 from gaspart.rendering.live_gas import LiveGas
 
+pytestmark = pytest.mark.thorough
+
 
 @pytest.fixture(scope="module")
 def scene():

@@ -53,12 +53,13 @@ def test_a_good_config_passes():
     check(GOOD)
 
 
-def test_lengths_are_multiples_for_single_points():
-    multiples = {"packing_fraction=0.1": 0.5, "packing_fraction=0.7": 0.1}  # the latter of another grid
-    config = with_value(("lengths",), {"gas": multiples})
+def test_the_effort_multiplies_the_length_of_runs_and_keeps_names_and_seeds():
+    config = with_value(("effort",), 0.5)
     config["experiments"]["gas"]["point"]["equilibration"] = 1.0
-    lengths = {name: point.settings["duration"] for name, point in check(config)["gas"].items()}
-    assert lengths == {"packing_fraction=0.1": 5.0, "packing_fraction=0.2": 10.0}
+    whole = check(config | {"effort": 1.0})["gas"]
+    for name, point in check(config)["gas"].items():
+        assert point.settings["duration"] == 0.5 * whole[name].settings["duration"]
+        assert point.seeds == whole[name].seeds
 
 
 POINT = ("experiments", "gas", "point")
@@ -78,9 +79,8 @@ DENSE = "experiments.gas[packing_fraction=0.95]"
         (("run",), "figures", "run", "must match"),
         (("run",), "../mine", "run", "must match"),
         (("experiments",), {}, "experiments", "entries at least"),
-        (("lengths",), {"gsa": {}}, "lengths", "did you mean gas?"),
-        (("lengths",), {"gas": {"count=1": 0}}, "lengths.gas.count=1", "greater than 0"),
-        (("lengths",), {"gas": 2.0}, "lengths.gas", "must be of type object or null"),
+        (("effort",), 0, "effort", "greater than 0"),
+        (("effort",), "much", "effort", "must be of type number"),
         (("experiments", "gas", "gird"), {}, "experiments.gas.gird", "unknown key"),
         ((*POINT, "maas"), 1.0, "experiments.gas.point.maas", "unknown key"),
         ((*POINT, "mass"), -1.0, "experiments.gas.point.mass", "must be greater than 0"),

@@ -12,6 +12,8 @@ from gaspart.state.given import check_apart, state_at_time_zero
 from gaspart.trajectory.opening import partial_path
 from gaspart.trajectory.recipe import read_recipe
 
+pytestmark = pytest.mark.thorough
+
 EVENT = gp.EventDriven()
 LENGTHS = (12.0, 10.0)
 PLAIN = gp.Scene(gp.Container(LENGTHS, "periodic"), [gp.Species(60, 0.5, temperature=1.0)])

@@ -16,6 +16,8 @@ from gaspart.kernels.compile import cache
 from gaspart.trajectory import run
 from gaspart.trajectory.native_kernels import COMPILATION, GAIN, loaded_kernels, pays
 
+pytestmark = pytest.mark.thorough
+
 SHORTEST = COMPILATION / (1.0 - 1.0 / GAIN)  # two minutes
 
 PROGRAM = """

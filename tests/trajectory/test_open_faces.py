@@ -25,6 +25,8 @@ from gaspart.inspection.readers import read_frames
 from gaspart.simulation import Simulation
 from gaspart.trajectory.export import export
 
+pytestmark = pytest.mark.thorough
+
 FACES = {"x_low": gp.Open(0.2, 2.0), "x_high": gp.Open(), "y_high": gp.Thermal(1.5)}
 DISCS = gp.Scene(
     gp.Container((8.0, 8.0)), [gp.Species(12, 0.5, temperature=1.0)], faces=FACES, centres_to_walls=True

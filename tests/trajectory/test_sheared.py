@@ -7,6 +7,8 @@ import gaspart as gp
 from gaspart.cli import main
 from gaspart.scene.shear import flow
 
+pytestmark = pytest.mark.thorough
+
 FACES = {"y_high": gp.LeesEdwards(0.2)}
 SCENE = gp.Scene(gp.Container((12.0, 10.0), "periodic"), [gp.Species(60, 0.5, temperature=1.0)], faces=FACES)
 STRESS = gp.Correlations(interval=0.25, lags=4, stress=True)

@@ -6,7 +6,7 @@ import re
 import pytest
 from workspace import ROOT, SMOKE, copy_of_project
 
-pytestmark = pytest.mark.workflow
+pytestmark = [pytest.mark.workflow, pytest.mark.thorough]
 
 BLOCK = re.compile(
     r'^```\w+ title="(?P<path>[^"]+)"(?: after="(?P<after>[^"]+)")?\n(?P<text>.*?)^```$', re.M | re.S

@@ -15,7 +15,7 @@ from gaspart.reproduction.archive.metadata import METADATA
 from gaspart.reproduction.config import merged_with_default
 from gaspart.yaml_text import parse_yaml, write_yaml
 
-pytestmark = pytest.mark.workflow
+pytestmark = [pytest.mark.workflow, pytest.mark.thorough]
 
 SNAKEFILE = f"""
 configfile: "settings.yaml"

@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 from workspace import ROOT, copy_of_project
 
-pytestmark = pytest.mark.workflow
+pytestmark = [pytest.mark.workflow, pytest.mark.thorough]
 
 FILES = re.compile(r'^```\w+ title="(speed-moments/[^"]+)"\n(.*?)^```$', re.MULTILINE | re.DOTALL)
 WHOLE = {"title": "moments", "seed": 1, "points": "results/points"}

@@ -19,11 +19,6 @@ SIMULATIONS = {"simulate", "compute"}
 PACKING_FRACTIONS = read_yaml(ROOT / "config/smoke.yaml")["experiments"]["virial_discs"]["grid"][
     "packing_fraction"
 ]
-# The figures made of this experiment, and the scatter of all claims.
-MADE_OF_THEM = 1 + sum(
-    "virial_discs" in block["experiments"]
-    for block in read_yaml(ROOT / "config/config.yaml")["figures"].values()
-)
 
 
 def processor_time(work):
@@ -96,6 +91,11 @@ def test_a_job_starts_in_less_than_a_second(tmp_path):
     assert min(processor_time(lambda: start_job(tmp_path)) for _ in range(7)) < 1.0
 
 
+def made_of_them(config):
+    """Return the number of figures made of this experiment, with the scatter of all claims."""
+    return 1 + sum("virial_discs" in block["experiments"] for block in config["figures"].values())
+
+
 def test_adding_a_point_simulates_that_point_only(smoke, tmp_path):
     more = tmp_path / "more.yaml"
     values = [0.07, *PACKING_FRACTIONS]
@@ -104,7 +104,7 @@ def test_adding_a_point_simulates_that_point_only(smoke, tmp_path):
     assert SIMULATIONS & set(plan) == {"simulate"}
     assert plan["simulate"] == 1
     assert "warm" not in plan
-    assert plan["measure"] == plan["draw"] == plan["judge"] == MADE_OF_THEM
+    assert plan["measure"] == plan["draw"] == plan["judge"] == made_of_them(smoke.config)
 
 
 def test_a_longer_run_reruns_its_experiment_only(smoke, tmp_path):
@@ -113,7 +113,7 @@ def test_a_longer_run_reruns_its_experiment_only(smoke, tmp_path):
     plan = smoke.plan(*SMOKE, str(longer))
     assert SIMULATIONS & set(plan) == {"simulate"}
     assert plan["simulate"] == len(PACKING_FRACTIONS)
-    assert plan["measure"] == MADE_OF_THEM
+    assert plan["measure"] == made_of_them(smoke.config)
 
 
 @pytest.mark.parametrize(
@@ -157,7 +157,7 @@ def test_editing_the_physics_of_a_contact_simulates_everything_again(smoke):
     finally:
         undo()
     assert set(plan) >= {"warm", "simulate", "compute", "measure", "judge", "draw"}
-    config, _ = merged_with_default(ROOT / "config/smoke.yaml")
+    config = smoke.config
     shown = {name for block in config["figures"].values() for name in block["experiments"]}
     jobs = Counter(point.job for name in shown for point in points(config, name))
     assert jobs["fill"] > 0  # without contacts

@@ -10,6 +10,7 @@ from digests import digests, known
 
 from gaspart.reproduction import job_time
 from gaspart.reproduction.claims import CLAIM_KINDS, VERDICTS
+from gaspart.reproduction.config import merged_with_default
 from gaspart.reproduction.cost import budgets
 from gaspart.reproduction.families.registry import families
 from gaspart.yaml_text import read_yaml
@@ -24,12 +25,15 @@ def test_every_figure_of_the_table_is_in_the_config():
     assert set(ALL["figures"]) == set(families())
 
 
-def test_the_run_has_each_kind_of_job(smoke):
-    config = smoke.config
+def jobs(config):
+    """The kinds of jobs of a config's figures."""
     shown = {name for block in config["figures"].values() for name in block["experiments"]}
-    assert {config["experiments"][name].get("job", "simulate") for name in shown} == {
-        experiment.get("job", "simulate") for experiment in ALL["experiments"].values() if experiment
-    }
+    return {config["experiments"][name].get("job", "simulate") for name in shown}
+
+
+def test_the_run_has_each_kind_of_job(smoke):
+    whole, _ = merged_with_default(ROOT / "config/smoke.yaml")
+    assert jobs(smoke.config) == jobs(whole)
 
 
 def test_every_figure_is_drawn_twice_and_has_a_claim_with_a_verdict(smoke):
@@ -154,6 +158,9 @@ return {
 
 
 @pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium here to click through the report with")
+@pytest.mark.parametrize(
+    "smoke", [pytest.param("all figures", marks=pytest.mark.thorough)], indirect=True, scope="session"
+)
 @pytest.mark.parametrize("width", [390, 1400])
 def test_the_report_reads_and_clicks_on_a_phone_and_on_a_desk(smoke, tmp_path, width):
     found = found_by(CLICKS, smoke.path / "results/smoke/report.html", tmp_path, width)

@@ -248,5 +248,6 @@ def page_of(figures, claims, films):
         style=of_project("workflow/report/page.css"),
         behaviour=[of_project(f"workflow/report/{name}") for name in ("page.js", "engines.js", "states.js")],
         findings=of_project("workflow/report/findings.yaml"),
+        statements=of_project("workflow/report/sources.yaml"),
         references=of_project("workflow/report/references.yaml"),
     )

@@ -79,7 +79,14 @@ with job(snakemake):
         undefined=jinja2.StrictUndefined,
     )
     environment.filters["number"] = "{:.5g}".format
-    texts = [*captions.values(), *(row[key] for row in claims for key in ("source", "allowance_source"))]
+    statements = page.statements(read_yaml(given.statements), claims)
+    if not any(one["figure"] in of_figure for one in statements):  # a report of other figures
+        statements = []
+    texts = [
+        *captions.values(),
+        *(text for one in statements for text in (f"[{one['source']}]", one["why"])),
+        *(row[key] for row in claims for key in ("source", "allowance_source")),
+    ]
     sources = references.cited_references(texts, references.read_references(given.references))
     environment.filters["cite"] = lambda text: Markup(references.link_citations(str(escape(text)), sources))
     text = environment.get_template(Path(given.template).name).render(
@@ -95,6 +102,7 @@ with job(snakemake):
         other_films=[film for film, beside in params.films.items() if beside not in of_figure],
         claims=claims,
         findings=page.findings(read_yaml(given.findings), claims),
+        statements=statements,
         headline=page.headline(claims),
         verdicts=page.verdicts(claims),
         states=explore.states(measured),

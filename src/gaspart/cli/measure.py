@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import io
+import json
 import os
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -26,8 +27,11 @@ from gaspart.cli.arguments import (
     several,
 )
 from gaspart.cli.progress import waiting
+from gaspart.engines import engine_from_dict
 from gaspart.errors import SceneError
 from gaspart.files import FileKind, begins_with, output_path, writing
+from gaspart.scene.scene import Scene
+from gaspart.yaml_text import parse_yaml
 
 if TYPE_CHECKING:
     from gaspart.analysis.observable import Observable
@@ -147,6 +151,8 @@ def _measure(options: argparse.Namespace) -> None:
         for note in (observable.attrs[key] for key in ("note", _SEEDS, _DRIFT) if key in observable.attrs):
             print_line(f"({note})")
         write(observable)
+    for remark in _of_engine(files[0]):
+        print_line(f"({remark})")
 
 
 def _field_of(options: argparse.Namespace) -> dict[str, Any]:
@@ -205,6 +211,17 @@ def _of_drift(trajectory: Any, name: str, times: tuple[float | None, float | Non
     with until_time(trajectory, times[1]) as part:
         drift = drift_of(part, times[0], "position" in OBSERVABLES[name].along)
     return {_DRIFT: f"not steady: {drift}"} if drift else {}
+
+
+def _of_engine(file: str) -> list[str]:
+    """Return remarks about notable errors of the engine of a run."""
+    from gaspart.trajectory.reading import open_trajectory
+
+    with open_trajectory(file) as trajectory:
+        if "engine" not in trajectory.attrs:
+            return []
+        engine = engine_from_dict(json.loads(trajectory.attrs["engine"]))
+        return engine.remarks(Scene.from_dict(parse_yaml(trajectory.attrs["scene"])))
 
 
 def _of_seeds(trajectory: Any, name: str) -> dict[str, str]:

@@ -143,6 +143,10 @@ class Engine:
         """Return relative errors that are known before a run, by name."""
         return {}
 
+    def remarks(self, scene: Scene) -> list[str]:
+        """Return remarks about notable errors of settings and model; runs and measurements state them."""
+        return []
+
     def bias(self, scene: Scene, kind: str) -> float:
         """Return an upper bound of the relative error of a quantity due to the settings.
 

@@ -173,9 +173,6 @@ def check(config: dict, files: Sequence[str | Path] = ()) -> dict[str, dict[str,
         check_values(config)
         _check_names(config)
         require(schema(_installed_kinds(config)), config, "")
-        for experiment in config.get("lengths") or ():
-            if experiment not in config["experiments"]:
-                raise SceneError("lengths", experiment, unknown_word(experiment, config["experiments"]))
         planned = {experiment: checked_points(config, experiment) for experiment in config["experiments"]}
         for figure, block in config["figures"].items():
             points = figure_points(config, figure, planned)

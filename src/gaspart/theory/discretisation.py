@@ -37,6 +37,18 @@ cells do not change D.
 """
 CELL_VISCOSITY = {2: math.pi / 24.0, 3: CELL_COEFFICIENTS["viscosity"]}
 """Coefficients of (width / l)^2 for the viscosity, by dimension; for discs by the same argument."""
+STRESS_TRANSFER = {2: 1.0 / 12.0, 3: 1.0 / 18.0}
+"""Viscosity due to the distance of partners in a cell, divided by n m nu width^2, by dimension.
+
+n is the number density and nu the collision rate of a particle. `CELL_VISCOSITY` is this value divided by the
+viscosity of a dilute gas.
+"""
+DENSE_VISCOSITY = {2: (1.0, 0.25 + 2.0 / math.pi), 3: (0.8, 0.16 + 48.0 / (25.0 * math.pi))}
+"""Coefficients a and b of Enskog's viscosity 1 + a (Z - 1) + b (Z - 1)^2, by dimension.
+
+The unit is the viscosity of a dilute gas divided by the contact value (Chapman & Cowling 1970; for discs
+Gass, J. Chem. Phys. 54, 1898 (1971)).
+"""
 STEP_COEFFICIENTS = {
     "viscosity": 16.0 / (75.0 * math.pi),
     "conductivity": 64.0 / (675.0 * math.pi),

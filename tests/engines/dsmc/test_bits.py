@@ -13,6 +13,8 @@ from scenes import gas
 import gaspart as gp
 from gaspart.engines.dsmc import arrays
 
+pytestmark = pytest.mark.thorough
+
 
 @st.composite
 def scenes(draw, most=60):

@@ -9,6 +9,8 @@ import pytest
 
 import gaspart as gp
 
+pytestmark = pytest.mark.thorough
+
 SIDE, COUNT, RADIUS = 8.0, 320, 0.05  # dilute: a contact value of 1.0008
 STARTS = {
     "rest": [gp.Species(COUNT, RADIUS)],

@@ -11,6 +11,8 @@ import gaspart as gp
 from gaspart.scene.limits import ball_volume
 from gaspart.theory.discretisation import contact_values
 
+pytestmark = pytest.mark.thorough
+
 
 @pytest.mark.parametrize("packing_fraction", [0.1, 0.4])
 @pytest.mark.filterwarnings("ignore:gaspart")

@@ -10,6 +10,8 @@ from scenes import gas
 import gaspart as gp
 from gaspart import theory
 
+pytestmark = pytest.mark.thorough
+
 
 def exact_rate(state, volume):
     """Collisions per time of a mixture of Maxwellian gases at one temperature, of all pairs (exact): half the

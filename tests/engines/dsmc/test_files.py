@@ -9,6 +9,8 @@ from gaspart.cli import main
 from gaspart.reproduction.points.point import compile_kernels, compile_task, variant
 from gaspart.reproduction.points.points import points
 
+pytestmark = pytest.mark.thorough
+
 DILUTE = gp.Scene(gp.Container((20.0,) * 3, "periodic"), [gp.Species(2000, 0.1, temperature=1.0)])
 
 

@@ -11,6 +11,8 @@ from scenes import gas
 import gaspart as gp
 from gaspart import theory
 
+pytestmark = pytest.mark.thorough
+
 
 def test_an_inelastic_gas_cools_at_the_rate_of_kinetic_theory():
     """- d ln T / ds, s = 2 N_coll / N, once the velocities have come to their lasting form."""

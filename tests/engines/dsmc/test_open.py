@@ -17,6 +17,8 @@ from scenes import opened
 import gaspart as gp
 from gaspart.errors import SimulationError
 
+pytestmark = pytest.mark.thorough
+
 MIXED = ROWS["dsmc, open faces"].scene
 """Discs between two reservoirs, a vacuum and a thermal face."""
 

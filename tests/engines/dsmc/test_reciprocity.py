@@ -9,6 +9,8 @@ import pytest
 import gaspart as gp
 from gaspart import theory
 
+pytestmark = pytest.mark.thorough
+
 DENSITY, INTERVAL, BLOCKS = 2000.0, 0.3, 16
 KNUDSEN = 0.3
 """Mean free path over the width of the channel, which is 1."""

@@ -8,7 +8,8 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.engines.dsmc.defaults import Rates, cells_for, predicted_error, rates
+from gaspart.engines.dsmc.cells import Medium
+from gaspart.theory.rates import Rates, rates
 
 BOX = gp.Container((10.0, 10.0, 10.0))
 FEW = gp.Species(20, 0.1, temperature=1.0)
@@ -22,41 +23,86 @@ def test_rates_are_those_of_theory(dimension):
     assert found.speed == pytest.approx(float(theory.mean_speed(dimension)), rel=0.02)
 
 
-def test_cells_are_a_third_of_a_path_or_hold_sixteen_or_eight():
-    for side, count, path, cells in (
-        (3.0, 10_000, 1.0, 9),  # a third of a path
-        (30.0, 300_000, 10.0, 26),  # 16 in a cell
-        (30.0, 20_000, 1.0, 13),  # 8 in a cell
-    ):
-        container = gp.Container((side,) * 3, "periodic")
-        scene = gp.Scene(container, [gp.Species(count, 0.001)])
-        assert cells_for(gp.DSMC(), scene, Rates(1.0 / path, 1.0, path)) == (cells,) * 3
+PLATES = {"boundary": ("periodic", "periodic", "wall")}
+SLIDING = {"z_low": gp.Thermal(1.0), "z_high": gp.Thermal(1.0, velocity=(0.5, 0.0, 0.0))}
+
+
+def plates(count=2000, radius=0.178, faces=SLIDING, **more):
+    """A gas between plates, eleven mean free paths apart."""
+    container = gp.Container((10.0, 10.0, 10.0), **PLATES)
+    species = [gp.Species(count, radius, temperature=1.0)]
+    return gp.Scene(container, species, faces=faces, **more)
+
+
+def of_scene(scene, **settings):
+    """The engine's choice for a scene: the gas, the cells and the step."""
+    return gp.DSMC(**settings)._chosen(scene)
+
+
+@pytest.mark.parametrize("model", ["boltzmann", "enskog"])
+def test_cells_are_layers_where_the_gas_varies_across_walls_alone(model):
+    """Also in a channel and in equilibrium, but not where rolls or clusters can form."""
+    hot = {**SLIDING, "z_low": gp.Thermal(2.0)}
+    lossy = gp.Restitution(0.9)
+    down, along = (0.0, 0.0, -0.1), (0.1, 0.0, 0.0)
+    for scene in (plates(), plates(gravity=along), plates(faces={}), plates(faces={}, gravity=down)):
+        assert of_scene(scene, model=model)[1][:2] == (1, 1)
+    for scene in (plates(faces=hot, gravity=down), plates(faces={}, restitution=lossy)):
+        assert min(of_scene(scene, model=model)[1]) > 1
+    x, y, z = of_scene(gas(3, 2000, 0.01), model=model)[1]
+    assert x == y == z > 1
+
+
+@pytest.mark.parametrize(
+    ("scene", "model"),
+    [(plates(), "boltzmann"), (plates(), "enskog"), (gas(3, 20000, 0.001), "boltzmann")],
+)
+def test_no_other_cells_have_smaller_errors(scene, model):
+    medium, cells, step = of_scene(scene, model=model)
+    chosen = medium.errors(cells, step).total
+    for number in range(1, 100):
+        other = tuple(1 if n == 1 else number for n in cells)
+        assert medium.errors(other, step).total > 0.98 * chosen
 
 
 def test_the_predicted_error_is_that_of_the_literature():
     scene = gas(3, 1000, 0.001)
-    found = Rates(1.0, math.sqrt(8.0 / math.pi), math.sqrt(8.0 / math.pi))
+    medium = Medium(
+        "boltzmann", scene, Rates(1.0, math.sqrt(8.0 / math.pi), math.sqrt(8.0 / math.pi)), 1000.0
+    )
     side = scene.container.lengths[0]
-    cells = 4
-    width = side / cells / found.path
-    expected = 16.0 / (45.0 * math.pi) * width**2
-    assert predicted_error((cells,) * 3, 1e-9, scene, found) == pytest.approx(expected)
-    moved = math.sqrt(2.0) * 0.5 / found.path
-    expected += 16.0 / (75.0 * math.pi) * moved**2
-    assert predicted_error((cells,) * 3, 0.5, scene, found) == pytest.approx(expected)
+    width = side / 4 / medium.gas_rates.path
+    assert medium.errors((4,) * 3, 1e-9).width == pytest.approx(16.0 / (45.0 * math.pi) * width**2)
+    moved = math.sqrt(2.0) * 0.5 / medium.gas_rates.path
+    assert medium.errors((4,) * 3, 0.5).step == pytest.approx(16.0 / (75.0 * math.pi) * moved**2)
 
 
-def test_coarse_settings_are_warned_of_with_those_that_would_do():
+def test_coarse_settings_are_warned_of_with_those_that_have_less_error():
     scene = gas(3, 20000, 0.001)
-    with pytest.warns(UserWarning, match=r"time_step = 100 is .* mean free times .* a step of .* would do"):
+    with pytest.warns(UserWarning, match=r"time_step = 100 is .* mean free times .* with a step of "):
         gp.Simulation(scene, gp.DSMC(time_step=100.0))
-    with pytest.warns(
-        UserWarning, match=r"cells_per_side = \(1, 1, 1\) gives .* mean free paths .* would do"
-    ):
+    with pytest.warns(UserWarning, match=r"cells .* mean free paths wide, .* with cells_per_side = \(\d+"):
         gp.Simulation(scene, gp.DSMC(cells_per_side=1))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         gp.Simulation(scene, gp.DSMC())
+
+
+def test_right_cells_are_not_warned_of():
+    """A third of a mean free path across the gap, and one cell along it; cubes are worse."""
+    scene = plates(radius=0.1)
+    assert not gp.DSMC(cells_per_side=(1, 1, 34)).remarks(scene)
+    (line,) = gp.DSMC(cells_per_side=3).remarks(scene)
+    assert line.startswith("cells ") and "with cells_per_side = (1, 1, " in line
+
+
+def test_what_the_boltzmann_model_neglects_is_stated():
+    """At a packing fraction of 0.15 a third of the collisions; nothing in a dilute gas."""
+    (line, *_) = gp.DSMC().remarks(gas(3, 1000, 0.15))
+    lost = 1.0 - 1.0 / float(theory.contact_value(0.15, 3))
+    assert f"a collision rate {100.0 * lost:.2g} %" in line and "model = enskog" in line
+    assert not gp.DSMC(model="enskog").remarks(gas(3, 1000, 0.15))
+    assert not gp.DSMC(cells_per_side=8).remarks(gas(3, 20000, 0.001))
 
 
 @pytest.mark.parametrize(

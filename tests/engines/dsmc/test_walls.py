@@ -8,6 +8,8 @@ from engines.dsmc.steps import advanced
 
 import gaspart as gp
 
+pytestmark = pytest.mark.thorough
+
 
 def slab(faces, count=4000, radius=1e-6, length=10.0, **rest):
     """Spheres between two walls across x."""

@@ -19,6 +19,8 @@ from gaspart.kernels.compile.parts import _FIRST, PartCache
 from gaspart.kernels.compile.policy import inner_kernel, kernel
 from gaspart.kernels.model import Space
 
+pytestmark = pytest.mark.thorough
+
 
 class Pair(NamedTuple):
     values: np.ndarray

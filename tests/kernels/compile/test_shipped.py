@@ -15,6 +15,8 @@ from gaspart.kernels.compile import cache as shipped
 from gaspart.kernels.compile import files
 from gaspart.kernels.compile.files import KernelFiles
 
+pytestmark = pytest.mark.thorough
+
 SPEC = importlib.util.spec_from_file_location(
     "ship_kernels", Path(__file__).parents[3] / "release/ship_kernels.py"
 )

@@ -18,7 +18,7 @@ from gaspart.reproduction.report.explore import (
 ROOT = Path(__file__).parents[3]
 REFERENCES = read_references(ROOT / "workflow/report/references.yaml")
 YEAR = re.compile(r"\b(?:18|19|20)\d\d\b")
-CAPTIONS = sorted(path for path in (ROOT / "workflow/report").glob("*.rst"))
+CAPTIONS = [*sorted((ROOT / "workflow/report").glob("*.rst")), ROOT / "workflow/report/sources.yaml"]
 CLAIMS = sorted((ROOT / "src/gaspart/reproduction/families").glob("*/*claims.py"))
 NO_CITATION = "Kolafa's shorter\nequation of 1986"
 EXAMPLES = (

@@ -228,7 +228,8 @@ def _heat_between_plates(plates: Plates, points: bool) -> Expected | None:
     except ValueError:  # the theory's own estimate of the Knudsen number is slightly larger
         return None
     is_known = points or plates.filled < _DILUTE
-    error = flux * plates.knudsen**2 if is_known else math.nan
+    thinner = 3.0 * hot / (hot + math.sqrt(hot * cold) + cold)  # mean density over density at the hot plate
+    error = flux * (thinner * plates.knudsen) ** 2 if is_known else math.nan
     return Expected(flux, error, f"Fourier's law with Enskog's conductivity and temperature jumps, {at}")
 
 

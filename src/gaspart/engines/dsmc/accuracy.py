@@ -104,18 +104,18 @@ def cell_error(engine: DSMC, request: AccuracyRequest) -> float:
 
     The error of the viscosity, and of observables that depend on it, is computed for the shortest mean free
     path. The error of a rate is the error of averaging over a cell for a density that changes by a factor e
-    over the shortest length scale. For the Enskog model, the fraction of collisions lost in cells with few
-    particles is added.
+    over the shortest length scale. The fraction of repeated or lost collisions is added, which is smaller
+    where cells contain more particles.
     """
-    conditions, error = request.conditions, 0.0
-    if request.transported:
-        error += engine.predictions(request.scene)["viscosity_error"] * conditions.contrast**2
-    dense = engine.model == "enskog"
+    conditions, errors = request.conditions, engine.errors(request.scene)
+    error = (errors.width + errors.step) * conditions.contrast**2 if request.transported else 0.0
     if conditions.axis is not None:
         half = 0.5 * cell_widths(engine, conditions)[conditions.axis] / conditions.scale
         averaged = 1.0 - math.tanh(half) / half if half > 1e-6 else 0.0
-        error += averaged * (_ON_PROFILES if dense else 1.0)
-    return float(error + (_lost(engine, conditions) if dense else 0.0))
+        error += averaged * (_ON_PROFILES if engine.model == "enskog" else 1.0)
+    weights = conditions.share * conditions.contact
+    fewer = float(weights.sum() / (weights * conditions.crowding).sum())
+    return float(error + (errors.repeats if request.transported else errors.lost) * fewer)
 
 
 def require_resolved(engine: DSMC, conditions: Conditions) -> None:
@@ -172,14 +172,3 @@ def _layers(request: AccuracyRequest) -> float:
     sigma, free = 2.0 * scene.largest_radius, float(conditions.free[-1])
     length = min(free, conditions.scale) if conditions.axis == scene.dimension - 1 else free
     return float(conditions.virial.max()) * math.sqrt(sigma / max(length, sigma))
-
-
-def _lost(engine: DSMC, conditions: Conditions) -> float:
-    """Return the fraction of all collisions that the engine misses.
-
-    More collisions are missed where cells contain fewer particles. The local fraction is weighted by the
-    collision rate.
-    """
-    weights = conditions.share * conditions.contact
-    fewer = float(weights.sum() / (weights * conditions.crowding).sum())
-    return engine.bias(conditions.scene, "rates") * fewer

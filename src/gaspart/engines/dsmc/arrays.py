@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gaspart.engines.dsmc.cells import spreads
 from gaspart.engines.features.faces import (
     WALL_DRAWS,
     accommodations,
@@ -152,13 +153,6 @@ another.
 def is_uniform(scene: Scene) -> bool:
     """Return True if the density is uniform at all times, and therefore known."""
     return scene.is_periodic and spreads(scene)
-
-
-def spreads(scene: Scene) -> bool:
-    """Return True if nothing in a scene concentrates particles."""
-    spread = all(kind.arrangement != "slab" and kind.region is None for kind in scene.species)
-    elastic = scene.restitution is None or not scene.restitution.dissipative
-    return spread and elastic
 
 
 def moved_fields(fields: np.ndarray, before: Grid, after: Grid) -> np.ndarray:

@@ -1,20 +1,18 @@
-"""Default settings of the engine, and the errors of settings."""
+"""Steps of a scene: the default, the longest, and their division if speeds rise."""
 
 from __future__ import annotations
 
 import math
-import operator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gaspart.engines.dsmc.cells import LONGEST, falling_axis
 from gaspart.errors import SceneError, SimulationError
 from gaspart.scene.scene import Scene
-from gaspart.state.boxes import cube_side
 from gaspart.state.state import State
-from gaspart.theory.discretisation import CELL_VISCOSITY, STEP_COEFFICIENTS
-from gaspart.theory.rates import MEAN_SQUARE, Rates, accessible, highest_speed, rates, usual_count
+from gaspart.theory.rates import Rates, highest_speed, rates
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.settings import DSMC
@@ -31,12 +29,11 @@ if TYPE_CHECKING:
 # is never divided. The run stops before a step in which particles would collide with more than `MOST` others.
 
 
-LONGEST = 0.2
-"""Longest recommended step in mean free times."""
 CROSSED = 0.5
 """Longest step in a gas without collisions, as a fraction of the time in which a particle crosses the
 container.
 """
+_DIGITS = 2.0**10  # parts to which a step is rounded, so that it does not depend on the rounding of sums
 FALLEN = 0.125
 """Maximum fall per step, as a fraction of the container's length along gravity."""
 MOST = 1024.0
@@ -131,13 +128,6 @@ def reach_of(scene: Scene, path: float) -> Reach:
     return Reach(path, min(lengths), fall, min(walled, default=math.inf), math.hypot(*pull), push, interval)
 
 
-def falling_axis(scene: Scene) -> int | None:
-    """Return the axis between walls along which gravity is strongest, or None."""
-    periodic = scene.container.periodic
-    pulls = [0.0 if around else abs(g) for g, around in zip(scene.gravity or (), periodic, strict=False)]
-    return pulls.index(max(pulls)) if any(pulls) else None
-
-
 def may_speed_up(scene: Scene) -> bool:
     """Return True if the mean speed can rise so much that steps must be adapted."""
     if scene.gravity is not None or scene.thermostat is not None or scene.faces or scene.rough:
@@ -210,72 +200,6 @@ def too_fast(time: float, step: float, reach: Reach, pace: Pace) -> SimulationEr
     return SimulationError(f"at time {time:g} time_step = {step:g} {_TOO_LONG}: {fit:.2g} would do")
 
 
-# Cells and time step of a scene, and their errors.
-
-
-WIDEST = 1.0 / 3.0
-"""Largest recommended cell width in mean free paths."""
-FEWEST = {"boltzmann": 8.0, "enskog": 64.0}
-"""Minimum number of particles per cell, even if the cell then becomes wider.
-
-After a collision in a dense gas the two particles move apart. If the cell contains few other particles, few
-pairs that approach remain. With 8 particles per cell a gas at a packing fraction of 0.4 has 6 % too few
-collisions.
-"""
-USUAL = 16.0
-"""Sufficient number of particles per cell. If there are more, cells become narrower than recommended."""
-LAYERS = 8
-"""Minimum number of cells along gravity between walls, because speeds depend on the height."""
-_DIGITS = 2.0**10  # parts to which a step is rounded, so that it does not depend on the rounding of sums
-CELL_LOSS = 0.5
-"""Maximum fraction of collisions that the Enskog model misses, multiplied by the number of particles per
-cell.
-
-The two particles move apart after a collision. If the cell contains few other particles, few pairs that
-approach remain (docs/dsmc.md: with 8 particles per cell 3 % of the collisions are missing at a packing
-fraction of 0.1, 6 % at 0.4).
-"""
-
-
-def cells_for(engine: DSMC, scene: Scene, gas_rates: Rates, crowding: float = 1.0) -> tuple[int, ...]:
-    """Return the prescribed or recommended number of cells along each axis (d,).
-
-    crowding : density around a particle, averaged over particles, divided by the mean density
-    """
-    prescribed, d = engine.cells_per_side, scene.dimension
-    if prescribed is not None and not (engine.adapts_cells and crowding > 1.0):
-        sides = tuple(prescribed) if isinstance(prescribed, (tuple, list)) else (prescribed,) * d
-        if len(sides) != d:
-            raise SceneError("cells_per_side", prescribed, f"must be one number, or one for each of {d} axes")
-        return sides
-    return recommended_cells(
-        engine.model, scene, gas_rates.at_density(crowding), crowding * usual_count(scene)
-    )
-
-
-def recommended_cells(model: str, scene: Scene, gas_rates: Rates, number: float) -> tuple[int, ...]:
-    """Return the recommended number of cells along each axis (d,), for a number of particles.
-
-    Along the direction of gravity there are `LAYERS` cells, if there are enough particles. The remaining
-    cells are divided among the other axes.
-    """
-    lower, upper = accessible(scene)
-    lengths = tuple(float(length) for length in upper - lower)
-    fit, axis = _fitting(lengths, gas_rates, number, model), falling_axis(scene)
-    layers = min(LAYERS, math.floor(number / FEWEST[model]))
-    if axis is None or layers <= fit[axis]:
-        return fit
-    others = _fitting(lengths[:axis] + lengths[axis + 1 :], gas_rates, number / layers, model)
-    return (*others[:axis], layers, *others[axis:])
-
-
-def _fitting(lengths: tuple[float, ...], gas_rates: Rates, number: float, model: str) -> tuple[int, ...]:
-    """Return the number of cells along each axis that suits a number of particles."""
-    width = min(WIDEST * gas_rates.path, cube_side(lengths, number / USUAL))
-    width = max(width, cube_side(lengths, number / FEWEST[model]))
-    return tuple(max(1, math.floor(length / width + 1e-9)) for length in lengths)
-
-
 def step_for(engine: DSMC, scene: Scene, gas_rates: Rates) -> float:
     """Return the length of a step: the engine's setting or the recommended length.
 
@@ -294,82 +218,3 @@ def step_for(engine: DSMC, scene: Scene, gas_rates: Rates) -> float:
         longest = reach.longest(gas_rates.speed, reach.recommended)
     fraction, exponent = math.frexp(longest)
     return math.ldexp(round(fraction * _DIGITS) / _DIGITS, exponent)
-
-
-def widths_of(cells: tuple[int, ...], scene: Scene) -> np.ndarray:
-    """Return the sides (d,) of a cell."""
-    lower, upper = accessible(scene)
-    return (upper - lower) / np.array(cells)
-
-
-def predicted_error(cells: tuple[int, ...], step: float, scene: Scene, gas_rates: Rates) -> float:
-    """Return the relative error of the shear viscosity due to cells and step.
-
-    The error makes the viscosity too high. It is a (w/l)^2 + b (c dt/l)^2, where w is the side of a cell, l
-    the mean free path and c = sqrt(2 kT/m); a is from `CELL_VISCOSITY` and b from `STEP_COEFFICIENTS`. The
-    value of b for discs is an estimate, the value for spheres. A periodic axis with a single cell does not
-    contribute, because the gas has no profile along it.
-    """
-    if not gas_rates.path < math.inf:
-        return 0.0
-    d, widths = scene.dimension, widths_of(cells, scene)
-    flat = [n == 1 and around for n, around in zip(cells, scene.container.periodic, strict=True)]
-    width = max((float(w) for w, is_flat in zip(widths, flat, strict=True) if not is_flat), default=0.0)
-    return (
-        CELL_VISCOSITY[d] * (width / gas_rates.path) ** 2
-        + STEP_COEFFICIENTS["viscosity"] * _thermal_step(step, d, gas_rates) ** 2
-    )
-
-
-def diffusion_error(step: float, scene: Scene, gas_rates: Rates) -> float:
-    """Return the positive relative error of the diffusion coefficient due to a step.
-
-    For spheres the error is b (c dt/l)^2, with the quantities of `predicted_error`. For discs the same value
-    is an estimate. Cells do not affect the diffusion coefficient.
-    """
-    return (
-        STEP_COEFFICIENTS["diffusion"] * _thermal_step(step, scene.dimension, gas_rates) ** 2
-        if gas_rates.path < math.inf
-        else 0.0
-    )
-
-
-def lost_collisions(engine: DSMC, cells: tuple[int, ...], scene: Scene) -> float:
-    """Return an upper bound of the fraction of collisions that the Enskog model misses.
-
-    With a single cell the model misses none.
-    """
-    number = math.prod(cells)
-    return CELL_LOSS * number / scene.count if engine.model == "enskog" and number > 1 else 0.0
-
-
-def _thermal_step(step: float, dimension: int, gas_rates: Rates) -> float:
-    """Return the step in thermal units, c dt / l (see `predicted_error`)."""
-    return math.sqrt(2.0) * gas_rates.speed / math.sqrt(MEAN_SQUARE[dimension]) * step / gas_rates.path
-
-
-def coarse(
-    engine: DSMC, cells: tuple[int, ...], step: float, scene: Scene, gas_rates: Rates, crowding: float = 1.0
-) -> dict[str, str]:
-    """Return warnings, by setting, about prescribed cells and steps that are too coarse.
-
-    Each warning recommends a value.
-
-    gas_rates : collision rates at the present time
-    crowding : see `cells_for`
-    """
-    texts = {}
-    fit = recommended_cells(engine.model, scene, gas_rates, crowding * usual_count(scene))
-    effect = f"makes the viscosity {100.0 * predicted_error(cells, step, scene, gas_rates):.2g} % too high"
-    wide, met = float(widths_of(cells, scene).max()) / gas_rates.path, step * gas_rates.frequency
-    if not engine.adapts_cells and wide > WIDEST * (1.0 + 1e-9) and any(map(operator.lt, cells, fit)):
-        texts["cells_per_side"] = (
-            f"gaspart: cells_per_side = {engine.cells_per_side} gives cells of {wide:.2g} mean free paths"
-            f"{{when}} and {effect}; {fit} would do"
-        )
-    if not engine.adapts_steps and met > LONGEST * (1.0 + 2.0 / _DIGITS):
-        texts["time_step"] = (
-            f"gaspart: time_step = {step:g} is {met:.2g} mean free times{{when}} and {effect};"
-            f" a step of {step * LONGEST / met:.2g} would do"
-        )
-    return texts

@@ -4,21 +4,20 @@ from __future__ import annotations
 
 import math
 import warnings
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gaspart.engines.dsmc.arrays import dense_for, grid_for, moved_fields, spreads
+from gaspart.engines.dsmc.arrays import dense_for, grid_for, moved_fields
+from gaspart.engines.dsmc.cells import Medium, cells_for, medium_for, neglected, remarks, spreads
 from gaspart.engines.dsmc.defaults import (
     FINEST,
-    cells_for,
     check_step,
-    coarse,
     is_hotter,
     may_speed_up,
     pace_for,
     reach_of,
-    recommended_cells,
     step_for,
     too_fast,
 )
@@ -112,11 +111,17 @@ class Resolution:
         self.dense: Dense | None = None
         self.grid: Grid | None = None
         self.set(0)
-        self._warn(self._found, "")
+        if text := neglected(engine, scene):
+            warnings.warn(f"gaspart: {text}", stacklevel=5)
+        self._warn(self._medium(0), "")
+
+    def _medium(self, crowded: int) -> Medium:
+        """Return the gas at a density level."""
+        return medium_for(self._engine, self._scene, self._found, 2.0**crowded)
 
     def cells_of(self, crowded: int) -> tuple[int, ...]:
         """Return the number of cells along each axis (d,) for a density level."""
-        return cells_for(self._engine, self._scene, self._found, 2.0**crowded)
+        return cells_for(self._engine, self._medium(crowded), self.step, 2.0**crowded)
 
     def set(self, crowded: int) -> None:
         """Set the cells and the step lengths for a density level."""
@@ -136,15 +141,11 @@ class Resolution:
 
     def look(self, positions: np.ndarray, time: float) -> None:
         """Adapt the cells to the density around particles at positions (N, d)."""
-        scene, times = self._scene, 2.0**self.crowded
-        cells = recommended_cells(
-            self._engine.model, scene, self._found.at_density(times), times * usual_count(scene)
-        )
-        crowded = next_level(self.crowded, crowding(positions, cells, scene))
+        cells = self._medium(self.crowded).recommended(self.step)
+        crowded = next_level(self.crowded, crowding(positions, cells, self._scene))
         if crowded != self.crowded:
             self.set(crowded)
-            gas_rates = self._found.at_density(2.0**crowded)
-            self._warn(gas_rates, f" where most particles are at time {time:g}")
+            self._warn(self._medium(crowded), f" where most particles are at time {time:g}")
 
     def level(self, particles: Particles, position: int, time: float) -> int:
         """Return the level of division for the next part of a step.
@@ -167,15 +168,14 @@ class Resolution:
         if self.pace is not None:
             speed = float(self.pace.fastest[0])
             gas_rates = Rates(speed / self._reach.path, speed, self._reach.path)
-            self._warn(gas_rates, f" by time {time:g}")
+            self._warn(replace(self._medium(self.crowded), gas_rates=gas_rates), f" by time {time:g}")
 
-    def _warn(self, gas_rates: Rates, when: str) -> None:
-        """Warn once about each prescribed setting that is coarser than recommended.
+    def _warn(self, medium: Medium, when: str) -> None:
+        """Warn once about each setting that causes a notable error.
 
         when : words that describe the time in the warning
         """
-        texts = coarse(self._engine, self.cells, self.step, self._scene, gas_rates, 2.0**self.crowded)
-        for key, text in texts.items():
+        for key, text in remarks(self._engine, medium, self.cells, self.step, when).items():
             if key not in self._warned:
                 self._warned.add(key)
-                warnings.warn(text.format(when=when), stacklevel=6)
+                warnings.warn(f"gaspart: {text}", stacklevel=6)

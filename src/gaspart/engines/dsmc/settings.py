@@ -13,6 +13,7 @@ from gaspart.keys import choice, count, declare, per_side, positive
 from gaspart.scene.face_checks import refuse_open
 
 if TYPE_CHECKING:
+    from gaspart.engines.dsmc.cells import Errors, Medium
     from gaspart.engines.dsmc.dynamics import DsmcDynamics
     from gaspart.engines.engine import AccuracyRequest, Candidate
     from gaspart.scene.scene import Scene
@@ -38,7 +39,8 @@ class DSMC(Engine):
     time_step : float, [time], optional
         Length of a step. Default: a step of at most a fifth of the scene's mean free time.
     cells_per_side : int or (d,) sequence of int, optional
-        Number of cells along each axis. Default: cells with a width of about a third of a mean free path.
+        Number of cells along each axis. Default: the cells with the smallest error; a single cell along
+        periodic axes on which the gas does not vary.
     model : {"boltzmann", "enskog"}, default "boltzmann"
         Collision model. "boltzmann": a dilute gas [1]_ [2]_. "enskog": a dense gas [3]_, in which the centres
         of collision partners are one diameter apart, and the collision rate is multiplied by the contact
@@ -84,7 +86,7 @@ class DSMC(Engine):
     cells_per_side: int | tuple[int, ...] | None = field(
         default=None,
         metadata=declare(
-            per_side("number of cells, or one for each axis; by default a third of a mean free path wide")
+            per_side("number of cells, or one for each axis; by default those with the smallest error")
         ),
     )
     model: str = field(
@@ -212,16 +214,11 @@ class DSMC(Engine):
         >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
         >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
         >>> gp.DSMC().for_scene(scene, interval=1.0).describe(), gp.DSMC().for_scene(scene).cells_per_side
-        ('dsmc, model boltzmann, time_step 0.5', (6, 6, 6))
+        ('dsmc, model boltzmann, time_step 0.5', (7, 7, 7))
         """
-        from gaspart.engines.dsmc.defaults import cells_for, step_for
-        from gaspart.theory.rates import rates
-
-        gas_rates = rates(scene, self.model == "enskog")
-        step = step_for(self, scene, gas_rates)
+        _, cells, step = self._chosen(scene)
         if self.time_step is None and interval is not None:
             step = interval / math.ceil(interval / step * (1.0 - 1e-9))
-        cells = cells_for(self, scene, gas_rates)
         return self._with(time_step=step, cells_per_side=cells, adapts=(self.adapts_steps, self.adapts_cells))
 
     def with_step(self, step: float) -> DSMC:
@@ -257,7 +254,7 @@ class DSMC(Engine):
         return replace(plain, adapt=ADAPTED[adapts[0] + 2 * adapts[1]])
 
     def predictions(self, scene: Scene) -> dict[str, float]:
-        """Return the relative error of the shear viscosity due to cells and steps.
+        """Return the relative error of the shear viscosity due to cells and steps, and of other fluxes.
 
         Parameters
         ----------
@@ -280,14 +277,9 @@ class DSMC(Engine):
         >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
         >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
         >>> round(gp.DSMC().predictions(scene)["viscosity_error"], 3)
-        0.099
+        0.105
         """
-        from gaspart.engines.dsmc.defaults import cells_for, predicted_error, step_for
-        from gaspart.theory.rates import rates
-
-        gas_rates = rates(scene, self.model == "enskog")
-        cells, step = cells_for(self, scene, gas_rates), step_for(self, scene, gas_rates)
-        return {"viscosity_error": predicted_error(cells, step, scene, gas_rates)}
+        return {"viscosity_error": self.bias(scene, "fluxes")}
 
     def cells_along(self, scene: Scene) -> int:
         """Return the largest number of cells along an axis.
@@ -307,12 +299,9 @@ class DSMC(Engine):
         >>> import gaspart as gp
         >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
         >>> gp.DSMC().cells_along(gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)]))
-        6
+        7
         """
-        from gaspart.engines.dsmc.defaults import cells_for
-        from gaspart.theory.rates import rates
-
-        return max(cells_for(self, scene, rates(scene, self.model == "enskog")))
+        return max(self._chosen(scene)[1])
 
     def bias(self, scene: Scene, kind: str) -> float:
         """Bound the relative error of a quantity due to cells, steps and lost collisions.
@@ -328,8 +317,7 @@ class DSMC(Engine):
         Returns
         -------
         float, [1]
-            The bias of cells and steps, from the literature, plus the fraction of collisions that the Enskog
-            model misses.
+            The bias; see docs/dsmc.md for its parts.
 
         Examples
         --------
@@ -337,17 +325,67 @@ class DSMC(Engine):
         >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
         >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
         >>> [round(gp.DSMC().bias(scene, kind), 4) for kind in ("rates", "paths", "fluxes")]
-        [0.0, 0.0015, 0.099]
+        [0.0, 0.0334, 0.1052]
         """
-        from gaspart.engines.dsmc import defaults
-        from gaspart.theory.rates import rates
+        return self.errors(scene).of(kind)
 
-        gas_rates = rates(scene, self.model == "enskog")
-        cells, step = defaults.cells_for(self, scene, gas_rates), defaults.step_for(self, scene, gas_rates)
-        lost = defaults.lost_collisions(self, cells, scene)
-        if kind == "fluxes":
-            return lost + defaults.predicted_error(cells, step, scene, gas_rates)
-        return lost + (defaults.diffusion_error(step, scene, gas_rates) if kind == "paths" else 0.0)
+    def errors(self, scene: Scene) -> Errors:
+        """Return the parts of the errors due to cells and steps.
+
+        Parameters
+        ----------
+        scene : Scene
+            The scene.
+
+        Returns
+        -------
+        Errors
+            Relative errors, see docs/dsmc.md.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
+        >>> round(gp.DSMC().errors(gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])).step, 4)
+        0.0021
+        """
+        medium, cells, step = self._chosen(scene)
+        return medium.errors(cells, step)
+
+    def remarks(self, scene: Scene) -> list[str]:
+        """Return remarks about notable errors of settings and model, as printed at the start of a run.
+
+        Parameters
+        ----------
+        scene : Scene
+            The scene.
+
+        Returns
+        -------
+        list of str
+            Remarks, each a line.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
+        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
+        >>> gp.DSMC(cells_per_side=2).remarks(scene)[0].partition(", make ")[2]
+        'the viscosity 88 % too high: 11 % with cells_per_side = (7, 7, 7)'
+        """
+        from gaspart.engines.dsmc.cells import neglected, remarks
+
+        text = neglected(self, scene)
+        return [*([text] if text else []), *remarks(self, *self._chosen(scene)).values()]
+
+    def _chosen(self, scene: Scene) -> tuple[Medium, tuple[int, ...], float]:
+        """Return the gas of a scene, and the number of cells along each axis and the step for it."""
+        from gaspart.engines.dsmc.cells import cells_for, medium_for
+        from gaspart.engines.dsmc.defaults import step_for
+
+        medium = medium_for(self, scene)
+        step = step_for(self, scene, medium.gas_rates)
+        return medium, cells_for(self, medium, step), step
 
     @classmethod
     def variants(cls) -> tuple[DSMC, ...]:
@@ -510,7 +548,7 @@ class DSMC(Engine):
         -------
         dict of str to str
             Remarks by title: the method of finding pairs, and the effect of steps that are longer than the
-            default. For such steps the run also issues a warning.
+            default.
 
         Examples
         --------

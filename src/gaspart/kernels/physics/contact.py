@@ -20,8 +20,9 @@ def contact_root(rr, rv, vv, ss):
     """Return the time of first touch for a pair on a collision course (rv < 0).
 
     This is the smaller root of vv t^2 + 2 rv t + (rr - ss) = 0, in the form without cancellation t = c/(-b +
-    sqrt(b^2 - ac)) (Spencer 2022, Eq. 21). For a pair that already overlaps, the root is negative: its
-    absolute value is the time since the pair touched, by which the time-stepped engine moves the pair back.
+    sqrt(b^2 - ac)) (from Spencer 2022, Eq. 19; Eq. 21 as printed is half of it). For a pair that already
+    overlaps, the root is negative: its absolute value is the time since the pair touched, by which the
+    time-stepped engine moves the pair back.
     """
     c = rr - ss
     return c / (sqrt(rv * rv - vv * c) - rv)

@@ -30,9 +30,7 @@ from gaspart.reproduction.points.point_keys import (
     SCENE_FILE,
 )
 
-# Settings of a point whose run length is multiplied. An uncertainty falls as the inverse root of the length.
-# If the claims of a point need less accuracy, its runs can be shorter than others of its grid: `lengths` of a
-# config has the multiples.
+# Settings of a point for the effort of a config. An uncertainty falls as the inverse root of the effort.
 
 
 _LEAST_REPLICAS = 6
@@ -177,10 +175,6 @@ ANIMATION: dict[str, Kind] = {
 }
 
 
-MULTIPLE: Kind = positive("", maximum=100)
-"""Multiple of the length of a point."""
-
-
 def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
     """Return the top level of a config from the entries of its figures by name.
 
@@ -207,16 +201,11 @@ def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
         "experiments": describe(
             {**named, "minProperties": 1, "additionalProperties": record(EXPERIMENT)}, "what is simulated"
         ),
-        "lengths": nullable(
-            describe(
-                {
-                    "type": "object",
-                    "additionalProperties": {"type": ["object", "null"], "additionalProperties": MULTIPLE},
-                },
-                "multiples of the length of single points, by experiment and name of the point: so many "
-                "times the replicas, or for the rest the length of each run",
-                default=None,
-            )
+        "effort": positive(
+            "multiple of the replicas of every point, or else of the length of its runs; uncertainties fall "
+            "as the inverse root of the effort",
+            maximum=100,
+            default=1.0,
         ),
         "figures": describe(
             {**named, "properties": figures, "additionalProperties": own},
@@ -240,15 +229,15 @@ def points(config: dict, experiment: str) -> list[Point]:
     """
     block = config["experiments"][experiment]
     where = f"experiments.{experiment}"
-    multiples = (config.get("lengths") or {}).get(experiment) or {}
+    effort = config.get("effort", 1.0)
     by_name: dict[str, Point] = {}
     varied = block.get("grid")
     for varying in _combinations({} if varied is None else varied, f"{where}.grid"):
         combined = {**block.get("point", {}), **varying}
         name, job = name_of(varying, f"{where}.grid"), block.get("job", "simulate")
         settings = {key: _plain(key, value) for key, value in combined.items() if value is not None}
-        if name in multiples:
-            settings = scale_length(job, settings, multiples[name])
+        if effort != 1.0:
+            settings = scale_length(job, settings, effort)
         point = _chosen(
             Point(
                 experiment=experiment,

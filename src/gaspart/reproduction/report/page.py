@@ -121,7 +121,7 @@ def split_caption(text: str) -> Caption:
     others = [paragraph for paragraph in paragraphs[1:] if not paragraph.startswith(_SEEN)]
     reading = [opening, *(paragraph.removeprefix(_SEEN).strip() for paragraph in seen)]
     reading = [re.sub(r"^\(", r"\\(", paragraph) for paragraph in reading]  # "(a)" is not the start of a list
-    title = html_of(finding[1]).removeprefix("<p>").removesuffix("</p>").rstrip(".")
+    title = _inline(finding[1]).rstrip(".")
     return Caption(
         finding=title,
         plain=re.sub(r"<[^>]+>", "", title),
@@ -252,6 +252,24 @@ def findings(chosen: Iterable[Mapping[str, str]], rows: list[dict[str, Any]]) ->
         for finding in chosen
         if finding["figure"] in present
     ]
+
+
+def statements(documents: Iterable[Mapping[str, Any]], rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return the statements of the sources, with the measured numbers of their figures filled in.
+
+    Each has the source, the place `at`, the verdict, the figure or "", and `says` and `why` as HTML.
+    """
+    shown = []
+    for document in documents:
+        for entry in document["statements"]:
+            own = [row for row in rows if row["figure"] == entry.get("figure")]
+            texts = {key: _inline(fill_caption(entry[key], own)) for key in ("says", "why")}
+            shown.append({"figure": "", "source": document["source"], **entry, **texts})
+    return shown
+
+
+def _inline(text: str) -> str:
+    return html_of(text).removeprefix("<p>").removesuffix("</p>")
 
 
 def headline(rows: list[dict[str, Any]]) -> dict[str, Any]:

@@ -19,6 +19,8 @@ from gaspart.reproduction.families.motion.measure import size_series
 from gaspart.reproduction.table import Table
 from gaspart.theory.state import compressibility_factor
 
+pytestmark = pytest.mark.thorough
+
 REPEATED = 400
 BEDS = beds(restitutions=(0.995, 0.99, 0.98, 0.95, 0.9)).isel(bed=slice(5, None))
 WELL = walls().isel(point=slice(4))

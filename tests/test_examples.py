@@ -1,0 +1,54 @@
+"""Every public name is documented, and the examples of public docstrings run and give what they state."""
+
+import doctest
+import inspect
+
+import pytest
+
+import gaspart as gp
+
+FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.IGNORE_EXCEPTION_DETAIL
+
+
+def public_items():
+    """Return the functions and classes in the stubs, and the public members of the latter, by name."""
+    items = {}
+    for package in (gp, gp.analysis, gp.theory):
+        named = [(name, getattr(package, name)) for name in package.__all__]
+        for name, item in named:
+            if not inspect.isfunction(item) and not inspect.isclass(item):
+                continue
+            items[f"{package.__name__}.{name}"] = item
+            for key, member in vars(item).items() if inspect.isclass(item) else ():
+                if not key.startswith("_") and callable(getattr(member, "__func__", member)):
+                    items[f"{package.__name__}.{name}.{key}"] = member
+    return items
+
+
+ITEMS = public_items()
+
+
+def failures(text, name):
+    """Return the report of the examples in a docstring that fail."""
+    lines = []
+    test = doctest.DocTestParser().get_doctest(text, {}, name, name, 0)
+    doctest.DocTestRunner(optionflags=FLAGS).run(test, out=lines.append)
+    return "".join(lines)
+
+
+@pytest.mark.parametrize(
+    "name", [name for name, item in ITEMS.items() if ">>>" in (inspect.getdoc(item) or "")]
+)
+def test_an_example_gives_what_it_states(name, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    report = failures(inspect.getdoc(ITEMS[name]), name)
+    assert not report, report
+
+
+def test_a_wrong_example_is_noticed():
+    assert "Expected:\n    3\nGot:\n    2" in failures(">>> 1 + 1\n3\n", "wrong")
+
+
+def test_every_public_name_is_documented():
+    assert len(ITEMS) > 300
+    assert [name for name, item in ITEMS.items() if not inspect.getdoc(item)] == []
