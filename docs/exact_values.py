@@ -20,7 +20,7 @@ the same chance, corrected for the number of values), of a short run under each 
 the tests require less than 4. An *r* means that the observable is undefined there and must be refused, a bar
 that no exact value is known; the reasons are below. More than 80 planted errors, two or more of each
 observable, are each caught by a named cell. The kinetic equations of the DSMC engine have closed forms of
-their own. Below each value stands the theory that gaspart states for the run, which must agree within its
+their own. The theory that gaspart states for a run must agree with the run, too, within its
 uncertainty. The last columns are balances: what counters of faces say of momentum, energy, force and number.
 
 """

@@ -119,6 +119,23 @@ def collision_rate(kind):
     return {"": [total / kind.case.count, 0.0]}
 
 
+def pair_rates(kind):
+    """Return the collisions of a body of the first group of each pair per time with the second."""
+    gas, groups, found = Independent(kind), kind.case.groups, {}
+    for n, m in itertools.combinations_with_replacement(range(len(groups)), 2):
+        inverse = 1.0 / groups[n].mass + 1.0 / groups[m].mass
+        speed = math.sqrt(kind.temperature * inverse / (2.0 * math.pi)) * closed.speed_factor(kind.freedoms)
+        each = (2.0 if n == m else 1.0) * speed / groups[n].count
+        found[f"{n}-{m}"] = [each * gas.pairs(n, m), 0.0]
+    return found
+
+
+def contact_values(kind):
+    """Return the contact value of each pair of groups."""
+    pairs = itertools.combinations_with_replacement(range(len(kind.case.groups)), 2)
+    return {f"{n}-{m}": [Independent(kind).contact(n, m), 0.0] for n, m in pairs}
+
+
 def compressibility(kind):
     """Return Z by the virial of pairs at contact; 1 of the Boltzmann equation."""
     if kind.equation == "boltzmann":
@@ -139,6 +156,8 @@ RULES = {
     "force": lambda kind: forces(kind)[0],
     "pressure": lambda kind: forces(kind)[1],
     "collision_rate": collision_rate,
+    "pair_rates": pair_rates,
+    "contact_values": contact_values,
     "Z": compressibility,
     "number": number,
 }

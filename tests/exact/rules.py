@@ -185,6 +185,8 @@ def unknown(observable, kind):
         return "the places of the fixed bodies are drawn"
     if "crystal" in kind.run and kind.equation == "exact" and observable in OF_STRUCTURE:
         return "a crystal has no closed form of its structure"
+    if "transport" in kind.run and observable in OF_STRUCTURE and observable != "density":
+        return "more bodies than are sampled"
     if "transport" in kind.run and observable in LONG and observable != "bulk_viscosity":
         return None  # of Chapman and Enskog
     if observable in DYNAMIC and (

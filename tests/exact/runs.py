@@ -35,6 +35,9 @@ def refusals(name):
     """Return why engines do not model a kind, by the name of the engine."""
     scene, found = gp.Scene.from_dict(kinds()[name].scene), {}
     for engine, settings in _offered(kinds()[name]).items():
+        if isinstance(settings, str):
+            found[engine] = settings
+            continue
         try:
             settings.check_features(scene)
         except SceneError as error:
@@ -43,14 +46,16 @@ def refusals(name):
 
 
 def _offered(kind):
-    """Return engines: the stepped one with a step of a small error, the kinetic ones by default."""
+    """Return engines by name, or why one is not tried: the stepped one with a step of a small error, the kinetic
+    ones with their own settings.
+    """
     step = kind.run["interval"] / math.ceil(kind.run["interval"] / time_step(kind))
-    found = {"event": gp.EventDriven()}
-    if kind.run["duration"] <= MOST_STEPS * step:
-        found["step"] = gp.TimeStepped(step)
-    if "short" not in kind.run:  # whose first lags are short beside the steps of a kinetic engine
-        found |= {"dsmc": gp.DSMC(), "enskog": gp.DSMC(model="enskog")}
-    return found
+    stepped, kinetic = gp.TimeStepped(step), (gp.DSMC(), gp.DSMC(model="enskog"))
+    if kind.run["duration"] > MOST_STEPS * step:
+        stepped = "(not tried) too many steps"
+    if "short" in kind.run:
+        kinetic = 2 * ("(not tried) the first lags are short beside a step",)
+    return {"event": gp.EventDriven(), "step": stepped, "dsmc": kinetic[0], "enskog": kinetic[1]}
 
 
 @cache

@@ -42,7 +42,7 @@ def computed(kind):
     if not (kind.equilibrium or kind.points):
         return {}
     case = kind.case
-    if case.drawn or "crystal" in kind.run:
+    if case.drawn or {"crystal", "transport"} & set(kind.run):
         return {}
     number = CONFIGURATIONS * (8 if case.count < FEW else 1)
     found = {}
