@@ -6,7 +6,7 @@
 # make precise    all figures from longer runs: results/precise/report.html
 # make smoke      all figures, small: results/smoke/report.html
 # make docs       the documentation site, with executed notebooks: results/docs/html/index.html; after a complete
-#                 reproduction also docs/gallery.png, the picture of the README, and docs/figures, its small pictures
+#                 reproduction also docs/gallery.png, the picture of the README
 # make wheel      dist/gaspart-...whl, for this version of Python, with compiled kernels for the scenes of `gaspart new`
 # make archive    all figures, and archive.zip, the file to deposit
 # make benchmark  the speed of the engines on this machine, which should run nothing else: results/tables/performance.csv
@@ -147,7 +147,6 @@ results/docs/extra/play/index.html: docs/play.py docs/play.html src/gaspart/rend
 
 docs: setup results/docs/symmetries.csv results/docs/exact_values.csv results/docs/extra/play/index.html
 	.venv/bin/python docs/gallery.py results docs/gallery.png
-	.venv/bin/python docs/thumbnails.py results
 	.venv/bin/python -m sphinx --quiet --fail-on-warning --jobs auto docs results/docs/html
 	@echo "documentation: results/docs/html/index.html"
 

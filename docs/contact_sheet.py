@@ -1,6 +1,6 @@
 """What the program can show, in pictures: python docs/contact_sheet.py
 
-Writes docs/gallery.md, a page with the picture, or the film, of every template of `gaspart new`, and
+Writes docs/gallery.md, a page with the picture of every template of `gaspart new`, and
 docs/scenes.png, the picture of the README: some of them in one. Both follow from docs/scenes
 (`scene_pictures.py`).
 """
@@ -50,8 +50,7 @@ def page() -> str:
 
 
 def _cell(template: Template) -> str:
-    filmed = (DOCS / f"scenes/{template.name}.webp").exists()
-    picture = f"![{template.title}](scenes/{template.name}.{'webp' if filmed else 'png'})"
+    picture = f"![{template.title}](scenes/{template.name}.png)"
     file = f"[`{template.name}`](../src/gaspart/cli/templates/{template.name}.yaml)"
     return f"{picture}<br>{file}: **{template.title}.** {template.description}"
 

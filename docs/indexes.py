@@ -6,10 +6,9 @@ Findings are the beginnings of the captions, lines those of the docstrings and o
 import importlib
 import inspect
 import re
-import shutil
 from pathlib import Path
 
-import thumbnails
+from PIL import Image
 from sphinx.pycode import ModuleAnalyzer
 
 from gaspart.cli import lines
@@ -19,6 +18,8 @@ from gaspart.reproduction.report.page import CHAPTERS
 from gaspart.yaml_text import read_yaml
 
 ROOT = Path(__file__).parents[1]
+SMALL = 420, 320
+"""Largest size of a picture, in pixels."""
 _FINDING = re.compile(r"\*\*(.+?)\*\*", re.DOTALL)
 _MAY_BREAK = "\N{ZERO WIDTH SPACE}"
 _CITED = re.compile(r"\[(source [A-Z])\]")
@@ -28,10 +29,7 @@ _ABBREVIATED = ("", "Chem", "J", "Mol", "Phys", "Rev")
 
 
 def figures(folder):
-    """The index of all figures, by the chapters of the report, with pictures copied into a folder.
-
-    Pictures of the last complete reproduction stand for those that the workflow has not drawn here.
-    """
+    """The index of all figures, by the chapters of the report, with small pictures of those drawn."""
     text = (
         _heading("Figures")
         + "Each picture leads to its figure, with theory, claims and the command that makes it.\n\n"
@@ -49,14 +47,13 @@ def figures(folder):
 def _card(figure, folder):
     """A figure in the index: its picture, its name and its finding."""
     address = f"{families()[figure]}.html#figure-{figure.replace('_', '-')}"
-    small = folder / thumbnails.path(figure).name
-    drawn, kept = ROOT / f"results/figures/{figure}.png", thumbnails.path(figure)
+    small, drawn = folder / f"{figure}.webp", ROOT / f"results/figures/{figure}.png"
     text = ".. container:: card\n\n"
     if drawn.exists():
-        thumbnails.reduced(drawn).save(small)
-    elif kept.exists():
-        shutil.copyfile(kept, small)
-    if drawn.exists() or kept.exists():
+        with Image.open(drawn) as image:
+            picture = image.convert("RGB")
+        picture.thumbnail(SMALL)
+        picture.save(small)
         text += (
             f"   .. image:: {folder.name}/{small.name}\n      :target: {address}\n      :alt: {figure}\n\n"
         )

@@ -110,12 +110,11 @@ def helped(parser):
 
 
 def gallery(folder):
-    """The page of the templates, whose pictures, or films, are copied."""
+    """The page of the templates, whose pictures are copied."""
     text = heading("Scenes of the gallery")
     text += "``gaspart new NAME.yaml --template NAME`` writes a scene file; the command below it runs it.\n\n"
     for name, template in templates().items():
-        films = list(ROOT.glob(f"docs/scenes/{name}.webp"))
-        (picture,) = films or [ROOT / f"docs/scenes/{name}.png"]
+        picture = ROOT / f"docs/scenes/{name}.png"
         shutil.copyfile(picture, folder / picture.name)
         scene = "".join(line for line in template.text.splitlines(True) if not line.startswith("#"))
         text += f".. _scene-{name}:\n\n" + heading(template.title, "-")

@@ -63,19 +63,6 @@ def test_the_picture_that_is_kept_names_its_results():
         assert picture.text["config"] == "full reproduction" and picture.text["revision"]
 
 
-def test_the_films_of_the_gallery_play_and_are_small():
-    """If not: python docs/scene_pictures.py docs/scenes NAME."""
-    pictures, films = script("scene_pictures"), sorted((ROOT / "docs/scenes").glob("*.webp"))
-    assert {film.stem for film in films} == set(pictures.FILMED)
-    assert sum(film.stat().st_size for film in films) < 3e6
-    for film in films:
-        with Image.open(film) as moving:
-            assert moving.n_frames >= pictures.FRAMES and moving.size == pictures.FILM_SIZE
-            first = np.asarray(moving.convert("RGB"), float)
-            moving.seek(moving.n_frames - 1)
-            assert np.abs(np.asarray(moving.convert("RGB"), float) - first).mean() > 1.0
-
-
 def test_the_gallery_and_its_picture_follow_from_the_scenes():
     """If not: python docs/contact_sheet.py."""
     contact_sheet = script("contact_sheet")

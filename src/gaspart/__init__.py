@@ -12,4 +12,4 @@ if _os.name != "posix":
     raise ImportError("gaspart runs on Linux and macOS; on Windows use the Windows Subsystem for Linux")
 
 __version__ = "0.2.0"
-__getattr__, __dir__, __all__ = _attach(__name__, for_users=True)
+__getattr__, __dir__, __all__ = _attach(__name__)

@@ -30,13 +30,8 @@ def entries(path: str) -> tuple[dict[str, str], dict[str, str]]:
     return homes, {words[0]: words[2] for words in lines if len(words) == 3 and words[1] == "="}
 
 
-def attach(
-    package: str, for_users: bool = False
-) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
-    """Return `__getattr__`, `__dir__` and `__all__` of a package with a stub.
-
-    for_users : True if calls of its functions are checked for mistakes (`gaspart.errors.guidance`)
-    """
+def attach(package: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
+    """Return `__getattr__`, `__dir__` and `__all__` of a package with a stub."""
     namespace = vars(sys.modules[package])
     homes, aliases = entries(f"{namespace['__file__']}i")
     names = [*homes, *aliases]
@@ -45,19 +40,14 @@ def attach(
         if name in aliases:
             return namespace.setdefault(name, load(aliases[name]))
         if name not in homes:
-            from gaspart.errors.guidance import MissingName  # takes 2 ms
+            from gaspart.errors.words import MissingName  # takes 2 ms
 
-            raise MissingName(sys.modules[package], name)
+            parts = [part for part in ("analysis", "theory") if part in homes]
+            inner = [f"{part}.{each}" for part in parts for each in dir(import_module(f"{package}.{part}"))]
+            raise MissingName(f"module {package!r}", name, names + inner)
         home = homes[name]
         if home == package:  # a subpackage
             return import_module(f"{package}.{name}")
-        module = import_module(home)
-        member = getattr(module, name)
-        if for_users and name not in namespace and not isinstance(member, type) and callable(member):
-            from gaspart.errors.guidance import with_call_checks
-
-            member = with_call_checks(member, name)
-            setattr(module, name, member)  # pickle requires the same object under both names
-        return namespace.setdefault(name, member)
+        return namespace.setdefault(name, getattr(import_module(home), name))
 
     return load, lambda: sorted(names), names

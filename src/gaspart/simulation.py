@@ -14,7 +14,6 @@ import gaspart
 from gaspart.engines import Engine, resolve_engine
 from gaspart.engines.dynamics import EventLog, check_identity, checkpoint_identity
 from gaspart.errors import SceneError, SimulationError
-from gaspart.errors.guidance import with_guidance
 from gaspart.keys.values import count_of, number
 from gaspart.scene.face_checks import check_piston_end, piston_end, refuse_open
 from gaspart.scene.scene import DRAWN, THUMBNAIL, Scene, require_scene
@@ -48,7 +47,6 @@ PROPERTIES = (
 """Properties of particles that `Simulation.properties` can return; `State` defines them."""
 
 
-@with_guidance
 class Simulation:
     """A run of a scene by an engine, which is advanced in time.
 

@@ -92,7 +92,7 @@ def test_a_run_until_accurate_has_the_errors_of_its_pilot(run):
         (reached,) = Examiner().examine([data], (asked,), data.sizes["frame"])
     worst = known[reached.component]
     assert reached.value == worst.value and reached.error >= worst.estimate.error
-    pilot = Pilot(gp.EventDriven(), 1.0, component=worst)
+    pilot = Pilot(gp.EventDriven(), 1.0, components={"": worst})
     assert pilot.component.reaches(worst.time) == pytest.approx(
         worst.accuracy * math.sqrt(worst.freedom / _quantile(worst.freedom))
     )

@@ -29,6 +29,17 @@ def own_cache(tmp_path, monkeypatch):
     monkeypatch.setattr(pilot, "cache_directory", lambda: tmp_path / "cache")
 
 
+COUETTE = gp.Scene(
+    gp.Container((6.0, 6.0, 6.0), boundary=("wall", "periodic", "periodic")),
+    [gp.Species(100, 0.2, temperature=1.0)],
+    faces={
+        "x_low": gp.Thermal(1.0, velocity=(0.0, -1.0, 0.0)),
+        "x_high": gp.Thermal(1.0, velocity=(0.0, 1.0, 0.0)),
+    },
+)
+"""Symmetry makes the stress along z zero, and the velocity along z everywhere."""
+
+
 def test_the_heat_flux_is_not_the_pressure(tmp_path):
     """Both are of faces: each component is that of the measured observable, with its freedom."""
     path = gp.run(HEATED, gp.EventDriven(), 1, 400.0, 1.0, tmp_path / "run.nc")
@@ -44,7 +55,13 @@ def test_the_heat_flux_is_not_the_pressure(tmp_path):
 
 @pytest.mark.parametrize(
     ("scene", "observable", "accuracy"),
-    [(HEATED, "heat_flux", 0.2), (SLIDING, "wall_shear", 0.3), (SLIDING, "velocity", 0.3)],
+    [
+        (HEATED, "heat_flux", 0.2),
+        (SLIDING, "wall_shear", 0.3),
+        (SLIDING, "velocity", 0.3),
+        pytest.param(COUETTE, "wall_shear", 0.1, marks=pytest.mark.thorough),
+        pytest.param(COUETTE, "velocity", 0.3, marks=pytest.mark.thorough),
+    ],
 )
 def test_runs_end_when_they_are_accurate(tmp_path, scene, observable, accuracy):
     asked = gp.Accuracy(observable, accuracy)

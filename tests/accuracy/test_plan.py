@@ -217,9 +217,9 @@ def known(value, accuracy, time=1.0, **more):
 
 def test_pilots_that_differ_raise_the_bound():
     event, other = EventDriven(), gp.DSMC(model="enskog")
-    exact = Pilot(event, 1.0, component=known(2.0, 0.01))
-    alike = Pilot(other, 1.0, component=known(2.03, 0.01))
-    apart = Pilot(other, 1.0, component=known(2.2, 0.01))
+    exact = Pilot(event, 1.0, components={"": known(2.0, 0.01)})
+    alike = Pilot(other, 1.0, components={"": known(2.03, 0.01)})
+    apart = Pilot(other, 1.0, components={"": known(2.2, 0.01)})
     candidate = Candidate(other, model=0.003)
     assert raised_bias(candidate, alike, [exact, alike]) == 0.003
     raised = 0.1 + 1.96 * math.hypot(0.01, 0.01)
@@ -233,6 +233,22 @@ def test_pilots_that_differ_raise_the_bound():
     made = plan.Plan(trials.target, 0.02, tuple(options), {}, 2.0, 1, (exact, apart), trials.differing)
     (line,) = [one for one in _lines(made, "gas.yaml") if one.startswith("pilots differ")]
     assert "DSMC: 2.2 against 2 by the event-driven engine" in line
+
+
+def test_pilots_are_compared_in_the_same_component():
+    """The stress on two plates has opposite signs, and symmetry makes its other component vanish."""
+
+    def pilot(engine, *values):
+        parts = {name: Component(v, 2.0, 1.0, 1e-4) for name, v in zip("abc", values, strict=True)}
+        return Pilot(engine, 1.0, components=parts)
+
+    other = gp.DSMC(model="enskog")
+    exact, alike = pilot(EventDriven(), -2.02, 2.0, 0.01), pilot(other, -2.0, 2.01, -0.01)
+    candidate = Candidate(other, model=0.003)
+    assert exact.value == -2.02 and exact.accuracy == pytest.approx(0.005)
+    assert raised_bias(candidate, alike, [exact, alike]) == 0.003
+    apart = pilot(other, -2.2, 2.2, 0.0)
+    assert raised_bias(candidate, apart, [exact, apart]) > 0.09
 
 
 def test_cost_follows_from_noise_and_bias():

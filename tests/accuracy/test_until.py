@@ -63,7 +63,8 @@ def ended(known, accuracy, correct):
     for row, count in zip(known, COUNTS, strict=True):
         now, samples = Estimate(*row), count - count // 4
         one = confirm_estimate(now, before, length / samples) if correct else now
-        reached = AccuracyStatus(asked, "", one.value, one.error, one.freedom, before is not None)
+        values = one.value, abs(one.value), one.error, one.freedom
+        reached = AccuracyStatus(asked, "", *values, before is not None)
         if reached.met if correct else reached.accuracy <= accuracy:
             return one.value, reached.interval, samples
         before, length = now, samples

@@ -55,6 +55,50 @@ def test_without_rest_the_impulses_balance_gravity(engine):
     assert found.estimate.values == pytest.approx(np.abs(plain), rel=0.15, abs=0.1)
 
 
+def warm(**faces):
+    """Discs without friction that never rest, over a hot floor."""
+    faces = {name: gp.Thermal(temperature) for name, temperature in faces.items()}
+    species = [gp.Species(40, 0.3, temperature=1.0)]
+    return gp.Scene(gp.Container((6.0, 12.0)), species, gravity=(0.0, -0.3), faces=faces)
+
+
+def rough(normal, **more):
+    """Discs whose friction at the side walls carries part of their weight."""
+    law = gp.Restitution(normal=normal, tangential=0.3)
+    species = [gp.Species(40, 0.5, temperature=1.0)]
+    return gp.Scene(gp.Container((6.0, 20.0)), species, gravity=GRAVITY, restitution=law, **more)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        warm(y_low=4.0, x_low=0.5, x_high=0.5),
+        warm(x_low=1.0),
+        pytest.param(rough(1.0), marks=pytest.mark.thorough),
+        pytest.param(rough(0.9, faces={"y_low": gp.Vibrating(0.4, 0.8)}), marks=pytest.mark.thorough),
+    ],
+)
+@pytest.mark.parametrize("measure", [A.wall_force, A.wall_pressure])
+def test_without_rest_the_force_is_that_of_the_impulses(scene, measure):
+    """Side walls exert forces along gravity, so that no balance tells what rests."""
+    simulation = gp.Simulation(scene, seed=1)
+    simulation.advance(10.0)
+    found = measure(simulation, start=0.0).estimate.values
+    impulses = simulation.tally.wall_impulse[:4] / 10.0
+    if measure is A.wall_force:
+        assert found == pytest.approx(impulses, rel=1e-12)
+    assert np.isfinite(found).all()
+
+
+@pytest.mark.thorough
+def test_the_floor_of_rough_particles_at_rest_has_no_known_force():
+    simulation = gp.Simulation(rough(0.5), seed=1)
+    simulation.advance(60.0)
+    found = A.wall_force(simulation)
+    assert np.isnan(found.estimate.sel(face=["x low", "x high", "y low"])).all()
+    assert float(found.estimate.sel(face="y high")) == 0.0
+
+
 def test_rest_among_obstacles_is_refused(tmp_path):
     post = gp.Particle((10.0, 3.0), (0.0, 0.0), 1.0, fixed=True)
     path = gp.run(pile(10, particles=[post]), gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "a.nc")

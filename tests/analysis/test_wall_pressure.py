@@ -167,3 +167,14 @@ def test_sides_of_a_mixture_beside_a_wall_that_moves_have_a_force_only(tmp_path)
     path = run(gp.Scene(gp.Container((12.0, 3.0)), species, faces=faces), 40.0, 0.5, tmp_path / "a.nc")
     assert np.isnan(gp.analysis.wall_pressure(path).estimate.values).tolist() == [False, False, True, True]
     assert np.isfinite(gp.analysis.wall_force(path).estimate.values).all()
+
+
+@pytest.mark.parametrize("interval", [0.02, 6.0])
+def test_the_force_beside_a_well_does_not_depend_on_the_interval_between_frames(interval, tmp_path):
+    """The edge of a well pulls at particles, so that the face gets impulses of both signs."""
+    gas = gp.Species(20, 0.2, temperature=1.0)
+    scene = gp.Scene(gp.Container((9.0, 9.0)), [gas], faces={"x_low": gp.Well(depth=2.0, width=0.5)})
+    simulation = gp.Simulation(scene, seed=1)
+    simulation.advance(96.0)
+    found = gp.analysis.wall_force(run(scene, 96.0, interval, tmp_path / "a.nc"), start=0.0)
+    np.testing.assert_allclose(found.estimate.values, simulation.tally.wall_impulse[:4] / 96.0, rtol=1e-12)

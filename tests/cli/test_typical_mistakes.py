@@ -130,9 +130,9 @@ MISTAKES = {
     "key twice": (added("gravity: [0, -1]\ngravity: [0, -2]"), "gravity"),
     "misspelt key": (scene("temperature", "temprature"), "unknown key; did you mean temperature?"),
     "misspelt top key": (added("gravitiy: [0.0, -1.0]"), "unknown key; did you mean gravity?"),
-    "older name": (added("bodies: []"), "bodies = []: is called particles now"),
+    "older name": (added("bodies: []"), "bodies = []: unknown key; did you mean particles?"),
     "plural": (scene("radius", "radii"), "unknown key; did you mean radius?"),
-    "no container": (scene("container", "box"), "unknown key; here it is container"),
+    "no container": (scene("container", "box"), "unknown key; did you mean container?"),
     "no radius": (scene("radius: 0.5, ", ""), "species[0].radius = None: is required"),
     "negative radius": (scene("0.5", "-0.5"), "species[0].radius = -0.5: must be positive"),
     "text for a number": (scene("0.5", "big"), "species[0].radius = 'big': must be a number"),
@@ -151,7 +151,7 @@ MISTAKES = {
     "particle too large": (scene("0.5", "7.0"), "radius = 7.0: is too large for the container"),
     "unknown face": (
         added("faces: {left: {kind: thermal, temperature: 1.0}}"),
-        "faces.left = 'thermal': unknown face; here it is x_low",
+        "faces.left = 'thermal': unknown face; did you mean x_low?",
     ),
     "open face passed by surfaces": (added("faces: {x_low: {kind: open}}"), "needs centres_to_walls: true"),
     "reservoir without a temperature": (
@@ -164,14 +164,14 @@ MISTAKES = {
     ),
     "reservoir by its density": (
         added("centres_to_walls: true\nfaces: {x_low: {kind: open, density: 0.1}}"),
-        "here it is activity, which gaspart.theory.activity computes",
+        "did you mean activity?",
     ),
     "piston with a speed and a mass": (
         added("faces: {x_low: {kind: piston, speed: 1.5, mass: 10.0}}"),
         "must be mass and pressure, or speed alone",
     ),
     "piston that recedes": (added("faces: {x_low: {kind: piston, speed: -1.5}}"), "must be positive"),
-    "piston by its velocity": (added("faces: {x_low: {kind: piston, velocity: 1.5}}"), "here it is speed"),
+    "piston by its velocity": (added("faces: {x_low: {kind: piston, velocity: 1.5}}"), "did you mean speed?"),
     "part of a wall that moves": (
         added("walls: [{start: [6.0, 0.0], end: [6.0, 9.0], mass: 5.0}]"),
         "a wall that moves must reach across the whole container",
@@ -212,7 +212,7 @@ MISTAKES = {
     "misspelt key of a config": (config("title", "titel"), "unknown key; did you mean title?"),
     "older key of a point": (
         config("dimension: 2, ", "dimension: 2, boxes_per_body: 1, "),
-        "boxes_per_particle now",
+        "did you mean boxes_per_particle",
     ),
     "missing key of a point": (config("dimension: 2, ", ""), "dimension"),
     "unknown figure": (config("wall_pressure", "wall_presure"), "did you mean wall_pressure?"),

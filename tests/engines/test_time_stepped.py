@@ -16,7 +16,7 @@ from gaspart.engines.step.limits import check_scene
 
 SEARCHES = (
     {"boxes_per_side": 1},
-    {"boxes_per_side": 2},
+    {"boxes_per_side": 2, "near_boxes": True},
     {"boxes_per_side": 3, "near_boxes": True},
     {},
     {"skin": 0.05},
@@ -48,6 +48,19 @@ def test_any_search_gives_the_same_bits(scene, precision, rewind, passes, seed):
         ends.append((sim.state.unwrapped, tally.wall_impulse, tally.virial_sum, tally.overlaps_left))
     for end in ends[1:]:
         assert all(np.array_equal(one, other) for one, other in zip(ends[0], end, strict=True))
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize("boxes", [1, 2, 3])
+def test_near_boxes_are_searched_across_a_periodic_face(axis, boxes):
+    """Two discs meet head-on at the face; the second of two boxes is also beyond it."""
+    places, speeds = np.full((2, 2), 3.0), np.zeros((2, 2))
+    places[:, axis], speeds[:, axis] = (0.6, 5.4), (-1.0, 1.0)
+    pair = [gp.Particle(tuple(x), tuple(v), 0.5) for x, v in zip(places, speeds, strict=True)]
+    scene = gp.Scene(gp.Container((6.0, 6.0), "periodic"), particles=pair)
+    sim = gp.Simulation(scene, gp.TimeStepped(0.01, boxes_per_side=boxes, near_boxes=True))
+    sim.advance(duration=1.0)
+    assert sim.tally.collisions == 1
 
 
 def test_one_box_tests_each_pair_once_a_step():

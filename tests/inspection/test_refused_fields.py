@@ -34,6 +34,15 @@ def test_refused_in_netcdf(tmp_path, name):
     refused(tmp_path / "a.nc", rule)
 
 
+@pytest.mark.parametrize("attribute", ["scale_factor", "valid_range"])
+def test_a_text_for_a_number_is_refused_without_words_of_the_library(tmp_path, attribute, recwarn):
+    write_netcdf(tmp_path / "a.nc", gas_of())
+    with netCDF4.Dataset(tmp_path / "a.nc", "a") as file:
+        file["coordinates"].setncattr(attribute, "text")
+    refused(tmp_path / "a.nc", f"{attribute} of coordinates must be a number")
+    assert not recwarn.list
+
+
 def test_refused_in_netcdf_of_other_units(tmp_path):
     write_netcdf(tmp_path / "a.nc", gas_of())
     with netCDF4.Dataset(tmp_path / "a.nc", "a") as file:
@@ -68,6 +77,36 @@ def test_refused_in_gsd(tmp_path, fields, rule):
     refused(tmp_path / "a.gsd", rule)
 
 
+SHAPES = {
+    "particles/diameter": np.ones(7, np.float32),
+    "particles/velocity": np.ones((4, 2), np.float32),
+    "particles/mass": np.ones(0, np.float32),
+    "particles/typeid": np.zeros(4, np.float32),
+    "configuration/box": np.ones(5, np.float32),
+    "particles/N": np.array([2**32 - 1], np.uint32),
+    "bonds/N": np.array([2**31], np.uint32),
+}
+
+
+@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("frame", [0, 1])
+def test_chunks_of_gsd_of_another_shape_are_refused(tmp_path, name, frame):
+    """The library returns them as they are, and allocates 2^32 particles that have no position."""
+    fl = pytest.importorskip("gsd.fl")
+    good = {
+        "configuration/box": np.array([8, 8, 8, 0, 0, 0], np.float32),
+        "particles/N": np.array([4], np.uint32),
+        "particles/position": np.eye(4, 3, dtype=np.float32) * 3,
+        "particles/diameter": np.ones(4, np.float32),
+    }
+    with fl.open(str(tmp_path / "a.gsd"), "w", "test", "hoomd", [1, 4]) as file:
+        for n in range(2):
+            for key, value in ({**good, name: SHAPES[name]} if n == frame else good).items():
+                file.write_chunk(key, value)
+            file.end_frame()
+    refused(tmp_path / "a.gsd", f"in frame {frame}")
+
+
 def test_a_gsd_file_of_a_changing_number_is_refused(tmp_path):
     hoomd = pytest.importorskip("gsd.hoomd")
     with hoomd.open(str(tmp_path / "a.gsd"), "w") as file:
@@ -92,6 +131,9 @@ def test_a_gsd_file_of_a_changing_number_is_refused(tmp_path):
         ("species:S:1", 'Origin="1 2" species:S:1', "origin = .*must be 3 numbers"),
         ("species:S:1", 'time=soon species:S:1', "time = 'soon': must be 1 numbers"),
         ("A 4 4 4", "A 4 4 nan", "positions that are not finite"),
+        ("A 4 4 4", "A 4 4 1e31", "positions that are not finite, absent or above 1e.30, in frame 0"),
+        ("A 4 4 4", "A 4 4 1e20", "has a position that is more than 1e.12 containers away"),
+        ("species:S:1", "time=1e999999999 species:S:1", "has a time in frame 0"),
         ("A 4 4 4", "A 4 4 x", "cannot be read"),
         ("A 4 4 4\n", "", "is truncated: frame 0 has 1"),
         ("2\n", "-2\n", "is truncated: frame 0 has 0"),
@@ -105,6 +147,16 @@ def test_refused_in_xyz(tmp_path, old, new, rule):
     assert old in text
     path.write_text(text.replace(old, new, 1))
     refused(path, rule, radius=0.5)
+
+
+WORDS = [word * 100_000 for word in ("xxxx", "a={", "a=[", 'a="', "a ", "=", "a=")]
+
+
+@pytest.mark.parametrize("word", [*WORDS, "x" + " " * 300_000], ids=lambda word: word[:3])
+def test_a_long_comment_is_read_at_once(tmp_path, word):
+    """A pattern that is tried anew at each character would take hours."""
+    path = xyz(tmp_path / "a.xyz", ROWS, more=word)
+    assert read_frames(path, radius=0.5).count == 2
 
 
 def test_frames_of_xyz_that_differ_are_refused(tmp_path):

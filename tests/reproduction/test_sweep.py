@@ -53,6 +53,13 @@ def test_the_points_are_those_of_a_config(made):
             assert json.loads(trajectory.attrs["seed"]) == list(planned.seed(1))
 
 
+def test_the_energy_at_the_start_is_the_same_at_each_point(made):
+    """As it is conserved, the pressures of two points would differ by the scatter of drawn velocities."""
+    for path in made[0].glob("points/*/replica-*.nc"):
+        with gp.open_trajectory(path) as trajectory:
+            assert trajectory["kinetic_energy"].values[0] == pytest.approx(0.5 * 3.0 * 59.0, rel=1e-6)
+
+
 def test_the_table_has_a_dimension_for_what_varies(made):
     _, data, reported = made
     assert data.packing_fraction.values.tolist() == FRACTIONS

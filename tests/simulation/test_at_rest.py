@@ -40,11 +40,6 @@ def test_a_gas_that_something_moves_does_not(scene):
         simulated(**scene)._warn_at_rest()  # without the kernels of each scene
 
 
-def test_the_mass_has_no_position():
-    with pytest.raises(gp.SceneError, match=r"argument 3 = 1.0: is one argument too many: Species takes"):
-        gp.Species(10, 0.5, 1.0)
-
-
 def test_the_command_line_warns_in_one_line(tmp_path):
     scene = tmp_path / "rest.yaml"
     scene.write_text("container: {lengths: [20.0, 20.0]}\nspecies: [{count: 10, radius: 0.5}]\n")

@@ -220,6 +220,22 @@ def scene(boundary="periodic", exact=True, count=50, **more):
     return gp.Scene(gp.Container((12.0, 9.0, 15.0), boundary), [gas], **more)
 
 
+@pytest.mark.parametrize("boundary", ["wall", "periodic"])
+def test_gases_in_separate_regions_have_each_their_exact_temperature(boundary):
+    """Regions may touch. Species that share a region share one factor."""
+    regions = ((0.0, 0.0), (10.0, 10.0)), ((10.0, 0.0), (20.0, 10.0))
+    species = [
+        gp.Species(50, 0.3, temperature=t, mass=m, exact_temperature=True, region=region)
+        for t, m, region in ((1.0, 1.0, regions[0]), (3.0, 2.0, regions[1]), (3.0, 0.5, regions[1]))
+    ]
+    made = initial_state(gp.Scene(gp.Container((20.0, 10.0), boundary), species), 1)
+    scaled = (made.velocities**2).sum(axis=1) * made.masses / np.repeat((1.0, 3.0, 3.0), 50)
+    left, right = scaled[:50].sum(), scaled[50:].sum()
+    share = 2.0 * np.array([50.0, 125.0]) / 175.0 * (boundary == "periodic")
+    assert [left, right] == pytest.approx([100.0 - share[0], 200.0 - share[1]], rel=1e-12)
+    assert abs(scaled[50:100].sum() / 100.0 - 1.0) > 1e-3
+
+
 @pytest.mark.parametrize(
     ("boundary", "axes"),
     [("periodic", 3), (("periodic", "wall", "periodic"), 2), ("wall", 0)],

@@ -20,7 +20,7 @@ WORDS = {
     "analysis/fields.py": "quantities of a field",
     "rendering/view.py": "by what particles are coloured",
     "theory/geometry.py": "names of arguments",
-    "errors/synonyms.py": "words of other programs",
+    "errors/words.py": "words of other programs",
     "theory/columns.py": "what differs between two columns of gas",
 }
 """Modules in which some of the names are words of something else, beside the families, whose data sets have

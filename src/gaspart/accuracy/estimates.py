@@ -107,14 +107,14 @@ def components(data: xr.Dataset, observable: str, start: float | None = None) ->
     A scalar or a curve has one component, "". For a curve, value and error are root mean squares. Raises the
     same SceneError as the function of `gaspart.analysis`.
     """
-    from gaspart.analysis.measuring import measure
+    from gaspart.analysis.frames import measure_single
     from gaspart.analysis.run import open_run
 
     with open_run(data, start, sheared=True, varying=True) as run:
         if OBSERVABLES[observable].of_impulses:
             return _on_walls(run, observable)
         time = float(run.time[-1] - run.time[0])
-    declared, result = OBSERVABLES[observable], measure(data, observable, start)
+    declared, result = OBSERVABLES[observable], measure_single(data, observable, start)
     parts = [np.asarray(of, dtype=float) for of in (result.estimate, result.error, _freedom(result))]
     value, error, freedom = np.broadcast_arrays(*parts)
     is_known, names, points = np.isfinite(value) & np.isfinite(error), [""], (1, 1)
@@ -127,14 +127,22 @@ def components(data: xr.Dataset, observable: str, start: float | None = None) ->
         points = int(is_known.sum()), is_known.size
         value, error = np.array(_norm(value[is_known])), np.array(_norm(error[is_known]))
         freedom = np.array(LEAST_FREEDOM)
-    scales = np.abs(np.ravel(value))
-    if declared.relative_to == "norm":  # some components vanish on average
-        scales = np.full_like(scales, _norm(value))
+    scales = scales_of(observable, np.ravel(value))
     columns = zip(names, np.ravel(value), scales, np.ravel(error) ** 2 * time, np.ravel(freedom), strict=True)
     return {
         name: Component(float(mean), float(scale), time, float(spectrum), freedom=float(free), points=points)
         for name, mean, scale, spectrum, free in columns
     }
+
+
+def scales_of(observable: str, values: np.ndarray) -> np.ndarray:
+    """Return the values (n,) to which the relative errors of an observable's components refer.
+
+    Each refers to its own value, or, if some components vanish on average, to the root mean square of all.
+    """
+    if OBSERVABLES[observable].relative_to == "norm":
+        return np.full(len(values), _norm(values))
+    return np.abs(values)
 
 
 def of_face(name: str, face: str | None) -> bool:

@@ -70,9 +70,10 @@ class Pilot:
 
     speed : CPU seconds per unit of time.
     seconds : CPU time of the pilot, 0 if it was already stored.
-    component : the least accurate component; None if the observable could not be measured, with the reason in
-        `rule`.
-    counted : the same component measured without the stored impulses; None if the run stores no impulses.
+    components : components of the observable by name; empty if the observable could not be measured, with the
+        reason in `rule`.
+    counted : the least accurate component measured without the stored impulses; None if the run stores no
+        impulses.
     interval : time between frames.
     settled : time after which the run is steady (`settling_time`).
     path : trajectory file, None for a run that failed.
@@ -81,12 +82,17 @@ class Pilot:
     engine: Engine
     speed: float
     seconds: float = 0.0
-    component: Component | None = None
+    components: dict[str, Component] = field(default_factory=dict)
     counted: Component | None = None
     interval: float = math.inf
     settled: float = 0.0
     rule: str = ""
     path: Path | None = None
+
+    @property
+    def component(self) -> Component | None:
+        """Least accurate component, or None."""
+        return _worst(self.components) if self.components else None
 
     @property
     def measured(self) -> float:
@@ -99,13 +105,25 @@ class Pilot:
         return self.measured / (1.0 - EQUILIBRATION)
 
     @property
+    def main(self) -> str:
+        """Name of the largest component in units of its scale, and of these the least accurate one.
+
+        If symmetry makes some components of a vector vanish, it is another one.
+        """
+        sizes = {
+            name: (abs(part.value) / part.scale if part.scale > 0.0 else 0.0, part.accuracy)
+            for name, part in self.components.items()
+        }
+        return max(sizes, key=lambda name: sizes[name])
+
+    @property
     def value(self) -> float:
-        """Value of the component."""
-        return self.component.value if self.component else math.nan
+        """Value of the main component."""
+        return self.components[self.main].value if self.components else math.nan
 
     @property
     def accuracy(self) -> float:
-        """Relative standard error of the component."""
+        """Relative standard error of the least accurate component."""
         return self.component.accuracy if self.component else math.inf
 
 
@@ -220,13 +238,13 @@ def run_pilot(target: Target, engine: Engine, seconds: float, speed: float, frac
         frames = trajectory["time"].values
         result = _estimate(trajectory, target)
         counted = _estimate(trajectory.assign_attrs(tallies="[]"), target) if target.tallies(engine) else ""
-    blank = Pilot(engine, speed, took, None, None, float(frames[1] - frames[0]), settled, path=path)
+    blank = Pilot(engine, speed, took, {}, None, float(frames[1] - frames[0]), settled, path=path)
     if settled > EQUILIBRATION * frames[-1]:
         result = f"is not steady yet at the time {frames[-1]:.3g}"
     if isinstance(result, str):
         return replace(blank, rule=result)
     plain = None if isinstance(counted, str) else _worst(counted)
-    return replace(blank, component=_worst(result), counted=plain)
+    return replace(blank, components=result, counted=plain)
 
 
 def _worst(estimates: dict[str, Component]) -> Component:
@@ -475,13 +493,15 @@ class Trials:
 def raised_bias(candidate: Candidate, own: Pilot, pilots: list[Pilot]) -> float:
     """Raise the bound on a candidate's bias to its measured difference from the exact engine.
 
-    The difference between the pilots of the two engines counts, including its error, if it is significant.
+    The difference between the pilots of the two engines in the same component counts, including its error, if
+    it is significant.
     """
     exact = [pilot for pilot in pilots if pilot.engine.reference]
-    if candidate.engine.reference or not exact:
+    if candidate.engine.reference or not exact or exact[0].main not in own.components:
         return candidate.bias
-    difference = abs(own.value / exact[0].value - 1.0)
-    error = math.hypot(own.accuracy, exact[0].accuracy)
+    mine, reference = (pilot.components[exact[0].main] for pilot in (own, exact[0]))
+    difference = abs(mine.value - reference.value) / reference.scale
+    error = math.hypot(mine.accuracy, reference.accuracy)
     if difference <= candidate.bias + DIFFERS * error:
         return candidate.bias
     return difference + _CERTAIN * error

@@ -39,9 +39,11 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
-from gaspart.accuracy.estimates import LEAST_FREEDOM, bound, components, of_face
+import numpy as np
+
+from gaspart.accuracy.estimates import LEAST_FREEDOM, bound, components, of_face, scales_of
 from gaspart.analysis.observables import OBSERVABLES, TOO_SHORT
 from gaspart.errors import SceneError
 from gaspart.trajectory.recipe import read_recipe
@@ -56,6 +58,8 @@ if TYPE_CHECKING:
 _CONFIDENCE = 0.95
 IDLE = 16384
 """Number of frames without any contact or change after which a run without a maximum duration ends."""
+_Estimates: TypeAlias = "dict[str, tuple[Estimate, float]]"
+"""Components of an observable by name, with the values to which their relative errors refer."""
 _UNCHANGED = "frames: all are the same so far, which tells no error"
 
 
@@ -66,6 +70,7 @@ class AccuracyStatus:
     request : required accuracy.
     component : name of the least accurate face or axis, "" for a scalar.
     value : value of this component.
+    scale : value to which its relative error refers (`estimates.scales_of`).
     noise : standard error for the initial energies of the runs, with correlations. It is the larger error of
         the last two examinations, or inf if nothing was measured; the reason is in `rule`.
     freedom : degrees of freedom of the noise.
@@ -78,6 +83,7 @@ class AccuracyStatus:
     request: Requirement
     component: str = ""
     value: float = math.nan
+    scale: float = math.nan
     noise: float = math.inf
     freedom: float = math.inf
     confirmed: bool = False
@@ -136,9 +142,8 @@ class AccuracyStatus:
         return self.excess <= 1.0 and self.of_starts < self.request.accuracy
 
     def _relative(self, error: float) -> float:
-        """Return an error divided by the value; inf if the value is unknown."""
-        is_defined = math.isfinite(self.value) and self.value != 0.0
-        return error / abs(self.value) if is_defined else math.inf
+        """Return an error divided by the scale; inf if the scale is unknown."""
+        return error / self.scale if math.isfinite(self.scale) and self.scale > 0.0 else math.inf
 
 
 def noise_allowed(accuracy: float, of_starts: float) -> float:
@@ -219,7 +224,7 @@ class Examiner:
 
     def __init__(self, report: Callable[[list[AccuracyStatus]], None] | None = None) -> None:
         self._report = report
-        self._known: dict[tuple[Requirement, int], dict[str, Estimate] | str] = {}
+        self._known: dict[tuple[Requirement, int], _Estimates | str] = {}
         self._scatters: dict[Requirement, float] = {}
 
     def __call__(self, runs: Sequence[xr.Dataset], until: Until, frames: int) -> float:
@@ -257,13 +262,13 @@ class Examiner:
                 )
                 ratio = max(first, 0.0) / last
             parts, starts = [], (self._scatter(runs[0], requirement), len(runs))
-            for name, estimate in now.items():
+            for name, (estimate, scale) in now.items():
                 if estimate.error == 0.0:
-                    parts.append(AccuracyStatus(requirement, name, estimate.value, rule=_UNCHANGED))
+                    parts.append(AccuracyStatus(requirement, name, estimate.value, scale, rule=_UNCHANGED))
                     continue
-                other = None if isinstance(earlier, str) else earlier.get(name)
-                confirmation = confirm_estimate(estimate, other, ratio)
-                values = confirmation.value, confirmation.error, confirmation.freedom, other is not None
+                other = None if isinstance(earlier, str) else earlier.get(name, (None, 0.0))[0]
+                confirmed = confirm_estimate(estimate, other, ratio)
+                values = confirmed.value, scale, confirmed.error, confirmed.freedom, other is not None
                 parts.append(AccuracyStatus(requirement, name, *values, "", *starts))
             results.append(max(parts, key=lambda status: (status.excess, status.accuracy)))
         return results
@@ -278,7 +283,7 @@ class Examiner:
 
     def _estimates(
         self, runs: Sequence[xr.Dataset], requirement: Requirement, frames: int
-    ) -> dict[str, Estimate] | str:
+    ) -> _Estimates | str:
         """Return the components of an observable, or the reason why the frames are insufficient."""
         key = requirement, frames
         if key not in self._known:
@@ -314,15 +319,15 @@ def _is_idle(reached: list[AccuracyStatus], collisions: float) -> bool:
     )
 
 
-def _measure(runs: Sequence[xr.Dataset], requirement: Requirement) -> dict[str, Estimate]:
-    """Measure each component of an observable as the mean over runs.
+def _measure(runs: Sequence[xr.Dataset], requirement: Requirement) -> _Estimates:
+    """Measure each component of an observable as the mean over runs, with its scale.
 
     The component is "" for a scalar. Pressures are restricted to the requested face.
     """
-    results = [components(data, requirement.observable, requirement.start) for data in runs]
-    names = [
-        name
-        for name in results[0]
-        if of_face(name, requirement.face) and all(name in result for result in results)
-    ]
-    return {name: combine_replicas([result[name].estimate for result in results]) for name in names}
+    observable = requirement.observable
+    results = [components(data, observable, requirement.start) for data in runs]
+    names = [name for name in results[0] if all(name in result for result in results)]
+    means = [combine_replicas([result[name].estimate for result in results]) for name in names]
+    scales = scales_of(observable, np.array([mean.value for mean in means])).tolist()
+    rows = zip(names, means, scales, strict=True)
+    return {name: (mean, scale) for name, mean, scale in rows if of_face(name, requirement.face)}

@@ -7,4 +7,4 @@ is first used. `lyapunov_exponent` needs a simulation that recorded its events.
 
 from gaspart.public import attach as _attach
 
-__getattr__, __dir__, __all__ = _attach(__name__, for_users=True)
+__getattr__, __dir__, __all__ = _attach(__name__)

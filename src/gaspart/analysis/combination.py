@@ -14,9 +14,10 @@ import numpy as np
 import xarray as xr
 
 from gaspart import analysis
-from gaspart.analysis.measuring import measure, until_time
+from gaspart.analysis.drift import Trend, describe, trends
+from gaspart.analysis.frames import measure_single, until_time
 from gaspart.analysis.observable import Observable
-from gaspart.analysis.observables import OBSERVABLES
+from gaspart.analysis.observables import OBSERVABLES, observable_name
 from gaspart.analysis.run import Source
 from gaspart.analysis.statistics import means_of
 from gaspart.engines import engine_from_dict, engine_to_dict
@@ -89,17 +90,23 @@ def replicas(
     """
     if isinstance(sources, str | Path | Simulation | xr.Dataset) or len(sources) < 2:
         raise SceneError("sources", sources, "must be a list of two runs or more")
+    name = observable_name(name)
     results: list[Observable] = []
     recipes: list[_Recipe] = []
+    drifts: list[dict[str, Trend]] = []
     for number, source in enumerate(sources, 1):
         with _open_source(source) as run:
             recipe = _recipe(run, str(source) if isinstance(source, str | Path) else f"run {number}")
             _check_replica(recipe, recipes)
             recipes.append(recipe)
-            results.append(measure(run, name, start, end, **selection))
+            results.append(measure_single(run, name, start, end, **selection))
+            with until_time(run, end) as part:
+                drifts.append(trends(part, start))
     if OBSERVABLES[name].ends:
         results = _in_joint_bins(name, sources, results, start, end)
-    return _mean(results, recipes)
+    mean, drift = _mean(results, recipes), describe(drifts)
+    mean.attrs |= {"drift": drift} if drift else {}
+    return mean
 
 
 def _open_source(source: Source) -> AbstractContextManager[xr.Dataset | Simulation]:

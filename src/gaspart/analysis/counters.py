@@ -28,7 +28,6 @@ from gaspart.errors import SceneError
 from gaspart.trajectory.amber import face_names
 
 _BLOCKS = 16
-_SLIGHT = 1e-6  # fraction of the weight: rounding of the momentum of single-precision velocities
 
 
 def compressibility_factor(source: Source, start: float | None = None) -> Observable:
@@ -90,9 +89,10 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
     -------
     Observable
         Pressure (face,) in [energy / length^d], with standard errors. Theory exists for equal particles
-        between two hard walls at a fixed distance (`gaspart.theory.wall_pressure`). The pressure on side
-        walls is NaN while particles are at rest under gravity. For particles of several sizes it is also NaN
-        on faces whose accessible area changes as other faces move.
+        between two hard walls at a fixed distance (`gaspart.theory.wall_pressure`). If particles come to rest
+        under gravity, the pressure on side walls is NaN, and so is the pressure on the floor if rough
+        particles or thermal side walls exchange momentum along gravity. For particles of several sizes it is
+        also NaN on faces whose accessible area changes as other faces move.
 
     Raises
     ------
@@ -113,7 +113,8 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
     equal to the load. The force on a face (`wall_force`) does not depend on the definition of an area.
 
     A contact of a particle at rest is not an event. Gravity gives such a particle momentum that no event
-    removes. This momentum is added to the momentum that the floor receives. If the run has stored impulses
+    removes. If particles are at rest in two successive frames, this momentum is added to the momentum that
+    the floor receives. If the run has stored impulses
     along an axis, their known fluctuations are subtracted from the pressures on the faces across this axis
     (`gaspart.analysis.impulses`). The attribute `estimator` then names this method.
 
@@ -144,8 +145,8 @@ def wall_force(source: Source, start: float | None = None) -> Observable:
     Returns
     -------
     Observable
-        Outward normal force (face,), in [energy / length], with standard errors. The force on side walls is
-        NaN while particles are at rest under gravity.
+        Outward normal force (face,), in [energy / length], with standard errors. If particles come to rest
+        under gravity, some forces are NaN (`wall_pressure`).
 
     Raises
     ------
@@ -261,7 +262,7 @@ def on_walls(run: Run, ends: np.ndarray, name: str) -> tuple[np.ndarray, np.ndar
         totals = impulses + resting
     elif run.scene.has_unequal_areas:  # the sizes of resting particles are unknown
         totals = series.over(series.face_pressures(run) * time, ends)
-        totals += np.where((np.abs(resting) > _SLIGHT * impulses).any(axis=0), np.nan, 0.0)
+        totals += np.where((resting == 0.0).all(axis=0), 0.0, np.nan)
     else:
         totals = series.over(series.face_pressures(run) * time, ends)
         totals += resting * series.over(time / face_areas(run), ends) / series.over(time, ends)
@@ -271,39 +272,56 @@ def on_walls(run: Run, ends: np.ndarray, name: str) -> tuple[np.ndarray, np.ndar
 def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
     """Compute the momentum (K, 2d) that particles at rest give to each face.
 
-    The K intervals lie between the frames `ends` (K + 1,). For a floor, this momentum follows from the
-    balance
+    The K intervals lie between the frames `ends` (K + 1,). A particle at rest touches without events. If no
+    face exerts a force along itself, the momentum of a floor follows from the balance
 
         change of the momentum = momentum from gravity + impulses of the lower face - impulses of the upper
         face.
 
-    For a ceiling the momentum is 0. For side walls it is 0, but NaN if the momentum that the floor receives
-    from particles at rest exceeds a millionth of the impulse of the weight. Raises SceneError if particles
-    rest at positions where something other than a face may support them.
+    Otherwise it is NaN. For a ceiling the momentum is 0, and for side walls it is NaN. Without particles at
+    rest, all values are 0. Raises SceneError if particles rest at positions where something other than a face
+    may support them.
     """
-    carried = np.zeros((len(ends) - 1, 2 * run.dimension))
+    carried, scene = np.zeros((len(ends) - 1, 2 * run.dimension)), run.scene
     if not run.has_gravity or (run.is_subset and not run.dissipates):
         return carried
-    if run.scene.walls or not run.moving.all():
+    if scene.walls or not run.moving.all():
         refuse_rest(run, "obstacles may carry particles at rest, whose contacts give no impulse")
+        return carried
+    weight = run.masses.sum() * np.where(run.periodic, 0.0, np.array(scene.gravity))
+    if not weight.any() or not count_at_rest(run):  # a force along walls exerts no pressure
         return carried
     velocities = run.vectors("velocities")[ends].values.astype(float)
     momentum = np.einsum("tnd,n->td", velocities, run.masses)
-    weight = run.masses.sum() * np.where(run.periodic, 0.0, np.array(run.scene.gravity))
-    if not weight.any():  # a force along walls drives a flow and exerts no pressure
-        return carried
     gain = weight * np.diff(run.time[ends])[:, None]
-    impulse = np.abs(np.diff(run.data["wall_impulse"].values[ends, : 2 * run.dimension], axis=0))
+    impulse = series.over(series.face_impulses(run), ends)
     missing = np.diff(momentum, axis=0) - gain - impulse[:, ::2] + impulse[:, 1::2]
-    floors = [2 * axis + (weight[axis] > 0.0) for axis in np.flatnonzero(weight)]
-    carried[:, floors] = (-np.sign(weight) * missing)[:, weight != 0.0]
-    if np.abs(carried[:, floors]).max() > _SLIGHT * np.abs(gain).max():
-        carried[:, np.repeat(weight == 0.0, 2)] = np.nan
+    carried[:, np.repeat(weight == 0.0, 2)] = np.nan
+    for axis in np.flatnonzero(weight):
+        floor = 2 * axis + (weight[axis] > 0.0)
+        is_known = not scene.dragged_axes[axis]
+        carried[:, floor] = -np.sign(weight[axis]) * missing[:, axis] if is_known else np.nan
     return carried
 
 
+def count_at_rest(run: Run) -> int:
+    """Count the particles that rest: their velocity along gravity is 0 in two successive frames.
+
+    If contacts lose no energy, no particle comes to rest, and only the first two frames are read.
+    """
+    along = np.flatnonzero(run.scene.gravity or ())
+    moving = np.flatnonzero(run.moving)
+    was = is_at_rest = np.zeros(len(moving), dtype=bool)
+    for velocities in run.blocks("velocities", slice(None if run.dissipates else 2)):
+        still = (velocities[:, moving][..., along] == 0.0).any(axis=2)
+        still = np.concatenate([was[None], still])
+        is_at_rest = is_at_rest | (still[1:] & still[:-1]).any(axis=0)
+        was = still[-1]
+    return int(is_at_rest.sum())
+
+
 def refuse_rest(run: Run, rule: str) -> None:
-    """Raise SceneError if a particle rests under gravity in any frame after the first.
+    """Raise SceneError if a particle rests under gravity.
 
     Parameters
     ----------
@@ -317,14 +335,9 @@ def refuse_rest(run: Run, rule: str) -> None:
     SceneError
         If a particle rests.
     """
-    if run.has_gravity:
-        along = np.flatnonzero(run.scene.gravity or ())
-        is_at_rest = np.zeros(int(run.moving.sum()), dtype=bool)
-        for velocities in run.blocks("velocities", slice(1, None)):
-            is_at_rest |= (velocities[:, run.moving][..., along] == 0.0).any(axis=(0, 2))
-        resting = is_at_rest.sum()
-        if resting:
-            raise SceneError("particles at rest", int(resting), rule)
+    resting = count_at_rest(run) if run.has_gravity else 0
+    if resting:
+        raise SceneError("particles at rest", resting, rule)
 
 
 def collision_rate(source: Source, start: float | None = None) -> Observable:

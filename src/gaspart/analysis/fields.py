@@ -15,6 +15,8 @@ from gaspart.analysis.profiles import Cells, Means
 from gaspart.analysis.run import Run, Source, open_run, select_particles
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, one_of
+from gaspart.scene.faces import GRADIENT
+from gaspart.scene.scene import Scene
 
 QUANTITIES = ("density", "velocity", "temperature")
 
@@ -122,6 +124,13 @@ def _numbers(cells: int | Sequence[int], axes: int) -> list[int]:
 # Mean velocity of a gas along an axis.
 
 
+def _across(scene: Scene) -> int:
+    """Return the last axis along which the flow of a scene varies; without one, the last axis."""
+    if scene.shear_rate is not None:
+        return GRADIENT
+    return (scene.flow_axes or (scene.dimension - 1,))[-1]
+
+
 def velocity_profile(
     source: Source,
     axis: str | None = None,
@@ -136,7 +145,7 @@ def velocity_profile(
     source : str, Path, Dataset or Simulation
         A trajectory (a path or an open trajectory), or a simulation.
     axis : {"x", "y", "z"}, optional
-        The axis. Default: the last one.
+        The axis. Default: the last one along which the flow varies, otherwise the last one.
     species : int, optional
         Measure only this species, identified by its number in the scene.
     bins : int, default 40
@@ -177,7 +186,7 @@ def velocity_profile(
     """
     with open_run(source, start, sheared=True, varying=True) as run:
         require_defined("velocity", run.scene, axis=axis, species=species)
-        name = "xyz"[run.dimension - 1] if axis is None else axis
+        name = "xyz"[_across(run.scene)] if axis is None else axis
         result = field(run.data, "velocity", name, bins, float(run.time[0]), species)
         positions = result[name].values
         along = {

@@ -19,7 +19,7 @@ from gaspart.scene.faces import FACES, Open
 from gaspart.scene.scene import Scene
 from gaspart.trajectory.amber import face_names
 
-_BLOCKS = 256
+_BLOCKS = 4096
 
 
 def heat_flux(source: Source, start: float | None = None) -> Observable:

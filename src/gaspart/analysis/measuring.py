@@ -1,32 +1,36 @@
-"""Measurement of observables by name, and restriction of a run to an end time."""
+"""Measurement of observables by name, with a remark if the run drifts."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, nullcontext
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
-from gaspart import analysis
-from gaspart.analysis.observables import OBSERVABLES, observable_name, require_selection
+from gaspart.analysis.combination import replicas
+from gaspart.analysis.drift import drift_of
+from gaspart.analysis.frames import measure_single, open_frames, until_time
+from gaspart.analysis.observables import OBSERVABLES, observable_name
 from gaspart.errors import SceneError
+from gaspart.trajectory.replicas import run_files
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from gaspart.analysis.observable import Observable
     from gaspart.analysis.run import Source
 
 
 @overload
 def measure(
-    source: Source, observable: str, start: float | None = ..., end: float | None = ..., **selection: Any
+    source: Source | Sequence[Source],
+    observable: str,
+    start: float | None = ...,
+    end: float | None = ...,
+    **selection: Any,
 ) -> Observable: ...
 
 
 @overload
 def measure(
-    source: Source,
+    source: Source | Sequence[Source],
     observable: Sequence[str],
     start: float | None = ...,
     end: float | None = ...,
@@ -35,7 +39,7 @@ def measure(
 
 
 def measure(
-    source: Source,
+    source: Source | Sequence[Source],
     observable: str | Sequence[str],
     start: float | None = None,
     end: float | None = None,
@@ -45,8 +49,9 @@ def measure(
 
     Parameters
     ----------
-    source : path, xarray.Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
+    source : path, xarray.Dataset, Simulation, or sequence of these
+        A trajectory (a path or an open trajectory), or a simulation. Of several runs, and of the path of a
+        run with replicas, the mean is measured (see `analysis.replicas`).
     observable : str or sequence of str
         Names as in `gaspart measure`, such as "pressure"; aliases are accepted, such as "viscosity".
     start : float, [time], optional
@@ -60,7 +65,7 @@ def measure(
     -------
     Observable or dict
         The measured quantity with its uncertainty. For several names, the result is a dict {name:
-        Observable}.
+        Observable}. If the run drifts in its measured part, the attribute `drift` says what drifts.
 
     Raises
     ------
@@ -81,64 +86,24 @@ def measure(
     >>> list(measured)
     ['Z', 'collision_rate']
     """
-    if not isinstance(observable, str):
-        names = [observable_name(name) for name in observable]
-        with open_frames(source, any(OBSERVABLES[name].needs == "pairs" for name in names)) as data:
-            return {name: measure(data, name, start, end, **selection) for name in names}
-    name = observable_name(observable)
-    declared = OBSERVABLES[name]
-    require_selection(name, selection)
-    function = getattr(analysis, declared.function)
-    with until_time(source, end, declared.needs == "pairs") as part:
-        result: Observable = function(part, start=start, **declared.arguments, **selection)
-    return result
-
-
-@contextmanager
-def until_time(source: Source, end: float | None, pairs: bool = False) -> Iterator[Source]:
-    """Return the frames of a source up to the time `end`.
-
-    Without an end time, the source itself is returned.
-
-    If `pairs` is True, the frames of a simulation include the numbers of collisions of each pair of species.
-    Raises SceneError for fewer than two frames.
-    """
-    if end is None:
-        yield source
-        return
-    from gaspart.keys.values import number
-
-    with open_frames(source, pairs) as data:
-        time = data["time"].values
-        last = number("end", end, "must be a finite number")
-        count = int((time <= last + 1e-9 * abs(last)).sum())
-        if count < 2:
-            longest = float(time[-1]) if len(time) else 0.0
-            raise SceneError("end", end, f"leaves {count} frames of a run until time {longest:g}")
-        yield data.isel(frame=slice(count))
-
-
-@contextmanager
-def open_frames(source: Source, pairs: bool = False) -> Iterator[xr.Dataset]:
-    """Yield the frames of a source; they are read or computed only once.
-
-    Parameters
-    ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
-    pairs : bool, default False
-        For a simulation, also count the collisions of each pair of species.
-
-    Yields
-    ------
-    Dataset
-        The frames. If the source is a file, it is closed at the end of the `with` block.
-    """
-    from gaspart.analysis.run import repeat_run
-    from gaspart.simulation import Simulation
-    from gaspart.trajectory.reading import open_trajectory
-
-    if isinstance(source, Simulation):
-        source = repeat_run(source, pairs)
-    with open_trajectory(source) if isinstance(source, str | Path) else nullcontext(source) as data:
-        yield data
+    third: object = start
+    if isinstance(third, str):
+        rule = f"must be a time; several observables are a list, such as {[observable, third]}"
+        raise SceneError("start", third, rule)
+    names = [observable] if isinstance(observable, str) else list(observable)
+    names = [observable_name(name) for name in names]
+    runs: list[Source] = [source]  # type: ignore[list-item]
+    if isinstance(source, str | Path):
+        runs = [*run_files(source)]
+    elif isinstance(source, list | tuple):
+        runs = [*source]
+    if len(runs) != 1:
+        results = {name: replicas(name, runs, start, end, **selection) for name in names}
+    else:
+        with open_frames(runs[0], any(OBSERVABLES[name].needs == "pairs" for name in names)) as data:
+            results = {name: measure_single(data, name, start, end, **selection) for name in names}
+            with until_time(data, end) as part:
+                drift = drift_of(part, start=start)
+        for result in results.values():
+            result.attrs |= {"drift": drift} if drift else {}
+    return results[names[0]] if isinstance(observable, str) else results

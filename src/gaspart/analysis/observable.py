@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import html
 import io
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -14,7 +15,6 @@ from gaspart.analysis.estimate import concise
 from gaspart.analysis.observables import name_of
 from gaspart.analysis.statistics import correlated_mean, slow_mean
 from gaspart.errors import SceneError
-from gaspart.errors.guidance import with_guidance
 from gaspart.scene.faces import wall_of
 
 if TYPE_CHECKING:
@@ -27,6 +27,8 @@ _ROUNDING = 1e-12
 _LONG = 32  # number of characters above which a label has two lines
 _FEW = 12
 """Maximum number of values that a summary lists one by one."""
+_WIDE = 60
+"""Number of characters in a line of a remark in a plot."""
 _PLANE = 2
 """Maximum number of axes of a field that can be plotted."""
 STRETCHES = 20
@@ -59,7 +61,6 @@ class ByFace(xr.Dataset):
         return super().sel(*indexers, **named)
 
 
-@with_guidance
 class Observable(ByFace):
     """Result of a function of `gaspart.analysis`, a Dataset.
 
@@ -192,14 +193,16 @@ class Observable(ByFace):
         return "\n".join(_values(self, str(name)))
 
     def __repr__(self) -> str:
-        return self.summary if self.estimate.size <= _FEW else f"{self.summary}\n{super().__repr__()}"
+        text = "\n".join(filter(None, (self.summary, remark_of(self))))
+        return text if self.estimate.size <= _FEW else f"{text}\n{super().__repr__()}"
 
     def _repr_html_(self) -> str:
         """Return HTML with the `summary`, a plot of a curve, and the collapsed data set."""
-        text = html.escape(self.summary).replace("\n", "<br>")
+        text, remark = (html.escape(line).replace("\n", "<br>") for line in (self.summary, remark_of(self)))
         is_plotted = self.estimate.size > _FEW and len(_cells(self)) <= _PLANE
         drawn = f'<br><img src="{_embed_plot(self)}" alt="{text}">' if is_plotted else ""
-        return f"<b>{text}</b>{drawn}<details><summary>data set</summary>{super()._repr_html_()}</details>"
+        text = f"<b>{text}</b>" + (f"<br>{remark}" if remark else "")
+        return f"{text}{drawn}<details><summary>data set</summary>{super()._repr_html_()}</details>"
 
     def plot(self, theory: bool = False, axis: Axes | None = None) -> Axes:  # type: ignore[override]
         """Plot the values with error bars of one standard deviation.
@@ -245,6 +248,8 @@ class Observable(ByFace):
             axis = plt.figure(layout="constrained").add_subplot()
         has_theory = theory and self.theory is not None
         cells = _cells(self)
+        if remark := remark_of(self):
+            axis.set_title("\n".join(wrap(remark, _WIDE)), fontsize="small", loc="left")
         if len(cells) > 1:
             _plot_field(self, axis, cells)
             return axis
@@ -257,6 +262,12 @@ class Observable(ByFace):
         axis.set_ylabel(label_of(self.estimate))
         axis.legend(frameon=False)
         return axis
+
+
+def remark_of(result: xr.Dataset) -> str:
+    """Return a remark if the measured part of the run drifts, otherwise ""."""
+    drift = result.attrs.get("drift")
+    return f"(not steady: {drift})" if drift else ""
 
 
 def _values(result: Observable, name: str) -> list[str]:

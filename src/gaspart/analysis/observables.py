@@ -337,7 +337,7 @@ OBSERVABLES: dict[str, Named] = {
     ),
     "velocity": Named(
         title="mean velocity",
-        definition="mean velocity along an axis, by default the last",
+        definition="mean velocity along an axis, by default the last along which the flow varies",
         units="length / time",
         function="velocity_profile",
         varying=True,

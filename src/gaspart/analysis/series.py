@@ -12,11 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gaspart.analysis.estimate import Estimate, concise
 from gaspart.analysis.flow import Grid, per_area
-from gaspart.analysis.fluxes import particle_numbers
-from gaspart.analysis.run import Run, Source, open_run
-from gaspart.analysis.statistics import correlated_mean
+from gaspart.analysis.run import Run
 from gaspart.errors import SceneError
 from gaspart.state.tally import compressibility_factor
 
@@ -63,11 +60,11 @@ def collision_rate(run: Run) -> np.ndarray:
 
 
 def face_impulses(run: Run) -> np.ndarray:
-    """Compute the momentum (T - 1, 2d) given to each face in each interval.
+    """Compute the momentum (T - 1, 2d) given to each face in each interval, positive outwards.
 
     The momentum is 0 along axes without walls.
     """
-    return np.asarray(np.abs(run.increments("wall_impulse")[:, : 2 * run.dimension]))
+    return np.asarray(run.increments("wall_impulse")[:, : 2 * run.dimension])
 
 
 def face_pressures(run: Run) -> np.ndarray:
@@ -206,63 +203,3 @@ def _equal_areas(volume: np.ndarray, pressure: np.ndarray) -> tuple[float, tuple
     level = brentq(excess, low + margin, high - margin, xtol=1e-6)
     first, last = ends(level)
     return float(level), (float(v[last]), float(v[first]))
-
-
-# Drift of a run: change between both halves of its measured part that exceeds the noise.
-#
-# A line is fitted to a series of n values. Its rise over the run has the variance 12 S / n. S is the spectrum
-# at frequency 0 of the series after subtraction of a cubic polynomial, from `statistics.correlated_mean`. So
-# the drift itself does not contribute to this error, as it would to the error of the mean.
-
-
-LEAST_FRAMES = 32
-"""Minimum number of frames for a test of drift."""
-SIGNIFICANT = 4.0
-"""Change, in standard errors, above which a quantity counts as drifting. By chance it occurs in one of 16 000
-series.
-"""
-_DEGREE = 3
-"""Degree of the polynomial that is fitted to a drift."""
-_CONSTANT = 1e-6
-"""Relative scatter below which a series counts as constant."""
-
-
-def drift_of(data: Source, start: float | None = None, positions: bool = False) -> str:
-    """Describe the quantities that drift in the measured part of a trajectory; "" if none drifts.
-
-    The tested quantities are the kinetic energy per particle; if faces are open, the number of particles;
-    and, if `positions` is True, the mean position of the particles along each axis with walls.
-    """
-    with open_run(data, start, sheared=True, varying=True) as run:
-        if len(run.time) < LEAST_FRAMES:
-            return ""
-        drifts = [_drift(name, series) for name, series in _series(run, positions).items()]
-    return "; ".join(filter(None, drifts))
-
-
-def _series(run: Run, positions: bool) -> dict[str, np.ndarray]:
-    """Return the tested series (T,) by name."""
-    numbers, series = np.full(len(run.time), max(1, run.scene.moving_count), dtype=float), {}
-    if run.scene.is_open:
-        numbers = series["the number of particles"] = particle_numbers(run.scene, run.data).astype(float)
-    series["the kinetic energy of a particle"] = run.data["kinetic_energy"].values / np.maximum(numbers, 1.0)
-    if positions and "coordinates" in run.data and not run.is_subset:
-        moving = np.ones(run.count, dtype=bool) if run.scene.is_open else run.moving
-        means = np.concatenate([np.nanmean(part.positions[:, moving], axis=1) for _, part in run.parts()])
-        for axis in run.scene.walled_axes:
-            series[f"the mean position along {'xyz'[axis]}"] = means[:, axis]
-    return series
-
-
-def _drift(name: str, series: np.ndarray) -> str:
-    """Describe the drift of a series (T,); "" without a drift."""
-    if not np.isfinite(series).all() or np.ptp(series) <= _CONSTANT * np.abs(series).max():
-        return ""
-    time = np.linspace(-0.5, 0.5, len(series))
-    rise = float(time @ (series - series.mean()) / (time @ time))
-    rest = correlated_mean(series - np.polynomial.Polynomial.fit(time, series, _DEGREE)(time)).estimate
-    if abs(Estimate(rise, math.sqrt(12.0) * rest.error, rest.freedom).deviation) <= SIGNIFICANT:
-        return ""
-    halves = [half.mean() for half in np.array_split(series, 2)]
-    first, second = (concise(float(mean), math.sqrt(2.0) * rest.error) for mean in halves)
-    return f"{name} drifts from {first} in the first half to {second} in the second"

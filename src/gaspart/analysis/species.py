@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis.flow import FLOW, mean_motion
-from gaspart.analysis.measuring import measure
+from gaspart.analysis.frames import measure_single
 from gaspart.analysis.observable import Observable, scalar
 from gaspart.analysis.observables import observables_with, selecting
 from gaspart.analysis.run import Run, Source, open_run, select_particles
@@ -78,7 +78,7 @@ def by_species(source: Source, start: float | None = None, about: str = FLOW) ->
         for kind, row in zip(kinds, rows, strict=True):
             for name in _of_motion():
                 try:
-                    row[name] = measure(run_of_all, name, start, species=kind, about=about)
+                    row[name] = measure_single(run_of_all, name, start, species=kind, about=about)
                 except SceneError as error:
                     missing[f"{name} of species {kind}"] = error.rule
     table = xr.Dataset(coords={"species": ("species", kinds, {"long_name": "number of the species"})})

@@ -33,6 +33,7 @@ _COMMANDS = {
     "film": ("view", "a film (.mp4, .gif) of a trajectory"),
     "films": ("view", "films of the scenes of the gallery, such as for slides"),
     "view": ("view", "an interactive page (.html) of a trajectory"),
+    "play": ("play", "a page (.html) on which a gas runs in any browser"),
     "collisions": ("collisions", "run a scene and write a data set of its collisions"),
     "export": ("export", "a frame as a state for other programs (.gsd, .data)"),
     "theory": ("theory", "values of theory, with sources"),
@@ -161,7 +162,8 @@ def _describe_unrecognised(words: list[str], parser: Parser) -> str:
     """Return the message about words that a command does not accept."""
     options = [argument.partition("=")[0] for argument in words if argument.startswith("-")]
     if options:
-        return f"{options[0]}: {unknown_word(options[0], parser.options(), 'option')}"
+        rule = unknown_word(options[0], parser.options(), "option").partition("; known are")
+        return f"{options[0]}: {rule[0]}" + (f"; see `{parser.prog} --help`" if rule[1] else "")
     return f"{' '.join(words)}: too many arguments; see `{parser.prog} --help`"
 
 

@@ -6,7 +6,6 @@ import argparse
 import sys
 from collections.abc import Callable, Iterable
 from contextlib import suppress
-from pathlib import Path
 from textwrap import fill
 from typing import Any, NoReturn, TypeVar
 
@@ -126,18 +125,6 @@ def add_output(parser: argparse.ArgumentParser, meaning: str, overwrite: str) ->
 def add_trajectory(parser: argparse.ArgumentParser) -> None:
     """Add the argument of a command that reads a trajectory."""
     parser.add_argument("trajectory", metavar="FILE", help="trajectory of gaspart (.nc)")
-
-
-def run_files(name: str) -> list[str]:
-    """Return the files of the run that a command names: the file itself, or all replicas."""
-    from gaspart.trajectory.opening import partial_path, replica_path
-    from gaspart.trajectory.replicas import files_of
-
-    path = Path(name)
-    alone = path.exists() or partial_path(path).exists() or not path.name
-    first = path if alone else replica_path(path, 1)
-    is_replicated = first != path and (first.exists() or partial_path(first).exists())
-    return [str(file) for file in files_of(path)] if is_replicated else [name]
 
 
 def config_command(command: str) -> Callable:

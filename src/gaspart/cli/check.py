@@ -12,7 +12,6 @@ from gaspart.cli.arguments import (
     print_line,
     print_lines,
     real,
-    run_files,
     set_command,
     several,
 )
@@ -71,6 +70,8 @@ def _corner(text: str) -> str | tuple[float, ...]:
 
 
 def _check(options: argparse.Namespace) -> None:
+    from gaspart.trajectory.replicas import run_files
+
     healthy = [_is_healthy(options, file) for file in run_files(options.file)]
     if not all(healthy):
         raise CheckFailed

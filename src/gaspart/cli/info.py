@@ -7,7 +7,7 @@ import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gaspart.cli.arguments import Parser, add_trajectory, print_line, print_lines, run_files, set_command
+from gaspart.cli.arguments import Parser, add_trajectory, print_line, print_lines, set_command
 from gaspart.errors import SceneError
 
 if TYPE_CHECKING:
@@ -33,6 +33,7 @@ def _info(options: argparse.Namespace) -> None:
     from gaspart.inspection.energy import certificate
     from gaspart.trajectory.opening import PARTIAL, check_frames, open_netcdf_file, partial_path
     from gaspart.trajectory.recipe import read_recipe
+    from gaspart.trajectory.replicas import run_files
 
     path = Path(run_files(options.trajectory)[0])
     stored_at = path if path.exists() or not partial_path(path).exists() else partial_path(path)

@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gaspart.analysis.flow import ABOUT
-from gaspart.analysis.measuring import measure, until_time
+from gaspart.analysis.frames import until_time
+from gaspart.analysis.measuring import measure
+from gaspart.analysis.observable import remark_of
 from gaspart.analysis.observables import ALIASES, OBSERVABLES, observable_name, selecting, selections
 from gaspart.cli.arguments import (
     Parser,
@@ -22,7 +24,6 @@ from gaspart.cli.arguments import (
     list_names,
     print_line,
     real,
-    run_files,
     set_command,
     several,
 )
@@ -40,8 +41,6 @@ _FIELD = "field"
 """Word on the command line that requests a field (a property in cells) instead of an observable."""
 _SEEDS = "seeds"
 """Attribute that contains the remark about the energy of a single run."""
-_DRIFT = "drift"
-"""Attribute that contains the remark that a single run is not steady."""
 _ROWS = 12  # maximum number of printed points of a curve
 _TITLE = "# gaspart measure"
 _TABLE = FileKind("a table written by gaspart measure", begins_with(_TITLE.encode()))
@@ -134,11 +133,14 @@ def _split_words(options: argparse.Namespace) -> tuple[list[str], list[str]]:
 
 
 def _measure(options: argparse.Namespace) -> None:
+    from gaspart.trajectory.replicas import run_files
+
     stated, names = _split_words(options)
     files = [file for name in stated for file in run_files(name)]
     write = _writer(options, names)
     selected = {key: getattr(options, key) for key in selections()}
     selection = {key: value for key, value in selected.items() if value is not None}
+    remarks: set[str] = set()
     for name, observable in _measure_each(
         files, names, (options.start, options.end), selection, _field_of(options)
     ):
@@ -148,8 +150,11 @@ def _measure(options: argparse.Namespace) -> None:
             _print_curve(name, observable)
         else:
             _print_scalar(name, observable)
-        for note in (observable.attrs[key] for key in ("note", _SEEDS, _DRIFT) if key in observable.attrs):
+        for note in (observable.attrs[key] for key in ("note", _SEEDS) if key in observable.attrs):
             print_line(f"({note})")
+        if (remark := remark_of(observable)) and remark not in remarks:
+            print_line(remark)
+        remarks.add(remark)
         write(observable)
     for remark in _of_engine(files[0]):
         print_line(f"({remark})")
@@ -200,17 +205,8 @@ def _measure_each(
                     observable = _measure_field(trajectory, times, selection | field)
                 else:
                     observable = measure(trajectory, name, *times, **selection)
-                    observable.attrs |= _of_seeds(trajectory, name) | _of_drift(trajectory, name, times)
+                    observable.attrs |= _of_seeds(trajectory, name)
             yield name, observable
-
-
-def _of_drift(trajectory: Any, name: str, times: tuple[float | None, float | None]) -> dict[str, str]:
-    """Return a remark if the measured part of a run is not steady."""
-    from gaspart.analysis.series import drift_of
-
-    with until_time(trajectory, times[1]) as part:
-        drift = drift_of(part, times[0], "position" in OBSERVABLES[name].along)
-    return {_DRIFT: f"not steady: {drift}"} if drift else {}
 
 
 def _of_engine(file: str) -> list[str]:
@@ -243,12 +239,15 @@ def _measure_field(
     Raises SceneError for a selection that does not apply to fields, and under the same conditions as
     `gaspart.analysis.field`.
     """
+    from gaspart.analysis.drift import drift_of
     from gaspart.analysis.fields import field
 
     for key in set(chosen) - {"of", "axes", "cells", "species"}:
         raise SceneError(key, chosen[key], f"cannot be chosen for {_FIELD}, whose cells are along --axes")
     with until_time(trajectory, times[1]) as part:
-        return field(part, start=times[0], **chosen)
+        result, drift = field(part, start=times[0], **chosen), drift_of(part, start=times[0])
+    result.attrs |= {"drift": drift} if drift else {}
+    return result
 
 
 def _print_field(observable: Observable) -> None:

@@ -35,7 +35,16 @@ def accuracy_lines(path: Path) -> list[str]:
         )
     if path.suffix != PARTIAL and not all(status.met for status in reached):
         lines.append(_why_ended(path, reached))
-    return lines
+    return lines + _drift_lines(path, {status.request.start for status in reached})
+
+
+def _drift_lines(path: Path, starts: set[float | None]) -> list[str]:
+    """Return remarks if a run, or its replicas, is not steady after the start times."""
+    from gaspart.analysis.drift import drift_of
+    from gaspart.trajectory.replicas import files_of
+
+    remarks = [drift_of(*files_of(path), start=start) for start in starts]
+    return [f"(not steady: {remark})" for remark in dict.fromkeys(filter(None, remarks))]
 
 
 def other_seeds(scatter: float) -> str:

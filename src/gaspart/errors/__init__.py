@@ -88,23 +88,12 @@ class SceneError(OneLine, ValueError):
 
 
 def unknown_word(name: object, candidates: Iterable[str], kind: str = "key") -> str:
-    """Return the rule for a message about an unknown word.
-
-    The rule states the new name if the word has been renamed, or the corresponding name if other programs use
-    the word. Otherwise it states the most similar known word, or all known words.
-    """
-    from difflib import get_close_matches
-
-    from gaspart.errors.synonyms import meant
+    """Return the rule for a message about an unknown word, with the word that is meant if it is clear."""
+    from gaspart.errors.words import meant
 
     names = list(candidates)
-    renamed = str(name).replace("bodies", "particles").replace("body", "particle")  # names of version 0.2
-    if renamed != name and renamed in names:
-        return f"is called {renamed} now"
-    if meaning := meant(str(name), names):
-        return f"unknown {kind}; here it is {meaning}"
-    near = get_close_matches(str(name), names, n=1)
-    return f"unknown {kind}; " + (f"did you mean {near[0]}?" if near else f"known are {', '.join(names)}")
+    meaning = meant(str(name), names)
+    return f"unknown {kind}; " + (f"did you mean {meaning}?" if meaning else f"known are {', '.join(names)}")
 
 
 def optional(module: str, extra: str, purpose: str) -> ModuleType:

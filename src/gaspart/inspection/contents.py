@@ -16,6 +16,10 @@ from gaspart.scene.scene import Scene
 
 CENTRE = "centre"
 """Keyword for an origin in the middle of the container."""
+_LARGEST = 1e30
+"""Largest number of a file, whose square and single-precision value are finite."""
+_FARTHEST = 2.0**40
+"""Largest distance of a position from the container, in side lengths; rounding changes farther ones."""
 _SAME = 1e-6
 """Relative change of a side length that is attributed to rounding."""
 
@@ -110,7 +114,7 @@ def complete_frames(contents: Contents, overrides: Overrides, path: str) -> Fram
     alike = masses is None or np.ptp(masses) == 0.0
     steady = len(sides) == 1 and len(radii) == 1
     frames = Frames(
-        positions=_wrap(contents.positions, origin, sides, container.periodic),
+        positions=_wrap(contents.positions, origin, sides, container.periodic, path),
         lengths=sides[0],
         radii=radii[0],
         periodic=container.periodic,
@@ -123,7 +127,7 @@ def complete_frames(contents: Contents, overrides: Overrides, path: str) -> Fram
         engine=contents.engine,
         counted=contents.counted,
         scene=contents.scene,
-        resolution=contents.resolution,
+        resolution=min(contents.resolution, _LARGEST),
         masses=None if masses is None else masses[0],
         lengths_by_frame=sides if len(sides) > 1 else None,
         radii_by_frame=radii if len(radii) > 1 else None,
@@ -135,7 +139,7 @@ def complete_frames(contents: Contents, overrides: Overrides, path: str) -> Fram
 
 
 def _wrap(
-    positions: np.ndarray, origin: np.ndarray, sides: np.ndarray, periodic: tuple[bool, ...]
+    positions: np.ndarray, origin: np.ndarray, sides: np.ndarray, periodic: tuple[bool, ...], path: str
 ) -> np.ndarray:
     """Return positions (T, N, d) from the lower corner, wrapped to [0, L) on periodic axes.
 
@@ -148,6 +152,9 @@ def _wrap(
         low, size = origin[n % len(origin)], sides[n % len(sides)]
         for k, along in enumerate(periodic):
             x = frame[:, k].astype(float) - low[k]
+            if np.abs(x).max() > _FARTHEST * size[k]:
+                rule = f"has a position that is more than {_FARTHEST:.0e} containers away, in frame {n}"
+                raise SceneError("file", path, rule)
             if along:
                 x -= size[k] * np.floor(x / size[k])
                 x[x >= size[k]] = 0.0  # -1e-17 rounds to L
@@ -169,10 +176,11 @@ def _origin(contents: Contents, overrides: Overrides, sides: np.ndarray, path: s
 
 
 def _require_finite(name: str, values: np.ndarray, path: str) -> None:
-    """Raise SceneError if values are not finite, and name the first such frame."""
-    wrong = ~np.isfinite(values).all(axis=(1, 2))
+    """Raise SceneError if values are not finite or too large, and name the first such frame."""
+    wrong = ~(np.abs(values) <= _LARGEST).all(axis=(1, 2))
     if wrong.any():
-        raise SceneError("file", path, f"has {name} that are not finite or absent, in frame {wrong.argmax()}")
+        rule = f"that are not finite, absent or above {_LARGEST:g}, in frame {wrong.argmax()}"
+        raise SceneError("file", path, f"has {name} {rule}")
 
 
 def sort_by_id(contents: Contents, path: str) -> None:
@@ -245,8 +253,9 @@ def _container(contents: Contents, overrides: Overrides, d: int, path: str) -> t
     walls = np.zeros(d, dtype=bool)
     if stated is not None and not contents.centred:
         walls = (stated == 0.0).all(axis=0)
-    if not np.isfinite(sides).all() or not (sides > 0.0).all():
-        wrong = sides[np.argmin((sides > 0.0).all(axis=1) & np.isfinite(sides).all(axis=1))]
+    right = ((sides > 0.0) & (sides <= _LARGEST)).all(axis=1)
+    if not right.all():
+        wrong = sides[np.argmin(right)]
         rule = "must be positive: give --lengths X,Y[,Z]"
         if walls.any():
             rule = "is 0 along an axis with walls, whose distance is not stated: give --lengths X,Y[,Z]"
@@ -265,7 +274,7 @@ def _radii(contents: Contents, overrides: Overrides, path: str) -> np.ndarray:
         return np.full(contents.positions.shape[1], overrides.radius)
     if contents.radii is None:
         raise SceneError("radius", None, "is not stated: give --radius", path)
-    if not (np.asarray(contents.radii) > 0.0).all() or not np.isfinite(contents.radii).all():
+    if not (np.asarray(contents.radii) > 0.0).all() or not (np.asarray(contents.radii) <= _LARGEST).all():
         least = float(np.nan_to_num(contents.radii, nan=-np.inf).min())
         raise SceneError("radius", least, "must be positive and finite: give --radius", path)
     return np.asarray(contents.radii, dtype=float)
@@ -287,8 +296,9 @@ def _times(contents: Contents, overrides: Overrides, path: str) -> np.ndarray | 
     if time is None or (frames > 1 and np.ptp(time) == 0.0):
         return None
     later = np.diff(time) > 0.0
-    if not np.isfinite(time).all() or not later.all():
-        frame = int(np.argmin(np.isfinite(time))) if later.all() else int(np.argmin(later)) + 1
+    finite = np.abs(time) <= _LARGEST
+    if not finite.all() or not later.all():
+        frame = int(np.argmin(finite)) if later.all() else int(np.argmin(later)) + 1
         remedy = "" if overrides.time_step is not None else ": give --time-step"
         raise SceneError("file", path, f"has a time in frame {frame} that is not later than before{remedy}")
     even = np.linspace(time[0], time[-1], frames)

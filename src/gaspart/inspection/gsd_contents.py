@@ -16,6 +16,18 @@ _TOPOLOGY = ("bonds", "angles", "dihedrals", "impropers", "constraints", "pairs"
 _FIRST_ONLY = (
     "velocities are stored in frame 0 only; HOOMD stores all with GSD(..., dynamic=['property', 'momentum'])"
 )
+_PARTICLE = {
+    **dict.fromkeys(("mass", "charge", "diameter"), ((), "f")),
+    **dict.fromkeys(("position", "velocity", "moment_inertia"), ((3,), "f")),
+    **dict.fromkeys(("orientation", "angmom"), ((4,), "f")),
+    **dict.fromkeys(("typeid", "body"), ((), "iu")),
+    "image": ((3,), "iu"),
+}
+"""Shape of each field for one particle, and the kinds of its numbers."""
+_ROWS = {"particles": "position", **dict.fromkeys(_TOPOLOGY, "group")}
+_MOST_ABSENT = 100_000
+"""Number of particles or bonds for which the library may allocate memory without data in the file."""
+_CONFIGURATION = {"box": ((6,), "f"), "dimensions": ((1,), "iu"), "step": ((1,), "iu")}
 _SPHERE_RADIUS = "state/hpmc/sphere/radius"
 """Name of the radii of the types in files of HOOMD 2; other shapes have other names."""
 
@@ -30,6 +42,8 @@ def read_gsd(path: Path, overrides: Overrides) -> Contents:
     hoomd = optional("gsd.hoomd", "gsd", "GSD files")
     with open_regular(path) as opened_file, hoomd.open(descriptor_path(opened_file), "r") as file:
         first = max(len(file) - 1, 0) if overrides.last else 0
+        for n in sorted({0, *range(first, len(file))}):
+            _require_shapes(file.file, n, path)
         frames = list(file[first:])
         chunks = set(file.file.find_matching_chunk_names(""))
         moving = [n for n in range(len(file)) if file.file.chunk_exists(frame=n, name="particles/velocity")]
@@ -65,6 +79,42 @@ def read_gsd(path: Path, overrides: Overrides) -> Contents:
         resolution=float(np.finfo(positions.dtype).eps) * extent,
         velocities_from_first=_FIRST_ONLY if moving == [0] and len(frames) > 1 else None,
     )
+
+
+def _require_shapes(file: Any, n: int, path: Path) -> None:
+    """Raise SceneError if a chunk of a frame has another shape than the schema requires.
+
+    The library reads such chunks as they are, and allocates memory for particles without chunks.
+    """
+
+    def read(name: str, frame: int = n) -> np.ndarray | None:
+        return file.read_chunk(frame=frame, name=name) if file.chunk_exists(frame=frame, name=name) else None
+
+    def count(group: str) -> int:
+        """Return the number of particles or of bonds, which a later frame may take from frame 0."""
+        for frame in (n, 0):
+            stated = read(f"{group}/N", frame)
+            if stated is not None and stated.shape == (1,):
+                return int(stated[0])
+        return 0
+
+    particles = count("particles")
+    right: dict[str, tuple[tuple[int, ...], str]] = {
+        f"configuration/{name}": needed for name, needed in _CONFIGURATION.items()
+    }
+    right |= {f"particles/{name}": ((particles, *one), kinds) for name, (one, kinds) in _PARTICLE.items()}
+    right |= {f"{group}/N": ((1,), "iu") for group in ("particles", *_TOPOLOGY)}
+    for name, (shape, kinds) in right.items():
+        found = read(name)
+        if found is not None and (found.shape != shape or found.dtype.kind not in kinds):
+            rule = f"has {name} of shape {found.shape} and type {found.dtype} in frame {n}, "
+            rule += f"not {shape} and {'a floating-point number' if kinds == 'f' else 'an integer'}"
+            raise SceneError("file", str(path), rule)
+    for group in ("particles", *_TOPOLOGY):
+        # the library writes no positions that are all 0
+        if count(group) > _MOST_ABSENT and read(f"{group}/{_ROWS[group]}") is None:
+            rule = f"has {count(group)} {group} in frame {n}, and no {group}/{_ROWS[group]}"
+            raise SceneError("file", str(path), rule)
 
 
 def _require_same_count(counts: list[int], path: Path) -> None:
@@ -117,6 +167,8 @@ def _of_shapes(shapes: list[dict], path: Path) -> list[float]:
     """Return the radii of the types, NaN for types without radius; reject other shapes than spheres."""
     radii = []
     for shape in shapes:
+        if not isinstance(shape, dict) or isinstance(shape.get("type"), list | dict):
+            raise ValueError("particles/type_shapes must be a list of dictionaries")
         kind = shape.get("type")
         axes = {shape.get(axis) for axis in ("a", "b", "c")}
         if kind is None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import os
 import re
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -134,6 +135,8 @@ _POSITIONS = ("coordinates", "unwrapped_coordinates", "scaled_coordinates")
 _LABELS = {"spatial": "xyz", "cell_spatial": "abc"}
 _REPLICAS = ("remd_indices", "remd_repidx", "remd_crdidx", "remd_values")
 _INTERACTIONS = ("forces", "q", "charge")
+_PACKING = ("scale_factor", "add_offset", "missing_value", "valid_min", "valid_max", "valid_range")
+"""Attributes that change or mask the numbers of a variable."""
 _IDS = ("id", "identifier")
 _TYPES = ("type", "atom_types")
 _SECONDS = ("second", "microsecond", "nanosecond", "picosecond", "femtosecond", "atomic time unit")
@@ -208,7 +211,12 @@ def _read(file: Any, name: str) -> np.ndarray | None:
     """
     if name not in file.variables:
         return None
-    values = file[name][...]
+    for attribute in _PACKING:
+        if isinstance(getattr(file[name], attribute, None), str) and file[name].dtype.kind != "S":
+            raise ValueError(f"{attribute} of {name} must be a number")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the library says which of these numbers it does not use
+        values = file[name][...]
     absent = np.ma.getmaskarray(values)
     if not absent.any():
         return np.asarray(np.ma.getdata(values))

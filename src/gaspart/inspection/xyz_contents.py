@@ -16,7 +16,11 @@ from gaspart.errors import SceneError
 from gaspart.files import open_regular
 from gaspart.inspection.contents import Contents, Overrides
 
-_PAIR = re.compile(r"""([^\s="'{}\[\],]+)\s*=\s*("[^"]*"|'[^']*'|\{[^}]*\}|\[.*?\](?=\s|$)|\S+)""")
+_PAIR = re.compile(
+    r"""(?<![^\s="'{}\[\],])([^\s="'{}\[\],]++)\s*+=\s*+"""
+    r"""("[^"]*"|'[^']*'|\{[^}]{0,999}\}|\[.{0,999}?\](?=\s|$)|\S+)"""
+)
+"""Pattern of a key with its value, whose time is proportional to the length of the text."""
 _EXPONENT = re.compile(r"[eEdD]\S*")
 _NO_SIGNS = str.maketrans("", "", "+-.")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
@@ -236,7 +240,7 @@ def _of_comment(pairs: dict[str, str], dimension: int, overrides: Overrides, pat
         fields["time"] = _vector(pairs, "time", (1,), "--time-step", path)[0]
         decimals = len(pairs["time"].lower().partition("e")[0].partition(".")[2])
         exponent = pairs["time"].lower().partition("e")[2]
-        fields["time_digit"] = 10.0 ** (int(exponent or 0) - decimals)
+        fields["time_digit"] = float(f"1e{int(exponent or 0) - decimals}")
     return fields
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from gaspart import theory
 from gaspart.accuracy.scales import scales
-from gaspart.analysis.measuring import measure
+from gaspart.analysis.frames import measure_single
 from gaspart.analysis.run import frame_of, with_frames
 from gaspart.analysis.statistics.blocks import correlated_mean
 from gaspart.engines import Engine
@@ -298,7 +298,7 @@ class LiveGas:
             mean = correlated_mean(counts.astype(float)).estimate
             readings.append(("particles", mean.value, mean.error, None))
         try:
-            result = measure(data, "Z" if scene.is_periodic else "pressure")
+            result = measure_single(data, "Z" if scene.is_periodic else "pressure")
         except SceneError:  # not defined in this scene
             return readings
         names = (

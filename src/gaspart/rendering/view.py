@@ -38,14 +38,16 @@ _HIGHEST = 254  # levels of speeds and bond orders, stored as bytes; the next by
 _FINEST = 65534
 _PER_RADIUS = 64  # positions per smallest radius
 _MARK = "gaspart view"
+_MARKS = b"gaspart view", b"gaspart play"
 
 
 def _is_view(path: Path) -> bool:
     with path.open("rb") as file:
-        return _MARK.encode() in file.read(1000)
+        start = file.read(1000)
+    return any(mark in start for mark in _MARKS)
 
 
-PAGE = FileKind("a page written by gaspart view", _is_view)
+PAGE = FileKind("a page written by gaspart view or gaspart play", _is_view)
 
 
 @dataclass(frozen=True)
@@ -56,9 +58,12 @@ class View:
     ----------
     page : str
         HTML text of the page.
+    height : int, default 480
+        Height in a notebook in pixels.
     """
 
     page: str
+    height: int = 480
 
     def __repr__(self) -> str:
         size = len(self.page.encode()) / 1e6
@@ -93,7 +98,7 @@ class View:
 
     def _repr_html_(self) -> str:
         source = html.escape(self.page)
-        return f'<iframe srcdoc="{source}" style="width: 100%; height: 480px; border: 0"></iframe>'
+        return f'<iframe srcdoc="{source}" style="width: 100%; height: {self.height}px; border: 0"></iframe>'
 
 
 def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order: bool = False) -> View:

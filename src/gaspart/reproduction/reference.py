@@ -1,15 +1,10 @@
-"""Documents generated from the declarations of all keys: JSON schemas and pages of the reference.
-
-The command `python -m gaspart.reproduction.reference` in the folder of the project writes the schemas of
-configs and scene files for editors. `make docs` makes the pages.
-"""
+"""Pages of the reference, from the declarations of all keys; `make docs` makes them."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from gaspart.analysis.declaration import DIMENSIONS
@@ -27,29 +22,22 @@ _TYPES = {"array": "list", "boolean": "`true` or `false`", "integer": "whole num
 _TYPES |= {"string": "text"}
 _INTRODUCTION = """# Reference
 
-Keys, features and observables, from their declarations in the code. For editors, `workflow/schemas`
-has the same rules as JSON schemas.
+Keys, features and observables, from their declarations in the code. For editors, the same rules
+as JSON schemas: {download}`scene files <scene.schema.json>`, {download}`configs <config.schema.json>`.
 
 """
 _KEYS = "A key without a default is required. A default of *none* means that the key is absent.\n"
 
 
-def schemas() -> dict[str, str]:
-    """Return the text of each JSON schema, by its path in the folder of the project."""
-    contents = {"config": schema(), "scene": scene_schema()}
-    return {
-        f"workflow/schemas/{name}.schema.json": json.dumps(content, indent=1, ensure_ascii=False) + "\n"
-        for name, content in contents.items()
-    }
-
-
 def pages() -> dict[str, str]:
-    """Return the text of each page of the reference, by its path in `docs/generated`."""
+    """Return the text of each page and schema of the reference, by its path in `docs/generated`."""
     texts, index = {}, _INTRODUCTION
     for name, page in _PAGES.items():
         start = f"# {page.title}\n\n{page.about} {page.more}\n"
         texts[f"reference/{name}.md"] = "\n".join([start, *page.content()])
         index += f"- [{page.title}]({name}.md): {page.about}\n"
+    for name, content in (("config", schema()), ("scene", scene_schema())):
+        texts[f"reference/{name}.schema.json"] = json.dumps(content, indent=1, ensure_ascii=False) + "\n"
     names = "".join(f"{name}\n" for name in _PAGES)
     return {**texts, "reference/index.md": f"{index}\n```{{toctree}}\n:hidden:\n\n{names}```\n"}
 
@@ -271,14 +259,3 @@ the Boltzmann or the Enskog equation.""",
         _figure_keys,
     ),
 }
-
-
-def main() -> None:
-    """Write all schemas."""
-    for path, text in schemas().items():
-        Path(path).parent.mkdir(parents=True, exist_ok=True)
-        Path(path).write_text(text, encoding="utf-8")
-
-
-if __name__ == "__main__":
-    main()

@@ -12,7 +12,7 @@ import json
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import fields
+from dataclasses import fields, replace
 from itertools import count, islice
 from math import nan
 from pathlib import Path
@@ -21,6 +21,8 @@ from typing import Any, TypeAlias
 import numpy as np
 import xarray as xr
 
+from gaspart.accuracy.conditions import keeps_energy
+from gaspart.analysis.drift import drift_of
 from gaspart.analysis.observables import OBSERVABLES, observable_name
 from gaspart.engines import Engine, engine_to_dict, resolve_engine
 from gaspart.errors import SceneError, SimulationError, unknown_word
@@ -126,8 +128,9 @@ def sweep(
     SweepTable
         A Dataset with a method to plot itself (`SweepTable.plot`), and a dimension for each key. Variables
         are each observable, its standard uncertainty (suffix _error), its theoretical value if known (suffix
-        _theory), `duration`, and `failure`. The latter is the reason why a result is NaN, otherwise "". A
-        curve has its own dimension, such as `rdf_distance`; if positions differ between points, they are in
+        _theory), `duration`, `failure` and `drift`. `failure` is the reason why a result is NaN, and `drift`
+        states which quantities drift in the measured part of the run; both are "" otherwise. A curve has its
+        own dimension, such as `rdf_distance`; if positions differ between points, they are in
         `rdf_distance_places`. All observables share the dimensions `face` and `component`.
 
     Raises
@@ -142,8 +145,10 @@ def sweep(
 
     Notes
     -----
-    If some of radius, packing fraction and count vary, the others keep their values as far as possible. A
-    complete trajectory is not simulated again. An interrupted trajectory is continued.
+    If some of radius, packing fraction and count vary, the others keep their values as far as possible. If
+    runs conserve their energy, species with a `temperature` have exactly this temperature at the start;
+    otherwise each point would have another energy. A complete trajectory is not simulated again. An
+    interrupted trajectory is continued.
 
     Examples
     --------
@@ -161,7 +166,7 @@ def sweep(
     axes = _axes(over, engine)
     names = _names(observables, axes)
     point = _length(duration, until, at_most, samples, equilibration)
-    point |= {**_settings(scene, axes, engine), **_contents(names, correlations, point)}
+    point |= {**_settings(_with_equal_energies(scene), axes, engine), **_contents(names, correlations, point)}
     point["replicas"] = POINT["replicas"].check("replicas", replicas)
     varied = {key if key in _point_keys(engine) else PREFIX + key: values for key, values in axes.items()}
     config: dict[str, Any] = {
@@ -192,6 +197,15 @@ def sweep(
 
 
 # The request of a sweep as settings of points: plain values, checked as the keys of a config.
+
+
+def _with_equal_energies(scene: Scene) -> Scene:
+    """Return the scene with exact temperatures if a run conserves the energy of its drawn velocities."""
+    drawn = [kind for kind in scene.species if kind.temperature is not None and not kind.fixed]
+    if not keeps_energy(scene) or sum(kind.count for kind in drawn) < 2:
+        return scene
+    exact = [replace(kind, exact_temperature=kind in drawn) for kind in scene.species]
+    return replace(scene, species=exact)
 
 
 def _axes(over: object, engine: Engine) -> dict[str, list]:
@@ -473,11 +487,17 @@ def _make(point: Point, overwrite: bool) -> str:
 def _row(point: Point, names: list[str], part: bool, failure: str) -> xr.Dataset:
     """Return the results of a point, or the reason for its failure; see `measure_point`."""
     if failure:
-        return xr.Dataset({"duration": nan, "failure": failure})
+        return xr.Dataset({"duration": nan, "failure": failure, "drift": ""})
     results, duration, refused = measure_point(point, names, part)
     for name, error in refused.items():
         _complain(point.name, str(error), name)
-    row = xr.Dataset({"duration": duration, "failure": "; ".join(map(str, refused.values()))})
+    drift = ""
+    if results:
+        drift = drift_of(*point.replica_paths, start=None if part else point.schedule.equilibration)
+    if drift:
+        print(f"{EXPERIMENT}[{point.name}] is not steady: {drift}", file=sys.stderr, flush=True)
+    failures = "; ".join(map(str, refused.values()))
+    row = xr.Dataset({"duration": duration, "failure": failures, "drift": drift})
     return row.assign({key: value for name in results for key, value in columns(name, results[name])})
 
 

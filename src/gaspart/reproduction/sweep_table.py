@@ -157,8 +157,9 @@ def table(rows: list[xr.Dataset], names: Sequence[str], axes: Mapping[str, list]
         values = column.values.reshape([*shape, *column.shape[1:]])
         columns[str(key)] = ((*axes, *column.dims[1:]), values, column.attrs)
     columns["duration"][2]["units"] = "time"
-    over, reasons, attributes = columns["failure"]
-    columns["failure"] = (over, reasons.astype(object), attributes | {"long_name": "why something is NaN"})
+    for key, meaning in {"failure": "why something is NaN", "drift": "what is not steady"}.items():
+        over, reasons, attributes = columns[key]
+        columns[key] = (over, reasons.astype(object), attributes | {"long_name": meaning})
     columns |= {str(dim): data[dim] for dim in data.dims if dim in DIMENSIONS}
     labels = {key: [coordinate(value) for value in values] for key, values in axes.items()}
     return SweepTable(columns, labels)

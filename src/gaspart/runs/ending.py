@@ -20,14 +20,12 @@ from gaspart.analysis.observables import (
 )
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
-from gaspart.errors.guidance import with_guidance
 from gaspart.scene.scene import Scene
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.run_options import Contents, required_contents
 from gaspart.trajectory.until import Requirement, Until
 
 
-@with_guidance
 class Accuracy(Requirement):
     """Requested accuracy of an observable: its standard error divided by its absolute value.
 

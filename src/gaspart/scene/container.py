@@ -8,7 +8,6 @@ from functools import cached_property
 from typing import Any
 
 from gaspart.errors import SceneError
-from gaspart.errors.guidance import with_guidance
 from gaspart.keys import POSITIVE, declare, describe, set_fields, validate
 from gaspart.keys.values import finite_vector, one_of, positive_number
 
@@ -24,7 +23,6 @@ def _lengths(name: str, value: Any) -> tuple[float, ...]:
     return tuple(positive_number(name, length) for length in finite_vector(name, value))
 
 
-@with_guidance
 @dataclass(frozen=True)
 class Container:
     """The simulated volume [0, L] on each axis, in two or three dimensions.

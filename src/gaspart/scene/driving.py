@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
-from gaspart.errors.guidance import with_guidance
 from gaspart.keys import declare, positive, validate
 
 if TYPE_CHECKING:
@@ -70,7 +69,6 @@ def _spans(wall: Wall | Plate, axis: int, length: float) -> bool:
 # Stochastic thermostat.
 
 
-@with_guidance
 @dataclass(frozen=True)
 class Thermostat:
     """Random kicks of all particles at regular times.

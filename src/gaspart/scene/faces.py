@@ -11,7 +11,6 @@ from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from gaspart.errors import SceneError
-from gaspart.errors.guidance import with_guidance
 from gaspart.keys import (
     choice,
     declare,
@@ -104,7 +103,6 @@ _ENDS = {
 _TEMPERATURE = Kind({"anyOf": [POSITIVE, _ENDS]}, _check_temperature)
 
 
-@with_guidance
 @dataclass(frozen=True)
 class Thermal(Surface):
     """A wall at a temperature; velocities of particles that leave it are drawn for this temperature.
@@ -243,7 +241,6 @@ class Thermal(Surface):
         return self.components == "normal"
 
 
-@with_guidance
 @dataclass(frozen=True)
 class Well(Surface):
     """A wall with an attractive square well: the energy is -`depth` closer than `width` to it.
@@ -323,7 +320,6 @@ class Well(Surface):
         return () if self.temperature is None else (self.temperature,)
 
 
-@with_guidance
 @dataclass(frozen=True)
 class Sticky(Surface):
     """A wall to which slow particles stick, after Frederickx & Meerts (2010), section 4.5.
@@ -370,7 +366,6 @@ class Sticky(Surface):
         return "sticky", self.momentum
 
 
-@with_guidance
 @dataclass(frozen=True)
 class Vibrating(Surface):
     """A hard wall with a prescribed vibration, which gives energy to particles or takes it.
@@ -467,7 +462,6 @@ class Vibrating(Surface):
         return self.amplitude * (1.0 - np.cos(2.0 * math.pi * turns))
 
 
-@with_guidance
 @dataclass(frozen=True)
 class Piston(Surface):
     """A smooth wall that particles and an external pressure move, or that has a constant speed.
@@ -582,7 +576,6 @@ class Piston(Surface):
         return (-1.0 if number % 2 else 1.0) * (self.speed or 0.0)
 
 
-@with_guidance
 @dataclass(frozen=True)
 class Open(Surface):
     """An opening as wide as the face, through which particles leave, and enter from a reservoir.
@@ -675,7 +668,6 @@ class Open(Surface):
         return () if self.temperature is None else (self.temperature,)
 
 
-@with_guidance
 @dataclass(frozen=True)
 class LeesEdwards(Surface):
     """Pair of periodic faces whose images slide, for shear flow without walls.

@@ -10,8 +10,8 @@ these properties by name, and do not compute them again. All facts are attribute
   `has_unequal_areas`, `largest_radius`, `smallest_radius`, `largest_moving_radius`, `number_density`,
   `packing_fraction`, `gas`, `mixture`;
 - motion: `is_open`, `open_axes`, `moving_axes`, `moving_wall`, `has_piston`, `load_axis`, `shear_rate`,
-  `driven_axes`, `flow_axes`, `flow_changes`, `frame_velocity`, `drags_faces`, `conserved_axes`, `dissipates`,
-  `vibrates`, `rough`;
+  `driven_axes`, `flow_axes`, `flow_changes`, `frame_velocity`, `drags_faces`, `dragged_axes`,
+  `conserved_axes`, `dissipates`, `vibrates`, `rough`;
 - `features`, the names of its features.
 
 The accessible volume and areas for particle centres are in `accessible`.
@@ -387,15 +387,23 @@ class Facts:
         return across or self.walled_axes or (0,)
 
     @cached_property
+    def dragged_axes(self) -> tuple[bool, ...]:
+        """Flags (d,) of the axes along which faces across other axes exert forces.
+
+        Such faces draw tangential velocities, or particles are rough.
+        """
+        drags = {number // 2 for number, face in self.numbered_faces if not face.smooth}
+        drags.update(self.walled_axes if self.rough else ())
+        return tuple(bool(drags - {axis}) for axis in range(self.dimension))
+
+    @cached_property
     def conserved_axes(self) -> tuple[bool, ...]:
         """Flags (d,) of the axes along which the total momentum is conserved.
 
-        Momentum is conserved along the periodic axes if no particle is fixed, and if all faces are smooth and
-        the only interior wall, if any, is a moving wall. Such faces and walls exert only normal forces. In a
-        sheared gas the momentum is relative to the flow.
+        Momentum is conserved along the periodic axes if no particle is fixed, if no face exerts forces along
+        itself, and if the only interior wall, if any, is a moving wall. In a sheared gas the momentum is
+        relative to the flow.
         """
-        smooth = all(face.smooth for face in self.faces.values())
-        rubbed = not self.is_periodic and (self.rough or not smooth)
-        obstructed = self.has_fixed or (bool(self.walls) and self.moving_wall is None)
-        free = not (obstructed or rubbed)
-        return tuple(free and around for around in self.container.periodic)
+        free = not (self.has_fixed or (bool(self.walls) and self.moving_wall is None))
+        axes = zip(self.container.periodic, self.dragged_axes, strict=True)
+        return tuple(free and around and not dragged for around, dragged in axes)

@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from gaspart.errors import SceneError
-from gaspart.errors.guidance import with_guidance
 from gaspart.keys import declare, in_range, not_negative, positive, validate
 
 
-@with_guidance
 @dataclass(frozen=True)
 class Restitution:
     """Effect of a contact on the relative velocity of the two surfaces (Spencer 2022, Eq. 22).

@@ -16,7 +16,6 @@ from typing import Any
 
 import gaspart
 from gaspart.errors import SceneError
-from gaspart.errors.guidance import with_guidance
 from gaspart.keys import (
     declare,
     describe,
@@ -52,7 +51,6 @@ DRAWN = 20_000
 _ABSENT = ("fixed", "exact_temperature", "walls", "faces")
 
 
-@with_guidance
 @dataclass(frozen=True)
 class Scene(Facts):
     """The system to simulate: a container, its particles and everything that acts on them.

@@ -7,7 +7,6 @@ from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, ClassVar
 
 from gaspart.errors import SceneError
-from gaspart.errors.guidance import with_guidance
 from gaspart.keys import (
     POSITIVE,
     choice,
@@ -57,7 +56,6 @@ def _check_matter(particle: Species | Particle) -> None:
         raise SceneError("vibration", particle.vibration, "requires fixed: true")
 
 
-@with_guidance
 @dataclass(frozen=True)
 class Species:
     """Particles of one kind, whose positions the program chooses.
@@ -81,7 +79,8 @@ class Species:
         vibrations.
     exact_temperature : bool, default False
         Rescale the initial velocities to exactly `temperature`, after the mean velocity is subtracted along
-        axes on which momentum is conserved. All species with an exact temperature are rescaled by one factor.
+        axes on which momentum is conserved. All such species have one factor, so that only their common
+        energy is exact; species that start in separate regions have their own.
     arrangement : {"random", "lattice", "slab", "compressed"}, default "random"
         Initial positions. "random": sequential insertion. "slab": a lattice whose vacancies are all in one
         half, so that this half melts. "compressed": growth to a density that insertion cannot reach (see
@@ -145,7 +144,8 @@ class Species:
         metadata=declare(
             flag(
                 "the initial velocities are scaled to exactly the `temperature`, after the mean velocity "
-                "along axes on which momentum is conserved was taken off"
+                "along axes on which momentum is conserved was taken off; all such species whose regions "
+                "overlap share one factor, and only their common energy is exact"
             )
         ),
     )
@@ -319,7 +319,6 @@ class Species:
         return self.mass * (self.speed or 0.0) ** 2 / dimension
 
 
-@with_guidance
 @dataclass(frozen=True)
 class Particle:
     """A single particle at a given position.

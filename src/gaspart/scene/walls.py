@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 from gaspart.errors import SceneError
-from gaspart.errors.guidance import with_guidance
 from gaspart.keys import declare, positive, two_vectors, validate, vector
 from gaspart.keys.values import finite_vector, positive_number
 
@@ -77,7 +76,6 @@ _MASS = positive("mass of a wall across the container that particles move; witho
 WALL_RULE = "a Wall needs a container of two dimensions, a Plate one of three"
 
 
-@with_guidance
 @dataclass(frozen=True)
 class Wall:
     """A straight wall inside a container of two dimensions, which particles hit from both sides.
@@ -162,7 +160,6 @@ class Wall:
         return math.hypot(x - ax - s * (bx - ax), y - ay - s * (by - ay))
 
 
-@with_guidance
 @dataclass(frozen=True)
 class Plate:
     """A flat rectangular wall inside a container of three dimensions, which particles hit from both sides.

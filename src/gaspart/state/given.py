@@ -24,6 +24,8 @@ from gaspart.state.state import State
 
 _SINGLE = 2.0**-24
 """Largest relative error of a number in single precision, the precision of trajectory frames."""
+_FARTHEST = 2.0**40
+"""Largest coordinate of a position on a periodic axis, in side lengths."""
 
 
 def state_from_arrays(
@@ -271,6 +273,9 @@ def _inside(scene: Scene, positions: np.ndarray, radii: np.ndarray, piston: np.n
     lengths, periodic = np.array(scene.container.lengths), np.array(scene.image_axes)
     slack = _SINGLE * lengths
     low, high = _bounds(scene, positions, radii, piston)
+    for n in np.flatnonzero((np.abs(positions) > _FARTHEST * lengths).any(axis=1)).tolist():
+        rule = f"particle {n} is so many containers away that rounding changes its position"
+        raise SceneError("initial", tuple(positions[n].tolist()), rule)
     placed = np.where(periodic, _wrap_coordinates(positions, lengths), positions)
     outside = ~periodic & ((placed < low - slack) | (placed > high + slack))
     for n in np.flatnonzero(outside.any(axis=1)).tolist():

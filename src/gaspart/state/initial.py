@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +12,7 @@ from gaspart.errors import SceneError
 from gaspart.scene.faces import FACES, Well
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import flow
-from gaspart.scene.species import LATTICES
+from gaspart.scene.species import LATTICES, Species
 from gaspart.scene.walls import MOVING_WALL
 from gaspart.state.compression import compress_positions
 from gaspart.state.insertion import per_particle, random_insertion
@@ -314,32 +315,56 @@ def in_flow(scene: Scene, masses: np.ndarray, positions: np.ndarray, velocities:
 
 
 def _make_exact(scene: Scene, velocities: np.ndarray) -> None:
-    """Rescale velocities of the species with `exact_temperature` by one common factor.
+    """Rescale velocities of the species with `exact_temperature`.
 
-    First, their mean velocity is subtracted along axes with conserved momentum. The factor makes the mean of
-    m v^2 / kT per degree of freedom of all these species together equal to 1. The sums have the same rounding
-    on every machine. Raises SceneError if there is no degree of freedom.
+    First, their mean velocity is subtracted along axes with conserved momentum. Then a factor for each group
+    of `_apart` makes the mean of m v^2 / kT per degree of freedom of the group equal to 1. The sums have the
+    same rounding on every machine. Raises SceneError if there is no degree of freedom.
     """
     first, parts = len(scene.particles), []
     for kind in scene.species:
         if kind.exact_temperature and kind.temperature and kind.count:
-            parts.append((np.arange(first, first + kind.count), kind.mass, kind.temperature))
+            parts.append((np.arange(first, first + kind.count), kind))
         first += kind.count
     if not parts:
         return
-    chosen = np.concatenate([members for members, _, _ in parts])
-    masses, temperatures = (
-        np.concatenate([np.full(len(part[0]), part[k]) for part in parts]) for k in (1, 2)
-    )
+    masses = np.concatenate([np.full(kind.count, kind.mass) for _, kind in parts])
+    chosen = np.concatenate([members for members, _ in parts])
     axes = [k for k, conserved in enumerate(scene.conserved_axes) if conserved]
-    freedom = scene.dimension * len(chosen) - len(axes)
-    if freedom < 1:
-        raise SceneError("exact_temperature", True, "needs two particles or more")
-    moving = velocities[chosen]
+    moving, total = velocities[chosen], math.fsum(masses)
     for k in axes:
-        moving[:, k] -= math.fsum(masses * moving[:, k]) / math.fsum(masses)
-    energies = masses / temperatures * (moving**2).T
-    velocities[chosen] = moving * math.sqrt(freedom / math.fsum(energies.ravel()))
+        moving[:, k] -= math.fsum(masses * moving[:, k]) / total
+    velocities[chosen] = moving
+    for group in _apart([kind for _, kind in parts]):
+        members = np.concatenate([parts[n][0] for n in group])
+        kinds = [parts[n][1] for n in group]
+        own, temperatures = (
+            np.concatenate([np.full(kind.count, getattr(kind, key)) for kind in kinds])
+            for key in ("mass", "temperature")
+        )
+        freedom = scene.dimension * len(members) - len(axes) * math.fsum(own) / total
+        if freedom < 0.5:
+            raise SceneError("exact_temperature", True, "needs two particles or more")
+        energies = own / temperatures * (velocities[members] ** 2).T
+        velocities[members] *= math.sqrt(freedom / math.fsum(energies.ravel()))
+
+
+def _apart(kinds: Sequence[Species]) -> list[list[int]]:
+    """Divide species into groups, as lists of indices; regions of different groups do not overlap."""
+    groups: list[list[int]] = []
+    for n, kind in enumerate(kinds):
+        near = [group for group in groups if any(_overlap(kinds[m], kind) for m in group)]
+        groups = [group for group in groups if group not in near]
+        groups.append(sorted(sum(near, [n])))
+    return sorted(groups)
+
+
+def _overlap(one: Species, other: Species) -> bool:
+    """Return True if the regions of two species overlap."""
+    if one.region is None or other.region is None:
+        return True
+    sides = zip(*one.region, *other.region, strict=True)
+    return all(max(low, begin) < min(high, end) for low, high, begin, end in sides)
 
 
 def lattice(scene: Scene, rng: np.random.Generator, slab: bool = False) -> np.ndarray:

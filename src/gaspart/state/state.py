@@ -7,13 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from gaspart.errors.guidance import with_guidance
 from gaspart.scene.faces import FLOW, GRADIENT
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import flow
 
 
-@with_guidance
 @dataclass(repr=False)
 class State:
     """All particles at one time: the input and the output of engines.

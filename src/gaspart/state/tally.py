@@ -9,7 +9,6 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar
 
 from gaspart.errors import SceneError
-from gaspart.errors.guidance import with_guidance
 from gaspart.keys.values import count_of, number, one_of
 from gaspart.scene.features import FEATURES
 from gaspart.state.optional_tallies import OptionalTally
@@ -25,7 +24,6 @@ SPEED, PRESSED, HEATED = "length/time", "mass length^(2-d)/time", "mass length^(
 """Units of sums: of the velocity that belongs to a sum, and of momentum and heat per area."""
 
 
-@with_guidance
 @dataclass
 class Tally:
     """Counters and sums of a simulation since the last reset.
@@ -226,7 +224,6 @@ _WITH_STRESS = frozenset(
 """Features that a scene with this tally may have: velocities still change only at contacts."""
 
 
-@with_guidance
 @dataclass(frozen=True)
 class StressTally(OptionalTally):
     """Tally of the stress tensor and the heat flux, in a periodic container without gravity.
@@ -271,7 +268,6 @@ FURTHEST = 0.499
 """Largest allowed distance of a pair, divided by the shortest side of a periodic container."""
 
 
-@with_guidance
 @dataclass(frozen=True)
 class ImpulseTally(OptionalTally):
     """Tally of the momentum that particles transport along an axis through planes across this axis.
@@ -346,7 +342,6 @@ def _require_equilibrium(scene: Scene) -> None:
         raise SceneError("faces.temperature", temperatures, rule)
 
 
-@with_guidance
 @dataclass(frozen=True)
 class PairImpulseTally(OptionalTally):
     """Tally of the momentum that pairs gain along their separation, in shells of equal thickness.

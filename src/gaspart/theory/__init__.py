@@ -9,4 +9,4 @@ argument is out of range.
 
 from gaspart.public import attach as _attach
 
-__getattr__, __dir__, __all__ = _attach(__name__, for_users=True)
+__getattr__, __dir__, __all__ = _attach(__name__)

@@ -12,7 +12,6 @@ from typing import NamedTuple
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.errors.guidance import with_guidance
 from gaspart.theory.enskog import enskog_conductivity, mean_free_path
 from gaspart.theory.geometry import (
     Numbers,
@@ -365,7 +364,6 @@ def _slab_without_jumps(length: float, density: float, hot: float, cold: float, 
 # Shock in front of a piston in a gas at rest: jump of density, temperature and pressure.
 
 
-@with_guidance
 class Shock(NamedTuple):
     """Steady shock, behind which the gas moves with the piston.
 

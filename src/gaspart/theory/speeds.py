@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.errors.guidance import with_guidance
 from gaspart.theory.geometry import Numbers, Values, check_ranges, checked_dimension
 
 _TABLES = Path(__file__).parent / "data"
@@ -351,7 +350,6 @@ def initial_kurtosis_slope(dimension: int) -> float:
     return {2: 64.0 / 225.0, 3: 8.0 / 35.0}[checked_dimension(dimension)]
 
 
-@with_guidance
 @dataclass(frozen=True)
 class Relaxation:
     """Relaxation of a gas in which all speeds are equal at the start.

@@ -13,7 +13,7 @@ from xarray.backends import BackendArray, NetCDF4DataStore
 from xarray.core import indexing
 
 from gaspart.errors import SceneError
-from gaspart.errors.guidance import MissingName
+from gaspart.errors.words import MissingName
 from gaspart.trajectory.amber import CheckedFrames
 from gaspart.trajectory.opening import damage
 
@@ -37,7 +37,7 @@ class Trajectory(xr.Dataset):
         except AttributeError:
             if name.startswith("_"):  # true also for an instance under construction
                 raise
-            raise MissingName(type(self), name, map(str, self.variables)) from None
+            raise MissingName("a trajectory", name, map(str, self.variables)) from None
 
 
 class CheckedStore(NetCDF4DataStore):

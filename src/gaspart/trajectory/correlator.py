@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.errors.guidance import with_guidance
 from gaspart.keys.values import count_of, number
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
@@ -46,7 +45,6 @@ CORRELATED = {
 _PREFIX = "correlator "  # prefix of its arrays in a checkpoint
 
 
-@with_guidance
 @dataclass(frozen=True)
 class Correlations:
     """Time correlations that a run accumulates.

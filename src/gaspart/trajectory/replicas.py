@@ -192,6 +192,15 @@ def find_run(path: str | Path) -> tuple[Path, Recipe]:
     return file, read_recipe(file)
 
 
+def run_files(path: str | Path) -> list[str]:
+    """Return the file at a path, or the files of all its replicas."""
+    stated, path = str(path), Path(path)
+    alone = path.exists() or partial_path(path).exists() or not path.name
+    first = path if alone else replica_path(path, 1)
+    is_replicated = first != path and (first.exists() or partial_path(first).exists())
+    return [str(file) for file in files_of(path)] if is_replicated else [stated]
+
+
 def files_of(path: str | Path) -> list[Path]:
     """Return the files of the run at a path, finished or unfinished.
 

@@ -70,8 +70,11 @@ class CorrelatedMean:
     flat: bool
 
 
-def correlated_mean(series: ArrayLike, minimum_blocks: int = 16) -> CorrelatedMean:
+def correlated_mean(series: ArrayLike, minimum_blocks: int = 16, fitted: int = 1) -> CorrelatedMean:
     """Compute the mean and standard error of a stationary correlated series.
+
+    fitted : number of parameters that were fitted to the series, including its mean; for the residuals of a
+        polynomial, the number of its coefficients.
 
     The squared error is the spectrum at frequency 0 divided by the length. It is computed from an
     autoregressive process that is fitted to the series, and whose order grows as the cube root of the length
@@ -108,7 +111,7 @@ def correlated_mean(series: ArrayLike, minimum_blocks: int = 16) -> CorrelatedMe
         if np.all(errors[k + 1 :] - own[k + 1 :] <= errors[k]):
             chosen, flat = k, True
             break
-    spectrum, freedom = _spectrum(series)
+    spectrum, freedom = _spectrum(series, fitted)
     error = math.sqrt(spectrum / series.size)
     return CorrelatedMean(
         estimate=Estimate(series.mean(), error, freedom),
@@ -207,13 +210,14 @@ def _order(number: int) -> int:
     return round(ORDER * number ** (1.0 / 3.0))
 
 
-def _spectrum(series: np.ndarray) -> tuple[float, float]:
+def _spectrum(series: np.ndarray, fitted: int = 1) -> tuple[float, float]:
     """Compute the sum of the autocovariances of a series over all lags.
 
     The degrees of freedom of this estimate are also returned.
 
     Autocovariances relative to the measured mean are too small by their sum divided by the number n of
-    samples. So a first estimate of this sum divided by n is added to them, and the fit is repeated.
+    samples. So a first estimate of this sum divided by n is added to them, and the fit is repeated. Relative
+    to a fit with `fitted` parameters, they are too small by about this number times as much.
     """
     number = series.size
     order = _order(number)
@@ -223,7 +227,7 @@ def _spectrum(series: np.ndarray) -> tuple[float, float]:
         return 0.0, 1.0
     covariances = np.array([centred[: number - lag] @ centred[lag:] for lag in range(order + 1)]) / number
     first, _ = _autoregression(covariances)
-    total, variance = _autoregression(covariances + first / number)
+    total, variance = _autoregression(covariances + fitted * first / number)
     return total, min(number / (1.0 + 2.0 * variance), float(changes))
 
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from gaspart.engines.engine import Engine, register
-from gaspart.errors.guidance import with_guidance
 from gaspart.keys import choice, count, declare, per_side, positive
 from gaspart.scene.face_checks import refuse_open
 
@@ -25,7 +24,6 @@ _DILUTE = 'needs the "event" engine, or the "boltzmann" model of this one'
 ADAPTED = ("nothing", "steps", "cells", "both")
 
 
-@with_guidance
 @register
 @dataclass(frozen=True)
 class DSMC(Engine):

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, ClassVar
 
 from gaspart.engines.engine import Engine, register
 from gaspart.errors import SceneError
-from gaspart.errors.guidance import with_guidance
 from gaspart.keys import choice, declare, per_side
 from gaspart.scene.features import FEATURES
 from gaspart.state.tally import TALLIES
@@ -22,7 +21,6 @@ if TYPE_CHECKING:
 SEARCHES = ("automatic", "boxes", "lists", "direct", "pairs")
 
 
-@with_guidance
 @register
 @dataclass(frozen=True)
 class EventDriven(Engine):

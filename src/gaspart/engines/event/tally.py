@@ -115,7 +115,8 @@ class EventTally:
 # Epochs: the clocks of the event-driven engine restart from zero in each epoch, to keep their precision.
 
 
-_LENGTH = 10  # an epoch is about 2^10 times the time of flight over a diameter
+_LENGTH = 2.0**10  # flight in an epoch, in smallest diameters
+_SMALL = 2.0**4  # number of such flights through the container above which an epoch is one flight through it
 _AT_REST = 2.0**960  # epoch length of a scene in which nothing moves
 _RESOLVED = 2.0**-52  # relative resolution of speeds
 _OTHER = 2.0**10  # factor by which speeds must change before the epoch length changes
@@ -126,8 +127,10 @@ QUIET = 64
 class Epochs:
     """Epoch lengths of a scene.
 
-    The length follows from a time of flight. The speed in this time is the rms speed plus the largest gain of
-    speed due to gravity and faces.
+    The length follows from a time of flight, over many of the smallest diameters. If particles are so small
+    that a flight through the container would take many epochs, it is the time of this flight, in which clocks
+    are as precise as positions. The speed is the rms speed plus the largest gain of speed due to gravity and
+    faces.
 
     masses : (N,), masses, infinite for fixed particles
     gained : square of the largest speed that the scene can give a particle
@@ -135,8 +138,9 @@ class Epochs:
 
     def __init__(self, scene: Scene, masses: np.ndarray, gained: float) -> None:
         self._gained = gained if len(masses) else 0.0
-        self._diameter = 2 * scene.smallest_radius
         self._across = max(scene.container.lengths)
+        path = 2.0 * scene.smallest_radius * _LENGTH
+        self._path = path if self._across < _SMALL * path else self._across
         self._moving = np.isfinite(masses)
         self._masses = masses[self._moving]
 
@@ -184,7 +188,7 @@ class Epochs:
         retained until speeds have changed by a factor of 2^10. In a cooling gas epochs become longer, because
         each epoch has the same cost.
         """
-        length = _power_of_two(self._diameter / speed, _LENGTH) if speed > 0.0 else _AT_REST
+        length = _power_of_two(self._path / speed) if speed > 0.0 else _AT_REST
         return present if present / _OTHER < length < present * _OTHER else length
 
     def quiet(self, speed: float, length: float, number: int) -> float:
@@ -193,15 +197,14 @@ class Epochs:
         The length is twice the previous length, but at most a time of flight through the container. Up to
         this length the clocks are as precise as the positions.
         """
-        most = _power_of_two(self._across / speed, 0) if speed > 0.0 else length
+        most = _power_of_two(self._across / speed) if speed > 0.0 else length
         doublings = min(max(number - QUIET, 0), max(0, math.frexp(most)[1] - math.frexp(length)[1]))
         return math.ldexp(length, doublings)
 
 
-def _power_of_two(time: float, more: int) -> float:
-    """Return 2^more times the next power of two above a time, but at most `_AT_REST`."""
-    _, exponent = math.frexp(time)
-    return min(math.ldexp(1.0, exponent + more), _AT_REST) if time < _AT_REST else _AT_REST
+def _power_of_two(time: float) -> float:
+    """Return the next power of two above a time, but at most `_AT_REST`."""
+    return min(math.ldexp(1.0, math.frexp(time)[1]), _AT_REST) if time < _AT_REST else _AT_REST
 
 
 # Detection of stalled runs: endless collisions at one time, or no collision at all.
@@ -247,7 +250,7 @@ def check_clocks(start: float, epoch: float) -> None:
     if start + epoch == start:
         raise SimulationError(
             f"at time {start:g} particles are so fast that {epoch:g} of time holds a thousand flights over a "
-            "diameter: less than such a time resolves"
+            "diameter, or a flight through the container: less than such a time resolves"
         )
 
 

@@ -245,8 +245,11 @@ def contact_duration(scene: Scene, law: ContactLaw) -> ContactDuration | None:
 
     Without this rule every contact dissipates.
     """
-    if not scene.contact_duration > 0.0:
-        return None
+    return lasting_contacts(scene, law) if scene.contact_duration > 0.0 else None
+
+
+def lasting_contacts(scene: Scene, law: ContactLaw) -> ContactDuration:
+    """Return the initial data for the rule of lasting contacts, also for the duration 0."""
     never = np.full(scene.count, -np.inf)
     return ContactDuration(
         length=scene.contact_duration,

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, ClassVar
 
 from gaspart.engines.engine import Engine, register
 from gaspart.errors import SceneError
-from gaspart.errors.guidance import with_guidance
 from gaspart.keys import choice, count, declare, flag, per_side, positive
 from gaspart.scene.faces import FACE_KINDS
 from gaspart.scene.gas import plain_gas
@@ -23,7 +22,6 @@ if TYPE_CHECKING:
 PRECISIONS = ("float64", "float32")
 
 
-@with_guidance
 @register
 @dataclass(frozen=True)
 class TimeStepped(Engine):

@@ -62,11 +62,12 @@ class _PartLibrary(core.codegen.JITCodeLibrary):
         """Perform light optimisation.
 
         Full optimisation would treat loops around calls as small loops and duplicate them before the called
-        functions are inlined. The kernel would become twice as long, and slower.
+        functions are inlined. The kernel would become twice as long, and slower. With NUMBA_OPT=0 there is no
+        optimisation.
         """
         ll_module.data_layout = self._codegen._data_layout
         for function in ll_module.functions:
-            if not function.is_declaration:
+            if numba.config.OPT and not function.is_declaration:
                 passes, builder = self._codegen._function_pass_manager(opt=1)
                 passes.run(function, builder)
 

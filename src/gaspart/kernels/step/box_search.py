@@ -71,8 +71,10 @@ def sort_in(particles, boxes):
 
 
 @inner_helper
-def gap_squared(particles, slot, boxes, axis, offset):
+def gap_squared(particles, slot, boxes, axis, offset, periodic):
     """Return the squared distance between a particle and the slab of a box along an axis.
+
+    The second of two boxes along a periodic axis is on both sides of the first.
 
     offset : position of the box relative to the particle's box (-1, 0, 1)
     """
@@ -80,7 +82,9 @@ def gap_squared(particles, slot, boxes, axis, offset):
     width = boxes.widths[axis]
     low = boxes.at[slot, axis] * width
     gap = x - x
-    if offset == 1:
+    if offset != 0 and periodic[axis] and boxes.per_side[axis] == 2:
+        gap = max(gap, min(low + width - x, x - low))
+    elif offset == 1:
         gap = max(gap, low + width - x)
     elif offset == -1:
         gap = max(gap, x - low)
@@ -88,12 +92,12 @@ def gap_squared(particles, slot, boxes, axis, offset):
 
 
 @inner_kernel
-def is_out_of_reach(particles, slot, boxes, dx, dy, dz):
+def is_out_of_reach(particles, slot, boxes, dx, dy, dz, periodic):
     """Return True if a neighbouring box is too far away for the centre of a partner."""
-    square = gap_squared(particles, slot, boxes, 0, dx - 1)
-    square += gap_squared(particles, slot, boxes, 1, dy - 1)
+    square = gap_squared(particles, slot, boxes, 0, dx - 1, periodic)
+    square += gap_squared(particles, slot, boxes, 1, dy - 1, periodic)
     if particles.positions.shape[0] == 3:
-        square += gap_squared(particles, slot, boxes, 2, dz - 1)
+        square += gap_squared(particles, slot, boxes, 2, dz - 1, periodic)
     return square > boxes.reach * boxes.reach
 
 
@@ -163,7 +167,7 @@ def search_boxes(particles, boxes, space, step, overlaps, tally):
                     x = boxes.neighbour[0, ax, dx]
                     if x < 0 or x + y + z <= own:
                         continue
-                    if boxes.near and is_out_of_reach(particles, i, boxes, dx, dy, dz):
+                    if boxes.near and is_out_of_reach(particles, i, boxes, dx, dy, dz, space.periodic):
                         continue
                     visits += 1
                     j = boxes.head[x + y + z]

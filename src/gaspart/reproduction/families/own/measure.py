@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.measuring import measure
+from gaspart.analysis.frames import measure_single
 from gaspart.analysis.observable import Observable
 from gaspart.analysis.observables import OBSERVABLES
 from gaspart.analysis.statistics import average
@@ -125,7 +125,7 @@ def measure_point(
                 durations.append(float(trajectory["time"][-1]))
                 for name in names:
                     try:
-                        results[name].append(measure(trajectory, name, start))
+                        results[name].append(measure_single(trajectory, name, start))
                     except SceneError as error:
                         refused.setdefault(name, error.inside(f"{name} of {path}"))
         except SceneError as error:  # a damaged file
