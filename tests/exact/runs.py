@@ -87,7 +87,7 @@ def options(kind, scene, engine):
         found["displacements"] = True
         if engine.records_events and not kind.singles:
             found["pairs"] = True
-    if kind.stress and not kind.opened:
+    if kind.stress and not kind.opened and (not kind.wide or "transport" in kind.run):
         try:
             engine.check_tally(StressTally(), scene)
             found["correlations"] = Correlations(kind.run["interval"] / 2.0, LAGS, stress=True)

@@ -158,6 +158,8 @@ def unmeasured(observable, kind, engine):
         return f"{error.key}: {error.rule}"
     if kind.wide and "structure" in observable:
         return "waves down to a diameter are too many in so wide a container"
+    if kind.wide and observable == "chemical_potential":
+        return "a body that is inserted in so wide a container hardly ever overlaps"
     needs = OBSERVABLES[observable].needs
     if needs == "fluxes" and "correlations" not in runs.options(kind, scene, settings):
         return "the engine does not tally the stress of such a scene"
