@@ -13,7 +13,7 @@
 # make referees   gaspart's runs judged by programs of others, which have an environment of their own, .venv-referees:
 #                 docs/referees.csv, a page of the site; 15 minutes on two cores
 # make coverage   which lines of src/gaspart the tests run (at least 95 %); compiles all kernels anew
-# make lint | report | clean | distclean
+# make lint | report | develop (install what tests, linters and documentation need) | clean | distclean
 #
 # Needs Python 3.11 or later with venv and pip, and make. Everything else is installed into .venv and
 # .venv-referees, which make replaces or removes only if it has made them.
@@ -21,7 +21,7 @@
 SHELL := /bin/bash
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := all
-.PHONY: all first setup test test-all digests precise smoke wheel archive benchmark referees coverage lint report docs clean distclean
+.PHONY: all first setup develop test test-all digests precise smoke wheel archive benchmark referees coverage lint report docs clean distclean
 
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 CORES ?= all
@@ -48,6 +48,8 @@ first: setup
 
 setup: .venv/gaspart.stamp
 
+develop: setup .venv/environment-dev.stamp
+
 # Packages are installed without bytecode (see below). Where this is set, each of some hundred processes would compile
 # anew what it imports, which takes two seconds.
 unexport PYTHONDONTWRITEBYTECODE
@@ -64,16 +66,25 @@ unexport PYTHONDONTWRITEBYTECODE
 	$(PIP) install --no-deps --no-compile --require-hashes --requirement environment.txt
 	@touch $@
 
+# What tests, linters, documentation and releases need besides.
+.venv/environment-dev.stamp: environment-dev.txt .venv/environment.stamp
+	$(PIP) install --no-deps --no-compile --require-hashes --requirement environment-dev.txt
+	@touch $@
+
 # Only locked packages are installed: neither dependencies nor build tools come from the network here.
 .venv/gaspart.stamp: .venv/environment.stamp pyproject.toml
 	$(PIP) install --no-deps --no-build-isolation --editable .
 	@touch $@
 
 # A test that waits for ever fails by its name, and the others go on. Slow tests and searches have no such limit.
-test: setup
-	.venv/bin/python -m pytest --numprocesses=auto --timeout=1500 --timeout-method=signal $(OPTIONS)
+# Tests of few particles run their kernels as plain Python first: to compile each would take longer.
+TEST = .venv/bin/python -m pytest --numprocesses=auto --timeout=1500 --timeout-method=signal
+test: develop
+	NUMBA_DISABLE_JIT=1 $(TEST) -m interpreted --hypothesis-profile=few tests/engines tests/battery $(OPTIONS)
+	PYTHONPATH=tests .venv/bin/python -m battery.compile_kernels
+	$(TEST) -m "not thorough and not interpreted" $(OPTIONS)
 
-test-all: setup
+test-all: develop
 	.venv/bin/python -m pytest --numprocesses=auto -m "" --hypothesis-profile=search $(OPTIONS)
 
 digests: setup
@@ -90,13 +101,13 @@ smoke: setup
 	$(VERDICTS) results/smoke/tables/claims.csv
 	@echo "report: results/smoke/report.html"
 
-wheel: setup
+wheel: develop
 	.venv/bin/python release/ship_kernels.py dist
 
 archive: all
 	.venv/bin/python -m gaspart archive results -o archive.zip --force
 
-benchmark: setup
+benchmark: develop
 	mkdir -p results/benchmarks
 	.venv/bin/python -m pytest benchmarks --numprocesses=0 --benchmark-json=results/benchmarks/performance.json
 	.venv/bin/python benchmarks/table.py results/benchmarks/performance.json \
@@ -110,19 +121,19 @@ benchmark: setup
 	.venv-referees/bin/python $(QUIETLY) install --no-deps --no-compile --require-hashes --requirement $<
 	@touch $@
 
-referees: setup .venv-referees/environment.stamp
+referees: develop .venv-referees/environment.stamp
 	.venv/bin/python tests/referees/runs.py results/referees
 	.venv-referees/bin/python -m pytest -c tests/referees/pytest.ini tests/referees $(OPTIONS)
 
 # Without the tests of the workflow: they run copies of the project, and the functions they call have their own tests.
 coverage: export GASPART_CACHE = $(CURDIR)/results/coverage/kernels
 coverage: export COVERAGE_FILE = $(CURDIR)/results/coverage/data
-coverage: setup
+coverage: develop
 	rm -rf results/coverage
 	.venv/bin/python -m pytest --numprocesses=auto --ignore=tests/workflow --cov --cov-report=term \
 		--cov-report=html:results/coverage/html --cov-fail-under=95
 
-lint: setup
+lint: develop
 	.venv/bin/python -m ruff check .
 	.venv/bin/python -m ruff format --check .
 	.venv/bin/python -m mypy
@@ -135,17 +146,19 @@ report: setup
 
 # Tables of the tests for pages of the site: a few minutes each, made anew when the library or these tests have changed.
 MEASURED = $(shell find src/gaspart/analysis src/gaspart/engines src/gaspart/kernels src/gaspart/scene -name '*.py')
-results/docs/symmetries.csv: $(MEASURED) $(wildcard tests/battery/*.py) | setup
+results/docs/symmetries.csv: $(MEASURED) $(wildcard tests/battery/*.py) | develop
 	PYTHONPATH=tests .venv/bin/python -m battery.table
 
-results/docs/exact_values.csv: $(MEASURED) $(wildcard tests/exact/*) | setup
+results/docs/exact_values.csv: $(MEASURED) $(wildcard tests/exact/*) | develop
 	PYTHONPATH=tests .venv/bin/python -m exact.table
 
-# Recorded runs that one can play with, in some two minutes.
-results/docs/extra/play/index.html: docs/play.py docs/play.html src/gaspart/rendering/view.html $(MEASURED) | setup
-	.venv/bin/python docs/play.py results/docs/extra/play
+# Pages on which gases run, of the templates that share five kinds of kernels, in some two minutes.
+RUNNING = $(addprefix results/docs/extra/play/,$(addsuffix .html,gas heat cooling rough melting atmosphere shock piston))
+$(RUNNING): results/docs/extra/play/%.html: $(wildcard src/gaspart/rendering/*) $(MEASURED) | develop
+	mkdir -p $(@D)
+	.venv/bin/gaspart play --template $* -o $@ --force
 
-docs: setup results/docs/symmetries.csv results/docs/exact_values.csv results/docs/extra/play/index.html
+docs: develop results/docs/symmetries.csv results/docs/exact_values.csv $(RUNNING)
 	.venv/bin/python docs/gallery.py results docs/gallery.png
 	.venv/bin/python -m sphinx --quiet --fail-on-warning --jobs auto docs results/docs/html
 	@echo "documentation: results/docs/html/index.html"

@@ -55,5 +55,6 @@ html_theme_options = {
 }
 html_static_path = ["static"]
 html_css_files = ["site.css"]
-html_extra_path = [str(extra)] if (extra := ROOT / "results/docs/extra").is_dir() else []  # docs/play.py
+# pages of `gaspart play`
+html_extra_path = [str(extra)] if (extra := ROOT / "results/docs/extra").is_dir() else []
 copybutton_prompt_text = "$ "

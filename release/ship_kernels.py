@@ -50,6 +50,9 @@ def compile_kernels(cache: Path, scratch: Path) -> None:
     """Fill a cache with the kernels of all templates. Runs as many at a time as there are cores."""
     with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
         list(pool.map(lambda template: _run(template, cache, scratch), templates().values()))
+    # whose page has the kernels of most other pages, too
+    command = [sys.executable, "-m", "gaspart", "play", "-o", str(scratch / "gas.html")]
+    subprocess.run(command, env=os.environ | {"GASPART_CACHE": str(cache)}, check=True)
 
 
 def _run(template: Template, cache: Path, scratch: Path) -> None:
@@ -105,7 +108,8 @@ def with_kernels(wheel: Path, cache: Path, target: Path) -> Path:
 
 def shipped_files(cache: Path) -> dict[str, bytes]:
     """The machine code in a cache, by its path, and the list of the sha256 of each file."""
-    kernels = sorted(cache.glob("*/*/*.nbc"))  # not the translations that only serve to compile others
+    # not the translations that only serve to compile others
+    kernels = sorted([*cache.glob("*/*/*.nbc"), *cache.glob("wasm/*.wasm")])
     files = {path.relative_to(cache).as_posix(): path.read_bytes() for path in kernels}
     digests = {path: hashlib.sha256(content).hexdigest() for path, content in files.items()}
     return files | {LIST: json.dumps(digests, indent=0).encode()}

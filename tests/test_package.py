@@ -89,6 +89,8 @@ def test_the_wheel_with_kernels_has_them_besides_and_is_for_this_python(wheel, t
     kernel.parent.mkdir(parents=True)
     kernel.write_bytes(b"its code")
     kernel.with_suffix(".part").write_bytes(b"a translation, which is not shipped")
+    (tmp_path / "cache/wasm").mkdir()
+    (tmp_path / "cache/wasm/kind.wasm").write_bytes(b"a module of a page")
     path = module.with_kernels(wheel, tmp_path / "cache", tmp_path)
     name, version, (*build,), tags = parse_wheel_filename(path.name)
     release = "".join(map(str, build))
@@ -98,7 +100,9 @@ def test_the_wheel_with_kernels_has_them_besides_and_is_for_this_python(wheel, t
         added = set(new.namelist()) - set(old.namelist())
         assert not set(old.namelist()) - set(new.namelist())
         shipped = "gaspart/kernels/shipped/"
-        assert added == {f"{shipped}sha256.json", f"{shipped}digest/physics/log_of.nbc"}
+        assert added == {
+            f"{shipped}{name}" for name in ("sha256.json", "digest/physics/log_of.nbc", "wasm/kind.wasm")
+        }
         (record,) = (one for one in new.namelist() if one.endswith("/RECORD"))
         rows = {row[0]: row[1:] for row in csv.reader(new.read(record).decode().splitlines())}
         assert set(rows) == set(new.namelist())

@@ -39,20 +39,28 @@ def requirements(*extras):
     return found
 
 
-def test_every_dependency_has_a_lower_bound_that_the_locked_version_satisfies():
-    lock = (ROOT / "environment.txt").read_text(encoding="utf-8")
-    for requirement in requirements(*project()["optional-dependencies"]):
+@pytest.mark.parametrize(("name", "extras"), [("environment", ("make",)), ("environment-dev", None)])
+def test_every_dependency_has_a_lower_bound_that_the_locked_version_satisfies(name, extras):
+    lock = (ROOT / f"{name}.txt").read_text(encoding="utf-8")
+    for requirement in requirements(*(extras or project()["optional-dependencies"])):
         assert ">=" in {bound.operator for bound in requirement.specifier}, requirement
         name = re.escape(requirement.name.lower())
         locked = re.findall(rf"^{name}(?:\[[\w,]+\])?==([^ ;]+)", lock, re.MULTILINE)
         assert locked and all(requirement.specifier.contains(version) for version in locked), requirement
 
 
+def test_both_environments_have_the_same_versions():
+    names = "environment.txt", "environment-dev.txt"
+    locks = [(ROOT / name).read_text(encoding="utf-8") for name in names]
+    small, large = (set(re.findall(r"^[\w.-]+==[^ \\]+", lock, re.MULTILINE)) for lock in locks)
+    assert len(small) > 50 and small < large
+
+
 def test_what_a_message_says_to_install_is_an_extra():
     texts = [path.read_text(encoding="utf-8") for path in (ROOT / "src").rglob("*.py")]
     calls = [call for text in texts for call in re.findall(r'optional\("(\w+)[\w.]*", "(\w+)"', text)]
     provided = {"freud": "freud-analysis", "gsd": "gsd", "imageio_ffmpeg": "imageio-ffmpeg"}
-    provided |= {"rocrate": "rocrate", "ipywidgets": "ipywidgets"}
+    provided |= {"rocrate": "rocrate"}
     assert {module for module, _ in calls} == set(provided)
     core = {requirement.name for requirement in requirements()}
     for module, extra in calls:
@@ -123,7 +131,8 @@ CASES = [
 @pytest.mark.parametrize("made", [None, "made_by_make", "environment.stamp"])
 def test_make_removes_no_environment_but_its_own(tmp_path, target, environment, made):
     """`venv --clear` and `rm -rf` would delete what a user keeps in an environment of the same name."""
-    for name in ("Makefile", "environment.txt", "pyproject.toml", "tests/referees/environment.txt"):
+    files = ("environment.txt", "environment-dev.txt", "pyproject.toml", "tests/referees/environment.txt")
+    for name in ("Makefile", *files):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, tmp_path / name)
     kept = tmp_path / environment / "thesis.csv"

@@ -14,7 +14,6 @@ from gaspart.errors import SimulationError as SimulationError
 from gaspart.inspection.readers import read_state as read_state
 from gaspart.rendering.films import film as film
 from gaspart.rendering.frames import render as render
-from gaspart.rendering.live import live as live
 from gaspart.rendering.play import play as play
 from gaspart.rendering.view import view as view
 from gaspart.reproduction.sweep import sweep as sweep

@@ -21,7 +21,8 @@ def clone():
         copy = home / "a fresh clone"
         copy.mkdir()
         copy_of_project(copy)
-        for name in ("Makefile", "pyproject.toml", "environment.txt", "README.md", "LICENSE"):
+        locks = "environment.txt", "environment-dev.txt"
+        for name in ("Makefile", "pyproject.toml", *locks, "README.md", "LICENSE"):
             shutil.copy2(ROOT / name, copy)
         leave_one_figure(copy, FIGURE)
         give(home)

@@ -6,7 +6,7 @@ import base64
 import html
 import io
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import lru_cache
 from itertools import pairwise
@@ -18,7 +18,7 @@ import numpy as np
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of
 from gaspart.rendering.particles import DrawnParticles, Labels, colours_of, legend_of
-from gaspart.rendering.pictures import CAMERA, SIZE, checked_camera, checked_size, picture, pixels_per_length
+from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, picture, pixels_per_length
 from gaspart.rendering.surfaces import surfaces_of
 from gaspart.scene.faces import Piston, Vibrating
 from gaspart.scene.scene import Scene
@@ -150,24 +150,8 @@ def render(
     if not clock:
         colours = colours_of(particles, colour, fastest)
         return picture(particles, size, colours, direction=direction).view(Picture)
-    return draw_labelled(particles, time, size, colour, fastest, direction)
-
-
-def draw_labelled(
-    particles: DrawnParticles,
-    time: float,
-    size: tuple[int, int],
-    colour: str | np.ndarray,
-    fastest: float | None = None,
-    direction: tuple[float, float] = CAMERA,
-    paths: Sequence[np.ndarray] = (),
-) -> Picture:
-    """Draw a picture with parameters, legend, time and scale.
-
-    `paths` are arrays (M, 2), drawn over discs.
-    """
     labels = Labels(size, particles.parameters, legend_of(particles, colour, fastest), particles.surfaces)
-    image = picture(particles, labels.inner, colours_of(particles, colour, fastest), paths, direction)
+    image = picture(particles, labels.inner, colours_of(particles, colour, fastest), direction=direction)
     scale = pixels_per_length(particles, labels.inner, direction)
     return labels.add_to(image, f"{time:.4g}", scale).view(Picture)
 
