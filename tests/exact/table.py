@@ -271,7 +271,8 @@ def _speeds(kind, result, value):
 
 def _of_a_particle(kind):
     """Return the D of a run of two equal species and its error: their mutual coefficient, exactly."""
-    one = measured("D", runs.recorded(kind.name))
+    engine = {"exact": "event", "boltzmann": "dsmc"}.get(kind.equation, kind.equation)
+    one = measured("D", runs.recorded(kind.name, engine))
     return float(one[one.attrs["quantity"]]), float(one[f"{one.attrs['quantity']}_error"])
 
 
