@@ -46,8 +46,9 @@ def refusals(name):
 
 
 def _offered(kind):
-    """Return engines by name, or why one is not tried: the stepped one with a step of a small error, the kinetic
-    ones with their own settings.
+    """Return engines by name, or why one is not tried.
+
+    The stepped engine has a step of a small error, the kinetic ones their own settings.
     """
     step = kind.run["interval"] / math.ceil(kind.run["interval"] / time_step(kind))
     stepped, kinetic = gp.TimeStepped(step), (gp.DSMC(), gp.DSMC(model="enskog"))
