@@ -17,7 +17,7 @@ from exact import closed, runs
 from exact.balances import BALANCES
 from exact.kinds import kinds
 from exact.known import Short, known
-from exact.rules import undefined, unknown
+from exact.rules import LONG, undefined, unknown
 from exact.values import stored
 from scipy import stats
 
@@ -89,7 +89,7 @@ def cell_of(observable, kind, engine="event", seed=runs.SEED, longer=1.0, finer=
     if why := unmeasured(observable, kind, engine):
         return Cell(*place, "unknown", why)
     if why := unknown(observable, kind):
-        worst = _beside_theory(observable, runs.recorded(*run))
+        worst = _beside_theory(observable, kind, runs.recorded(*run))
         return Cell(*place, "wrong", *worst) if worst else Cell(*place, "unknown", why)
     parts = right_parts(observable, kind)
     if not parts:
@@ -106,7 +106,7 @@ def cell_of(observable, kind, engine="event", seed=runs.SEED, longer=1.0, finer=
         deviations[part] = deviation_of(observable, kind, results[key], part, right)
     worst = max(deviations, key=lambda part: deviations[part][0])
     deviation, text = deviations[worst]
-    if deviation <= LIMIT and (beside := _beside_theory(observable, data)):
+    if deviation <= LIMIT and (beside := _beside_theory(observable, kind, data)):
         return Cell(*place, "wrong", *beside)
     state = "value" if deviation <= LIMIT else "wrong"
     return Cell(*place, state, f"{worst}: {text}", deviation, len(parts))
@@ -122,11 +122,13 @@ def _balance(place, balance):
     return Cell(*place, state, f"off by {deviation:.2g} times the rounding", deviation, apart.size)
 
 
-def _beside_theory(observable, data):
+def _beside_theory(observable, kind, data):
     """Return how a run deviates from its own theory, as a text and a number; None if they agree.
 
     A theory without an uncertainty is an approximation, which is not compared.
     """
+    if "short" in kind.run and observable in LONG:
+        return None  # after the first lags only
     try:
         result = measured(observable, data)
     except SceneError:
