@@ -82,9 +82,10 @@ class Species:
         axes on which momentum is conserved. All such species have one factor, so that only their common
         energy is exact; species that start in separate regions have their own.
     arrangement : {"random", "lattice", "slab", "compressed"}, default "random"
-        Initial positions. "random": sequential insertion. "slab": a lattice whose vacancies are all in one
-        half, so that this half melts. "compressed": growth to a density that insertion cannot reach (see
-        `compress`).
+        Initial positions. "random": sequential insertion. "lattice": sites of a triangular or face-centred
+        cubic lattice, which all species with this value share; "random" species fill the space between them.
+        "slab": a lattice whose vacancies are all in one half, so that this half melts. "compressed": growth
+        to a density that insertion cannot reach (see `compress`).
     region : sequence of two vectors, shape (2, d), [length], optional
         Lower and upper corner of the box in which all particles start. Requires "random". Default: the
         container.
