@@ -43,7 +43,9 @@ def test_a_target_is_never_read_as_a_config():
     for page, words in SNAKEMAKE:
         files = [Path(file) for file in parser.parse_args(words).configfile or ()]
         written = re.findall(
-            r"^ *(?:# |title=\"|```yaml title=\")([\w/-]+\.yaml)", page.read_text(encoding="utf-8"), re.MULTILINE
+            r"^ *(?:# |title=\"|```yaml title=\")([\w/-]+\.yaml)",
+            page.read_text(encoding="utf-8"),
+            re.MULTILINE,
         )
         assert all((ROOT / file).exists() or str(file) in written for file in files), (page.name, words)
 
@@ -52,8 +54,6 @@ def test_a_target_is_never_read_as_a_config():
 @pytest.mark.parametrize("page", ["estimators", "scenes"])
 def test_the_commands_of_a_page_run(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    for name in ("slit", "gas"):
-        assert main(["new", f"{name}.yaml", "--template", name]) == 0
     for _, words in commands("gaspart", [ROOT / f"docs/{page}.md"]):
         assert main(words) == 0, words
 
