@@ -84,14 +84,21 @@ def test_words_are_sorted_into_files_and_names(paths, capsys):
 
 def test_displacement_and_diffusion_along_each_axis(paths, capsys, tmp_path):
     head, *lines = printed(capsys, paths[0], "msd", "--per-axis")
-    assert head.split() == ["lag", *(word for k in "xyz" for word in ("msd", k, "error", "theory"))]
+    of_axis = "msd {} error theory its error"
+    assert head.split() == ["lag", *" ".join(map(of_axis.format, "xyz")).split()]
     found = gp.analysis.mean_squared_displacement(paths[0], per_axis=True)
-    assert float(lines[1].split()[4]) == pytest.approx(
+    assert float(lines[1].split()[5]) == pytest.approx(
         float(found.estimate.sel(axis="y").sel(lag=float(lines[1].split()[0]), method="nearest")), rel=1e-4
     )
-    _, *lines = printed(capsys, paths[0], "D", "--per-axis")
+    assert lines[-2] == f"(theory: {found.attrs['source']})"
+    head, *lines = printed(capsys, paths[0], "D", "--per-axis")
+    assert head.split() == ["axis", "D", "error", "theory", "its", "error"]
     assert [line.split()[0] for line in lines[:3]] == ["x", "y", "z"]
-    assert lines[3].startswith("(by the slope between the lags ") and len(lines) == 4
+    known = gp.measure(paths[0], "D", per_axis=True)
+    unsure = float(known["diffusion_coefficient_theory_error"][0])
+    assert float(lines[0].split()[4]) == pytest.approx(unsure, rel=1e-4) and unsure > 0.0
+    assert lines[3] == f"(theory: {known.attrs['source']})"
+    assert lines[4].startswith("(by the slope between the lags ") and len(lines) == 5
     printed(capsys, *paths, "msd", "--per-axis", "-o", str(tmp_path / "msd.csv"))
     table = rows(tmp_path / "msd.csv")
     assert {row["axis"] for row in table} == {

@@ -39,6 +39,10 @@ def _elastic(kind):
     return "contacts lose energy: no equilibrium" if kind.dissipates else None
 
 
+def _fluctuates(kind):
+    return "contacts lose energy: no equilibrium" if kind.dissipates and not kind.sheared else None
+
+
 def _species(kind):
     return "single bodies belong to no species" if kind.singles else None
 
@@ -136,9 +140,9 @@ UNDEFINED = {
     "flux": (_unsheared, _walled_axis),
     "number": (_opened,),
     "temperature": (_unsheared, _thermal),
-    "shear_viscosity": (_closed, _stress),
-    "bulk_viscosity": (_closed, _unsheared, _stress),
-    "thermal_conductivity": (_closed, _unsheared, _stress, _one_size),
+    "shear_viscosity": (_closed, _stress, _fluctuates),
+    "bulk_viscosity": (_closed, _unsheared, _stress, _elastic),
+    "thermal_conductivity": (_closed, _unsheared, _stress, _one_size, _elastic),
     "pressure_tensor": (_closed, _stress),
     "order": (*_STATIC, _neighbours),
 }

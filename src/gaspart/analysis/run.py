@@ -84,12 +84,19 @@ class Run:
 
     def increments(self, name: str) -> np.ndarray:
         """Compute the growth of a counter in each interval, shape (T - 1, ...)."""
-        return np.diff(self.data[name].values, axis=0)
+        return np.diff(self._counter(name), axis=0)
 
     def growth(self, name: str) -> np.ndarray:
         """Compute the growth of a counter per time."""
-        first, last = self.data[name].values[[0, -1]]
+        first, last = self._counter(name)[[0, -1]]
         return (last - first) / (self.time[-1] - self.time[0])
+
+    def _counter(self, name: str) -> np.ndarray:
+        if name not in self.data:
+            raise SceneError(
+                name, "missing", "the engine does not tally it, or an older version wrote the file"
+            )
+        return np.asarray(self.data[name].values)
 
     def block_length(self, blocks: int) -> int:
         """Return the number of frames in each of `blocks` equal blocks, after the first frame.
