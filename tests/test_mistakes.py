@@ -28,6 +28,7 @@ WORDS = {
     "species of text": (lambda: gp.Species("20", 0.5), "count = '20': must be a whole number"),
     "radius with a unit": (lambda: gp.Species(20, "0.5 nm"), "must be a number, without a unit"),
     "negative radius": (lambda: gp.Species(20, -0.5), "radius = -0.5: must be positive"),
+    "points": (lambda: gp.Species(20, 0.0), "points are particles with a radius of 1e-9 of the container"),
     "container a number": (lambda: gp.Container(9.0), "lengths = 9.0: must be a list of 2 or 3"),
     "container two numbers": (lambda: gp.Container(9.0, 9.0), "lengths = 9.0: must be a list"),
     "boundary true": (lambda: gp.Container((9, 9), boundary=True), "must be one of ('wall', 'periodic')"),

@@ -207,6 +207,10 @@ class Engine:
         """
         return {}
 
+    def added_bulk_viscosity(self, scene: Scene) -> float:
+        """Return the bulk viscosity of a dilute gas, which is due to cells alone."""
+        return 0.0
+
     def cells_along(self, scene: Scene) -> int:
         """Return the largest number of DSMC cells along an axis; 0 for other engines."""
         return 0

@@ -127,11 +127,12 @@ def sweep(
     -------
     SweepTable
         A Dataset with a method to plot itself (`SweepTable.plot`), and a dimension for each key. Variables
-        are each observable, its standard uncertainty (suffix _error), its theoretical value if known (suffix
-        _theory), `duration`, `failure` and `drift`. `failure` is the reason why a result is NaN, and `drift`
-        states which quantities drift in the measured part of the run; both are "" otherwise. A curve has its
-        own dimension, such as `rdf_distance`; if positions differ between points, they are in
-        `rdf_distance_places`. All observables share the dimensions `face` and `component`.
+        are each observable, its standard uncertainty (suffix _error), its theoretical value and the
+        uncertainty of this value if known (suffixes _theory and _theory_error), `duration`, `failure` and
+        `drift`. `failure` is the reason why a result is NaN, and `drift` states which quantities drift in the
+        measured part of the run; both are "" otherwise. A curve has its own dimension, such as
+        `rdf_distance`; if positions differ between points, they are in `rdf_distance_places`. All observables
+        share the dimensions `face` and `component`.
 
     Raises
     ------
