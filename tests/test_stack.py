@@ -1,6 +1,5 @@
 """Surprises of numba, Snakemake, scipy, xarray and freud: code avoids them, each search finds a planted one.
 
-`findings/` shows each of these behaviours by itself.
 """
 
 import ast
