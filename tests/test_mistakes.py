@@ -94,6 +94,21 @@ WORDS = {
         lambda: gp.run(SCENE, duration=1.0, sample_interval=0.5, path="a.nc", replicas="two"),
         "replicas = 'two': must be a whole number of at least 1",
     ),
+    "view to a file": (lambda: gp.view("gas.nc", "gas.html"), "view(source).save(path) writes the page"),
+    "picture to a file": (
+        lambda: gp.render("gas.nc", "gas.png"),
+        "render(source).save(path) writes the file",
+    ),
+    "run to a file": (lambda: gp.run(SCENE, "gas.nc", duration=1.0), "path= names the file"),
+    "sweep over seeds": (
+        lambda: gp.sweep(SCENE, {"seed": [1, 2]}, ["Z"], folder="a", duration=1.0),
+        "replicas= makes runs of several seeds",
+    ),
+    "two observables": (lambda: gp.measure("gas.nc", "Z", "D"), "are a list, such as ['Z', 'D']"),
+    "velocities of a simulation": (
+        lambda: setattr(STATE.read_only(), "velocities", STATE.velocities),
+        "change its copy(), and start from the copy by Simulation(scene, initial=copy)",
+    ),
     "no such trajectory": (lambda: gp.open_trajectory("none.nc"), "No such file"),
     "file number": (lambda: of(count=None, number=20), "number = 20: unknown key; did you mean count?"),
     "file diameter": (lambda: of(radius=None, diameter=1.0), "did you mean radius (half the diameter)?"),
