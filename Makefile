@@ -79,8 +79,9 @@ unexport PYTHONDONTWRITEBYTECODE
 # A test that waits for ever fails by its name, and the others go on. Slow tests and searches have no such limit.
 # Tests of few particles run their kernels as plain Python first: to compile each would take longer.
 TEST = .venv/bin/python -m pytest --numprocesses=auto --timeout=1500 --timeout-method=signal
+INTERPRETED = $(shell grep -rl mark.interpreted tests --include='test_*.py')
 test: develop
-	NUMBA_DISABLE_JIT=1 $(TEST) -m interpreted --hypothesis-profile=few tests/engines tests/battery $(OPTIONS)
+	NUMBA_DISABLE_JIT=1 $(TEST) -m interpreted --hypothesis-profile=few $(INTERPRETED) $(OPTIONS)
 	PYTHONPATH=tests .venv/bin/python -m battery.compile_kernels
 	$(TEST) -m "not thorough and not interpreted" $(OPTIONS)
 

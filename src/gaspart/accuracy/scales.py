@@ -14,12 +14,12 @@ from gaspart.scene.face_checks import attempt_rate, piston_end
 from gaspart.scene.faces import Open
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Particle, Species
-from gaspart.theory.rates import MEAN_SQUARE, rates, square_of
+from gaspart.theory.rates import MEAN_SQUARE, rate_at_scatterers, rates, square_of
 
 _COLLISIONS, _CROSSINGS = 200.0, 10.0
 """Minimum numbers of collisions and of container crossings per particle in the suggested duration."""
 _FRAMES = 1000  # largest suggested number of frames
-_KNUDSEN = 10.0
+KNUDSEN = 10.0
 """Mean free path, in lengths of the shortest side, beyond which a gas is free-molecular."""
 _KINDS = 200
 """Maximum number of kinds whose pairs are evaluated; each single particle is a kind."""
@@ -55,7 +55,7 @@ class Scales:
     def free_molecular(self) -> bool:
         """True if particles meet walls far more often than one another."""
         is_comparable = self.walled and math.isfinite(self.mean_free_path)
-        return is_comparable and self.collision_time > _KNUDSEN * self.crossing_time
+        return is_comparable and self.collision_time > KNUDSEN * self.crossing_time
 
     @property
     def event_time(self) -> float:
@@ -134,7 +134,7 @@ def scales(scene: Scene) -> Scales:
     side = min(scene.container.lengths)
     fall = math.sqrt(math.hypot(*scene.gravity) * side) if scene.gravity else 0.0
     fastest = max(thermal, fall)
-    frequency = collision_frequency(scene) or gas_rates.frequency
+    frequency = (collision_frequency(scene) or gas_rates.frequency) + rate_at_scatterers(scene)
     return Scales(
         thermal_speed=thermal,
         mean_free_path=gas_rates.speed / frequency if frequency else math.inf,
