@@ -25,7 +25,7 @@ os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 # The same scenes every time, few of them where kernels are plain Python; or new ones with
 # `--hypothesis-profile=search`.
 settings.register_profile("fixed", max_examples=50, derandomize=True, deadline=None)
-settings.register_profile("few", max_examples=2, derandomize=True, deadline=None)
+settings.register_profile("few", max_examples=5, derandomize=True, deadline=None)
 settings.register_profile("search", max_examples=2500, deadline=None)
 settings.load_profile("fixed")
 

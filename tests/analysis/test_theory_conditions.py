@@ -122,6 +122,19 @@ def test_a_crystal_is_not_uniform():
     assert places.density(run_of(cooling), 2, EDGES, None) is None
 
 
+@pytest.mark.parametrize("name", ["compressibility_factor", "collision_rate"])
+def test_the_theory_of_a_fluid_is_not_beside_a_crystal(name):
+    """Above freezing a lattice does not melt; a compressed fluid is one for long."""
+    expect = getattr(equilibrium, name)
+    for eta, arrangement, known in (
+        (0.53, "lattice", False),
+        (0.53, "compressed", True),
+        (0.4, "lattice", True),
+    ):
+        run = run_of(gas(3, 256, eta, arrangement=arrangement))
+        assert (expect(run) is not None) == known
+
+
 def test_a_particle_that_rises_cools_the_others():
     """At a constant energy, by twice its weight times the height, per degree of freedom."""
     walled = gas(3, 64, 0.1, "wall", exact_temperature=True)

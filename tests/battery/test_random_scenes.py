@@ -54,7 +54,7 @@ KINDS = {
     "pushed": Kind(scenes.pushed()),
     "shaken": Kind(scenes.shaken(), ("direct",), "boxes", ("pairs",), events=200),
 }
-INTERPRETED = "mixtures", "granular", "lossy", "walled", "partitioned", "surfaced", "metals", "pushed"
+INTERPRETED = "mixtures", "granular", "walled", "pushed"
 """Kinds of which `make test` has a few scenes, with kernels as plain Python."""
 
 

@@ -123,3 +123,10 @@ def test_what_an_observable_cannot_be_is_refused(paths, capsys):
     assert "--axis: 'w': unknown name" in refused(capsys, paths[0], "density", "--axis", "w")
     flat = gp.run(gas(2, 64, 0.2), gp.EventDriven(), 1, 20.0, 0.25, f"{paths[0]}.flat.nc")
     assert "axis = 'z'" in refused(capsys, str(flat), "density", "--axis", "z")
+
+
+def test_theory_numbers_species_from_0_as_measurements_do(capsys):
+    main(["theory", "contact_value", "--eta", "0.3", "--diameters", "1,0.5"])
+    first = capsys.readouterr().out.splitlines()[0]
+    values = gp.theory.mixture_contact_values(0.3, 3, [1.0, 0.5], theory="boublik")
+    assert f"0-0 {values[0, 0]:.8g}, 0-1 {values[0, 1]:.8g}, 1-0 " in first

@@ -106,6 +106,7 @@ def test_labels_are_above_and_below_the_picture_and_the_time_runs(runs, scene):
     assert (legend_of(shown, "species") is None) == (scene == "spheres")
 
 
+@pytest.mark.interpreted
 def test_the_colours_of_species_are_named_by_what_differs(runs):
     with gp.open_trajectory(runs / "discs.nc") as trajectory:
         legend = legend_of(particles_of(trajectory), "species")

@@ -89,6 +89,7 @@ def complains(capsys, *arguments):
     return code == 2
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("numbers", NUMBERS, ids=["sample", "search"])
 def test_damage_to_a_trajectory_is_detected(tmp_path, capsys, complete, numbers):
     path = tmp_path / "run.nc"
@@ -200,6 +201,7 @@ def test_a_forged_file_with_other_variables_than_its_recipe_is_one_line(tmp_path
         assert refused or name == "face", command
 
 
+@pytest.mark.interpreted
 def test_exchanged_frames_and_frames_of_another_run_are_detected(tmp_path, capsys, complete):
     other = gp.run(SCENE, gp.EventDriven(), 2, 8.0, 0.5, tmp_path / "other.nc").read_bytes()
     path = tmp_path / "run.nc"
@@ -275,6 +277,7 @@ def header_ends(content, size):
     return np.array_equal(times, 0.5 * np.arange(17))
 
 
+@pytest.mark.interpreted
 def test_a_damaged_frame_stops_a_resumption_and_loses_nothing(tmp_path, complete, unfinished):
     path = tmp_path / "run.nc"
     partial, checkpoint = unfinished
@@ -303,6 +306,7 @@ def test_a_checkpoint_with_a_pickle_inside_is_not_loaded(tmp_path, unfinished):
     assert not (tmp_path / "owned").exists()
 
 
+@pytest.mark.interpreted
 def test_a_run_without_a_first_byte_is_named_as_such(tmp_path, capsys):
     (tmp_path / "run.nc.partial").touch()
     for command in ("resume", "info"):

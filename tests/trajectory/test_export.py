@@ -22,6 +22,7 @@ def state(request, tmp_path_factory):
         return folder, data.isel(frame=-1).load()
 
 
+@pytest.mark.thorough
 def test_gsd_is_read_back_and_nothing_overlaps(state):
     folder, last = state
     frames = read_frames(gp.export(folder / "run.nc", folder / "state.gsd"))

@@ -256,9 +256,9 @@ def has_species(scene: Scene, selection: Selection) -> None:
 
 
 def free_axis(scene: Scene, selection: Selection) -> None:
-    """Raise SceneError unless at least one axis is periodic."""
-    if not any(scene.container.periodic):
-        rule = "has no periodic axis: displacements between walls are bounded, and there is no D"
+    """Raise SceneError unless at least one axis is periodic, or the user passes a lag."""
+    if selection.get("lag") is None and not any(scene.container.periodic):
+        rule = "has no periodic axis: displacements between walls are bounded, and there is no D but at a lag"
         raise SceneError("container.boundary", scene.container.boundary, rule)
 
 

@@ -74,15 +74,16 @@ def diffusion_coefficient(
     Observable
         D in [length^2/time]. The result is a scalar for a periodic container. For a container with walls, or
         with `per_axis`, it has one value for each periodic axis, (axis,). Along an axis with walls
-        displacements are bounded, so D does not exist. The variable `lags` contains the first and the last
+        displacements are bounded, so D exists at a `lag` only; between walls along all axes it has one value
+        for each. The variable `lags` contains the first and the last
         lag of the slope.
 
     Raises
     ------
     SceneError
-        If there is no periodic axis, if the run is too short, or if it has too few frames. If no lag is
-        passed, also if the slope still changes at the longest lags, and for discs whose total momentum
-        persists for more than 12 collisions. The squared displacement of such discs grows as t ln t.
+        If there is neither a periodic axis nor a lag, if the run is too short, or if it has too few frames.
+        If no lag is passed, also if the slope still changes at the longest lags, and for discs whose total
+        momentum persists for more than 12 collisions. The squared displacement of such discs grows as t ln t.
 
     Notes
     -----
@@ -121,8 +122,9 @@ def diffusion_coefficient(
             require_spheres(run, lasting)
         of_mean = lasting & (run.about == FLOW)
         groups = groups_of(run, about=of_mean, chosen=chosen, stride=stride)
-        slopes = _slopes(groups, lags)[..., run.periodic]
-        along = axes_of(run, run.periodic)
+        axes = run.periodic if run.periodic.any() else ~run.periodic  # none is periodic: at a lag only
+        slopes = _slopes(groups, lags)[..., axes]
+        along = axes_of(run, axes)
         if run.periodic.all() and not per_axis:
             slopes, along = slopes.mean(axis=2), {}
         times = groups.interval * np.array(lags)

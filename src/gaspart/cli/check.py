@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import fields
 from pathlib import Path
 
 from gaspart.cli.arguments import (
@@ -17,9 +18,11 @@ from gaspart.cli.arguments import (
 )
 from gaspart.cli.progress import waiting
 from gaspart.errors import SceneError
+from gaspart.errors.words import meant
 from gaspart.scene.scene import Scene
 from gaspart.yaml_text import read_yaml
 
+_SCENE = [field.name for field in fields(Scene)]
 _EXAMPLES = """examples:
   gaspart check scene.yaml                   # validity, placement
   gaspart check config/paper.yaml            # every point of every grid
@@ -125,6 +128,6 @@ def _written(file: str, tolerance: float | None) -> tuple[list, list[str]]:
     from gaspart.inspection.checks import judge_scene
 
     content, path = read_yaml(file), Path(file)
-    if isinstance(content, dict) and ("experiments" in content or "figures" in content):
+    if isinstance(content, dict) and content and not any(meant(str(key), _SCENE) for key in content):
         return config_command("check")(path), []
     return judge_scene(path, tolerance), scales(Scene.from_file(path)).lines

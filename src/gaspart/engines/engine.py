@@ -305,6 +305,8 @@ def resolve_engine(engine: Engine | str | None) -> Engine:
     if engine is None:
         return reference_engine()
     if isinstance(engine, str):
+        if engine.endswith(".nc"):
+            raise SceneError("engine", engine, "must be an engine; path= names the file")
         return engine_from_dict({"name": engine})
     if not isinstance(engine, Engine):
         raise SceneError("engine", engine, f"must be an engine: {constructors()}")

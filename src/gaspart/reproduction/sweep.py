@@ -222,7 +222,9 @@ def _axes(over: object, engine: Engine) -> dict[str, list]:
     keys, parts = _point_keys(engine), {field.name for field in fields(Scene)}
     for key, values in axes.items():
         if key in inspect.signature(sweep).parameters:
-            raise SceneError(f"over.{key}", values, "is an argument of a sweep and the same for all points")
+            rule = "is an argument of a sweep and the same for all points"
+            rule += "; replicas= makes runs of several seeds" if key == "seed" else ""
+            raise SceneError(f"over.{key}", values, rule)
         if key not in keys and key.partition(".")[0] not in parts:
             raise SceneError(f"over.{key}", values, unknown_word(key, keys | parts))
         if key not in keys and None in values:
