@@ -47,8 +47,6 @@ _ROWS = (
      "run.dimension, run.temperature, mass, freedoms)",
      "run.dimension, 0.5 * run.temperature, mass, freedoms)",
      ("periodic", "speeds", "event")),
-    ("scale height of half", "analysis.expected.places", "weight = kind.mass * abs(field)",
-     "weight = 2.0 * kind.mass * abs(field)", ("points_in_gravity", "density", "dsmc")),
     ("theory of the whole weight on each face", "analysis.expected.flows", "/ (2.0 * area)", "/ area",
      ("driven_channel", "wall_shear", "event")),
     ("uniform density of half", "analysis.expected.places", "(scene.number_density, 0.0, ",

@@ -14,6 +14,7 @@ from exact.plants import PLANTS as OF_ANALYSIS
 from exact.plants_of_engines import ENGINE_PLANTS
 
 from gaspart.analysis.observables import OBSERVABLES
+from gaspart.errors import SimulationError
 
 RIGHT = ("value", "tested", "refused", "unknown")
 """States of cells that are right: a theory beside an unknown value must agree with the run."""
@@ -40,7 +41,10 @@ def state(plant):
     if plant.battery:
         return battery_state(*plant.cell)
     scene, observable, *engine = plant.cell
-    return table.cell_of(observable, kinds()[scene], *engine).state
+    try:
+        return table.cell_of(observable, kinds()[scene], *engine).state
+    except SimulationError:  # the run stops itself
+        return "broken"
 
 
 @contextmanager
