@@ -157,7 +157,9 @@ def _series(run: Run) -> dict[str, Series]:
         series["the number of particles"] = Series(count, math.sqrt(number), relaxations, thermal=thermal)
     scatter = exchange_scatter(scene, number) * float(energy.mean())
     swaying = radians if any(scene.gravity or ()) or scene.moving_axes else math.inf
-    kinetic = Series(energy, scatter, relaxations, swaying, thermal and scatter > 0.0)
+    # energy that contacts take and nothing returns only falls
+    known = thermal if scatter > 0.0 else scene.dissipates
+    kinetic = Series(energy, scatter, relaxations, swaying, known)
     series["the kinetic energy of a particle"] = kinetic
     if run.has_states:
         series |= _of_particles(run, slow, number, thermal)

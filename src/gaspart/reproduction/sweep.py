@@ -360,6 +360,9 @@ def _settings(scene: Scene, axes: Mapping[str, list], engine: Engine) -> dict[st
     if "side" not in axes and "side" not in kept and len(set(lengths)) > 1:
         raise SceneError(f"over.{varied}", axes[varied], "needs a container with equal sides")
     extents["packing_fraction"] = scene.packing_fraction
+    if "side" not in kept and "side" not in axes:
+        stated = " and ".join(f"{key} = {extents[key]:.6g}" for key in kept)
+        print(f"over.{varied}: the container's side follows; kept: {stated}", file=sys.stderr, flush=True)
     settings |= gas | {key: extents[key] for key in kept}
     return {key: value for key, value in settings.items() if key not in axes}
 

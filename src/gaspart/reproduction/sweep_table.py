@@ -97,7 +97,7 @@ def _check_name(key: str, name: str | None, names: list[str]) -> str:
 
 
 def _draw_curve(axis: Axes, curve: xr.Dataset, name: str, along: str, label: str) -> None:
-    """Draw a curve, with theory as a line of the same colour.
+    """Draw a curve, with theory as a line of the same colour; a single curve, without label, in black.
 
     If positions are words, theory is drawn as crosses.
     """
@@ -108,7 +108,8 @@ def _draw_curve(axis: Axes, curve: xr.Dataset, name: str, along: str, label: str
         form: dict[str, Any] = {} if x.dtype.kind in "fiu" else {"marker": "x", "linestyle": ""}
         order = np.argsort(x)
         theory = curve[f"{name}_theory"].values
-        axis.plot(x[order], theory[order], color=bars.lines[0].get_color(), **form)
+        colour = bars.lines[0].get_color() if label else "black"
+        axis.plot(x[order], theory[order], color=colour, **form)
 
 
 def columns(name: str, replicas: list[Observable]) -> Iterable[tuple[str, xr.DataArray]]:

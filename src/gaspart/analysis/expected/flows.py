@@ -327,12 +327,15 @@ def _drift(run: Run) -> np.ndarray:
     In a sheared gas, the velocity is relative to the flow. The component along an axis is set to 0 if the
     momentum along this axis is not conserved.
     """
-    velocities = run.velocities
-    if run.scene.shear_rate is not None:
-        velocities = velocities - flow(run.scene, run.positions)
-    momentum = np.einsum("tnd,n->d", velocities, run.masses) / len(run.time)
+    momentum, largest = np.zeros(run.dimension), 0.0
+    for _, part in run.parts():
+        velocities = part.velocities
+        if run.scene.shear_rate is not None:
+            velocities = velocities - flow(run.scene, part.positions)
+        momentum += np.einsum("tnd,n->d", velocities, run.masses) / len(run.time)
+        largest = max(largest, float(np.abs(velocities).max()))
     drift = momentum / run.masses.sum()
-    seen = np.abs(drift) > _ROUNDING * np.abs(velocities).max()
+    seen = np.abs(drift) > _ROUNDING * largest
     return np.where(run.conserved & seen, drift, 0.0)[:, None]
 
 
