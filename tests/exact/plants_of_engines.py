@@ -71,10 +71,8 @@ _ROWS = (
      ("halves", "rdf", "event")),
     ("cells without an error", "engines.dsmc.cells", "self.width + self.step)", "0.0)",
      ("halves", "shear_viscosity", "dsmc")),
-    ("cells of what the smallest reach", _DSMC, "if len(radii) < 2 or", "if len(radii) > 0 or",
-     ("sizes_near", "collision_rate", "dsmc")),
     ("bisection from a dense gas", "theory.walls", "low, high = 0.0, _DENSEST",
-     "low, high = 3.0 * _STEP, _DENSEST", ("points_walls", "pressure", "event")),
+     "low, high = 3.0 * _STEP, _DENSEST", ("discs_thin", "pressure", "event")),
 )
 # fmt: on
 ENGINE_PLANTS = [Plant(*row) for row in _ROWS]
