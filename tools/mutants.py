@@ -148,11 +148,11 @@ def mutants_of(path: Path) -> Iterator[Mutant]:
     for kind, node, new in changes(tree):
         if id(node) in skipped:
             continue
-        span = place(node.lineno, node.col_offset), place(node.end_lineno, node.end_col_offset)  # type: ignore[attr-defined]
+        span = place(node.lineno, node.col_offset), place(node.end_lineno, node.end_col_offset)
         code = new if isinstance(new, str) else ast.unparse(ast.fix_missing_locations(new))
         code = f"({code})" if isinstance(new, ast.expr) else code
         old = text[slice(*span)]
-        yield Mutant(relative.parts[2], str(relative), node.lineno, kind, old, code, *span)  # type: ignore[attr-defined]
+        yield Mutant(relative.parts[2], str(relative), node.lineno, kind, old, code, *span)
 
 
 def sample(number: int, seed: int, packages: list[str]) -> list[Mutant]:
