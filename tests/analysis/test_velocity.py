@@ -139,7 +139,7 @@ def test_a_force_drives_poiseuilles_flow_between_plates(name):
     mean, error = np.mean(shares), np.std(shares, ddof=1) / math.sqrt(6.0)
     wrong = float(along["velocity_theory_error"].max()) / shape[known].max()
     assert shape[known].max() == pytest.approx(0.34, abs=0.01) and 20 <= known.sum() < 36
-    assert error < 0.035 and wrong < 0.06
+    assert error < 0.035 and wrong < 0.07
     assert abs(mean - 1.0) < 4.9 * error + wrong  # Student's, as rare as 3 sigma
 
 

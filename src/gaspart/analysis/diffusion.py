@@ -32,6 +32,8 @@ _WITHIN = 2.0
 """Maximum change of the slope, in standard errors, at which the slope counts as constant."""
 _SLOW = 0.06
 """Maximum relative change of the slope that is attributed to the slow tail of the correlations."""
+_BELOW = 3.0
+"""Standard errors below 0 at which a value has a remark."""
 _TAIL = 1.0 / (math.sqrt(2.0) - 1.0)
 """Sum of all further changes of the slope divided by its last change, if each lag is twice the previous one.
 The missing part of D decreases with the lag as t^(-1/2).
@@ -163,9 +165,10 @@ def _with_lags(result: Observable, ends: np.ndarray, rate: float) -> Observable:
     """Add to a result the first and the last lag of its slope."""
     collisions = " to ".join(f"{rate * end:.3g}" for end in ends)
     result.attrs["lags"] = ends
-    result.attrs["note"] = (
-        f"by the slope between the lags {ends[0]:.4g} and {ends[1]:.4g}, {collisions} collisions"
-    )
+    note = f"by the slope between the lags {ends[0]:.4g} and {ends[1]:.4g}, {collisions} collisions"
+    if (result.estimate < -_BELOW * result.error).any():
+        note += "; particles that are bound, as in a crystal, have no D: such a slope may be below 0"
+    result.attrs["note"] = note
     return result
 
 
