@@ -131,7 +131,7 @@ coverage: export GASPART_CACHE = $(CURDIR)/results/coverage/kernels
 coverage: export COVERAGE_FILE = $(CURDIR)/results/coverage/data
 coverage: develop
 	rm -rf results/coverage
-	.venv/bin/python -m pytest --numprocesses=auto --ignore=tests/workflow --cov --cov-report=term \
+	.venv/bin/python -m pytest --numprocesses=auto -m "" --ignore=tests/workflow --cov --cov-report=term \
 		--cov-report=html:results/coverage/html --cov-fail-under=95
 
 lint: develop
