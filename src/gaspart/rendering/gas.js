@@ -61,7 +61,8 @@ class Gas {
         index = index * control.values.length + values[control.name];
       if (!patches[index]) throw Error("this combination is not in the page");
       const [words, changes] = patches[index], bytes = bytesOf(words), from = new DataView(bytes.buffer);
-      this.scene = { ...this.scene, ...changes, faces: { ...this.scene.faces, ...changes.faces } };
+      const present = mapping => Object.fromEntries(Object.entries(mapping).filter(([, value]) => value !== null));
+      this.scene = present({ ...this.scene, ...changes, faces: present({ ...this.scene.faces, ...changes.faces }) });
       for (let at = 0; at < bytes.length; at += 12)
         this.view.setBigInt64(from.getUint32(at, true), from.getBigInt64(at + 4, true), true);
     }
