@@ -1,4 +1,4 @@
-"""A page in headless Chromium or Firefox, over its own server: what a script returns, and lines of the console."""
+"""A page in headless Chromium or Firefox: what a script returns, and the lines of the console."""
 
 import json
 import queue
@@ -10,10 +10,8 @@ from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 FIREFOX = next(filter(None, map(shutil.which, ("firefox-esr", "firefox"))), None)
-_QUIET = (
-    "--disable-gpu --disable-quic --no-first-run --disable-background-networking --disable-component-update "
-    "--disable-sync --no-sandbox --headless --remote-debugging-pipe=0"
-).split()[:-1]
+_CHROMIUM_OPTIONS = ["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-sync"]
+_CHROMIUM_OPTIONS += ["--disable-quic", "--disable-background-networking", "--disable-component-update"]
 _HEAD = """<script>
 const lines = [];
 addEventListener("error", event => lines.push(String(event.message)));
@@ -21,7 +19,8 @@ addEventListener("unhandledrejection", event => lines.push(String(event.reason))
 for (const kind of ["error", "warn"]) console[kind] = (...words) => lines.push(words.map(String).join(" "));
 </script>"""
 _TAIL = """<script>
-(async () => { SCRIPT })().catch(String).then(found => fetch("/found", { method: "POST", body: JSON.stringify({ found, lines }) }));
+(async () => { SCRIPT })().catch(String)
+  .then(found => fetch("/found", { method: "POST", body: JSON.stringify({ found, lines }) }));
 </script></body>"""
 
 
@@ -50,7 +49,7 @@ def found_in(browser, page, script, folder, width=1400, height=1000, seconds=240
     profile = folder / f"profile-{browser.rpartition('/')[2]}"
     profile.mkdir(exist_ok=True)
     size = f"--window-size={width},{height}"
-    command = [browser, *_QUIET, f"--user-data-dir={profile}", size, address]
+    command = [browser, *_CHROMIUM_OPTIONS, f"--user-data-dir={profile}", size, address]
     if "firefox" in browser:
         command = [browser, "--headless", "--no-remote", "--profile", str(profile), size, address]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

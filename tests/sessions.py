@@ -18,7 +18,7 @@ from gaspart.rendering import play
 from gaspart.rendering.controls import Controls
 
 NODE = shutil.which("node")
-FOLDER = Path(__file__).parent
+SESSION = Path(__file__).with_name("session.mjs")
 SEED = 3
 
 
@@ -63,20 +63,23 @@ def _changes_type(settings, flags):
     return "g" in flags and (settings.get("restitution"), settings.get("roughness")) == (1.0, 1.0)
 
 
-def in_page(controls, steps, data, folder):
-    """Results of the steps in node."""
-    asked = [
+def asked(controls, steps, start=0):
+    """The steps as the page counts values."""
+    return [
         {
-            "start": 0,
+            "start": start,
             "values": {one.name: one.values.index(step["settings"][one.name]) for one in controls.all},
             **{key: step[key] for key in ("reverse", "piston", "duration") if key in step},
         }
         for step in steps
     ]
+
+
+def in_node(controls, steps, data, folder):
+    """Results of the steps in node."""
     path = folder / "steps.json"
-    path.write_text(json.dumps(asked))
-    script = Path(play.__file__).with_name("gas.js")
-    command = [NODE, FOLDER / "session.mjs", script, data, path]
+    path.write_text(json.dumps(asked(controls, steps)))
+    command = [NODE, SESSION, Path(play.__file__).with_name("gas.js"), data, path]
     done = subprocess.run(command, capture_output=True, text=True, timeout=600)
     assert not done.returncode, done.stderr
     return json.loads(done.stdout)
@@ -115,3 +118,14 @@ def natively(controls, steps):
             }
         )
     return results
+
+
+def differences(controls, steps, ours, theirs):
+    """What differs between the results of steps in a page and natively."""
+    keys = "digest", "time", "collisions", "hits", "impulse"
+    return [
+        (controls.flags(step["settings"]), key)
+        for step, a, b in zip(steps, ours, theirs, strict=True)
+        for key in keys
+        if a[key] != b[key]
+    ]
