@@ -30,7 +30,7 @@ DRIVE = """
 const wait = ms => new Promise(go => setTimeout(go, ms)), byId = id => document.getElementById(id);
 const ready = async () => { await wait(50); while (busy) await wait(20); };
 const set = async (id, value) => {
-  byId(id).value = value; byId(id).oninput(); byId(id).onchange(); await ready();
+  byId(id).value = value; byId(id).oninput?.(); byId(id).onchange(); await ready();
 };
 const steps = async number => {
   for (let n = 0; n < number; n++) { byId("step").click(); while (busy) await wait(1); }
