@@ -60,8 +60,8 @@ class Series:
     relaxations : length of the run divided by the longest relaxation time.
     radians : phase through which the slowest oscillation passes in the run.
     thermal : True if `scatter` is an upper bound for all fluctuations.
-    local : True if all other fluctuations are faster than a block. Differences of consecutive blocks show them;
-        a sudden change, as of a crystal that melts, adds little to these differences.
+    local : True if all other fluctuations are faster than a block. Differences of consecutive blocks show
+        them. A sudden change, as of a crystal that melts, adds little to these differences.
     """
 
     values: np.ndarray
