@@ -147,7 +147,7 @@ def _beside_theory(observable, kind, data):
     if not stated.any():
         return None
     value, error, freedom, theory, unsure = (one[stated] for one in (value, error, freedom, theory, unsure))
-    deviation, text = compared(value, error, freedom, theory, unsure)
+    deviation, text = compared(value, error, freedom, theory, unsure, independent=False)
     return None if deviation <= LIMIT else (f"theory: {text}", deviation)
 
 
@@ -228,8 +228,11 @@ def _at(names_in, values):
     return values
 
 
-def compared(value, error, freedom, right, known_error):
-    """Return the deviation of values from right ones, each with errors, and the worst of them as a text."""
+def compared(value, error, freedom, right, known_error, independent=True):
+    """Return the deviation of values from right ones, each with errors, and the worst of them as a text.
+
+    independent: False for places of a curve that may deviate together
+    """
     total = np.hypot(error, known_error)
     exact = (total == 0.0) | ((known_error == 0.0) & (right == 0.0) & (value == 0.0))
     if exact.all():
@@ -247,7 +250,7 @@ def compared(value, error, freedom, right, known_error):
     at = np.unravel_index(np.argmax(np.where(use, normal, -1.0)), value.shape)
     worst = float(stats.norm.isf(0.5 * min(1.0, float(chance[at]) * use.sum())))
     spread = math.sqrt((np.minimum(normal[use], 40.0) ** 2).mean())
-    if use.sum() >= POINTS:
+    if independent and use.sum() >= POINTS:
         worst = max(worst, LIMIT * spread / SPREAD)
     numbers = f"{value[at]:.5g} +- {error[at]:.2g}, right {right[at]:.5g} +- {known_error[at]:.2g}"
     return worst, f"{numbers} (worst of {use.sum()})"
