@@ -77,8 +77,13 @@ unexport PYTHONDONTWRITEBYTECODE
 	@touch $@
 
 # A test that waits for ever fails by its name, and the others go on. Slow tests and searches have no such limit.
+# Tests of few particles run their kernels as plain Python first: to compile each would take longer.
+TEST = .venv/bin/python -m pytest --numprocesses=auto --timeout=1500 --timeout-method=signal
+INTERPRETED = $(shell grep -rl mark.interpreted tests --include='test_*.py')
 test: develop
-	.venv/bin/python -m pytest --numprocesses=auto --timeout=1500 --timeout-method=signal $(OPTIONS)
+	NUMBA_DISABLE_JIT=1 $(TEST) -m interpreted --hypothesis-profile=few $(INTERPRETED) $(OPTIONS)
+	PYTHONPATH=tests .venv/bin/python -W ignore -m battery.compile_kernels
+	$(TEST) -m "not thorough and not interpreted" $(OPTIONS)
 
 test-all: develop
 	.venv/bin/python -m pytest --numprocesses=auto -m "" --hypothesis-profile=search $(OPTIONS)

@@ -6,7 +6,7 @@ from pathlib import Path
 import gaspart
 
 ROOT = Path(__file__).parents[1]
-sys.path.insert(0, str(Path(__file__).parent))
+sys.path[:0] = [str(Path(__file__).parent), str(ROOT / "tools")]
 
 project = "gaspart"
 version = release = gaspart.__version__

@@ -15,6 +15,7 @@ from pathlib import Path
 import exact_values
 import indexes
 import symmetries
+from reference import pages as reference
 
 import gaspart
 from gaspart import analysis, theory
@@ -24,7 +25,6 @@ from gaspart.cli.new import templates
 from gaspart.public import read_stub
 from gaspart.reproduction.claims.table import fill_caption
 from gaspart.reproduction.families.registry import families, titles
-from gaspart.reproduction.reference import pages as reference
 from gaspart.yaml_text import read_yaml
 
 ROOT = Path(__file__).parents[1]

@@ -22,40 +22,48 @@ gc.set_threshold(1_000_000)
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
-# The same scenes every time, or new ones with `--hypothesis-profile=search`.
+# The same scenes every time, few of them where kernels are plain Python; or new ones with
+# `--hypothesis-profile=search`.
 settings.register_profile("fixed", max_examples=50, derandomize=True, deadline=None)
+settings.register_profile("few", max_examples=5, derandomize=True, deadline=None)
 settings.register_profile("search", max_examples=2500, deadline=None)
 settings.load_profile("fixed")
 
+INTERPRETED = os.environ.get("NUMBA_DISABLE_JIT") == "1"
+"""True if kernels run as plain Python, in which no kernel is compiled."""
+if INTERPRETED:
+    from kernels.interpreted import do_without_vectors, read_fields
+
+    read_fields()
+    do_without_vectors()
 
 TESTS = Path(__file__).parent
 # These have an environment of their own: make referees.
 collect_ignore = ["referees"]
 # The files whose tests look at one run of the smoke workflow.
 OF_SMOKE_RUN = ("test_smoke.py", "test_accessibility.py", "test_planning.py", "test_archive.py")
-# The folder whose files look at the same data sets.
-SHARING = "reproduction/families/scaling/"
-# Packages whose tests compile hardly any kernel, but for those of some files. They run while the smoke
-# workflow compiles those that the others share with it: two processes that need a kernel at the same time
-# both compile it.
-WITHOUT_KERNELS = ("theory", "reproduction", "scene")
-COMPILING = ("approach", "digests", "measure", "own", "pressure", "relaxation", "rows", "simulate")
-COMPILING += ("source", "sweep", "variants")
+# The folders that take longest.
+FIRST = ("battery", "exact", "workflow")
 
 
 class ByFile(LoadScopeScheduling):
-    """A file's tests go to one process, since they share compiled kernels, all of those that look at the
-    smoke workflow to one, since they share a run of it, and those of a folder that share data sets."""
+    """A file's tests go to one process, since they share compiled kernels, and all of those that look at one
+    run of the smoke workflow to one, since they share that run."""
 
     def _split_scope(self, nodeid):
         path = nodeid.split("::")[0]
         if path.endswith(OF_SMOKE_RUN):
-            return "smoke"
-        return SHARING if SHARING in path else path
+            return "smoke, all figures" if "all figures" in nodeid else "smoke"
+        return path
 
 
 def pytest_addoption(parser):
     parser.addoption("--no-skips", action="store_true", help="fail if any test is skipped")
+
+
+def pytest_configure(config):
+    if INTERPRETED:  # words of random numbers overflow by design
+        config.addinivalue_line("filterwarnings", "ignore::RuntimeWarning:gaspart")
 
 
 @pytest.hookimpl(tryfirst=True)  # before the terminal prints its summary
@@ -64,11 +72,6 @@ def pytest_sessionfinish(session):
     reporter = session.config.pluginmanager.get_plugin("terminalreporter")
     if session.config.getoption("no_skips") and reporter and reporter.stats.get("skipped"):
         session.exitstatus = session.exitstatus or pytest.ExitCode.TESTS_FAILED
-
-
-def compiles(path):
-    """Whether tests of a file in `WITHOUT_KERNELS` compile one all the same."""
-    return path.stem.removeprefix("test_") in COMPILING or path.parent.name == "pictures"
 
 
 @pytest.fixture(autouse=True)
@@ -83,14 +86,21 @@ def pytest_xdist_make_scheduler(config, log):
     return ByFile(config, log)
 
 
-def pytest_collection_modifyitems(items):
-    """Begin with the smoke workflow, which takes longest; the other tests of the workflow, which use its
-    kernels, come last."""
+def pytest_collection_modifyitems(config, items):
+    """Begin with the smoke workflow and with the folders that take longest."""
 
     def place(item):
-        package = item.path.relative_to(TESTS).parts[0] if item.path.is_relative_to(TESTS) else ""
-        if package == "workflow":
-            return 0 if item.path.name in OF_SMOKE_RUN else 3
-        return 1 if package in WITHOUT_KERNELS and not compiles(item.path) else 2
+        parts = item.path.relative_to(TESTS).parts if item.path.is_relative_to(TESTS) else ("",)
+        return parts[-1] not in OF_SMOKE_RUN, parts[0] not in FIRST
 
     items.sort(key=place)
+    config.kernels_of_collection = sorted(kernels_in_use())
+
+
+def kernels_in_use():
+    """The names of gaspart's kernels that are compiled or loaded."""
+    for name, module in sys.modules.copy().items():
+        if name.startswith("gaspart.kernels."):
+            for value in vars(module).values():
+                if getattr(value, "overloads", None):
+                    yield f"{value.py_func.__module__}.{value.py_func.__name__}"

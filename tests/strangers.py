@@ -129,6 +129,7 @@ def broken_zips():
     yield "nothing", b""
     yield "cut short", whole[:-30]
     yield "in front", b"#!/bin/sh\necho hidden\n" + whole
+    yield "behind", whole + b"#" * 7000
     yield "twice", packed([("README.md", b"another text")]) + whole
     yield "an entry twice", packed([("README.md", b"another"), *plain])
     yield "the manifest twice", packed([(MANIFEST, b"other"), *plain])

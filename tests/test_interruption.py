@@ -241,6 +241,41 @@ def test_runs_that_are_disturbed_at_random_moments_end_in_the_same_bytes(tmp_pat
     assert report["signals"] >= signals
 
 
+def test_a_folder_goes_with_its_process(tmp_path):
+    code = (
+        "import sys, time; from gaspart.interruption import exit_on_signals, scratch_folder\n"
+        "exit_on_signals()\nwith scratch_folder() as folder:\n"
+        "    (folder / 'a').touch(); print(folder, flush=True); time.sleep(60)"
+    )
+    environment = {**ENVIRONMENT, "TMPDIR": str(tmp_path)}
+    process = subprocess.Popen(
+        [sys.executable, "-c", code], env=environment, stdout=subprocess.PIPE, text=True
+    )
+    assert Path(process.stdout.readline().strip()).parent == tmp_path
+    process.terminate()
+    assert process.wait() == 143 and not os.listdir(tmp_path)
+
+
+def test_a_signal_in_the_first_milliseconds_costs_one_line():
+    early = "import os, signal, gaspart.__main__ as m; m._exit(signal.SIGTERM, None)"
+    done = subprocess.run([sys.executable, "-c", early], env=ENVIRONMENT, capture_output=True)
+    assert (done.returncode, done.stderr) == (143, b"gaspart: terminated\n")
+
+
+def test_a_home_that_cannot_be_written_costs_no_line(folder):
+    environment = {**ENVIRONMENT, "HOME": "/dev/null", "XDG_CACHE_HOME": "", "XDG_CONFIG_HOME": ""}
+    environment.pop("MPLCONFIGDIR", None)
+    code = "from gaspart.__main__ import main; main(); import matplotlib; matplotlib.get_cachedir()"
+    done = subprocess.run(
+        [sys.executable, "-c", code, "info", "nowhere.nc"],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+    )
+    assert done.stderr.count("\n") == 1 and done.stderr.startswith("gaspart: error: file = 'nowhere.nc'")
+
+
 def test_streams_that_are_full_or_closed(folder):
     def shell(line):
         command = f"{shlex.quote(sys.executable)} -m gaspart {line}"
@@ -256,7 +291,16 @@ def test_streams_that_are_full_or_closed(folder):
     done = shell("info 0.nc >/dev/full")
     assert done.returncode == 1
     assert done.stderr == "gaspart: error: a file or the standard output: No space left on device\n"
-    for command in ("theory Z --eta 0.3", "info 0.nc", "check scene.yaml"):  # what is printed is all there is
+    for command in ("--help", "--version", "new --list"):
+        assert shell(f"{command} >/dev/full").stderr == done.stderr
+    for command in (
+        "theory Z --eta 0.3",
+        "info 0.nc",
+        "check scene.yaml",
+        "--help",
+        "--version",
+        "new --list",
+    ):
         done = shell(f"{command} >&-")
         assert done.returncode == 1
         assert done.stderr == "gaspart: error: a file or the standard output: Bad file descriptor\n"

@@ -28,6 +28,7 @@ WORDS = {
     "species of text": (lambda: gp.Species("20", 0.5), "count = '20': must be a whole number"),
     "radius with a unit": (lambda: gp.Species(20, "0.5 nm"), "must be a number, without a unit"),
     "negative radius": (lambda: gp.Species(20, -0.5), "radius = -0.5: must be positive"),
+    "points": (lambda: gp.Species(20, 0.0), "points are particles with a radius of 1e-9 of the container"),
     "container a number": (lambda: gp.Container(9.0), "lengths = 9.0: must be a list of 2 or 3"),
     "container two numbers": (lambda: gp.Container(9.0, 9.0), "lengths = 9.0: must be a list"),
     "boundary true": (lambda: gp.Container((9, 9), boundary=True), "must be one of ('wall', 'periodic')"),
@@ -92,6 +93,21 @@ WORDS = {
     "replicas in words": (
         lambda: gp.run(SCENE, duration=1.0, sample_interval=0.5, path="a.nc", replicas="two"),
         "replicas = 'two': must be a whole number of at least 1",
+    ),
+    "view to a file": (lambda: gp.view("gas.nc", "gas.html"), "view(source).save(path) writes the page"),
+    "picture to a file": (
+        lambda: gp.render("gas.nc", "gas.png"),
+        "render(source).save(path) writes the file",
+    ),
+    "run to a file": (lambda: gp.run(SCENE, "gas.nc", duration=1.0), "path= names the file"),
+    "sweep over seeds": (
+        lambda: gp.sweep(SCENE, {"seed": [1, 2]}, ["Z"], folder="a", duration=1.0),
+        "replicas= makes runs of several seeds",
+    ),
+    "two observables": (lambda: gp.measure("gas.nc", "Z", "D"), "are a list, such as ['Z', 'D']"),
+    "velocities of a simulation": (
+        lambda: setattr(STATE.read_only(), "velocities", STATE.velocities),
+        "change its copy(), and start from the copy by Simulation(scene, initial=copy)",
     ),
     "no such trajectory": (lambda: gp.open_trajectory("none.nc"), "No such file"),
     "file number": (lambda: of(count=None, number=20), "number = 20: unknown key; did you mean count?"),

@@ -111,14 +111,6 @@ def test_the_conda_recipe_has_the_dependencies_and_the_version():
     assert recipe["about"]["license"] == project()["license"]
 
 
-def test_binder_installs_extras_that_exist():
-    (line,) = (ROOT / "binder/requirements.txt").read_text(encoding="utf-8").splitlines()
-    extras = re.fullmatch(r"\.\[([\w,]+)\]", line)[1].split(",")
-    assert set(extras) <= set(project()["optional-dependencies"])
-    python = (ROOT / "binder/runtime.txt").read_text(encoding="utf-8").strip().removeprefix("python-")
-    assert project()["requires-python"] == f">={python}"
-
-
 CASES = [
     ("setup", ".venv"),
     ("distclean", ".venv"),

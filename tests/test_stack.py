@@ -1,7 +1,4 @@
-"""Surprises of numba, Snakemake, scipy, xarray and freud: code avoids them, each search finds a planted one.
-
-`findings/` shows each of these behaviours by itself.
-"""
+"""Surprises of numba, Snakemake, scipy, xarray and freud: each search for one finds a planted one."""
 
 import ast
 import re

@@ -26,7 +26,8 @@ def main() -> int:
 
 
 def _exit(signum: int, frame: object) -> None:
-    """Handle a signal in the first milliseconds."""
+    """Handle a signal in the first milliseconds, before `gaspart.interruption` is imported."""
+    os.write(2, b"gaspart: interrupted\n" if signum == signal.SIGINT else b"gaspart: terminated\n")
     os._exit(128 + signum)
 
 

@@ -147,7 +147,12 @@ def _exit(signum: int) -> NoReturn:
     _process.exiting.acquire()  # never released, so that only the first of two threads ends the process
     for path in tuple(_process.scratch):
         with suppress(OSError):
-            path.unlink()
+            if path.is_dir():
+                import shutil  # loaded already, with the folder
+
+                shutil.rmtree(path, ignore_errors=True)
+            else:
+                path.unlink()
     announce = _process.announce or _announce
     with suppress(OSError, ValueError):
         announce(describe_interruption(signum))
@@ -173,12 +178,22 @@ def set_note(text: str) -> None:
 
 @contextmanager
 def scratch_file(path: Path) -> Iterator[None]:
-    """Remove a scratch file if a signal ends the process within this block."""
+    """Remove a scratch file, or a folder, if a signal ends the process within this block."""
     _process.scratch.add(path)
     try:
         yield
     finally:
         _process.scratch.discard(path)
+
+
+@contextmanager
+def scratch_folder() -> Iterator[Path]:
+    """Create a folder, and remove it at the end of this block or when a signal ends the process."""
+    from pathlib import Path
+    from tempfile import TemporaryDirectory
+
+    with TemporaryDirectory(prefix="gaspart-") as name, scratch_file(Path(name)):
+        yield Path(name)
 
 
 @contextmanager

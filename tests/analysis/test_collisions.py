@@ -30,12 +30,17 @@ def test_rows_agree_with_the_events(boundary):
     sim.record_events = True
     sim.advance(until=float(data["time"][-1]))
     times, particles = sim.events["time"], sim.events["particles"]
-    last = dict.fromkeys(range(20), np.nan)
+    last, speeds, flown = dict.fromkeys(range(20), np.nan), sim.initial_state.speeds, 0.0
     expected = []
-    for time, pair in zip(times, particles, strict=True):
+    for time, pair, after in zip(times, particles, sim.events["velocities"], strict=True):
         if pair[1] >= 0:
             expected.append([time - last[particle] for particle in pair])
-        last.update({particle: time for particle in pair if particle >= 0})
+        for particle, velocity in zip(pair, after, strict=True):
+            if particle >= 0:
+                flown += speeds[particle] * (time - np.nan_to_num(last[particle]))
+                last[particle], speeds[particle] = time, np.hypot(*velocity)
+    flown += sum(speeds[n] * (times[-1] - np.nan_to_num(last[n])) for n in range(20))
+    assert data.mean_free_path == pytest.approx(flown / (2.0 * len(expected)), rel=1e-12)
     assert np.array_equal(data["free_time"], np.array(expected), equal_nan=True)
     assert np.array_equal(data["particles"], particles[particles[:, 1] >= 0])
 

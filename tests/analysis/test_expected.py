@@ -101,6 +101,7 @@ def test_a_mixture_by_the_enskog_equation_is_its_contact_values():
     assert found[0] == pytest.approx(1.0 + 0.95 * beyond, rel=1e-9)
 
 
+@pytest.mark.thorough
 def test_fluxes_by_the_boltzmann_equation(tmp_path):
     """The pressure of 64 particles about their centre of mass, and the viscosity of points."""
     scene = gas(3, 64, 0.01, exact_temperature=True)
@@ -125,7 +126,9 @@ def test_fluxes_by_the_boltzmann_equation(tmp_path):
     )
     conductivity = measure(path, "thermal_conductivity")
     assert float(conductivity.theory) < float(gp.theory.enskog_conductivity(1e-9, 3))
-    assert float(measure(path, "bulk_viscosity").theory) == 0.0
+    bulk = measure(path, "bulk_viscosity")  # of the cells alone; 0 without them
+    assert float(bulk.theory) == pytest.approx(float(bulk.estimate), abs=3.0 * float(bulk.error))
+    assert float(bulk.estimate) > 3.0 * float(bulk.error)
 
 
 def test_like_pairs_of_few_particles_have_fewer_partners(tmp_path):

@@ -101,3 +101,14 @@ def test_two_names_of_one_gas_conduct_alike(tmp_path):
         parts = A.thermal_conductivity(data.assign_attrs(scene=dump_yaml(other.to_dict())))
     assert "without diffusion" in parts.estimate.attrs["long_name"]
     assert float(parts.estimate) == pytest.approx(float(whole.estimate), abs=0.5 * float(whole.error))
+
+
+def test_a_species_that_finds_no_place_does_not_hide_the_others():
+    """A large sphere finds a place among 100 small ones with a chance of about e^-20, a small one often."""
+    kinds = [gp.Species(1, 1.2, temperature=1.0), gp.Species(100, 0.25, temperature=1.0)]
+    simulation = gp.Simulation(gp.Scene(gp.Container((4.0,) * 3, "periodic"), kinds), seed=1)
+    simulation.advance(1.0)
+    found = A.chemical_potential(simulation, trials=20)
+    assert np.isnan(found.estimate[0]) and np.isnan(found.error[0])
+    assert abs(float(found.estimate[1] - found.theory[1])) < 0.05 and np.isfinite(found.theory).all()
+    assert found.attrs["note"] == "no place was free for species 0"

@@ -54,7 +54,13 @@ KINDS = {
     "pushed": Kind(scenes.pushed()),
     "shaken": Kind(scenes.shaken(), ("direct",), "boxes", ("pairs",), events=200),
 }
-every_kind = pytest.mark.parametrize("name", KINDS)
+INTERPRETED = "mixtures", "granular", "walled", "pushed"
+"""Kinds of which `make test` has a few scenes, with kernels as plain Python."""
+
+
+def tier(name):
+    """The marker of a kind."""
+    return pytest.mark.interpreted if name in INTERPRETED else pytest.mark.thorough
 
 
 def each_random(name, check, strategy, examples):
@@ -62,8 +68,7 @@ def each_random(name, check, strategy, examples):
     settings(max_examples=examples)(given(strategy, st.integers(0, 2**32))(check))()
 
 
-@pytest.mark.thorough
-@every_kind
+@pytest.mark.parametrize("name", [pytest.param(name, marks=tier(name)) for name in KINDS])
 def test_all_searches_give_the_same_events(name):
     kind = KINDS[name]
 

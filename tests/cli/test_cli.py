@@ -45,6 +45,7 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
+@pytest.mark.interpreted
 def test_run_info_and_the_command_that_reproduces_it(folder, capsys):
     for options in (
         ["--engine", "event", "--boxes-per-side", "3,4", "--seed", "1,2", "--displacements", "--follow", "9"],
@@ -68,6 +69,7 @@ def test_run_info_and_the_command_that_reproduces_it(folder, capsys):
         assert (folder / "again.nc").read_bytes() == (folder / "run.nc").read_bytes()
 
 
+@pytest.mark.interpreted
 def test_resume_and_info_of_an_unfinished_run(folder, capsys):
     assert main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY]) == 0
     complete = (folder / "run.nc").read_bytes()
@@ -261,6 +263,7 @@ def test_theory(capsys):
         assert complaint in output and output.count("\n") == 1
 
 
+@pytest.mark.interpreted
 def test_check_reports_failed_checks_by_its_exit_code(folder, capsys):
     assert main(["check", "scene.yaml"]) == 0
     assert main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY]) == 0
@@ -288,6 +291,7 @@ def test_check_of_a_config_is_that_of_the_workflow(folder, capsys):
     assert "alone.yaml: title = None: is required" in capsys.readouterr().err
 
 
+@pytest.mark.interpreted
 def test_export_prints_the_path(folder, capsys):
     assert main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY]) == 0
     capsys.readouterr()

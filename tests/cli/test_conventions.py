@@ -67,6 +67,7 @@ def walled(tmp_path, monkeypatch):
     return gp.run(SCENES["walls"], gp.EventDriven(), 1, 1.0, 0.5, "run.nc")
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("suffix", [".gsd", ".xyz", ".data"])
 def test_scripts_read_the_path_alone(walled, capsys, suffix):
     assert main(["export", "run.nc", "-o", f"state{suffix}"]) == 0
@@ -75,6 +76,7 @@ def test_scripts_read_the_path_alone(walled, capsys, suffix):
     assert printed.err == f"gaspart: {conventions(SCENES['walls'], suffix)}\n"
 
 
+@pytest.mark.interpreted
 def test_info_has_the_line_of_the_trajectory(walled, capsys):
     assert main(["info", "run.nc"]) == 0
     assert re.search("^in other programs: walls across x, y, z are read", capsys.readouterr().out, re.M)
@@ -90,6 +92,7 @@ class Full(io.StringIO):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
 
+@pytest.mark.interpreted
 def test_a_stderr_that_takes_nothing_does_not_make_an_export_fail(walled, capsys, monkeypatch):
     monkeypatch.setattr("sys.stderr", Full())
     assert main(["export", "run.nc", "-o", "state.data"]) == 0

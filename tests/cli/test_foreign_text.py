@@ -199,6 +199,7 @@ def test_names_of_files(runs, tmp_path, monkeypatch, capsys, text):
         printed(capsys, *words)
 
 
+@pytest.mark.interpreted
 def test_a_failure_and_an_interruption_name_files_as_text(tmp_path, monkeypatch):
     set_note("`gaspart resume \x1b[2J` continues it")
     assert describe_interruption().isprintable()

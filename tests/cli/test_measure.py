@@ -84,14 +84,21 @@ def test_words_are_sorted_into_files_and_names(paths, capsys):
 
 def test_displacement_and_diffusion_along_each_axis(paths, capsys, tmp_path):
     head, *lines = printed(capsys, paths[0], "msd", "--per-axis")
-    assert head.split() == ["lag", *(word for k in "xyz" for word in ("msd", k, "error", "theory"))]
+    of_axis = "msd {} error theory its error"
+    assert head.split() == ["lag", *" ".join(map(of_axis.format, "xyz")).split()]
     found = gp.analysis.mean_squared_displacement(paths[0], per_axis=True)
-    assert float(lines[1].split()[4]) == pytest.approx(
+    assert float(lines[1].split()[5]) == pytest.approx(
         float(found.estimate.sel(axis="y").sel(lag=float(lines[1].split()[0]), method="nearest")), rel=1e-4
     )
-    _, *lines = printed(capsys, paths[0], "D", "--per-axis")
+    assert lines[-2] == f"(theory: {found.attrs['source']})"
+    head, *lines = printed(capsys, paths[0], "D", "--per-axis")
+    assert head.split() == ["axis", "D", "error", "theory", "its", "error"]
     assert [line.split()[0] for line in lines[:3]] == ["x", "y", "z"]
-    assert lines[3].startswith("(by the slope between the lags ") and len(lines) == 4
+    known = gp.measure(paths[0], "D", per_axis=True)
+    unsure = float(known["diffusion_coefficient_theory_error"][0])
+    assert float(lines[0].split()[4]) == pytest.approx(unsure, rel=1e-4) and unsure > 0.0
+    assert lines[3] == f"(theory: {known.attrs['source']})"
+    assert lines[4].startswith("(by the slope between the lags ") and len(lines) == 5
     printed(capsys, *paths, "msd", "--per-axis", "-o", str(tmp_path / "msd.csv"))
     table = rows(tmp_path / "msd.csv")
     assert {row["axis"] for row in table} == {
@@ -116,3 +123,10 @@ def test_what_an_observable_cannot_be_is_refused(paths, capsys):
     assert "--axis: 'w': unknown name" in refused(capsys, paths[0], "density", "--axis", "w")
     flat = gp.run(gas(2, 64, 0.2), gp.EventDriven(), 1, 20.0, 0.25, f"{paths[0]}.flat.nc")
     assert "axis = 'z'" in refused(capsys, str(flat), "density", "--axis", "z")
+
+
+def test_theory_numbers_species_from_0_as_measurements_do(capsys):
+    main(["theory", "contact_value", "--eta", "0.3", "--diameters", "1,0.5"])
+    first = capsys.readouterr().out.splitlines()[0]
+    values = gp.theory.mixture_contact_values(0.3, 3, [1.0, 0.5], theory="boublik")
+    assert f"0-0 {values[0, 0]:.8g}, 0-1 {values[0, 1]:.8g}, 1-0 " in first

@@ -51,6 +51,7 @@ def test_a_unit_is_not_called_negative(file, capsys, key, value):
     assert f"= '{value}': must be a number, without a unit" in refused(capsys, "check", file(text))
 
 
+@pytest.mark.interpreted
 def test_python_is_told_of_overwrite_and_the_command_line_of_its_option(file, capsys):
     scene = file(GAS.replace("120", "12"))
     assert main(["run", scene, "-o", "a.nc", *SHORT]) == 0

@@ -276,6 +276,7 @@ def test_there_are_a_hundred():
     assert len(MISTAKES) + len(OF_RUNS) >= 100
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("name", OF_RUNS)
 def test_a_mistake_with_a_run_is_one_line_that_states_what_to_do(name, runs, monkeypatch, capsys):
     monkeypatch.chdir(runs)

@@ -9,8 +9,6 @@ import gaspart as gp
 from gaspart.analysis.expected.flows import plates_of
 from gaspart.analysis.run import open_run
 
-pytestmark = pytest.mark.thorough
-
 A = gp.analysis
 GAP, SIDE = 10.0, 4.0
 ENGINES = {"event": gp.EventDriven(), "dsmc": gp.DSMC(0.25, 1, "boltzmann")}
@@ -40,6 +38,7 @@ def off(found):
     return np.abs(found.deviation.values[np.isfinite(found.deviation.values)])
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("engine", "count", "drift"), [("event", 200, 1.0), ("dsmc", 1000, 0.5)])
 def test_heat_of_free_flight(engine, count, drift):
     """With J hits per area and time, 2 k_B (T_1 - T_2) J a_1 a_2 / (a_1 + a_2 - a_1 a_2): of the flux and of
@@ -52,6 +51,7 @@ def test_heat_of_free_flight(engine, count, drift):
     assert (found.error < 0.08 * found.theory[1]).all() and (off(found) < 3.0).all()
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("engine", "count"), [("event", 200), ("dsmc", 1000)])
 def test_stress_and_heat_of_sliding_plates_in_free_flight(engine, count):
     """A third of n U sqrt(T / 2 pi), and half its work warms each plate."""
@@ -65,6 +65,7 @@ def test_stress_and_heat_of_sliding_plates_in_free_flight(engine, count):
     assert "theory" not in A.velocity_profile(simulation, "x")  # it is not the mean of both plates
 
 
+@pytest.mark.thorough
 def test_the_fraction_of_hits_that_are_mirrored():
     """Whatever the particle and the hit; a mirrored one keeps its velocity along the face, to the bit."""
     simulation = gp.Simulation(plates(200, hot=4.0, drift=1.0), ENGINES["event"], seed=2)
@@ -86,6 +87,7 @@ def test_the_fraction_of_hits_that_are_mirrored():
         assert mirrored[side] / hits[side] == pytest.approx(1.0 - fraction, abs=3.0 * error)
 
 
+@pytest.mark.interpreted
 def test_two_engines_draw_the_same():
     """One particle, whose draws are numbered by its hits: it is in the same place at the end."""
     particle = gp.Particle((3.0, 2.0, 1.0), (1.0, 0.5, -0.25), 0.25)
@@ -101,6 +103,7 @@ def test_two_engines_draw_the_same():
     assert event.state.unwrapped == pytest.approx(step.state.unwrapped, abs=1e-6)
 
 
+@pytest.mark.thorough
 def test_theory_of_a_fluid_is_for_full_accommodation():
     """None is stated at a Knudsen number of 0.4, and of 150 with few hits that draw velocities."""
     for radius, fractions in ((0.15, (0.9, 0.9)), (0.0078, (1.0, 0.5))):
@@ -112,6 +115,7 @@ def test_theory_of_a_fluid_is_for_full_accommodation():
     assert found.knudsen > 100.0
 
 
+@pytest.mark.interpreted
 def test_full_accommodation_is_no_feature():
     """1 is the same as none: to kernels, to files and to comparisons."""
     assert gp.Thermal(1.0, accommodation=1.0) == gp.Thermal(1.0)
@@ -119,6 +123,7 @@ def test_full_accommodation_is_no_feature():
     assert "accommodation" not in plates(1, fractions=(1.0, 1.0)).to_dict()["faces"]["x_low"]
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("value", [0.0, -0.5, 1.5, "half", True, math.nan])
 def test_what_is_refused(value):
     face = {"kind": "thermal", "temperature": 1.0, "accommodation": value}

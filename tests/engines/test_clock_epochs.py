@@ -6,8 +6,6 @@ import pytest
 import gaspart as gp
 from gaspart.engines.event.tally import QUIET, Epochs
 
-pytestmark = pytest.mark.thorough
-
 
 def alone(side, restitution=None, radius=0.5, velocity=(1.0, 0.3), boundary="wall"):
     particle = gp.Particle((0.4 * side, 0.5 * side), velocity, radius)
@@ -15,6 +13,7 @@ def alone(side, restitution=None, radius=0.5, velocity=(1.0, 0.3), boundary="wal
     return gp.Scene(gp.Container((side, side), boundary), particles=[particle], restitution=law)
 
 
+@pytest.mark.thorough
 def test_a_disc_that_has_slowed_down_still_hits_walls():
     """After 237 hits with restitution 0.9 its speed is some 1e-6, and after 3000 some 1e-80."""
     sim = gp.Simulation(alone(5.0, 0.9), gp.EventDriven(), seed=1)
@@ -25,6 +24,7 @@ def test_a_disc_that_has_slowed_down_still_hits_walls():
     assert sim.tally.dissipated_energy == pytest.approx(sim.initial_state.kinetic_energy, rel=1e-12)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("side", [1e4, 1e7, 1e11])
 def test_a_disc_in_a_vast_container_hits_its_walls(side):
     sim = gp.Simulation(alone(side), gp.EventDriven(), seed=1)
@@ -40,6 +40,7 @@ def test_a_disc_in_a_vast_container_hits_its_walls(side):
     assert sim.events["time"] == pytest.approx(expected, rel=1e-12)
 
 
+@pytest.mark.thorough
 def test_a_run_without_possible_events_is_stopped():
     particles = [gp.Particle((x, 5.0), (1.0, 0.0), 0.5) for x in (2.0, 6.0)]
     scene = gp.Scene(gp.Container((10.0, 10.0), "periodic"), particles=particles)
@@ -54,6 +55,7 @@ def together(slower):
     return gp.Scene(gp.Container((100.0, 10.0), "periodic"), particles=particles)
 
 
+@pytest.mark.thorough
 def test_particles_that_move_together_do_not_miss_one_another():
     """They meet, after 7800 epochs in which they have no event."""
     sim = gp.Simulation(together(2.0**-21), gp.EventDriven())
@@ -62,12 +64,14 @@ def test_particles_that_move_together_do_not_miss_one_another():
     assert sim.time == pytest.approx(4.0 * 2.0**21, rel=1e-9)
 
 
+@pytest.mark.thorough
 def test_what_moves_together_by_rounding_only_is_stopped():
     sim = gp.Simulation(together(0.0), gp.EventDriven())
     with pytest.raises(gp.SimulationError, match="particles miss one another"):
         sim.advance(max_events=1)
 
 
+@pytest.mark.interpreted
 def test_epochs_follow_large_changes_only():
     epochs = Epochs(alone(5.0), np.ones(1), 1.0)
     speed = epochs.speed(np.array([[1.0, 0.3]]))
@@ -100,6 +104,7 @@ def from_rest(power, interval, speed=None, count=100):
     return gp.Scene(gp.Container((10.0,) * 3), [species], restitution=gp.Restitution(0.8), thermostat=kicks)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("speed", [None, 1e-12, 1e-6])
 @pytest.mark.parametrize("power", [2.0**-90, 1.0, 2.0**90])
 def test_a_gas_that_kicks_set_in_motion_runs_as_any_other(power, speed):
@@ -129,6 +134,7 @@ def spinning(spin):
     return gp.Scene(gp.Container((6.0, 6.0)), particles=particles, restitution=gp.Restitution(0.8, 0.5))
 
 
+@pytest.mark.thorough
 def test_a_spin_that_sets_a_gas_in_motion_is_no_collapse():
     sim = gp.Simulation(spinning(1.0), gp.EventDriven())
     sim.advance(until=1e9)
@@ -136,6 +142,7 @@ def test_a_spin_that_sets_a_gas_in_motion_is_no_collapse():
     assert sim.tally.collisions > 1000 and sim.tally.worst_contact < 1e-8
 
 
+@pytest.mark.interpreted
 def test_epochs_are_those_of_shared_energy():
     """One particle of mass 2^40 in 63 of mass 1, which are at rest, can make them 2^14 times faster than the
     rms speed is now."""
@@ -148,6 +155,7 @@ def test_epochs_are_those_of_shared_energy():
     assert epochs.base(np.zeros((64, 2)), 32.0) == epochs.length(np.sqrt(63.0 / 64.0))
 
 
+@pytest.mark.interpreted
 def test_speeds_that_the_time_does_not_resolve_stop_a_run():
     """After a time of 2^60 an epoch of 2^-9 would not make the time later: the run would have no end."""
     sim = gp.Simulation(from_rest(2.0**40, 2.0**60, count=2), gp.EventDriven(), seed=1)

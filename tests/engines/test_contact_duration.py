@@ -9,8 +9,6 @@ from scenes import closest, gas
 
 import gaspart as gp
 
-pytestmark = pytest.mark.thorough
-
 
 def pile(count=20, side=8.0, normal=0.9, tangential=-1.0, duration=None, **rest):
     """Discs that fall into a box."""
@@ -25,6 +23,7 @@ def sent(lengths, particles, law, **rest):
     return gp.Simulation(scene, gp.EventDriven())
 
 
+@pytest.mark.interpreted
 def test_a_second_contact_within_the_duration_is_elastic():
     """One disc hits two at rest, 0.01 apart: the second contact comes 0.01/0.75 later."""
     particles = [gp.Particle((x, 5.0), (v, 0.0), 0.5) for x, v in ((20.0, 1.0), (22.0, 0.0), (23.01, 0.0))]
@@ -43,6 +42,7 @@ def test_a_second_contact_within_the_duration_is_elastic():
         sim.check_invariants()
 
 
+@pytest.mark.interpreted
 def test_contacts_with_walls_count():
     """A disc hits the floor, and within the duration one at rest above it."""
     particles = [gp.Particle((5.0, 0.52), (0.0, -1.0), 0.5), gp.Particle((5.0, 1.54), (0.0, 0.0), 0.5)]
@@ -52,6 +52,7 @@ def test_contacts_with_walls_count():
         assert sim.state.velocities[1, 1] == pytest.approx(0.25 * (1.0 + restitution), abs=1e-14)
 
 
+@pytest.mark.interpreted
 def test_an_elastic_contact_has_no_friction():
     """Not even of perfectly rough discs. What friction would have taken is retained."""
     for tangential in (0.5, 1.0):
@@ -68,6 +69,7 @@ def test_an_elastic_contact_has_no_friction():
         sim.check_invariants()
 
 
+@pytest.mark.thorough
 def test_perfectly_rough_discs_do_not_stay_in_a_corner():
     """Between two faces, or a face and a wall, they would hit both in turn and for ever."""
     law = gp.Restitution(0.3, 1.0)
@@ -86,6 +88,7 @@ def test_perfectly_rough_discs_do_not_stay_in_a_corner():
         assert sim.state.kinetic_energy < 1e-3
 
 
+@pytest.mark.interpreted
 def test_the_default_follows_from_the_scales():
     """0.01 sqrt(d/g) where contacts dissipate under gravity; none otherwise."""
     assert pile().contact_duration == pytest.approx(0.01)
@@ -98,6 +101,7 @@ def test_the_default_follows_from_the_scales():
     assert pile(duration=0.3).contact_duration == 0.3
 
 
+@pytest.mark.thorough
 def test_without_it_a_collapse_is_reported():
     sim = gp.Simulation(pile(duration=0.0), gp.EventDriven(), seed=1)
     sim.record_events = True  # with the kernels of the searches' comparison
@@ -106,6 +110,7 @@ def test_without_it_a_collapse_is_reported():
     assert sim.tally.elastic_contacts == 0
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_a_stack_at_rest_stays_at_rest(dimension):
     """Ten particles, each exactly on the one below."""
@@ -124,6 +129,7 @@ def test_a_stack_at_rest_stays_at_rest(dimension):
     assert closest(scene, sim.state) > -1e-9
 
 
+@pytest.mark.interpreted
 def test_a_disc_that_falls_or_slides_does_not_rest():
     """Only what has contacts, or lies on a wall without a velocity, is at rest."""
     law = gp.Restitution(0.9)
@@ -135,6 +141,7 @@ def test_a_disc_that_falls_or_slides_does_not_rest():
     assert sim.state.positions[1, 1] == pytest.approx(300.0, abs=1e-9)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("seed", range(1, 4))
 def test_a_pile_comes_to_rest(seed):
     """It loses its energy, never gains any, overlaps nowhere, and a run without an end reports the rest."""
@@ -154,6 +161,7 @@ def test_a_pile_comes_to_rest(seed):
     assert np.array_equal(sim.state.positions, before.positions)
 
 
+@pytest.mark.interpreted
 def test_a_disc_rests_in_a_wedge_of_a_face_and_a_wall():
     """Gravity leads it away from the wall, but along the face into it."""
     wall = gp.Wall((4.530214891767726, 7.530962588563303), (0.30510500663674056, 10.32522599640507))
@@ -167,6 +175,7 @@ def test_a_disc_rests_in_a_wedge_of_a_face_and_a_wall():
         assert np.array_equal(sim.state.velocities, [[0.0, 0.0]])
 
 
+@pytest.mark.thorough
 def test_share_of_elastic_contacts_of_a_dilute_gas():
     """For t_c far below the time of free flight it is 2 t_c <w^2>/<w>: the rates w of the two particles, each
     weighted with itself, since fast particles collide more often."""
@@ -192,6 +201,7 @@ def weight_of_rates():
     return float((rates**2).mean() / rates.mean() ** 2)
 
 
+@pytest.mark.interpreted
 def test_the_time_stepped_engine_names_the_alternative():
     with pytest.raises(gp.SceneError, match='needs the "event" .*engine') as error:
         gp.Simulation(pile(), gp.TimeStepped(0.01))

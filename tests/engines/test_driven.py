@@ -9,8 +9,6 @@ import gaspart as gp
 from gaspart import theory
 from gaspart.cli import main
 
-pytestmark = pytest.mark.thorough
-
 PLATES = {name: gp.Thermal(1.0) for name in ("x_low", "x_high")}
 PERIODIC = gp.Container((8.0, 7.0), "periodic")
 FIXED = [gp.Particle((4.0, 3.5), (0.0, 0.0), 0.5, fixed=True)]
@@ -24,6 +22,7 @@ def channel(force=(0.0, 0.3), **rest):
     return gp.Scene(**{**parts, "gravity": force, **rest})
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(
     "engine",
     [
@@ -47,6 +46,7 @@ def test_a_particle_falls_from_image_to_image(engine, speed):
         sim.check_invariants()
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("engine", [gp.EventDriven(), gp.DSMC(0.05, 2)], ids=["event", "dsmc"])
 def test_plates_take_the_momentum_that_the_force_gives(engine):
     """Exactly, with what the gas keeps; and in the steady state all of it."""
@@ -60,6 +60,7 @@ def test_plates_take_the_momentum_that_the_force_gives(engine):
     assert not sim.tally.wall_shear[2:].any()
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("engine", [gp.EventDriven(), gp.DSMC(0.125, 2)], ids=["event", "dsmc"])
 def test_in_free_flight_particles_drift_as_their_time_since_a_plate(engine):
     """Contacts are 1 in 500 crossings, and however large the drift: at last 2.2 thermal speeds."""
@@ -91,6 +92,7 @@ def flow_in_blocks(sim, edges, blocks, samples, interval):
     return (np.array(values) for values in zip(*found, strict=True))
 
 
+@pytest.mark.thorough
 def test_the_flow_is_a_parabola_with_the_viscosity_of_enskog():
     """Discs at a packing fraction of 0.27, a mean free path of 0.7 between plates 30 apart: the curvature
     away from the plates is density times force over viscosity, known to 7 %."""
@@ -114,6 +116,7 @@ def test_the_flow_is_a_parabola_with_the_viscosity_of_enskog():
     assert (abs(rest) < 3.0 * flow.std(axis=0, ddof=1) / 4.0).all()
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(
     ("parts", "lacks"),
     [
@@ -132,6 +135,7 @@ def test_what_gains_energy_without_limit_is_refused(parts, lacks):
         channel(**parts)
 
 
+@pytest.mark.thorough
 def test_a_run_of_a_driven_gas_is_measured(tmp_path, capsys):
     channel().to_file(tmp_path / "scene.yaml")
     path = tmp_path / "run.nc"

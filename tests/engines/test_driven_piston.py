@@ -9,8 +9,6 @@ import pytest
 import gaspart as gp
 from gaspart import theory
 
-pytestmark = pytest.mark.thorough
-
 ACROSS = ("wall", "periodic", "periodic")
 
 
@@ -20,6 +18,7 @@ def compressed(lengths, species, speed, face="x_high", **rest):
     return gp.Scene(container, species, faces={face: gp.Piston(speed=speed)}, **rest)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("face", ["x_low", "x_high"])
 def test_each_contact_of_a_ball_adds_twice_the_speed(face):
     """Between the piston, at 12 - t / 2, and the other wall, at 0; the ball is a point there."""
@@ -45,6 +44,7 @@ def test_each_contact_of_a_ball_adds_twice_the_speed(face):
     assert sim.state.piston == pytest.approx([13.0 - 10.0, -0.5] if towards > 0.0 else [10.0, 0.5], rel=1e-12)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_a_slow_compression_follows_the_adiabat(dimension):
     """T V^(2/d) of a dilute gas stays the same but for its pressure, 1.004 times the ideal one, and for what
@@ -63,6 +63,7 @@ def test_a_slow_compression_follows_the_adiabat(dimension):
     assert math.log(sim.state.energy / before) == pytest.approx(work + excess, rel=0.02)
 
 
+@pytest.mark.thorough
 def test_a_fast_piston_drives_a_shock_by_the_jump_conditions():
     """Density and temperature behind it where the gas is, the pressure on the piston and the momentum of the
     gas, which the front's speed makes; away from the piston, where its start has left the gas hotter."""
@@ -91,6 +92,7 @@ def test_a_fast_piston_drives_a_shock_by_the_jump_conditions():
     assert (abs(mean - known) < 4.5 * error).all()  # Student's, as rare as 3 sigma
 
 
+@pytest.mark.interpreted
 def test_what_a_speed_does_not_go_with_is_refused():
     for stated in ({}, {"mass": 1.0}, {"pressure": 1.0}, {"speed": 1.0, "mass": 1.0}):
         with pytest.raises(gp.SceneError, match="must be mass and pressure, or speed alone"):
@@ -102,6 +104,7 @@ def test_what_a_speed_does_not_go_with_is_refused():
         replace(scene, gravity=(-1.0, 0.0))
 
 
+@pytest.mark.thorough
 def test_a_run_must_end_before_there_is_no_room(tmp_path):
     """60 discs in closest packing are 6.5 long of 40: the piston is there at 67."""
     scene = compressed((40.0, 8.0), [gp.Species(60, 0.5, temperature=1.0)], 0.5)
@@ -119,6 +122,7 @@ def test_a_run_must_end_before_there_is_no_room(tmp_path):
     later.advance(until=5.0)
 
 
+@pytest.mark.interpreted
 def test_weak_and_strong_shocks_and_what_is_refused():
     weak = theory.shock_before_piston(0.1, 3, 1e-4)  # sound
     assert weak.speed == pytest.approx(float(theory.speed_of_sound(0.1, 3)), rel=1e-3)

@@ -12,6 +12,7 @@ import gaspart as gp
 from gaspart import theory
 
 
+@pytest.mark.thorough
 def test_energy_over_a_million_collisions():
     sim = gp.Simulation(gas(3, 1000, 0.3), gp.EventDriven(), seed=5)
     sim.advance(max_events=1_000_000)
@@ -21,6 +22,7 @@ def test_energy_over_a_million_collisions():
     assert sim.tally.worst_contact < 1e-9
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("dimension", [2, 3])
 @pytest.mark.parametrize("eta", [0.1, 0.2, 0.3])
 def test_compressibility_factor(dimension, eta):
@@ -37,6 +39,7 @@ def test_compressibility_factor(dimension, eta):
     assert abs(found - expected) < 3 * error
 
 
+@pytest.mark.interpreted
 def test_a_head_on_collision_is_exact():
     particles = [gp.Particle((2.0, 5.0), (1.0, 0.0), 0.5), gp.Particle((6.0, 5.0), (0.0, 0.0), 0.5)]
     sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0)), particles=particles), gp.EventDriven())
@@ -48,6 +51,7 @@ def test_a_head_on_collision_is_exact():
     assert sim.state.velocities.tolist() == [[0.0, 0.0], [1.0, 0.0]]
 
 
+@pytest.mark.interpreted
 def test_a_wall_hit_gives_its_momentum_to_that_face():
     particles = [gp.Particle((2.0, 5.0), (-1.0, 0.0), 0.5, mass=3.0)]
     sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0)), particles=particles), gp.EventDriven())
@@ -59,6 +63,7 @@ def test_a_wall_hit_gives_its_momentum_to_that_face():
     assert sim.state.positions.tolist() == [[1.0, 5.0]]
 
 
+@pytest.mark.interpreted
 def test_centres_reach_the_walls_where_the_scene_says_so():
     particle = gp.Particle((2.0, 5.0), (-1.0, 0.0), 0.5)
     scene = gp.Scene(gp.Container((10.0, 10.0)), particles=[particle], centres_to_walls=True)
@@ -67,6 +72,7 @@ def test_centres_reach_the_walls_where_the_scene_says_so():
     assert sim.state.positions.tolist() == [[1.0, 5.0]]
 
 
+@pytest.mark.interpreted
 def test_newtons_cradle_passes_the_momentum_through_touching_discs():
     row = [gp.Particle((4.0 + n, 5.0), (0.0, 0.0), 0.5) for n in range(4)]
     scene = gp.Scene(gp.Container((20.0, 10.0)), particles=[gp.Particle((1.0, 5.0), (1.0, 0.0), 0.5), *row])
@@ -76,6 +82,7 @@ def test_newtons_cradle_passes_the_momentum_through_touching_discs():
     assert sim.tally.collisions == 4
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("ratio", "count"),
     [(1.0, 3), (1e2, 31), (1e4, 314), (1e6, 3141), (1e8, 31415), (1e10, 314159), (1e12, 3141592)],
@@ -93,6 +100,7 @@ def test_pi_by_billiards(ratio, count):
     assert count == math.ceil(math.pi / math.atan(math.sqrt(1 / ratio))) - 1
 
 
+@pytest.mark.interpreted
 def test_two_balls_into_a_cradle_and_two_leave_it():
     """A chain of simultaneous contacts: those that touch are a pair themselves."""
     row = [gp.Particle((x, 5.0), (1.0 if x < 4.0 else 0.0, 0.0), 0.5) for x in (1.0, 2.0, 5.0, 6.0, 7.0)]
@@ -104,6 +112,7 @@ def test_two_balls_into_a_cradle_and_two_leave_it():
         assert sim.tally.collisions == 6
 
 
+@pytest.mark.interpreted
 def test_a_corner_of_three_faces_is_met_at_once():
     particle = gp.Particle((5.0,) * 3, (1.0,) * 3, 0.5)
     sim = gp.Simulation(gp.Scene(gp.Container((10.0,) * 3), particles=[particle]), gp.EventDriven())
@@ -112,6 +121,7 @@ def test_a_corner_of_three_faces_is_met_at_once():
     assert sim.state.positions.tolist() == [[8.5] * 3]
 
 
+@pytest.mark.interpreted
 def test_a_corner_is_two_walls_at_once():
     particle = gp.Particle((5.0, 5.0), (1.0, 1.0), 0.5)
     sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0)), particles=[particle]), gp.EventDriven())
@@ -121,6 +131,7 @@ def test_a_corner_is_two_walls_at_once():
     assert sim.state.positions.tolist() == [[8.5, 8.5]]
 
 
+@pytest.mark.interpreted
 def test_simultaneous_contacts_come_in_the_order_of_their_indices():
     # two pairs touch at one instant, and a lone particle meets a wall: the wall, then (0, 3), then (1, 2)
     particles = [
@@ -136,6 +147,7 @@ def test_simultaneous_contacts_come_in_the_order_of_their_indices():
         assert sim.events["particles"].tolist() == [[4, -2], [0, 3], [1, 2]]
 
 
+@pytest.mark.thorough
 def test_a_checkpoint_that_lacks_its_boxes_goes_on():
     """As older ones do, when an unfinished run is resumed by a revision that chooses other boxes."""
     whole, other = (gp.Simulation(gas(2, 100, 0.2, "wall"), gp.EventDriven("boxes", n), 2) for n in (15, 7))
@@ -148,6 +160,7 @@ def test_a_checkpoint_that_lacks_its_boxes_goes_on():
     check_same(whole, other, WORK)
 
 
+@pytest.mark.thorough
 def test_clocks_that_start_again_lose_nothing():
     """Far beyond a lap of the clocks (some 1000 times of flight), contacts are as exact as at the start."""
     sim = gp.Simulation(gas(2, 10, 0.05), gp.EventDriven(), seed=3)
@@ -161,6 +174,7 @@ def test_clocks_that_start_again_lose_nothing():
     assert np.array_equal(again.state.unwrapped, referee.state.unwrapped)
 
 
+@pytest.mark.interpreted
 def test_a_mirrored_scene_runs_mirrored_until_chaos_takes_over():
     scene = gas(2, 30, 0.1, "wall")
     start = gp.Simulation(scene, gp.EventDriven(), seed=4).initial_state
@@ -177,6 +191,7 @@ def test_a_mirrored_scene_runs_mirrored_until_chaos_takes_over():
     assert np.allclose(one.state.positions * (-1, 1) + (side, 0), other.state.positions, atol=1e-6)
 
 
+@pytest.mark.thorough
 def test_turned_velocities_run_back_until_chaos_takes_over():
     scene = gas(3, 30, 0.1, "wall")
     sim = gp.Simulation(scene, gp.EventDriven(), seed=4)
@@ -188,6 +203,7 @@ def test_turned_velocities_run_back_until_chaos_takes_over():
     assert np.allclose(back.state.positions, sim.initial_state.positions, atol=1e-6)
 
 
+@pytest.mark.interpreted
 def test_particles_at_rest_stay_there():
     sim = gp.Simulation(gas(3, 20, 0.1, temperature=None), gp.EventDriven(), seed=1)
     sim.advance(duration=1e6)
@@ -195,6 +211,7 @@ def test_particles_at_rest_stay_there():
     assert sim.time == 1e6
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("count", [0, 1])
 def test_empty_scenes_and_scenes_of_one_particle(count):
     sim = gp.Simulation(
@@ -205,6 +222,7 @@ def test_empty_scenes_and_scenes_of_one_particle(count):
     assert sim.tally.collisions == 0
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(
     ("settings_", "key"),
     [({"search": "magic"}, "search"), ({"search": "pairs", "boxes_per_side": 3}, "boxes_per_side")],

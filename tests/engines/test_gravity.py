@@ -9,8 +9,6 @@ from scenes import gas
 
 import gaspart as gp
 
-pytestmark = pytest.mark.thorough
-
 
 def thrown(
     position, velocity, gravity=(0.0, -1.0), lengths=(10.0, 10.0), radius=0.5, boundary="wall", search="boxes"
@@ -22,6 +20,7 @@ def thrown(
     return gp.Simulation(scene, gp.EventDriven(search, boxes_per_side=boxes))
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("search", ["boxes", "direct", "pairs"])
 def test_a_projectile_is_where_it_should_be(search):
     sim = thrown((1.0, 1.0), (1.0, 3.0), search=search)  # up through several boxes, and down again
@@ -34,6 +33,7 @@ def test_a_projectile_is_where_it_should_be(search):
     assert sim.tally.crossings >= 6 or search != "boxes"
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("search", ["boxes", "pairs"])
 def test_bounce_times_of_a_ball_let_go(search):
     """Let go at height h: the floor at sqrt(2h/g), and after each 2 sqrt(2h/g) again."""
@@ -46,6 +46,7 @@ def test_bounce_times_of_a_ball_let_go(search):
     assert sim.events["velocities"][:, 0, 1] == pytest.approx(9.0, rel=1e-14)
 
 
+@pytest.mark.thorough
 def test_ten_thousand_bounces_lose_no_height():
     sim = thrown((5.0, 5.0), (0.01, 0.0), gravity=(0.0, -1.0))
     fall = math.sqrt(2 * 4.5)
@@ -56,6 +57,7 @@ def test_ten_thousand_bounces_lose_no_height():
     assert sim.tally.wall_impulse[2] == pytest.approx(10_000 * 2 * fall, rel=1e-11)
 
 
+@pytest.mark.interpreted
 def test_a_ball_hits_the_ceiling_on_its_way_up():
     sim = thrown((5.0, 5.0), (0.0, 5.0), gravity=(0.0, -1.0))
     sim.record_events = True
@@ -66,6 +68,7 @@ def test_a_ball_hits_the_ceiling_on_its_way_up():
     assert sim.events["time"] == pytest.approx([up, up + down], rel=1e-14)
 
 
+@pytest.mark.interpreted
 def test_two_that_fall_together_meet_as_if_they_did_not():
     particles = [gp.Particle((2.0, 60.0), (1.0, 0.0), 0.5), gp.Particle((6.0, 60.0), (0.0, 0.0), 0.5)]
     sim = gp.Simulation(
@@ -76,6 +79,7 @@ def test_two_that_fall_together_meet_as_if_they_did_not():
     assert sim.state.positions == pytest.approx(np.array([[5.0, 52.0], [7.0, 52.0]]), rel=1e-15)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("gravity", [(0.0, -1.0), (0.0, -1e9), (0.0, -1e-60), (0.0, 1e6), (-1.0, -1.0)])
 def test_a_particle_at_rest_on_a_floor_stays_there(gravity):
     place = tuple(0.5 if g <= 0 else 9.5 for g in gravity)
@@ -85,6 +89,7 @@ def test_a_particle_at_rest_on_a_floor_stays_there(gravity):
     assert sim.tally.wall_hits.sum() == 0
 
 
+@pytest.mark.interpreted
 def test_a_particle_slides_on_a_floor_and_is_pushed_off_it():
     particles = [gp.Particle((2.0, 0.5), (1.0, 0.0), 0.5), gp.Particle((6.0, 1.0), (0.0, 0.0), 1.0)]
     scene = gp.Scene(gp.Container((40.0, 10.0)), particles=particles, gravity=(0.0, -1.0))
@@ -100,6 +105,7 @@ def test_a_particle_slides_on_a_floor_and_is_pushed_off_it():
         sim.check_invariants()
 
 
+@pytest.mark.interpreted
 def test_a_falling_particle_meets_one_that_lies():
     particles = [gp.Particle((5.0, 0.5), (0.0, 0.0), 0.5), gp.Particle((5.0, 5.5), (0.0, 0.0), 0.5)]
     scene = gp.Scene(gp.Container((10.0, 10.0)), particles=particles, gravity=(0.0, -2.0))
@@ -110,6 +116,7 @@ def test_a_falling_particle_meets_one_that_lies():
     assert sim.events["particles"].tolist() == [[0, 1], [0, -3]]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("speed", [1e-3, 1e-6, 1e-12, 1e-59])
 def test_small_bounces_end_in_rest_not_in_a_loop(speed):
     sim = thrown((5.0, 0.5), (0.0, speed), gravity=(0.0, -1.0))
@@ -118,6 +125,7 @@ def test_small_bounces_end_in_rest_not_in_a_loop(speed):
     assert sim.state.positions[0, 1] == pytest.approx(0.5, abs=speed**2)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("pull", [1e-9, 1e-30, 1e-60])
 def test_gravity_that_vanishes(pull):
     scene = gas(2, 30, 0.1, "wall")
@@ -131,6 +139,7 @@ def test_gravity_that_vanishes(pull):
     assert np.allclose(plain.state.positions, pulled.state.positions, atol=1e5 * pull + 1e-7)
 
 
+@pytest.mark.thorough
 def test_gravity_of_zero_is_none():
     scene = gas(2, 30, 0.1, "wall")
     ends = []
@@ -141,6 +150,7 @@ def test_gravity_of_zero_is_none():
     assert np.array_equal(*ends)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("zero", [(0.0, 0.0), (0, 0), [0.0, -0.0]])
 def test_zero_gravity_is_none_from_the_start(zero):
     """So that no rule about gravity holds for it: energy losses in steps, sticky faces, a piston."""
@@ -155,6 +165,7 @@ def test_zero_gravity_is_none_from_the_start(zero):
         replace(scene, gravity=(0.0, 0.0, 0.0))
 
 
+@pytest.mark.thorough
 def test_turned_velocities_run_back_until_chaos_takes_over():
     scene, gravity = gas(3, 30, 0.1, "wall"), (0.0, 0.2, -1.0)
     sim = gp.Simulation(replace(scene, gravity=gravity), gp.EventDriven(), seed=4)
@@ -168,6 +179,7 @@ def test_turned_velocities_run_back_until_chaos_takes_over():
     assert np.allclose(back.state.positions, sim.initial_state.positions, atol=1e-5)
 
 
+@pytest.mark.interpreted
 def test_what_is_refused():
     container = gp.Container((10.0, 10.0), ("wall", "periodic"))
     with pytest.raises(gp.SceneError, match="gravity.*periodic"):

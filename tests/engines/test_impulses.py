@@ -11,8 +11,6 @@ from engines.planes import carried, rows_of
 import gaspart as gp
 from gaspart.state.tally import ImpulseTally
 
-pytestmark = pytest.mark.thorough
-
 BINS = 7
 MIXTURE = [gp.Species(12, 0.3, temperature=1.0), gp.Species(6, 0.2, mass=3.0, temperature=1.0)]
 BOX, FLAT = gp.Container((3.0, 3.0, 4.0)), gp.Container((7.0, 5.0), ("wall", "periodic"))
@@ -48,6 +46,7 @@ def flown(scene, axis, states):
     )
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", SCENES)
 def test_the_tally_is_the_momentum_that_particles_carry_through_planes(name):
     scene, axis = SCENES[name]
@@ -58,6 +57,7 @@ def test_the_tally_is_the_momentum_that_particles_carry_through_planes(name):
     assert found == pytest.approx(wanted, abs=(5e-3 if scene.gravity else 1e-10) * np.abs(wanted).max())
 
 
+@pytest.mark.interpreted
 def test_halves_of_a_gas_add_up_to_it_in_any_order_of_its_particles():
     start = started(FALLING, "z").initial_state
     halves = replace(FALLING, species=[replace(MIXTURE[0], count=8), replace(MIXTURE[0], count=4)])
@@ -89,12 +89,14 @@ REFUSED = {
 }
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("reason", REFUSED)
 def test_scenes_without_equilibrium_at_one_temperature_are_refused(reason):
     with pytest.raises(gp.SceneError, match=reason):
         gp.Simulation(REFUSED[reason], gp.EventDriven(), tallies=[ImpulseTally("z", BINS)])
 
 
+@pytest.mark.interpreted
 def test_other_engines_axes_and_numbers_of_bins_are_refused():
     asked = [ImpulseTally("z", BINS)]
     with pytest.raises(gp.SceneError, match='needs the "event" or "step" engine'):

@@ -10,8 +10,6 @@ import gaspart as gp
 from gaspart.cli.new import templates
 from gaspart.yaml_text import parse_yaml
 
-pytestmark = pytest.mark.thorough
-
 SCENE = gp.Scene.from_dict(parse_yaml(templates()["incline"].text))
 PULL = np.array(SCENE.gravity)
 
@@ -44,6 +42,7 @@ def momentum(sim):
     return sim.state.velocities[np.isfinite(sim.state.masses)].sum(axis=0)
 
 
+@pytest.mark.thorough
 def test_the_bottom_takes_the_weight_and_contacts_lose_its_work():
     """Along the slope to rounding in each part of the run, across it but for a grain that rests on others
     between two parts; and in the steady state with what the flow keeps, whose share falls with time."""
@@ -69,6 +68,7 @@ def test_the_bottom_takes_the_weight_and_contacts_lose_its_work():
     assert sim.tally.dissipated_energy == pytest.approx(work, rel=0.05)
 
 
+@pytest.mark.thorough
 def test_the_flow_is_sheared_and_faster_on_a_steeper_slope():
     mean = []
     for angle in (16.0, 20.0, 24.0):

@@ -8,8 +8,6 @@ from scenes import closest
 
 import gaspart as gp
 
-pytestmark = pytest.mark.thorough
-
 COUNT = 4  # of discs in a row
 
 
@@ -39,6 +37,7 @@ def before_and_after(mass):
     return sim, before - (sim.time - 2.9)
 
 
+@pytest.mark.thorough
 def test_a_row_between_walls_is_held():
     """It has many contacts in the time of a fall through a diameter, and then none. Its energy is counted."""
     sim = gp.Simulation(row_and_disc(1.0), gp.EventDriven())
@@ -50,6 +49,7 @@ def test_a_row_between_walls_is_held():
     sim.check_invariants()
 
 
+@pytest.mark.thorough
 def test_a_light_disc_bounces_off_a_jam_as_off_a_fixed_particle():
     sim, speed = before_and_after(1e-3)
     assert np.array_equal(in_jam(sim), [True] * COUNT + [False])
@@ -58,6 +58,7 @@ def test_a_light_disc_bounces_off_a_jam_as_off_a_fixed_particle():
     sim.check_invariants()
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("mass", "still"), [(0.05, [True, False, True, True]), (1.0, [False] * COUNT)])
 def test_a_heavier_disc_frees_what_it_hits_and_a_heavy_one_frees_all(mass, still):
     """The speed that it can give is 2 v m/(m + 1), over sqrt(2 g d sin(atan(1/4))/256), or 8 times this."""
@@ -71,6 +72,7 @@ def test_a_heavier_disc_frees_what_it_hits_and_a_heavy_one_frees_all(mass, still
     sim.check_invariants()
 
 
+@pytest.mark.interpreted
 def test_a_row_with_room_is_not_held_in_a_jam():
     """Its last disc would roll away if gravity were tilted."""
     sim = gp.Simulation(row_and_disc(1.0, COUNT + 0.1), gp.EventDriven())
@@ -78,6 +80,7 @@ def test_a_row_with_room_is_not_held_in_a_jam():
     assert not in_jam(sim).any()
 
 
+@pytest.mark.thorough
 def test_a_hopper_whose_discs_jam_comes_to_rest():
     """Five discs of it stand exactly between the floor and the end of a wall. Without jams they had 9e6
     contacts in ten units of time at 60, and ever more."""

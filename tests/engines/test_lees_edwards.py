@@ -8,8 +8,6 @@ import pytest
 import gaspart as gp
 from gaspart.scene.shear import flow
 
-pytestmark = pytest.mark.thorough
-
 SEARCHES = {
     "direct": gp.EventDriven(search="direct"),
     "boxes": gp.EventDriven(search="boxes"),
@@ -47,6 +45,7 @@ def two(positions, velocities, rate):
     return square([gp.Particle(x, v, 0.5) for x, v in zip(positions, velocities, strict=True)], rate)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("search", ["direct", "boxes", "pairs"])
 def test_a_crossing_displaces_a_particle_and_changes_its_velocity(search):
     scene = two([(3.0, 9.0), (8.0, 5.0)], [(1.0, 0.5), (0.0, 0.0)], 0.1)
@@ -64,6 +63,7 @@ def test_a_crossing_displaces_a_particle_and_changes_its_velocity(search):
     sim.check_invariants()
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("search", ["direct", "boxes", "pairs"])
 @pytest.mark.parametrize("swapped", [False, True])
 def test_a_contact_across_the_faces_is_as_worked_out_by_hand(search, swapped):
@@ -85,6 +85,7 @@ def test_a_contact_across_the_faces_is_as_worked_out_by_hand(search, swapped):
     assert sim.tally.wall_energy.sum() == pytest.approx(-0.64)
 
 
+@pytest.mark.interpreted
 def test_a_particle_meets_an_image_that_comes_only_after_whole_lengths():
     """Slow across the flow: the discs come near in y when images have slid by some lengths."""
     scene = two([(5.0, 8.0), (5.0, 0.5)], [(0.0, 0.05), (0.0, 0.0)], 0.5)
@@ -98,6 +99,7 @@ def test_a_particle_meets_an_image_that_comes_only_after_whole_lengths():
     assert 30.0 < times[0] < 40.0 and len(set(times)) == 1  # 1.5 / 0.05 until they are near in y
 
 
+@pytest.mark.thorough
 def test_neighbour_lists_and_oversized_particles_are_not_used():
     with pytest.raises(gp.SceneError, match="neighbour lists do not support sheared faces"):
         gp.Simulation(sheared(0.5), gp.EventDriven(search="lists"), 1)
@@ -123,6 +125,7 @@ LAWS = {
 }
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("rate", [0.6, -0.6])
 @pytest.mark.parametrize("species", [None, MIXED, SIZES], ids=["alike", "mixture", "sizes"])
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
@@ -142,6 +145,7 @@ def test_the_energy_gained_is_the_work_of_the_stress(rate, species, law):
     sim.check_invariants()
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("drift", [(0.7, 0.0), (0.0, -0.9), (0.5, 1.1)])
 def test_a_sheared_gas_that_moves_as_a_whole_has_the_stress_of_one_at_rest(drift):
     """A drift across the flow carries the gas to where the flow is faster."""
@@ -167,6 +171,7 @@ def test_a_sheared_gas_that_moves_as_a_whole_has_the_stress_of_one_at_rest(drift
         assert one == pytest.approx(two, abs=1e-8 * abs(one).max())
 
 
+@pytest.mark.thorough
 def test_momentum_about_the_flow_is_conserved():
     scene = sheared(1.0, species=MIXED)
     sim = gp.Simulation(scene, gp.EventDriven(), seed=3)
@@ -177,6 +182,7 @@ def test_momentum_about_the_flow_is_conserved():
     assert sim.tally.collisions > 500
 
 
+@pytest.mark.interpreted
 def test_without_shear_the_faces_are_periodic():
     """The same contacts, until rounding, which differs, has grown."""
     species = [gp.Species(60, 0.5, temperature=1.0, exact_temperature=True)]  # without a mean velocity
@@ -193,6 +199,7 @@ def test_without_shear_the_faces_are_periodic():
     assert one.tally.wall_energy.sum() == 0.0
 
 
+@pytest.mark.interpreted
 def test_the_flow_may_be_reversed_by_a_reflection():
     """Mirrored in x, the gas is sheared the other way round."""
     states = []
@@ -213,6 +220,7 @@ def test_the_flow_may_be_reversed_by_a_reflection():
     assert states[0].velocities * (-1.0, 1.0) == pytest.approx(states[1].velocities, abs=1e-6)
 
 
+@pytest.mark.thorough
 def test_images_are_displaced_by_what_the_time_says():
     scene = sheared(0.7)
     sim = gp.Simulation(scene, gp.EventDriven(), seed=1)
@@ -221,6 +229,7 @@ def test_images_are_displaced_by_what_the_time_says():
         assert sim.state.displaced == pytest.approx(0.7 * scene.container.lengths[1] * until, rel=1e-12)
 
 
+@pytest.mark.thorough
 def test_the_profile_of_the_flow_is_linear():
     scene = sheared(0.3, 400, 0.2, restitution=gp.Restitution(normal=0.8))
     sim = gp.Simulation(scene, gp.EventDriven(), seed=7)
@@ -233,6 +242,7 @@ def test_the_profile_of_the_flow_is_linear():
     assert (np.abs(u - expected) < 5.0 * errors + 0.02).all()
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("packing", "rate", "duration"), [(0.05, 0.04, 400.0), (0.2, 0.15, 60.0)])
 def test_the_response_is_the_viscosity_of_enskog(packing, rate, duration):
     """Spheres at a dilute and a moderate density; noise is 2 %. Each interval over sqrt(T), by which the gas
@@ -252,6 +262,7 @@ def test_the_response_is_the_viscosity_of_enskog(packing, rate, duration):
     assert np.mean(ratios) == pytest.approx(1.0, abs=0.05)
 
 
+@pytest.mark.thorough
 def test_a_granular_gas_has_the_temperature_and_stress_of_grads_method():
     """A dilute gas in which shear heats as fast as contacts cool (Grad's method; Santos, Garzo & Dufty, Phys.
     Rev. E 69, 061303 (2004)): with b = (1 + e)(3 - e)/4 - z, z = 5 (1 - e^2)/12, P_yy/p = b/(b + z), P_xx/p =

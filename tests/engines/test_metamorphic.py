@@ -13,8 +13,6 @@ from scenes import gas
 
 import gaspart as gp
 
-pytestmark = pytest.mark.thorough
-
 LENGTHS = np.array([11.0, 9.0])
 GRAVITY = np.array([0.05, -0.2])
 ENDS = np.array([[3.0, 2.0], [6.5, 5.0]])
@@ -60,6 +58,7 @@ def everything(state, spins, turn=lambda v: v, place=None, hand=1.0):
     return sim
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(
     ("turn", "place"),
     [
@@ -80,6 +79,7 @@ def test_a_mirrored_scene_runs_mirrored_until_chaos_takes_over(turn, place):
     assert other.tally.dissipated_energy == pytest.approx(one.tally.dissipated_energy, rel=1e-6)
 
 
+@pytest.mark.interpreted
 def test_other_labels_make_the_same_motion_until_chaos_takes_over():
     state, spins = start()
     order = np.random.default_rng(3).permutation(state.count)
@@ -109,6 +109,7 @@ def echo(seed, per_particle, count=100):
     return math.sqrt(((back.state.positions - there.initial_state.positions) ** 2).sum(axis=1).mean())
 
 
+@pytest.mark.thorough
 def test_a_loschmidt_echo_fades_at_the_rate_of_chaos():
     """Turned round, a gas comes back, but for rounding that grows as e^(lambda s), s collisions per particle;
     lambda = 2.76 +- 0.01 for discs at a packing fraction of 0.1 between walls (tangent space; cf. van Zon,

@@ -11,8 +11,6 @@ import pytest
 import gaspart as gp
 from gaspart.trajectory.last_state import last_state
 
-pytestmark = pytest.mark.thorough
-
 EVENT = gp.EventDriven()
 WALL_NUMBER = 4
 """Of the interior wall in two dimensions, after the faces."""
@@ -64,6 +62,7 @@ def meetings(wall, balls, length, count):
     return found
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(("mass", "axis"), [(3.0, 0), (0.25, 0), (200.0, 1)])
 def test_balls_and_a_wall_meet_as_computed_without_rounding(mass, axis):
     """A heavy and a light wall; balls of two masses, whose radius is within the ends of the container."""
@@ -97,6 +96,7 @@ def test_balls_and_a_wall_meet_as_computed_without_rounding(mass, axis):
         assert centres[n] == pytest.approx(place + (3 * radius if ball else radius), abs=1e-9)
 
 
+@pytest.mark.interpreted
 def test_time_runs_backwards():
     """Rounding grows by collisions, of which each particle has a few."""
     scene = divided(mass=5.0)
@@ -112,6 +112,7 @@ def test_time_runs_backwards():
     assert np.abs(apart - lengths * np.round(apart / lengths)).max() < 1e-8
 
 
+@pytest.mark.thorough
 def test_a_trajectory_has_its_motion_from_which_another_run_goes_on(tmp_path):
     scene = divided()
     gp.run(scene, EVENT, 3, 20.0, 0.5, tmp_path / "first.nc")
@@ -141,6 +142,7 @@ def excluded(width, height, diameter):
     return 4.0 * ((width - a) * 0.5 * (height - least) ** 2).sum() * (width / 4000)
 
 
+@pytest.mark.thorough
 def test_its_place_has_the_distribution_of_statistical_mechanics():
     """Two discs on one side and one on the other: the energy is all kinetic, so that each place counts by the
     room that it leaves to the centres, Z_2(x) (L - x - 2 r). Runs of 24 seeds give the error."""
@@ -171,6 +173,7 @@ def test_its_place_has_the_distribution_of_statistical_mechanics():
     assert abs(ideal) > 10 * errors[0]
 
 
+@pytest.mark.thorough
 def test_a_heavy_wall_begins_to_move_by_the_difference_of_the_pressures():
     """Of points, n k_B T (P = 4 and 1): the momentum M u after a time t is (P_1 - P_2) A t, whose scatter is
     known: m^2 (2 v)^2 of each hit, 4 m n A t <|v|^3>, with the distribution of the normal velocity."""
@@ -218,6 +221,7 @@ def test_a_wall_drifts_to_the_hot_gas_although_the_pressures_are_equal():
     assert abs(np.mean(squares) - 2.0 / mass) < 3.0 * spread
 
 
+@pytest.mark.interpreted
 def test_what_a_wall_that_moves_does_not_go_with_is_refused():
     scene = divided()
     with pytest.raises(gp.SceneError, match='walls.*needs the "event" engine'):
@@ -251,6 +255,7 @@ def test_what_a_wall_that_moves_does_not_go_with_is_refused():
         gp.Simulation(divided(right=(0, 1.0)), EVENT)
 
 
+@pytest.mark.interpreted
 def test_a_given_state_must_have_the_same_piston():
     scene = divided()
     state = gp.Simulation(scene, EVENT, seed=1).initial_state
@@ -266,6 +271,7 @@ def test_a_given_state_must_have_the_same_piston():
         gp.Simulation(scene, EVENT, initial=replace(state, piston=np.array([17.0, 0.0])))
 
 
+@pytest.mark.thorough
 def test_the_gases_may_be_between_thermal_faces():
     """Heat flows through the wall only as it moves: from the hot face to the cold one."""
     faces = {"x_low": gp.Thermal(4.0), "x_high": gp.Thermal(1.0)}

@@ -14,8 +14,6 @@ import gaspart as gp
 from gaspart import theory
 from gaspart.errors import SimulationError
 
-pytestmark = pytest.mark.thorough
-
 LENGTHS = (8.0, 4.0, 4.0)
 POINT = 1e-3
 """A radius with which hardly any particles collide."""
@@ -63,6 +61,7 @@ def agrees(values, expected, least):
     return abs(np.mean(values) - expected) < 3.0 * error
 
 
+@pytest.mark.thorough
 @in_both
 def test_effusion_into_a_vacuum(engine):
     """Behind the mirror at the far end stands its image: a free particle leaves once it has gone a way that
@@ -80,6 +79,7 @@ def test_effusion_into_a_vacuum(engine):
     simulation.check_invariants()
 
 
+@pytest.mark.thorough
 @in_both
 def test_a_stream_from_an_opening_is_hotter_than_the_gas(engine):
     """2 k_B T per particle, of variance 2 (k_B T)^2, at first, and the momentum (pi m k_B T / 2)^(1/2)."""
@@ -106,6 +106,7 @@ def ideal(engine):
     return density * math.prod(LENGTHS), *blocks(simulation, 40, 200.0, 20)
 
 
+@pytest.mark.thorough
 @in_both
 def test_an_ideal_gas_has_the_distribution_of_poisson(engine):
     expected, counts, _ = ideal(engine)
@@ -115,6 +116,7 @@ def test_an_ideal_gas_has_the_distribution_of_poisson(engine):
     assert abs(third.mean() - expected) < 3.0 * third.std(ddof=1) / math.sqrt(len(third))
 
 
+@pytest.mark.thorough
 @in_both
 def test_as_many_enter_as_kinetic_theory_has_it(engine):
     """n (k_B T / 2 pi m)^(1/2) per area, in and out; momentum and energy as from a gas in equilibrium."""
@@ -129,6 +131,7 @@ def test_as_many_enter_as_kinetic_theory_has_it(engine):
     assert abs(np.mean(heat)) < 3.0 * np.std(heat, ddof=1) / math.sqrt(len(heat))
 
 
+@pytest.mark.thorough
 @in_both
 def test_flow_between_two_reservoirs_without_collisions(engine):
     """What enters at one end leaves at the other: (z_1 T_1^(1/2) - z_2 T_2^(1/2)) / (2 pi m)^(1/2) of
@@ -153,6 +156,7 @@ CHANNELS = {
 }
 
 
+@pytest.mark.thorough
 @in_both
 @pytest.mark.parametrize("wall", CHANNELS)
 def test_no_net_flow_between_reservoirs_that_send_equally_many(wall, engine):
@@ -183,6 +187,7 @@ FEW = gp.Scene(
 """Room for the centres of two discs at most, and two reservoirs of z = 2."""
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("search", ["boxes", "pairs"])
 def test_two_discs_at_most(search):
     """P(N) is proportional to z^N Q_N: Q_1 the area for a centre, Q_2 half that for two centres a diameter
@@ -200,6 +205,7 @@ def test_two_discs_at_most(search):
     assert counts.max() == 2 and sum(tally.collisions for tally in tallies) > 100
 
 
+@pytest.mark.thorough
 def test_a_moderately_dense_gas_is_that_of_the_reservoir():
     """In the middle of a slit the density is that of the reservoir, by the equation of state; on the open
     face and on the hard one the momentum is its pressure, as the contact theorem has it."""
@@ -242,6 +248,7 @@ DISCS = gp.Scene(
 """Discs between two reservoirs, a vacuum and a thermal face."""
 
 
+@pytest.mark.interpreted
 def test_particles_and_energy_are_conserved_exactly():
     simulation = gp.Simulation(DISCS, seed=7)
     begun = simulation.state.energy
@@ -265,6 +272,7 @@ def same(one, other):
     return all(alike)
 
 
+@pytest.mark.thorough
 @given(opened(), st.integers(0, 1000))
 @settings(max_examples=15)
 def test_random_open_scenes_keep_their_books_and_bits(scene, seed):
@@ -286,6 +294,7 @@ def test_random_open_scenes_keep_their_books_and_bits(scene, seed):
     whole.check_invariants()
 
 
+@pytest.mark.interpreted
 def test_numbers_of_particles_are_those_of_the_lowest_free_places():
     simulation, before = gp.Simulation(DISCS, seed=10), 12
     assert DISCS.capacity > 12 and simulation.state.count == 12
@@ -298,6 +307,7 @@ def test_numbers_of_particles_are_those_of_the_lowest_free_places():
     assert simulation.state.count < before or simulation.tally.entries.any()
 
 
+@pytest.mark.interpreted
 def test_an_empty_container_stays_empty():
     simulation = gp.Simulation(slit({"x_low": gp.Open(), "x_high": gp.Open()}, 5), seed=1)
     simulation.advance(duration=1e6)
@@ -307,6 +317,7 @@ def test_an_empty_container_stays_empty():
     assert simulation.tally.wall_hits[:2].sum() == 5 and simulation.time == 2e6
 
 
+@pytest.mark.interpreted
 def test_a_full_container_ends_the_run():
     """Which never happens: the room is taken away."""
     simulation = gp.Simulation(FEW, seed=1)
@@ -316,6 +327,7 @@ def test_a_full_container_ends_the_run():
         simulation.advance(duration=1000.0)
 
 
+@pytest.mark.thorough
 def test_attempts_to_enter_are_events():
     """Of a reservoir that sends 7000 times as many particles as there is room for, nearly all are refused."""
     faces = {"x_low": gp.Open(2000.0, 1.0), "x_high": gp.Open()}
@@ -338,6 +350,7 @@ def test_attempts_to_enter_are_events():
     simulation.check_invariants()
 
 
+@pytest.mark.thorough
 def test_numbers_beyond_the_first_block_are_found():
     """Of a thousand numbers those of the first 256 are taken, then the lowest that is vacant."""
     from gaspart.kernels.model import Open
@@ -352,12 +365,14 @@ def test_numbers_beyond_the_first_block_are_found():
         assert lowest_vacant.py_func(opened) == number
 
 
+@pytest.mark.interpreted
 def test_files():
     scene = gp.Scene.from_dict(DISCS.to_dict())
     assert scene == DISCS and scene.faces["y_high"] == gp.Open()
     assert scene.to_dict()["faces"]["x_low"] == {"kind": "open", "activity": 0.3, "temperature": 2.0}
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(
     ("changes", "rule"),
     [
@@ -384,6 +399,7 @@ def test_scenes_that_are_refused(changes, rule):
         replace(DISCS, **changes)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(
     "settings", [{"activity": 0.1}, {"temperature": 1.0}, {"activity": -1.0, "temperature": 1.0}]
 )
@@ -392,6 +408,7 @@ def test_reservoirs_that_are_refused(settings):
         gp.Open(**settings)
 
 
+@pytest.mark.interpreted
 def test_what_is_not_defined_of_changing_particles():
     simulation = gp.Simulation(DISCS, seed=1)
     simulation.advance(duration=1.0)

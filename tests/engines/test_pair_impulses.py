@@ -10,8 +10,6 @@ import pytest
 import gaspart as gp
 from gaspart.state.tally import PairImpulseTally
 
-pytestmark = pytest.mark.thorough
-
 ASKED = PairImpulseTally(1.6, 6, 0.4)
 FLAT = gp.Scene(
     gp.Container((5.0, 4.0), "periodic"),
@@ -55,6 +53,7 @@ def summed(scene, states):
     return found * scene.container.volume / (0.5 * n * (n - 1) * (2.0 * math.pi if d == 2 else 4.0 * math.pi))
 
 
+@pytest.mark.thorough
 def test_the_tally_is_what_contacts_give_to_pairs():
     simulation = started(FLAT, "pairs")
     simulation.advance(max_events=100)
@@ -73,12 +72,14 @@ REFUSED = {
 }
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("reason", REFUSED)
 def test_scenes_of_which_impulses_give_no_g_are_refused(reason):
     with pytest.raises(gp.SceneError, match=reason):
         started(REFUSED[reason])
 
 
+@pytest.mark.interpreted
 def test_texts_that_are_no_distance_shells_and_share_are_refused():
     assert PairImpulseTally.from_text("3:300") == PairImpulseTally(3.0, 300, 1.0)
     assert PairImpulseTally.from_text(ASKED.to_text()) == ASKED

@@ -8,8 +8,6 @@ import pytest
 
 import gaspart as gp
 
-pytestmark = pytest.mark.thorough
-
 SIDE, RADIUS = 12.0, 0.5
 _PARTED = 1e-9  # time after a contact from which the next one is looked for
 
@@ -56,6 +54,7 @@ def bounces(piston, height, velocity, count):
     return found
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("face", ["y_low", "y_high"])
 @pytest.mark.parametrize(
     ("mass", "pressure", "height", "velocity"),
@@ -79,6 +78,7 @@ def test_a_ball_and_a_piston_meet_as_computed_otherwise(face, mass, pressure, he
     sim.check_invariants()
 
 
+@pytest.mark.thorough
 def test_a_piston_that_lies_on_a_particle_at_rest_takes_it_along():
     sim = gp.Simulation(ball(gp.Piston(10.0, 0.5), SIDE - RADIUS, 0.0), gp.EventDriven())
     sim.advance(until=3.0, max_events=1_000_000)
@@ -94,6 +94,7 @@ def gas(piston, dimension=2, count=60):
     return gp.Scene(container, [gp.Species(count, 0.5, temperature=1.0)], faces={"x_high": piston})
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_the_momentum_of_the_piston_is_that_of_its_load_less_that_of_its_contacts(dimension):
     scene = gas(gp.Piston(40.0, 1.0), dimension)
@@ -109,6 +110,7 @@ def test_the_momentum_of_the_piston_is_that_of_its_load_less_that_of_its_contact
     assert sim.state.piston[0] < 30.0
 
 
+@pytest.mark.thorough
 def test_an_ideal_gas_follows_its_adiabat():
     """Discs too small to meet, which keep their velocities across the piston: along it the gas is of one
     dimension, and a heavy piston keeps the action of each, speed times length."""
@@ -126,6 +128,7 @@ def test_an_ideal_gas_follows_its_adiabat():
     assert state.piston[0] < 7.0 and sim.tally.collisions == 0
 
 
+@pytest.mark.thorough
 def test_files_keep_its_motion(tmp_path):
     scene = gas(gp.Piston(20.0, 0.6))
     whole = gp.Simulation(scene, gp.EventDriven(), seed=3)
@@ -138,6 +141,7 @@ def test_files_keep_its_motion(tmp_path):
         assert run["piston_position"].values[0] == 30.0
 
 
+@pytest.mark.interpreted
 def test_what_a_piston_does_not_go_with_is_refused():
     scene = gas(gp.Piston(20.0, 0.6))
     with pytest.raises(gp.SceneError, match='faces.*needs the "event" engine'):
@@ -162,6 +166,7 @@ def test_what_a_piston_does_not_go_with_is_refused():
         gas(gp.Piston(1e-59, 1e59))
 
 
+@pytest.mark.thorough
 def test_a_thermal_wall_may_stand_opposite():
     scene = replace(
         gas(gp.Piston(20.0, 0.6)), faces={"x_low": gp.Thermal(2.0), "x_high": gp.Piston(20.0, 0.6)}

@@ -8,8 +8,6 @@ import pytest
 
 import gaspart as gp
 
-pytestmark = pytest.mark.thorough
-
 LENGTH, WIDTH, COLD, HOT, COUNT = 16.0, 4.0, 1.0, 4.0, 400
 ENGINES = {"event": gp.EventDriven(), "dsmc": gp.DSMC(0.5, 1, "boltzmann")}
 BLOCKS = 32
@@ -51,6 +49,7 @@ def from_walls(x, y, angles=720):
     return ((COLD + (HOT - COLD) * place / LENGTH) ** -0.5).mean(axis=-1)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("engine", ENGINES)
 def test_all_walls_of_a_closed_vessel_are_hit_equally_often(engine):
     """What leaves a wall by the cosine law and what comes to it balance with one rate of hits per length
@@ -63,6 +62,7 @@ def test_all_walls_of_a_closed_vessel_are_hit_equally_often(engine):
         assert rates[:, face].mean() == pytest.approx(mean, abs=3.0 * math.hypot(error[face], error[2] / 3))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("engine", ENGINES)
 def test_thermal_transpiration(engine):
     """In the dark of every direction there is a wall, and the density of those that come from it is J
@@ -80,6 +80,7 @@ def test_thermal_transpiration(engine):
         assert np.abs(numbers.mean(axis=0) - COUNT * wrong / wrong.sum()).max() > 10.0 * error.max()
 
 
+@pytest.mark.thorough
 def test_particles_leave_with_the_temperature_of_the_place():
     """m v_n^2 / T has the mean 2 and m v_t^2 / T the mean 1, at every place of the face."""
     simulation = gp.Simulation(VESSEL, ENGINES["event"], seed=2)
@@ -95,6 +96,7 @@ def test_particles_leave_with_the_temperature_of_the_place():
         assert squares[part, 0].mean() == pytest.approx(1.0, abs=3.0 * math.sqrt(2.0 / len(part)))
 
 
+@pytest.mark.interpreted
 def test_files_and_faces_by_either_name():
     scene = gp.Scene.from_dict(VESSEL.to_dict())
     assert scene == VESSEL and scene.faces["y_low"].temperatures == (COLD, HOT)
@@ -102,12 +104,14 @@ def test_files_and_faces_by_either_name():
     assert list(gp.Thermal({"x_high": HOT, "x_low": COLD}).temperature) == ["x_low", "x_high"]
 
 
+@pytest.mark.thorough
 def test_no_theory_of_plates_is_stated_of_it():
     simulation = gp.Simulation(VESSEL, ENGINES["dsmc"], seed=1)
     simulation.advance(duration=40.0)
     assert "theory" not in gp.analysis.heat_flux(simulation)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(
     ("face", "temperature", "rule"),
     [

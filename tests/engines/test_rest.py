@@ -5,8 +5,6 @@ import pytest
 
 import gaspart as gp
 
-pytestmark = pytest.mark.thorough
-
 GAP = 1e-6  # below each disc of a column
 
 
@@ -30,6 +28,7 @@ def column_and_slider():
     return falling([*column(1.0, 3), slider(4.0, -0.5)])
 
 
+@pytest.mark.thorough
 def test_a_column_has_no_events_until_it_is_hit():
     """It rests after a fall through a diameter, the first time that is looked at."""
     sim = gp.Simulation(column_and_slider(), gp.EventDriven())
@@ -43,6 +42,7 @@ def test_a_column_has_no_events_until_it_is_hit():
     sim.check_invariants()
 
 
+@pytest.mark.thorough
 def test_the_disc_that_hits_it_loses_energy():
     """The contact is the first for a long time: its restitution is 0.5. Then the column falls."""
     sim = gp.Simulation(column_and_slider(), gp.EventDriven())
@@ -59,6 +59,7 @@ def test_the_disc_that_hits_it_loses_energy():
     assert sim.state.positions[:3, 1].max() < 2.0
 
 
+@pytest.mark.thorough
 def test_columns_that_touch_rest_and_wake_together():
     """Two touch through a periodic face, a third stands alone, and is hit."""
     particles = [*column(0.5, 2), *column(9.5, 2), *column(4.0, 2), slider(6.0, -0.5)]

@@ -11,9 +11,8 @@ from scenes import gas
 import gaspart as gp
 from gaspart import theory
 
-pytestmark = pytest.mark.thorough
 
-
+@pytest.mark.thorough
 def test_smooth_and_elastic_is_the_plain_engine():
     scene = gas(3, 50, 0.1)
     ends = []
@@ -46,6 +45,7 @@ def collided(law, one, other, side=40.0):
     return sim
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("dimension", [2, 3])
 @pytest.mark.parametrize("law", [(1.0, 1.0), (0.8, 0.3), (0.0, 0.0), (0.5, -0.7), (1.0, -1.0)])
 def test_a_rough_contact_follows_the_closed_formulae(dimension, law):
@@ -96,6 +96,7 @@ def test_a_rough_contact_follows_the_closed_formulae(dimension, law):
     assert after.energy + sim.tally.dissipated_energy == pytest.approx(before.energy, rel=1e-14)
 
 
+@pytest.mark.interpreted
 def test_equal_rough_discs_exchange_their_surface_velocities():
     """Equal masses, all of it in the rim (I = m R^2), perfectly rough: a grazing pair swaps v and R w."""
     one = gp.Particle((5.0, 5.0), (1.0, 0.0), 0.5, 1.0, 0.0, 0.25)
@@ -106,6 +107,7 @@ def test_equal_rough_discs_exchange_their_surface_velocities():
     assert sim.state.spins == pytest.approx([-1.0, 1.0], abs=1e-13)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("law", [(1.0, 1.0), (0.6, 0.2), (0.0, -1.0)])
 def test_a_wall_hit_follows_its_formula(law):
     """Spencer 2022, Eq. 40, at the upper y wall."""
@@ -127,6 +129,7 @@ def test_a_wall_hit_follows_its_formula(law):
     sim.check_invariants()
 
 
+@pytest.mark.interpreted
 def test_a_superball_between_floor_and_ceiling_comes_back():
     """Garwin (Am. J. Phys. 37, 88 (1969)): a perfectly rough ball thrown under a table returns; three hits
     of floor, table and floor nearly turn its way round, where a smooth ball would go on."""
@@ -143,6 +146,7 @@ def test_a_superball_between_floor_and_ceiling_comes_back():
     assert way[1.0] < -0.3
 
 
+@pytest.mark.interpreted
 def test_a_fixed_particle_is_a_wall():
     for dimension in (2, 3):
         post = gp.Particle((5.0,) * dimension, (0.0,) * dimension, 1.0, fixed=True)
@@ -160,6 +164,7 @@ def test_a_fixed_particle_is_a_wall():
         assert sim.state.kinetic_energy == 3.5
 
 
+@pytest.mark.interpreted
 def test_a_ball_falls_on_a_fixed_one_and_bounces_back():
     """Dropped just off the top: |r(t)| = sigma decides when, and the rebound is about that normal."""
     post = gp.Particle((5.0, 2.0), (0.0, 0.0), 1.0, fixed=True)
@@ -178,6 +183,7 @@ def test_a_ball_falls_on_a_fixed_one_and_bounces_back():
         )
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("normal", [0.0, 0.5, 0.9])
 def test_a_ball_on_a_floor_comes_to_rest(normal):
     """Bounce times are a geometric series, with an end: t = sqrt(2h/g) (1 + e)/(1 - e). Then it lies."""
@@ -195,6 +201,7 @@ def test_a_ball_on_a_floor_comes_to_rest(normal):
     sim.check_invariants()
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("middle", [0.0, 0.5])
 @pytest.mark.parametrize("normal", [0.0, 0.03, 0.05, 0.06])
 def test_collapse_is_reported_with_the_state_kept(middle, normal):
@@ -213,6 +220,7 @@ def test_collapse_is_reported_with_the_state_kept(middle, normal):
     sim.advance(duration=10.0)  # above the threshold
 
 
+@pytest.mark.interpreted
 def test_a_collapse_comes_at_the_same_event_however_often_the_run_is_resumed():
     """The watch's counts are in the checkpoint; without them a run resumed in time would never collapse."""
     particles = [gp.Particle((x, 1.0), (v, 0.0), 0.5) for x, v in ((2.5, 1.0), (5.0, 0.0), (7.0, -1.0))]
@@ -227,6 +235,7 @@ def test_a_collapse_comes_at_the_same_event_however_often_the_run_is_resumed():
     assert (resumed.time, resumed.tally.collisions) == (whole.time, whole.tally.collisions)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_events_tell_spins(dimension):
     scene = replace(gas(dimension, 20, 0.1, "wall"), restitution=gp.Restitution(0.9, 0.5))
@@ -245,6 +254,7 @@ def test_events_tell_spins(dimension):
     assert "spins" not in smooth.events
 
 
+@pytest.mark.thorough
 def test_a_stack_at_rest_is_reported_not_looped_over():
     particles = [gp.Particle((5.0, 0.5), (0.0, 0.0), 0.5), gp.Particle((5.0, 1.5), (0.0, 0.0), 0.5)]
     scene = gp.Scene(gp.Container((10.0, 10.0)), particles=particles, gravity=(0.0, -1.0))
@@ -253,6 +263,7 @@ def test_a_stack_at_rest_is_reported_not_looped_over():
         sim.advance(duration=1.0)
 
 
+@pytest.mark.interpreted
 def test_particles_that_stick_fly_on_together():
     """e = 0, head on: they stay together and never meet again for rounding's sake."""
     sim = collided(
@@ -265,6 +276,7 @@ def test_particles_that_stick_fly_on_together():
     assert sim.tally.collisions == 1
 
 
+@pytest.mark.thorough
 def test_haffs_law():
     """While the gas is uniform, T(s) = T0 exp(-(1 - e^2) s / d) by collisions per particle, and by the time
     T(t) = T0 / (1 + t/tau)^2 with tau = 2 d / ((1 - e^2) times the collision rate at the start); Haff, J.
@@ -282,6 +294,7 @@ def test_haffs_law():
         assert (ratio**-0.5 - 1.0) * tau / sim.time == pytest.approx(1.0, abs=0.05)
 
 
+@pytest.mark.thorough
 def test_rough_elastic_discs_share_the_energy_equally():
     scene = replace(gas(2, 300, 0.1), restitution=gp.Restitution(1.0, 1.0))
     sim = gp.Simulation(scene, gp.EventDriven(), seed=2)
@@ -294,6 +307,7 @@ def test_rough_elastic_discs_share_the_energy_equally():
     assert sim.state.energy == pytest.approx(sim.initial_state.energy, rel=1e-11)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(
     ("change", "key"),
     [
@@ -324,6 +338,7 @@ def test_what_is_refused(change, key):
     assert caught.value.key == key
 
 
+@pytest.mark.interpreted
 def test_files_and_the_other_engine():
     scene = gp.Scene(
         gp.Container((10.0, 10.0)),
@@ -340,6 +355,7 @@ def test_files_and_the_other_engine():
     assert sim.state.spins[0] == 3.0
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("radius", [1e-3, 1e-6, 1e-8])
 def test_elastic_particles_do_not_collapse(radius):
     """A small disc flies exactly between two fixed discs that touch. The circles on which its centre may be

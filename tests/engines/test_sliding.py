@@ -6,8 +6,6 @@ import pytest
 
 import gaspart as gp
 
-pytestmark = pytest.mark.thorough
-
 ENGINES = {
     "event": gp.EventDriven(),
     "dsmc": gp.DSMC(time_step=0.25, cells_per_side=1),
@@ -29,6 +27,7 @@ def momentum(state):
     return state.masses @ state.velocities
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("engine", ENGINES)
 def test_free_molecules_carry_momentum_and_heat_between_sliding_walls(engine):
     """Each particle has the velocity of the wall that it comes from: n sqrt(T / 2 pi) U. The energy that the
@@ -50,6 +49,7 @@ def test_free_molecules_carry_momentum_and_heat_between_sliding_walls(engine):
     sim.check_invariants()
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("engine", ENGINES)
 def test_momentum_is_conserved_with_that_of_the_walls(engine):
     sim = gp.Simulation(between(1.0, radius=0.2), ENGINES[engine], seed=4)
@@ -61,6 +61,7 @@ def test_momentum_is_conserved_with_that_of_the_walls(engine):
     assert sim.tally.wall_energy.sum() == pytest.approx(energy - sim.state.kinetic_energy, abs=1e-6)
 
 
+@pytest.mark.thorough
 def test_a_trajectory_has_the_shear(tmp_path):
     path = gp.run(between(1.0, radius=0.2), ENGINES["event"], 1, 2.0, 0.5, tmp_path / "run.nc")
     with gp.open_trajectory(path) as run:
@@ -72,6 +73,7 @@ def test_a_trajectory_has_the_shear(tmp_path):
     assert gp.analysis.profile(sim, "density", bins=4).sizes["position"] == 4
 
 
+@pytest.mark.interpreted
 def test_a_velocity_of_zero_changes_nothing():
     still, free = (between(0.0, radius=0.2) for _ in range(2))
     free = gp.Scene(free.container, free.species, faces=dict.fromkeys(("x_low", "x_high"), gp.Thermal(1.0)))
@@ -84,6 +86,7 @@ def test_a_velocity_of_zero_changes_nothing():
     assert (states[0].velocities == states[1].velocities).all()
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(
     ("velocity", "rule"),
     [((1.0, 0.0, 0.0), "no component across"), ((0.0, 1.0), "3 finite numbers"), ("fast", "finite numbers")],
@@ -94,6 +97,7 @@ def test_a_velocity_lies_along_the_face(velocity, rule):
         gp.Scene(scene.container, scene.species, faces={"x_low": gp.Thermal(1.0, velocity=velocity)})
 
 
+@pytest.mark.interpreted
 def test_what_cannot_slide_is_refused():
     with pytest.raises(gp.SceneError, match='velocity = .*components "all"'):
         gp.Thermal(1.0, "normal", (0.0, 1.0, 0.0))

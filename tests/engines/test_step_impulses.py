@@ -12,8 +12,6 @@ from engines.test_impulses import BOX, FALLING, MIXTURE, REFUSED, SCENES
 import gaspart as gp
 from gaspart.state.tally import ImpulseTally
 
-pytestmark = pytest.mark.thorough
-
 BINS = 7
 STEP = 2.0**-8
 HALLS = gp.Container((5.0, 4.0, 3.0), ("periodic", "wall", "periodic"))
@@ -70,6 +68,7 @@ def flown(scene, axis, before, after):
     return sum(carried(scene, axis, BINS, (rows, masses, x, v), dt, parts=4) for x, v, dt in flights)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("rewind", [True, False])
 @pytest.mark.parametrize("name", STEPPED)
 def test_the_tally_is_the_momentum_that_particles_carry_through_planes(name, rewind):
@@ -102,6 +101,7 @@ LONG = {
 }
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("how", LONG)
 @pytest.mark.parametrize("pull", [0.0, -1.5])
 def test_nothing_is_missing_however_long_the_step(pull, how):
@@ -121,6 +121,7 @@ def test_nothing_is_missing_however_long_the_step(pull, how):
         assert found.sum() * 0.1 == pytest.approx(spread * tally.time, rel=0.1)
 
 
+@pytest.mark.interpreted
 def test_halves_of_a_gas_add_up_to_it():
     start = started(FALLING, step=0.01).initial_state
     halves = replace(FALLING, species=[replace(MIXTURE[0], count=8), replace(MIXTURE[0], count=4)])
@@ -134,6 +135,7 @@ def test_halves_of_a_gas_add_up_to_it():
     assert found[1].sum(axis=0) == pytest.approx(found[0][0], rel=1e-12)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("reason", ["loses energy", "fixed particles", "heat flows", "sticky", "one mass"])
 def test_scenes_without_equilibrium_at_one_temperature_are_refused(reason):
     scene = replace(REFUSED[reason], gravity=None)

@@ -14,8 +14,6 @@ from gaspart.state.tally import StressTally
 from gaspart.trajectory.recipe import Recipe, read_recipe
 from gaspart.trajectory.run import simulation_of
 
-pytestmark = pytest.mark.thorough
-
 CUBE, FLAT = gp.Container((4.0,) * 3, "periodic"), gp.Container((9.0, 7.0), "periodic")
 PAIR = [gp.Species(20, 0.3, temperature=1.0), gp.Species(10, 0.2, mass=3.0, temperature=1.0)]
 SCENES = {
@@ -71,6 +69,7 @@ def integrals(simulation):
     return stress, heat
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("name", SCENES)
 def test_event_driven_sums_are_those_of_their_definition(name):
     sim = gp.Simulation(SCENES[name], gp.EventDriven(), seed=2, stress=True)
@@ -105,12 +104,14 @@ def check_same_fluxes(still, other, drift):
         assert abs(one).max() > 0.1
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", SCENES)
 def test_a_gas_that_moves_as_a_whole_has_the_fluxes_of_one_at_rest(name):
     drift = np.array([5.0, -3.0, 0.7])[: SCENES[name].dimension]
     check_same_fluxes(*moving(SCENES[name], gp.EventDriven(), drift, 3.0), drift)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("model", ["boltzmann", "enskog"])
 @pytest.mark.parametrize("name", ["spheres", "mixture"])
 def test_the_same_holds_for_dsmc(name, model):
@@ -121,6 +122,7 @@ def test_the_same_holds_for_dsmc(name, model):
     check_same_fluxes(*moving(SCENES[name], engine, drift, 3.0), drift)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("engine", ["event", "enskog"])
 def test_the_trace_is_that_of_energy_and_virial(engine):
     """Of smooth elastic particles: twice the energy about the centre of mass times the time, and the
@@ -135,6 +137,7 @@ def test_the_trace_is_that_of_energy_and_virial(engine):
     assert tally.collisions > 10
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("search", ["boxes", "lists", "direct", "pairs"])
 def test_every_search_gives_the_same_sums(search):
     first, other = (
@@ -146,6 +149,7 @@ def test_every_search_gives_the_same_sums(search):
     assert np.array_equal(first.tally.stress_sum, other.tally.stress_sum)
 
 
+@pytest.mark.thorough
 def test_many_epochs_of_the_clocks_lose_nothing():
     """Until the clocks have started again a hundred times: the trace is exact to rounding."""
     sim = gp.Simulation(SCENES["discs"], gp.EventDriven(), seed=1, stress=True)
@@ -155,6 +159,7 @@ def test_many_epochs_of_the_clocks_lose_nothing():
     assert np.trace(tally.stress_sum) == pytest.approx(expected, rel=1e-12)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(
     ("scene", "engine", "rule"),
     [
@@ -190,6 +195,7 @@ def run(path, scene, engine, interval, lags, frames, per_frame, follow=1):
     )
 
 
+@pytest.mark.thorough
 def test_viscosity_and_conductivity_of_a_dilute_gas_are_those_of_chapman_and_enskog(tmp_path):
     """By DSMC, with the error of its cells: 3 sigma, of 2.5 %."""
     count, width, step = 216, 0.5, 0.125
@@ -211,6 +217,7 @@ def test_viscosity_and_conductivity_of_a_dilute_gas_are_those_of_chapman_and_ens
     assert abs(float(conductivity.estimate) - expected) < 3.0 * float(conductivity.error)
 
 
+@pytest.mark.interpreted
 def test_a_file_has_the_optional_tallies_that_its_recipe_lists(tmp_path):
     """And no header of a run that lists none tells of them."""
     recipe = Recipe(gas(3, 20, 0.2), gp.EventDriven(), 1, 1.0, 0.5)
@@ -226,6 +233,7 @@ def test_a_file_has_the_optional_tallies_that_its_recipe_lists(tmp_path):
         gp.Simulation(asked.scene, asked.engine, 1).sums_of("stress")
 
 
+@pytest.mark.thorough
 def test_green_and_kubo_agree_with_helfand(tmp_path):
     """The derivative of the squared change of G is the integral of the correlation, to the pairs at the ends;
     the pressure tensor is isotropic, with the trace of the virial."""
@@ -244,6 +252,7 @@ def test_green_and_kubo_agree_with_helfand(tmp_path):
     assert mean == pytest.approx(z * ideal, rel=0.02)
 
 
+@pytest.mark.thorough
 def test_coefficients_are_those_of_a_gas_at_rest(tmp_path):
     """A drift of the initial state changes viscosities, conductivity and pressure tensor by no more than what
     collisions have made of rounding: until it has grown, after some hundred of them."""
@@ -262,6 +271,7 @@ def test_coefficients_are_those_of_a_gas_at_rest(tmp_path):
         assert two.theory.values == pytest.approx(one.theory.values, rel=1e-9)
 
 
+@pytest.mark.thorough
 def test_older_files_are_measured_rightly_or_refused(tmp_path):
     """Without a mean velocity their fluxes are the same; with one, they are refused."""
     for exact in (True, False):
@@ -278,6 +288,7 @@ def test_older_files_are_measured_rightly_or_refused(tmp_path):
                 getattr(gp.analysis, name)(older, start=0.0)
 
 
+@pytest.mark.thorough
 def test_the_conductivity_of_a_gas_with_drawn_velocities_is_that_of_enskog(tmp_path):
     """Whose small mean velocity carried ten times as much heat: 3 sigma, of 10 %."""
     path = run(tmp_path / "run.nc", gas(3, 100, 0.15), gp.EventDriven(), 0.05, 40, 25, 600)

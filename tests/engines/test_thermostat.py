@@ -11,14 +11,13 @@ from scenes import gas
 
 import gaspart as gp
 
-pytestmark = pytest.mark.thorough
-
 
 def driven(dimension=2, count=20, law=None, power=0.3, interval=0.37, boundary="periodic", temperature=1.0):
     scene = gas(dimension, count, 0.1, boundary, temperature=temperature)
     return replace(scene, restitution=law, thermostat=gp.Thermostat(power, interval))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_kicks_give_the_power_and_keep_the_momentum(dimension):
     """The mean energy of a kick is (1 - 1/N) power interval for each particle, whatever its mass: its
@@ -43,6 +42,7 @@ def test_kicks_give_the_power_and_keep_the_momentum(dimension):
     assert sim.state.energy == pytest.approx(before.energy + given, rel=1e-12)
 
 
+@pytest.mark.interpreted
 def test_a_fixed_particle_is_not_kicked():
     particles = [
         gp.Particle((2.0, 2.0), (0.0, 0.0), 0.5, fixed=True),
@@ -58,6 +58,7 @@ def test_a_fixed_particle_is_not_kicked():
     assert velocities[1] == pytest.approx(-velocities[2], rel=1e-12)
 
 
+@pytest.mark.interpreted
 def test_what_has_no_meaning_is_refused():
     with pytest.raises(gp.SceneError, match="gravity.*random kicks"):
         replace(driven(boundary="wall"), gravity=(0.0, -1.0))
@@ -69,6 +70,7 @@ def test_what_has_no_meaning_is_refused():
         gp.Simulation(driven(), gp.TimeStepped(0.01))
 
 
+@pytest.mark.thorough
 @given(st.integers(1, 4000), st.integers(0, 2**32))
 def test_kick_n_comes_at_n_intervals(thousandths, seed):
     """Not at the sum of n intervals, whose rounding lets a state at n intervals be before the kick, or after

@@ -24,6 +24,7 @@ SEARCHES = (
 )
 
 
+@pytest.mark.thorough
 @given(
     mixtures(most=20), st.sampled_from(["float64", "float32"]), st.booleans(), st.sampled_from([1, 3]),
     st.integers(0, 2**32),
@@ -63,6 +64,7 @@ def test_near_boxes_are_searched_across_a_periodic_face(axis, boxes):
     assert sim.tally.collisions == 1
 
 
+@pytest.mark.interpreted
 def test_one_box_tests_each_pair_once_a_step():
     sim = gp.Simulation(gas(3, 40, 0.01), gp.TimeStepped(0.01, boxes_per_side=1, passes=1), seed=1)
     sim.advance(duration=1.0)
@@ -71,6 +73,7 @@ def test_one_box_tests_each_pair_once_a_step():
     assert sim.tally.box_visits == 100 * 40
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("precision", "rounding"), [("float64", 1e-13), ("float32", 3e-5)])
 def test_energy_is_kept_to_rounding(precision, rounding):
     sim = gp.Simulation(gas(2, 100, 0.2, "wall"), gp.TimeStepped(0.01, precision=precision), seed=1)
@@ -79,6 +82,7 @@ def test_energy_is_kept_to_rounding(precision, rounding):
     assert sim.state.kinetic_energy == pytest.approx(sim.initial_state.kinetic_energy, rel=rounding)
 
 
+@pytest.mark.interpreted
 def test_a_rewound_collision_is_exact():
     """Wherever in the step the contact falls, the particles go on as if it had been met exactly."""
     particles = [
@@ -96,6 +100,7 @@ def test_a_rewound_collision_is_exact():
         assert np.allclose(sim.state.positions, exact.state.positions, atol=1e-12)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("boundary", ["wall", "periodic"])
 def test_few_particles_follow_the_event_driven_engine(boundary):
     scene = gas(2, 6, 0.1, boundary)
@@ -111,6 +116,7 @@ def test_few_particles_follow_the_event_driven_engine(boundary):
     assert errors[-1] < 1e-8
 
 
+@pytest.mark.thorough
 def test_rewinding_buys_accuracy():
     """At a coarse step the pressure is off by some percent with it, and by several times that without."""
     scene, eta = gas(3, 300, 0.1, arrangement="lattice"), 0.1
@@ -127,6 +133,7 @@ def test_rewinding_buys_accuracy():
     assert off[False] > 2 * off[True]
 
 
+@pytest.mark.thorough
 def test_compressibility_factor_at_a_small_step():
     count, eta, dimension = 400, 0.1, 3
     sim = gp.Simulation(gas(dimension, count, eta, arrangement="lattice"), gp.TimeStepped(0.01), seed=13)
@@ -138,6 +145,7 @@ def test_compressibility_factor_at_a_small_step():
     assert abs(found - expected) < 3 * error
 
 
+@pytest.mark.interpreted
 def test_walls_reflect_exactly():
     particle = gp.Particle((2.0, 5.0), (-1.0, 0.5), 0.5, mass=3.0)
     sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0)), particles=[particle]), gp.TimeStepped(0.25))
@@ -147,6 +155,7 @@ def test_walls_reflect_exactly():
     assert sim.tally.wall_impulse.tolist() == [6.0, 0.0, 0.0, 0.0]
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("boundary", ["wall", "periodic"])
 def test_a_step_longer_than_the_container_leaves_no_particle_outside(boundary):
     particle = gp.Particle((2.0, 5.0), (130.0, 0.0), 0.5)
@@ -158,6 +167,7 @@ def test_a_step_longer_than_the_container_leaves_no_particle_outside(boundary):
         assert 0 <= sim.state.positions[0, 0] <= 10
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("normal", [0.0, 0.5, 0.9])
 def test_inelastic_contacts_follow_the_event_driven_engine(normal):
     """Two particles among walls: what each contact and each wall takes, and where the particles are then."""
@@ -177,6 +187,7 @@ def test_inelastic_contacts_follow_the_event_driven_engine(normal):
     assert sim.tally.dissipated_energy == pytest.approx(exact.tally.dissipated_energy, rel=1e-9)
 
 
+@pytest.mark.thorough
 def test_a_granular_gas_cools_as_in_the_event_driven_engine():
     """Most of its energy goes, by the same path in both; and whatever the search, by the same bits."""
     scene = gp.Scene(
@@ -200,6 +211,7 @@ def test_a_granular_gas_cools_as_in_the_event_driven_engine():
     assert ends[0][0] == pytest.approx(exact.state.kinetic_energy, rel=0.02)
 
 
+@pytest.mark.interpreted
 def test_time_is_a_whole_number_of_steps():
     sim = gp.Simulation(gas(2, 5, 0.01), gp.TimeStepped(0.1), seed=1)
     sim.advance(duration=0.35)
@@ -209,6 +221,7 @@ def test_time_is_a_whole_number_of_steps():
     assert sim.tally.steps == 10
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(
     ("settings_", "key"),
     [
@@ -223,6 +236,7 @@ def test_settings_that_are_none(settings_, key):
         gp.TimeStepped(**settings_)
 
 
+@pytest.mark.interpreted
 def test_what_it_cannot_do_it_refuses():
     scene = gp.Scene(gp.Container((10.0, 10.0)), [gp.Species(5, 0.5, temperature=1.0)], gravity=(0.0, -1.0))
     with pytest.raises(gp.SceneError, match="restitution.*gravity"):
@@ -234,11 +248,13 @@ def test_what_it_cannot_do_it_refuses():
         sim.record_events = True
 
 
+@pytest.mark.interpreted
 def test_more_particles_than_a_list_can_tell_are_refused():
     with pytest.raises(gp.SceneError, match="at most"):
         check_scene(gas(3, 8, 0.1), SimpleNamespace(count=2**28), None)
 
 
+@pytest.mark.interpreted
 def test_a_bouncing_ball_follows_its_parabolas():
     """Whatever the step, the ball is where the event-driven engine has it; many bounces fit into one step."""
     ball = gp.Particle((2.0, 3.0), (1.0, 0.0), 0.5)
@@ -253,6 +269,7 @@ def test_a_bouncing_ball_follows_its_parabolas():
         assert np.allclose(sim.tally.wall_impulse, exact.tally.wall_impulse, rtol=1e-7)
 
 
+@pytest.mark.thorough
 def test_a_falling_gas_keeps_its_energy_whatever_the_search():
     scene = gp.Scene(
         gp.Container((12.0, 20.0), ("periodic", "wall")),
@@ -269,6 +286,7 @@ def test_a_falling_gas_keeps_its_energy_whatever_the_search():
     assert all(np.array_equal(ends[0], end) for end in ends[1:])
 
 
+@pytest.mark.thorough
 def test_oversized_and_fixed_particles_follow_the_event_driven_engine():
     """A particle larger than a box is kept outside the partition, a fixed one passes no momentum on."""
     large = gp.Particle((10.0, 10.0), (0.1, 0.0), 4.0, mass=50.0)
@@ -285,6 +303,7 @@ def test_oversized_and_fixed_particles_follow_the_event_driven_engine():
         assert np.allclose(sim.state.unwrapped, exact.state.unwrapped, atol=1e-8)
 
 
+@pytest.mark.thorough
 def test_more_passes_find_what_one_misses():
     """Of dilute discs one pass misses (v_th dt/sigma)^2 of the contacts, several a quarter of that."""
     scene, time_step = gas(2, 400, 0.02), 0.25
@@ -298,6 +317,7 @@ def test_more_passes_find_what_one_misses():
     assert 1 - met[1] / met[4] == pytest.approx(missed, abs=4 / math.sqrt(met[4]), rel=0.3)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(("count", "eta", "time_step"), [(100, 0.01, 0.6), (200, 0.4, 0.5)])
 def test_a_step_that_is_too_long_is_refused(count, eta, time_step):
     with pytest.raises(gp.SceneError, match=r"time_step = .* a step of \S+ would do") as refused:

@@ -11,8 +11,6 @@ from scipy.optimize import brentq
 
 import gaspart as gp
 
-pytestmark = pytest.mark.thorough
-
 SINE, SAWTOOTH = gp.Vibrating(0.2, 1.3), gp.Vibrating(0.15, 0.7, "sawtooth")
 DOWN = (0.0, -1.0)
 _PARTED = 1e-5  # time after a bounce at which the ball is clear of the face: less than any bounce lasts
@@ -65,6 +63,7 @@ def bounces(sim, count):
     return list(zip(events["time"], faces, height, velocity, strict=True))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("face", [SINE, SAWTOOTH], ids=["sine", "sawtooth"])
 @pytest.mark.parametrize("law", [None, gp.Restitution(0.8)], ids=["elastic", "lossy"])
 def test_a_ball_bounces_on_a_vibrating_floor_as_computed_otherwise(face, law):
@@ -86,6 +85,7 @@ def test_a_ball_bounces_on_a_vibrating_floor_as_computed_otherwise(face, law):
     sim.check_invariants()
 
 
+@pytest.mark.interpreted
 def test_each_bounce_on_a_small_sawtooth_adds_twice_its_speed():
     """The amplitude is nothing compared with the height, so the ball arrives as fast as it has left."""
     face = gp.Vibrating(1e-10, 1e-9, "sawtooth")
@@ -94,6 +94,7 @@ def test_each_bounce_on_a_small_sawtooth_adds_twice_its_speed():
     assert after == pytest.approx(math.sqrt(4.0) + 2.0 * 0.2 * np.arange(1, 61), rel=1e-8)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("face", [SINE, SAWTOOTH], ids=["sine", "sawtooth"])
 def test_a_ball_between_a_vibrating_and_a_fixed_face(face):
     """Fermi's accelerator without gravity: the ball flies straight from one face to the other."""
@@ -113,6 +114,7 @@ def test_a_ball_between_a_vibrating_and_a_fixed_face(face):
     assert sim.tally.wall_energy[3] == pytest.approx(-energy, rel=1e-12)
 
 
+@pytest.mark.thorough
 def test_a_ball_without_bounce_follows_a_slow_floor_and_leaves_a_fast_one():
     """The floor's largest acceleration is A (2 pi / P)^2, over or under that of gravity."""
     law = gp.Restitution(0.0)
@@ -130,6 +132,7 @@ def test_a_ball_without_bounce_follows_a_slow_floor_and_leaves_a_fast_one():
         sim.check_invariants()
 
 
+@pytest.mark.interpreted
 def test_what_cannot_vibrate_is_refused():
     scene = ball({"y_low": SINE})
     with pytest.raises(gp.SceneError, match='faces.*needs the "event" engine'):
@@ -149,6 +152,7 @@ def test_what_cannot_vibrate_is_refused():
         gp.Vibrating(1.0, 1.0, "square")
 
 
+@pytest.mark.interpreted
 def test_obstacles_against_which_a_face_would_press_are_refused():
     scene = ball({"y_low": SINE})
     post = gp.Particle((1.0, 1.5), (0.0, 0.0), 0.2, fixed=True)

@@ -7,8 +7,6 @@ import pytest
 import gaspart as gp
 from gaspart.kernels.physics.contact import fifth_root, restitution_of
 
-pytestmark = pytest.mark.thorough
-
 LAW = gp.Restitution(0.8, -0.5, reference_speed=2.0)
 ROOM = gp.Container((40.0, 40.0))
 
@@ -39,12 +37,14 @@ def parted(scene):
     return -(sim.state.velocities[1, 0] - sim.state.velocities[0, 0]) / before
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(("factor", "damped"), [(1.0, 1.0), (32.0, 2.0), (1 / 32.0, 0.5), (1e-10, 0.01)])
 def test_the_damping_grows_as_the_fifth_root_of_the_speed(factor, damped):
     expected = restitution_of(damped * damping_of(0.8))
     assert parted(pair(2.0 * factor)) == pytest.approx(expected, rel=1e-13)
 
 
+@pytest.mark.interpreted
 def test_the_damping_depends_on_radii_and_masses():
     """As (R_eff / m_eff^2)^(1/5); a particle at a wall has its own radius and mass."""
     radius, mass = 0.3 * 1.2 / 1.5, 2.0 * 5.0 / 7.0
@@ -61,6 +61,7 @@ def test_the_damping_depends_on_radii_and_masses():
     assert sim.state.velocities[0, 1] == pytest.approx(expected, rel=1e-13)
 
 
+@pytest.mark.interpreted
 def test_what_has_no_meaning_is_refused():
     for normal in (0.0, 1.0):
         with pytest.raises(gp.SceneError, match="normal.*between 0 and 1, both excluded"):
@@ -71,6 +72,7 @@ def test_what_has_no_meaning_is_refused():
         gp.Simulation(pair(1.0), gp.TimeStepped(0.01))
 
 
+@pytest.mark.thorough
 def test_a_dense_gas_does_not_collapse():
     """Between slow contacts, which are nearly elastic, intervals do not shrink geometrically: what is a
     collapse at a constant restitution of 0.1 ends here after some tens of contacts."""

@@ -5,6 +5,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from scipy import special
 
 WALL, PERIODIC, OPEN = 0, 1, 2
 
@@ -36,28 +37,28 @@ class Group(NamedTuple):
 class Case:
     """A scene, parsed from YAML, as the sampler needs it.
 
-    radii: of all moving bodies, for a scene whose radii are drawn; load: force of a loaded piston, 0 without;
-    activity: per volume, 0 without open faces.
+    radii: of all moving bodies, if they differ within a species; load: force of a loaded piston, or 0;
+    activity: per volume, 0 without open faces; drawn: fixed bodies at places that a run draws.
     """
 
-    def __init__(self, scene, radii=None):
+    def __init__(self, scene):
         lengths = np.array(scene["container"]["lengths"], float)
         self.dimension = d = len(lengths)
         boundary = scene["container"].get("boundary", "wall")
         names = [boundary] * d if isinstance(boundary, str) else boundary
         kinds = np.array([[PERIODIC if name == "periodic" else WALL] * 2 for name in names])
-        self.radii = radii
         self.load, self.activity = 0.0, 0.0
         temperature, axis, wells = 1.0, 0, np.zeros((d, 2, 2))
         for name, face in (scene.get("faces") or {}).items():
             k, side = "xyz".index(name[0]), int(name.endswith("high"))
-            temperature = float(face.get("temperature", temperature))
+            if not isinstance(face.get("temperature"), dict):
+                temperature = float(face.get("temperature", temperature))
             if face["kind"] == "open":
                 kinds[k, side], self.activity = OPEN, face["activity"]
             elif face["kind"] == "well":
                 wells[k, side] = face["depth"], face["width"]
             elif face["kind"] == "piston":
-                axis, self.pressure = k, face["pressure"]
+                axis, self.pressure = k, face.get("pressure", 0.0)
         margin = 0.0 if scene.get("centres_to_walls") else 1.0
         plane, plates = np.array([-1.0]), []
         for wall in scene.get("walls") or []:
@@ -74,6 +75,9 @@ class Case:
         gravity = np.array(scene.get("gravity") or [0.0] * d, float)
         self.box = Box(lengths, kinds, gravity, wells, plates, margin, temperature, axis, plane)
         self._add_bodies(scene)
+        self.radii = None
+        if any("polydispersity" in one for one in scene["species"]):
+            self.radii = np.concatenate([_radii(one) for one in scene["species"]])
         if "piston" in {face["kind"] for face in (scene.get("faces") or {}).values()}:
             self.load = self.pressure * float(np.delete(lengths, axis).prod())
         if self.activity:
@@ -82,19 +86,22 @@ class Case:
     def _add_bodies(self, scene):
         """Add the bodies: species, then single ones; fixed ones apart."""
         d, axis, plane = self.dimension, self.box.axis, self.box.plane[0]
-        still, self.groups = [], []
+        still, self.groups, self.drawn = [], [], 0
         listed = [
             *(scene.get("species") or []),
-            *({"count": 1, **one} for one in scene.get("particles") or []),
+            *(scene.get("particles") or []),
         ]
         for one in listed:
+            if one.get("fixed") and "count" in one:
+                self.drawn += one["count"]
+                continue
             if one.get("fixed"):
                 still.append((one["position"], one["radius"]))
                 continue
             side = 0
             if plane >= 0.0:
                 side = -1 if one["region"][1][axis] <= plane else 1
-            self.groups.append(Group(one["count"], one["radius"], one.get("mass", 1.0), side))
+            self.groups.append(Group(one.get("count", 1), one["radius"], one.get("mass", 1.0), side))
         self.fixed = np.array([place for place, _ in still], float).reshape(-1, d)
         self.fixed_radii = np.array([radius for _, radius in still], float)
 
@@ -116,7 +123,7 @@ class Case:
     @property
     def empty(self):
         """True if neither fixed bodies nor interior walls are inside."""
-        return not len(self.fixed) and not len(self.box.plates) and self.box.plane[0] < 0.0
+        return not len(self.fixed) and not self.drawn and not len(self.box.plates) and self.box.plane[0] < 0.0
 
     @property
     def walls(self):
@@ -137,3 +144,14 @@ class Case:
         masses = np.repeat([group.mass for group in self.groups], numbers)
         sides = np.repeat([group.side for group in self.groups], numbers)
         return np.array(radii, float), masses, np.repeat(np.arange(len(numbers)), numbers), sides
+
+
+def _radii(species):
+    """Return the radii of a species: quantiles at equally spaced probabilities, scaled to their mean."""
+    count, spread = species["count"], species.get("polydispersity", 0.0)
+    p = (np.arange(count)[::-1] + 0.5) / count
+    if species.get("radius_distribution", "lognormal") == "uniform":
+        radii = 1.0 + math.sqrt(3.0) * spread * (2.0 * p - 1.0)
+    else:
+        radii = np.exp(math.sqrt(math.log1p(spread**2)) * special.ndtri(p))
+    return radii * species["radius"] / radii.mean()

@@ -27,6 +27,27 @@ def two_body_z(d, diameter, volume):
     return 1.0 + 0.5 * excluded / (volume - excluded)
 
 
+def crystal_z(count, diameter, lengths):
+    """Return Z of a crystal of spheres near close packing, and its error.
+
+    Z = 3 / alpha + 2.56, alpha = V / V_0 - 1 (Alder, Hoover and Young, J. Chem. Phys. 49, 3688 (1968)), of
+    3 (N - 1) degrees of freedom.
+    """
+    packed = count * diameter**3 / math.sqrt(2.0)
+    alpha = float(np.prod(lengths)) / packed - 1.0
+    return (1.0 - 1.0 / count) * 3.0 / alpha + 2.56, 1.0
+
+
+def dilute_transport(density, diameter, temperature, mass=1.0):
+    """Return D, the viscosity and the conductivity of dilute spheres: Chapman and Cowling's first
+    approximations times the factors of Pekeris and Alterman, Proc. Natl. Acad. Sci. 43, 998 (1957).
+    """
+    speed = math.sqrt(temperature / math.pi / mass)
+    diffusion = 1.018954 * 0.375 * speed / (density * diameter**2)
+    viscosity = 1.016034 * 5.0 / 16.0 * mass * speed / diameter**2
+    return diffusion, viscosity, 1.025218 * 75.0 / 64.0 * speed / diameter**2
+
+
 def one_place_number(activity, room):
     """Return the mean number between open faces where there is room for one body at most."""
     return activity * room / (1.0 + activity * room)
@@ -40,6 +61,19 @@ def speed_density(d, speeds, mass, temperature, f):
     top, half = math.sqrt(f * temperature / mass), (f - d) / 2.0
     norm = top**d / 2.0 * math.exp(math.lgamma(d / 2.0) + math.lgamma(half) - math.lgamma(d / 2.0 + half))
     return speeds ** (d - 1) * np.maximum(0.0, 1.0 - (speeds / top) ** 2) ** (half - 1.0) / norm
+
+
+def enskog_contact(d, fractions, first, second):
+    """Return the contact value of bodies of radii `first` and `second` in the Enskog equation: spheres of
+    Boublik and of Mansoori and others, discs of Jenkins and Mancini.
+
+    fractions: (packing fraction, sum of n pi R (discs) or 4/3 pi R^2 (spheres), the second moment of sizes)
+    """
+    filled, surface = fractions
+    free, between = 1.0 - filled, 2.0 * first * second / (first + second)
+    if d == 2:
+        return 1.0 / free + 9.0 / 16.0 * surface * between / free**2
+    return 1.0 / free + 1.5 * surface * between / free**2 + 0.5 * (surface * between) ** 2 / free**3
 
 
 class FreeMolecular:

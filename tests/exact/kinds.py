@@ -1,5 +1,6 @@
 """The kinds of scenes of the table of exact values: what each contains, found without gaspart."""
 
+import math
 from functools import cache, cached_property
 from pathlib import Path
 
@@ -17,10 +18,17 @@ class Kind:
     def __init__(self, name, scene, run):
         self.name, self.scene, self.run = name, scene, run
         self.faces = scene.get("faces") or {}
+        self.equation = "exact"
+
+    def under(self, equation):
+        """Return the kind of a gas that obeys an equation: "exact", "boltzmann" or "enskog"."""
+        other = Kind(self.name, self.scene, self.run)
+        other.equation = equation
+        return other
 
     @cached_property
     def case(self):
-        """The scene as the sampler reads it, without radii that are drawn."""
+        """The scene as the sampler reads it."""
         return Case(self.scene)
 
     @property
@@ -50,6 +58,24 @@ class Kind:
     def thermal_faces(self):
         """Names of faces that have a temperature, without open ones."""
         return [n for n, face in self.faces.items() if "temperature" in face and face["kind"] != "open"]
+
+    @property
+    def open_faces(self):
+        """Names of open faces."""
+        return [name for name, face in self.faces.items() if face["kind"] == "open"]
+
+    @property
+    def dragging(self):
+        """Names of faces that change velocities along themselves: all walls, of rough bodies."""
+        if self.rough:
+            return [name.replace(" ", "_") for name in self.case.walls]
+        found = (name for name, face in self.faces.items() if "temperature" in face)
+        return [name for name in found if self.faces[name].get("components") != "normal"]
+
+    @property
+    def exchanges(self):
+        """True if faces or walls exchange energy with the gas."""
+        return bool(self.thermal_faces) or self.opened or self.warm_walls
 
     @property
     def sliding(self):
@@ -83,7 +109,7 @@ class Kind:
 
     @property
     def many_sizes(self):
-        """True if radii are drawn."""
+        """True if radii differ within a species."""
         return any("polydispersity" in one for one in self.species)
 
     @property
@@ -100,7 +126,8 @@ class Kind:
     @property
     def moving_face(self):
         """True if a face or an interior wall moves."""
-        return self.case.load > 0.0 or self.case.box.plane[0] >= 0.0
+        moves = any(face["kind"] in ("piston", "vibrating") for face in self.faces.values())
+        return moves or self.case.box.plane[0] >= 0.0
 
     @property
     def points(self):
@@ -109,16 +136,41 @@ class Kind:
         return small or (self.case.count == 1 and self.case.empty)
 
     @property
+    def dilute(self):
+        """True if the volume of the bodies is negligible, within 0.1 %."""
+        ball = math.pi if self.dimension == 2 else 4.0 / 3.0 * math.pi
+        filled = sum(one.count * one.radius**self.dimension for one in self.case.groups) * ball
+        return filled < 1e-3 * self.case.box.lengths.prod()
+
+    @property
+    def wide(self):
+        """True if a container is so many diameters wide that waves down to a diameter are too many."""
+        largest = 2.0 * max(group.radius for group in self.case.groups)
+        return bool((self.case.box.lengths / largest).prod() > 1e5) and not self.points
+
+    @property
     def integrable(self):
         """True if each body keeps its speed for ever, so that means over time are those of its start."""
-        return self.points and not self.thermal_faces and not self.opened
+        return self.points and not self.exchanges
 
     @property
     def equilibrium(self):
         """True if the scene has a static distribution: nothing flows, heats or loses energy."""
-        ends = {(f.get("temperature"), tuple(f.get("velocity") or ()), f.get("activity"))
+        ramps = any(isinstance(f.get("temperature"), dict) for f in self.faces.values())
+        ends = {(str(f.get("temperature")), tuple(f.get("velocity") or ()), f.get("activity"))
                 for f in self.faces.values() if "temperature" in f}  # fmt: skip
-        return not (self.sheared or self.dissipates or self.driven or len(ends) > 1)
+        worked = self.works or ramps or "thermostat" in self.scene
+        return not (self.sheared or self.dissipates or self.driven or worked or len(ends) > 1)
+
+    @property
+    def works(self):
+        """True if a face works on the gas: it moves by itself, or holds bodies."""
+        return any(f["kind"] in ("sticky", "vibrating") or "speed" in f for f in self.faces.values())
+
+    @property
+    def warm_walls(self):
+        """True if an interior wall has a temperature."""
+        return any("temperature" in wall for wall in self.scene.get("walls") or [])
 
     @property
     def conserved(self):
@@ -132,7 +184,7 @@ class Kind:
     @property
     def freedoms(self):
         """Degrees of freedom of fixed energy, None if faces exchange it."""
-        if self.thermal_faces or self.opened:
+        if self.exchanges:
             return None
         return self.dimension * self.case.count - self.conserved
 
@@ -140,10 +192,6 @@ class Kind:
     def stress(self):
         """True if a run keeps correlations of the stress: periodic, with nothing inside."""
         return bool(self.case.periodic.all()) and self.case.empty and not self.falls
-
-    def with_radii(self, radii):
-        """Return the case with radii that are drawn."""
-        return Case(self.scene, radii)
 
 
 @cache

@@ -3,14 +3,19 @@
 import math
 
 import numpy as np
-from exact import closed
+from exact import closed, kinetic, static
 from exact.values import stored
 
 
 def known(observable, kind):
     """Return the parts of an observable whose values have a closed form, {} without any."""
     rule = RULES.get(observable)
-    return rule(kind) if rule else {}
+    found = rule(kind) if rule else {}
+    if kind.equation != "exact" and kind.equilibrium and not found:
+        found = kinetic.RULES.get(observable, lambda kind: {})(kind)
+    if kind.equation == "exact" and "transport" in kind.run and not found:  # dilute: so is a dense gas
+        found = kinetic.RULES.get(observable, lambda kind: {})(kind.under("enskog"))
+    return found
 
 
 def _number(value, error=0.0):
@@ -108,10 +113,11 @@ def _speeds(kind):
 
 def _pressure_tensor(kind):
     """Return n k_B T (Z - 1 / N) on the diagonal: of velocities about the centre of mass, as declared."""
-    case, (z, error) = (
-        kind.case,
-        (_z(kind) or stored()[kind.name]["values"].get("Z", {"": (math.nan, 0)}))[""],
-    )
+    case = kind.case
+    if kind.equation == "exact":
+        z, error = (known("Z", kind) or stored()[kind.name]["values"].get("Z", {"": (math.nan, 0)}))[""]
+    else:
+        z, error = kinetic.compressibility(kind)[""]
     scale, names = case.count * kind.temperature / case.box.lengths.prod(), "xyz"[: kind.dimension]
     if len(set(case.box.lengths)) > 1 or not math.isfinite(z):
         return {}
@@ -162,10 +168,20 @@ class Short:
         return impulses / 6.0 + 2.5 * flight / self.mass * (1.0 + 0.6 * self.contact) ** 2
 
 
+def _dilute(kind, number):
+    """Return a coefficient of a dilute gas; the error is that of its finite number and density."""
+    density = kind.case.count / kind.case.box.lengths.prod()
+    diameter = 2.0 * kind.case.groups[0].radius
+    value = closed.dilute_transport(density, diameter, kind.temperature)[number]
+    return [value, 0.01 * value]
+
+
 def _short(name):
     """Return the rule of a transport coefficient at the first lag, which counts until half a lag later."""
 
     def rule(kind):
+        if "transport" in kind.run and name != "bulk":
+            return {"": _dilute(kind, {"shear": 1, "heat": 2}[name])}
         if "short" not in kind.run:
             return {}
         lag, gas = 0.5 * kind.run["interval"], Short(kind)
@@ -176,6 +192,8 @@ def _short(name):
 
 
 def _diffusion(kind):
+    if "transport" in kind.run:
+        return {"": _dilute(kind, 0)}
     if "short" not in kind.run:
         return {}
     gas, h = Short(kind), kind.run["interval"]
@@ -185,6 +203,8 @@ def _diffusion(kind):
 
 
 def _mutual(kind):
+    if "transport" in kind.run:  # of equal bodies: the D of each
+        return {"": _dilute(kind, 0)}
     return {"D": [0.0, 0.0]} if "halves" in kind.name else {}
 
 
@@ -231,11 +251,35 @@ def _collision_rate(kind):
         radii = kind.case.fixed_radii + kind.case.groups[0].radius
         surface, room = 2.0 * math.pi * radii.sum(), kind.case.box.lengths.prod() - math.pi * (radii**2).sum()
         return _number(closed.santalo_rate(2, 1.0, surface, room))
+    if "crystal" in kind.run and kind.equation == "exact":  # the collisions whose virial is Z - 1
+        (one,), (z, error) = kind.case.groups, _z(kind)[""]
+        speed = math.sqrt(kind.temperature / math.pi / one.mass) * closed.speed_factor(kind.freedoms)
+        scale = kind.dimension * speed / one.radius
+        return _number(scale * (z - 1.0), scale * error)
     return {}
 
 
+def _pair_rates(kind):
+    if "crystal" not in kind.run:
+        return {}
+    return {"0-0": _collision_rate(kind)[""]}
+
+
+def _contact_values(kind):
+    if "crystal" not in kind.run:
+        return {}
+    case, (one,), (z, error) = kind.case, kind.case.groups, _z(kind)[""]
+    around = static.sphere(kind.dimension, 2.0 * one.radius)
+    scale = case.box.lengths.prod() * kind.dimension / ((case.count - 1) / 2.0 * around * 2.0 * one.radius)
+    return {"0-0": [scale * (z - 1.0), scale * error]}
+
+
 def _z(kind):
-    if kind.name == "two_periodic":
+    if "crystal" in kind.run and kind.equation == "exact":
+        return _number(
+            *closed.crystal_z(kind.case.count, 2.0 * kind.case.groups[0].radius, kind.case.box.lengths)
+        )
+    if kind.name == "two_periodic" and kind.equation == "exact":
         return _number(closed.two_body_z(2, 2.0 * kind.case.groups[0].radius, kind.case.box.lengths.prod()))
     return {}
 
@@ -272,6 +316,8 @@ RULES = {
     "pressure": _pressure,
     "force": _force,
     "collision_rate": _collision_rate,
+    "pair_rates": _pair_rates,
+    "contact_values": _contact_values,
     "Z": _z,
     "pressure_tensor": _pressure_tensor,
     "D": _diffusion,

@@ -39,6 +39,10 @@ def _elastic(kind):
     return "contacts lose energy: no equilibrium" if kind.dissipates else None
 
 
+def _fluctuates(kind):
+    return "contacts lose energy: no equilibrium" if kind.dissipates and not kind.sheared else None
+
+
 def _species(kind):
     return "single bodies belong to no species" if kind.singles else None
 
@@ -136,9 +140,9 @@ UNDEFINED = {
     "flux": (_unsheared, _walled_axis),
     "number": (_opened,),
     "temperature": (_unsheared, _thermal),
-    "shear_viscosity": (_closed, _stress),
-    "bulk_viscosity": (_closed, _unsheared, _stress),
-    "thermal_conductivity": (_closed, _unsheared, _stress, _one_size),
+    "shear_viscosity": (_closed, _stress, _fluctuates),
+    "bulk_viscosity": (_closed, _unsheared, _stress, _elastic),
+    "thermal_conductivity": (_closed, _unsheared, _stress, _one_size, _elastic),
     "pressure_tensor": (_closed, _stress),
     "order": (*_STATIC, _neighbours),
 }
@@ -157,6 +161,13 @@ BALANCES = ("wall_shear", "flux")
 """Observables that balances of momentum and of bodies give, whatever collides."""
 OF_PARTICLES = ("msd", "vacf", "speeds")
 """Observables whose error is the scatter of bodies, which need not exchange energy."""
+OF_PLACES = ("pressure", "force", "collision_rate", "density")
+"""Observables that depend on the density at walls."""
+OF_ALL_PLACES = (*OF_PLACES, "pair_rates")
+OF_STRUCTURE = (
+    "density", "rdf", "structure_factor", "partial_structure_factors", "order", "chemical_potential",
+)  # fmt: skip
+"""Observables of the places of all bodies."""
 LONG = ("D", "mutual_diffusion", "shear_viscosity", "bulk_viscosity", "thermal_conductivity")
 """Observables that need an integral over collisions, which points do not have."""
 
@@ -168,10 +179,31 @@ def undefined(observable, kind):
 
 def unknown(observable, kind):
     """Return why no exact value of a defined observable is known, None if there must be one."""
+    if observable == "wall_shear" and kind.driven and len({one.radius for one in kind.case.groups}) > 1:
+        return "how much each size carries has no closed form"
+    if observable == "wall_shear" and not (kind.equilibrium or kind.driven or kind.points):
+        return "a sheared gas of bodies that collide has no closed form"
+    if observable == "msd" and kind.points and kind.exchanges:
+        return "flights from thermal faces have no simple law"
+    if kind.case.drawn and observable in OF_ALL_PLACES:
+        return "the places of the fixed bodies are drawn"
+    if "crystal" in kind.run and kind.equation == "exact" and observable in OF_STRUCTURE:
+        return "a crystal has no closed form of its structure"
+    if "transport" in kind.run and observable in OF_STRUCTURE and observable != "density":
+        return "more bodies than are sampled"
+    if "transport" in kind.run and observable in LONG and observable != "bulk_viscosity":
+        return None  # of Chapman and Enskog
     if observable in DYNAMIC and (
         "short" in kind.run or (kind.name == "halves" and observable == "mutual_diffusion")
     ):
         return None  # the first terms in the time; D_12 of halves is the D of a particle
+    if (
+        kind.equation == "enskog"
+        and not kind.dilute
+        and observable in OF_PLACES
+        and not kind.case.periodic.all()
+    ):
+        return "the local contact values of the model at walls have no closed form"
     if kind.integrable and observable not in OF_PARTICLES:
         return "each point keeps its speed: means over time are those of the start"
     if observable == "vacf" and kind.equilibrium:

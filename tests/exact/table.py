@@ -14,14 +14,15 @@ from pathlib import Path
 
 import numpy as np
 from exact import closed, runs
+from exact.balances import BALANCES
 from exact.kinds import kinds
 from exact.known import Short, known
-from exact.rules import undefined, unknown
+from exact.rules import LONG, undefined, unknown
 from exact.values import stored
 from scipy import stats
 
 import gaspart as gp
-from gaspart.analysis.observables import OBSERVABLES
+from gaspart.analysis.observables import OBSERVABLES, require_modelled
 from gaspart.errors import SceneError
 
 FILE = Path(__file__).parents[2] / "results/docs/exact_values.csv"
@@ -43,8 +44,8 @@ EQUAL = 1e-6
 
 @dataclass(frozen=True)
 class Cell:
-    """State of a cell: "value" (the deviation is that of its worst part), "refused", "unknown" (both for the
-    reason `text`), or "wrong", `text` stating how."""
+    """State of a cell: "value" (the deviation is that of its worst part), "wrong" (`text` states how), or
+    "refused", "not modelled" and "unknown" for the reason `text`."""
 
     observable: str
     scene: str
@@ -57,31 +58,43 @@ class Cell:
 
 def right_parts(observable, kind):
     """Return part -> right value of an observable: a closed form if there is one, else the sampled one."""
-    return known(observable, kind) or stored().get(kind.name, {"values": {}})["values"].get(observable, {})
+    found = known(observable, kind)
+    if not found and (kind.equation == "exact" or kind.points):
+        found = stored().get(kind.name, {"values": {}})["values"].get(observable, {})
+    return found
 
 
 @cache
-def cells(name, engine="event", seed=runs.SEED, longer=1.0):
-    """Return the cells of a run: one for each observable."""
-    kind = kinds()[name]
-    return [cell_of(observable, kind, engine, seed, longer) for observable in OBSERVABLES]
+def cells(name, engine="event", seed=runs.SEED, longer=1.0, finer=1):
+    """Return the cells of a run: one for each observable, and the balances."""
+    run = engine, seed, longer, finer
+    return [cell_of(observable, kinds()[name], *run) for observable in (*OBSERVABLES, *BALANCES)]
 
 
-def cell_of(observable, kind, engine="event", seed=runs.SEED, longer=1.0):
+def cell_of(observable, kind, engine="event", seed=runs.SEED, longer=1.0, finer=1):
     """Return the cell of an observable of a run."""
+    run = kind.name, engine, seed, longer, finer
     place = observable, kind.name, engine
+    kind = kind.under(runs.engines(kind.name)[engine].equation)
+    if why := runs.refusal(*run):
+        return Cell(*place, "not modelled", why)
+    if observable in BALANCES:
+        return _balance(place, BALANCES[observable](kind, runs.recorded(*run)))
     if why := undefined(observable, kind):
         try:
-            measured(observable, runs.recorded(kind.name, engine, seed, longer))
+            measured(observable, runs.recorded(*run))
         except SceneError:
             return Cell(*place, "refused", why)
         return Cell(*place, "wrong", f"accepted, though {why}")
-    if why := unmeasured(observable, kind, engine) or unknown(observable, kind):
+    if why := unmeasured(observable, kind, engine):
         return Cell(*place, "unknown", why)
+    if why := unknown(observable, kind):
+        worst = _beside_theory(observable, kind, runs.recorded(*run))
+        return Cell(*place, "wrong", *worst) if worst else Cell(*place, "unknown", why)
     parts = right_parts(observable, kind)
     if not parts:
         return Cell(*place, "wrong", "has no right value")
-    data = runs.recorded(kind.name, engine, seed, longer)
+    data = runs.recorded(*run)
     deviations, results = {}, {}
     for part, right in parts.items():
         selection = selection_in(part)
@@ -93,19 +106,64 @@ def cell_of(observable, kind, engine="event", seed=runs.SEED, longer=1.0):
         deviations[part] = deviation_of(observable, kind, results[key], part, right)
     worst = max(deviations, key=lambda part: deviations[part][0])
     deviation, text = deviations[worst]
+    if deviation <= LIMIT and (beside := _beside_theory(observable, kind, data)):
+        return Cell(*place, "wrong", *beside)
     state = "value" if deviation <= LIMIT else "wrong"
     return Cell(*place, state, f"{worst}: {text}", deviation, len(parts))
 
 
+def _balance(place, balance):
+    """Return the cell of a balance."""
+    if isinstance(balance, str):
+        return Cell(*place, "unknown", balance)
+    apart, error = balance
+    deviation = float(np.max(np.abs(apart) / error))
+    state = "value" if deviation <= 1.0 else "wrong"
+    return Cell(*place, state, f"off by {deviation:.2g} times the rounding", deviation, apart.size)
+
+
+def _beside_theory(observable, kind, data):
+    """Return how a run deviates from its own theory, as a text and a number; None if they agree.
+
+    A theory without an uncertainty is an approximation, which is not compared.
+    """
+    if "short" in kind.run and observable in LONG:
+        return None  # after the first lags only
+    try:
+        result = measured(observable, data)
+    except SceneError:
+        return None
+    key = result.attrs["quantity"]
+    if result.theory is None:
+        return None
+    value, error = result[key], result[f"{key}_error"]
+    freedom = result.get(f"{key}_freedom", result.attrs.get("freedom", RUN_FREEDOM))
+    theory, unsure = result[f"{key}_theory"].values, result[f"{key}_theory_error"].values
+    value, error, freedom = (
+        np.broadcast_to(np.asarray(one, float), theory.shape) for one in (value, error, freedom)
+    )
+    stated = np.isfinite(theory) & np.isfinite(unsure) & np.isfinite(value) & np.isfinite(error)
+    stated &= (error == 0.0) | (freedom >= FREEDOM)
+    if not stated.any():
+        return None
+    value, error, freedom, theory, unsure = (one[stated] for one in (value, error, freedom, theory, unsure))
+    deviation, text = compared(value, error, freedom, theory, unsure, independent=False)
+    return None if deviation <= LIMIT else (f"theory: {text}", deviation)
+
+
 def unmeasured(observable, kind, engine):
     """Return why a run of an engine says nothing of an observable, None if it does."""
-    scene, settings = gp.Scene.from_dict(kind.scene), runs.engines(kind)[engine]
-    one = OBSERVABLES[observable]
-    if settings.equation in one.nothing:
-        return one.nothing[settings.equation]
-    if one.needs == "pairs" and not settings.records_events:
-        return "the engine does not record events"
-    if one.needs == "fluxes" and "correlations" not in runs.options(kind, scene, settings):
+    scene, settings = gp.Scene.from_dict(kind.scene), runs.engines(kind.name)[engine]
+    try:
+        require_modelled(observable, scene, settings)
+    except SceneError as error:
+        return f"{error.key}: {error.rule}"
+    if kind.wide and "structure" in observable:
+        return "waves down to a diameter are too many in so wide a container"
+    if kind.wide and observable == "chemical_potential":
+        return "a body that is inserted in so wide a container hardly ever overlaps"
+    needs = OBSERVABLES[observable].needs
+    if needs == "fluxes" and "correlations" not in runs.options(kind, scene, settings):
         return "the engine does not tally the stress of such a scene"
     return None
 
@@ -170,8 +228,11 @@ def _at(names_in, values):
     return values
 
 
-def compared(value, error, freedom, right, known_error):
-    """Return the deviation of values from right ones, each with errors, and the worst of them as a text."""
+def compared(value, error, freedom, right, known_error, independent=True):
+    """Return the deviation of values from right ones, each with errors, and the worst of them as a text.
+
+    independent: False for places of a curve that may deviate together
+    """
     total = np.hypot(error, known_error)
     exact = (total == 0.0) | ((known_error == 0.0) & (right == 0.0) & (value == 0.0))
     if exact.all():
@@ -189,7 +250,7 @@ def compared(value, error, freedom, right, known_error):
     at = np.unravel_index(np.argmax(np.where(use, normal, -1.0)), value.shape)
     worst = float(stats.norm.isf(0.5 * min(1.0, float(chance[at]) * use.sum())))
     spread = math.sqrt((np.minimum(normal[use], 40.0) ** 2).mean())
-    if use.sum() >= POINTS:
+    if independent and use.sum() >= POINTS:
         worst = max(worst, LIMIT * spread / SPREAD)
     numbers = f"{value[at]:.5g} +- {error[at]:.2g}, right {right[at]:.5g} +- {known_error[at]:.2g}"
     return worst, f"{numbers} (worst of {use.sum()})"
@@ -215,7 +276,8 @@ def _speeds(kind, result, value):
 
 def _of_a_particle(kind):
     """Return the D of a run of two equal species and its error: their mutual coefficient, exactly."""
-    one = measured("D", runs.recorded(kind.name))
+    engine = {"exact": "event", "boltzmann": "dsmc"}.get(kind.equation, kind.equation)
+    one = measured("D", runs.recorded(kind.name, engine))
     return float(one[one.attrs["quantity"]]), float(one[f"{one.attrs['quantity']}_error"])
 
 
@@ -249,7 +311,7 @@ SPECIAL = {
 
 def names():
     """Return (kind of scene, engine) of all runs."""
-    return [(name, engine) for name, kind in kinds().items() for engine in runs.engines(kind)]
+    return [(name, engine) for name in kinds() for engine in runs.engines(name)]
 
 
 def row_of(cell):
@@ -262,6 +324,9 @@ def row_of(cell):
 def write():
     """Write the file."""
     found = [row_of(cell) for run in names() for cell in cells(*run)]
+    for name in kinds():
+        not_modelled = runs.refusals(name).items()
+        found += [row_of(Cell("(all)", name, engine, "not modelled", why)) for engine, why in not_modelled]
     FILE.parent.mkdir(parents=True, exist_ok=True)
     with FILE.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")

@@ -36,24 +36,26 @@ def stored():
     return json.loads(FILE.read_text(encoding="utf-8")) if FILE.exists() else {}
 
 
-def computed(kind, radii=None):
+def computed(kind):
     """Return all sampled values of a kind of scene: observable -> part -> [value, error], or of curves a
     mapping of lists."""
     if not (kind.equilibrium or kind.points):
         return {}
-    case = kind.case if radii is None else kind.with_radii(radii)
+    case = kind.case
+    if case.drawn or {"crystal", "transport"} & set(kind.run):
+        return {}
     number = CONFIGURATIONS * (8 if case.count < FEW else 1)
     found = {}
-    if kind.name not in DENSE and radii is None and kind.equilibrium:
+    if kind.name not in DENSE and case.radii is None and kind.equilibrium:
         values, errors = static.contacts(case, number, EVERY, TRIALS, SEED)
         found |= wall_values(kind, case, values, errors)
         found |= pair_values(kind, case, values, errors)
     kept = sample(case, CONFIGURATIONS, 6 if kind.name not in DENSE else 30, SEED + 11)
-    if kind.equilibrium and (radii is not None or kind.name in DENSE):
+    if kind.equilibrium and (case.radii is not None or kind.name in DENSE):
         found |= values_of_gaps(kind, case, kept)
     found["density"] = densities(case, kept)
     if case.periodic.all() and case.empty and kind.equilibrium:
-        found |= periodic_values(case, kept)
+        found |= periodic_values(kind, case, kept)
     if case.activity:
         found["number"] = {"": block_mean(kept.numbers - len(case.fixed))}
     return found
@@ -167,7 +169,7 @@ def densities(case, kept):
     return found
 
 
-def periodic_values(case, kept):
+def periodic_values(kind, case, kept):
     """Return g(r), S(k), order and chemical potentials of a periodic container with nothing inside."""
     few = kept._replace(positions=kept.positions[:: max(1, len(kept.positions) // 4000)])
     largest = 2.0 * kept.radii.max()
@@ -176,7 +178,7 @@ def periodic_values(case, kept):
         furthest = float(REACH * case.box.lengths.min())
         g, error = static.radial_distribution(case, few, furthest, SHELLS)
         found["rdf"] = {f"furthest={furthest!r},bins={SHELLS}": _curve(g, error)}
-    if largest > 1e-3:
+    if largest > 1e-3 and not kind.wide:
         highest = float(10.0 / largest)
         numbers, s, error = static.structure_factors(case, few, highest, WAVE_BINS)
         which = f"highest={highest!r},bins={WAVE_BINS}"
@@ -213,31 +215,17 @@ def rounded(thing):
     return float(f"{thing:.6g}") if math.isfinite(thing) else None
 
 
-def drawn_radii(kind):
-    """Return the radii that a run of the kind draws, None if they are stated: part of the scene."""
-    if not kind.many_sizes:
-        return None
-    from exact.runs import SEED as RUN_SEED
-
-    import gaspart as gp
-
-    return gp.Simulation(gp.Scene.from_dict(kind.scene), gp.EventDriven(), RUN_SEED).state.radii
-
-
 def renew(names):
     """Sample the values of the named kinds, all by default, and write the file."""
     found = {name: entry for name, entry in stored().items() if name in kinds()}
     for name in names or kinds():
         kind, began = kinds()[name], time.process_time()
-        radii = drawn_radii(kind)
-        values = rounded(computed(kind, radii))
+        values = rounded(computed(kind))
         seconds = time.process_time() - began
         recipe = {
             "scene": kind.scene, "seed": SEED, "configurations": CONFIGURATIONS, "every": EVERY,
             "trials": TRIALS, "date": datetime.date.today().isoformat(), "cpu_seconds": round(seconds, 1),
         }  # fmt: skip
-        if radii is not None:
-            recipe["radii"] = [float(one) for one in radii]
         found[name] = {"recipe": recipe, "values": values}
         print(f"{name}: {seconds:.1f} s", flush=True)
         lines = [f"{json.dumps(key)}: {json.dumps(found[key])}" for key in kinds() if key in found]

@@ -14,7 +14,8 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart.inspection import readers
-from gaspart.inspection.checks import judge
+from gaspart.inspection.checks import judge, judge_places
+from gaspart.inspection.frames import Frames
 from gaspart.inspection.readers import COPIES, read_frames
 
 SIDE, COUNT, INTERVAL, RADIUS = 8.0, 150, 0.1, 0.5
@@ -195,7 +196,11 @@ def test_what_is_driven_is_no_equilibrium(tmp_path, law):
         frames.append(places % 40)
         places = places + velocities[-1]
     path = xyz_file(tmp_path / "a.xyz", frames, velocities, 'Lattice="40 0 0 0 40 0 0 0 40"')
-    found = without_wrong(lines(path, radius=1e-4, time_step=1.0))
+    frames = read_frames(path, radius=1e-4, time_step=1.0)
+    energy = next(check for check in judge(frames) if check.name == "energy")
+    assert energy.passed is {granular: False, thermostat: None, active: True}[law]
+    assert ("falls in nearly every frame" in energy.text) == (law is granular)
+    found = without_wrong({check.name: check for check in judge(frames, driven=True)})
     for name in ("speed law", "kurtosis of speeds", "pressure Z", "diffusion coefficient D"):
         assert found[name].passed is None and "something acts on the particles (see" in found[name].text
 
@@ -398,3 +403,15 @@ def test_ovito_leaves_out_a_corner_at_zero(tmp_path):
     frames = read_frames(path, radius=0.5)
     assert frames.at(1).lengths[0] == 7.75
     assert [float(frames.at(n).positions[0, 0, 0]) for n in (0, 1)] == pytest.approx([7.3, 7.05])
+
+
+def test_a_step_may_leave_overlaps_as_deep_as_the_way_of_two_particles_in_it():
+    """A pair that a step has pushed together separates in the next ones (`overlaps_left` counts those that
+    approach)."""
+    velocities = np.array([[[-1.0, 0.0], [1.0, 0.0]]])
+    for depth, passed in ((0.03, True), (0.05, False)):
+        places = np.array([[[3.0, 3.0], [4.0 - depth, 3.0]]])
+        about = {"lengths": np.full(2, 9.0), "radii": np.full(2, 0.5), "periodic": (True, True)}
+        frames = Frames(places, **about, velocities=velocities, engine=gp.TimeStepped(0.02))
+        assert judge_places(frames)[0].passed is passed
+        assert judge_places(Frames(places, **about, velocities=velocities))[0].passed is False

@@ -28,6 +28,7 @@ def runs(tmp_path_factory):
     return folder
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("suffix", ["mp4", "gif"])
 def test_a_film_has_a_picture_for_every_frame(runs, suffix):
     path = runs / f"discs.{suffix}"
@@ -37,6 +38,23 @@ def test_a_film_has_a_picture_for_every_frame(runs, suffix):
     assert images.shape == (5, *shape, 3)
     assert (images[0] != images[-1]).any()
     assert not list(runs.glob("*.partial"))
+
+
+def test_pictures_of_a_gif_are_written_when_they_are_drawn(tmp_path):
+    path, sizes = tmp_path / "a.gif", []
+    drawn = np.random.default_rng(1).integers(0, 256, (20, 40, 60, 3), dtype=np.uint8)
+    drawn[5] = drawn[4]
+
+    def pictures():
+        for picture in drawn:
+            yield picture
+            sizes.append(path.stat().st_size)
+
+    films._gif(path, pictures(), (60, 40), 25.0)
+    assert sizes[10] > 8 * sizes[1] / 2 and sizes[-1] < path.stat().st_size + 1
+    images = imageio.imread(path)
+    assert images.shape == drawn.shape
+    assert np.abs(images.astype(int) - drawn).mean() < 20.0  # 256 colours
 
 
 def test_a_film_of_a_part_has_its_frames(runs):
@@ -106,6 +124,7 @@ def test_labels_are_above_and_below_the_picture_and_the_time_runs(runs, scene):
     assert (legend_of(shown, "species") is None) == (scene == "spheres")
 
 
+@pytest.mark.interpreted
 def test_the_colours_of_species_are_named_by_what_differs(runs):
     with gp.open_trajectory(runs / "discs.nc") as trajectory:
         legend = legend_of(particles_of(trajectory), "species")

@@ -70,6 +70,7 @@ def test_a_picture_is_the_same_pixels_each_time(dimension):
     assert len(np.unique(image.reshape(-1, 3), axis=0)) > 30
 
 
+@pytest.mark.interpreted
 def test_colours():
     found = particles_of(state([[2.0, 2.0], [5.0, 5.0]], [1.0, 1.0], [8.0, 8.0], [(0.0, 0.0), (3.0, 4.0)]))
     assert found.speeds.tolist() == [0.0, 5.0]
@@ -84,12 +85,14 @@ def test_colours():
             colours_of(found, wrong)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("size", [(0, 10), (100,), "100x100", (100, 10**6), (30.5, 40)])
 def test_an_impossible_size_is_refused(size):
     with pytest.raises(gp.SceneError, match="size"):
         render(state([[2.0, 2.0]], [1.0], [8.0, 8.0]), size=size)
 
 
+@pytest.mark.interpreted
 def test_a_disc_at_a_periodic_face_is_drawn_on_both_sides():
     particle = gp.Particle((0.5, 4.0), (0.0, 0.0), 1.0)
     white = np.zeros((1, 3))
@@ -104,6 +107,7 @@ def test_a_disc_at_a_periodic_face_is_drawn_on_both_sides():
     assert areas[1] == pytest.approx(areas[0], rel=0.03)
 
 
+@pytest.mark.interpreted
 def test_nothing_is_drawn_beyond_a_periodic_face():
     scene = gp.Scene(gp.Container((12.0, 6.0), "periodic"), [gp.Species(20, 0.6, temperature=1.0)])
     image = render(gp.Simulation(scene, gp.EventDriven(search="direct")), size=(200, 104))
@@ -112,6 +116,7 @@ def test_nothing_is_drawn_beyond_a_periodic_face():
     assert (image[~inside] == 255).all() and (image[inside] < 255).any()
 
 
+@pytest.mark.interpreted
 def test_fixed_particles_are_grey_among_those_coloured_by_speed():
     fixed = gp.Particle((2.0, 4.0), (0.0, 0.0), 1.0, fixed=True)
     scene = gp.Scene(gp.Container((16.0, 8.0)), particles=[fixed, gp.Particle((12.0, 4.0), (1.0, 0.0), 1.0)])
@@ -135,6 +140,7 @@ def test_a_path_a_simulation_and_a_state_give_one_picture(tmp_path):
         gp.film(simulation, tmp_path / "a.mp4")
 
 
+@pytest.mark.thorough
 def test_the_sides_of_plates_are_drawn():
     plate = gp.Plate((4.0, 1.0, 1.0), ((0.0, 6.0, 0.0), (0.0, 0.0, 6.0)))
     scene = gp.Scene(gp.Container((8.0, 8.0, 8.0)), walls=[plate])
@@ -148,6 +154,7 @@ def test_the_sides_of_plates_are_drawn():
     assert 200 < (with_plate != without).any(axis=-1).sum() < 3000
 
 
+@pytest.mark.interpreted
 def test_the_scale_of_speeds_is_written_beside_its_colours():
     shown = state([[4.0, 4.0]], [1.0], [8.0, 8.0], [(3.0, 4.0)])
     row = render(shown, size=(600, 400), clock=True)[11].astype(float) / 255.0
@@ -159,6 +166,7 @@ def test_the_scale_of_speeds_is_written_beside_its_colours():
     assert legend_of(particles_of(shown), np.zeros((1, 3))) is None
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("camera", [(298.0, 24.0), (0.0, 90.0), (45.0, 0.0)])
 def test_the_bar_of_spheres_is_that_of_the_middle_of_the_container(camera):
     lengths, size = np.array([8.0, 6.0, 5.0]), (400, 300)
@@ -182,6 +190,7 @@ def test_a_sphere_that_reaches_out_of_the_container_is_completely_in_the_picture
     assert not (red[0].any() or red[-1].any() or red[:, 0].any() or red[:, -1].any())
 
 
+@pytest.mark.interpreted
 def test_spheres_inside_the_container_do_not_change_the_view():
     assert particles_of(state([[1.0, 4.0, 7.0]], [1.0], [8.0] * 3)).reach == 0.0
 
@@ -196,6 +205,8 @@ def test_spheres_are_seen_from_the_direction_of_the_camera():
     assert red[0] == 0 and red[1] > 50
 
 
+@pytest.mark.thorough
+@pytest.mark.interpreted
 @pytest.mark.parametrize(("name", "at"), [("y_low", 1.0), ("y_high", 5.0)])
 def test_a_face_that_vibrates_is_drawn_where_it_is(name, at):
     """Half a period after it was at the side of the container: twice the amplitude inwards."""
@@ -210,6 +221,7 @@ def test_a_face_that_vibrates_is_drawn_where_it_is(name, at):
         assert np.ptp(walls[..., 0]) == 8.0
 
 
+@pytest.mark.interpreted
 def test_a_piston_is_drawn_where_it_is(tmp_path):
     """It falls freely: no particle is in its way."""
     for lengths, sides in (((8.0, 6.0), 1), ((8.0, 6.0, 7.0), 4)):
@@ -227,6 +239,8 @@ def test_a_piston_is_drawn_where_it_is(tmp_path):
                 assert np.ptp(walls[..., 0]) == 8.0
 
 
+@pytest.mark.thorough
+@pytest.mark.interpreted
 def test_an_interior_wall_that_moves_is_drawn_where_it_is(tmp_path):
     """A particle at speed 1 pushes one of its own mass, which rests between it and another."""
     for lengths, sides in (((8.0, 6.0), 1), ((8.0, 6.0, 7.0), 4)):

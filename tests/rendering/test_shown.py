@@ -26,6 +26,7 @@ def pixels(page):
     return np.asarray(Image.open(io.BytesIO(base64.b64decode(content))))
 
 
+@pytest.mark.interpreted
 def test_a_picture_shows_itself_and_what_is_none_is_an_array():
     image = gp.render(gp.Simulation(BOX, gp.EventDriven()), size=(80, 60), clock=True)
     assert np.array_equal(np.asarray(Image.open(io.BytesIO(image._repr_png_()))), image)
@@ -33,6 +34,8 @@ def test_a_picture_shows_itself_and_what_is_none_is_an_array():
         assert other._repr_png_() is None
 
 
+@pytest.mark.thorough
+@pytest.mark.interpreted
 def test_a_scene_shows_its_particles_and_states_what_it_is():
     falling = replace(BOX, gravity=(0.0, -1.0), restitution=gp.Restitution(0.9))
     page = falling._repr_html_()
@@ -51,6 +54,7 @@ def test_a_scene_that_cannot_be_drawn_is_text(monkeypatch):
     assert BOX._repr_html_() == BOX.summary
 
 
+@pytest.mark.interpreted
 def test_a_simulation_shows_its_present_state():
     simulation = gp.Simulation(BOX, gp.EventDriven(), 1)
     before = pixels(simulation._repr_html_())
@@ -73,6 +77,7 @@ def test_a_film_shows_itself(tmp_path, monkeypatch):
     assert film._repr_html_().startswith("<a href=")
 
 
+@pytest.mark.interpreted
 def test_a_view_is_kept_once():
     """The text beside the page has not the page in it again."""
     simulation = gp.Simulation(BOX, gp.EventDriven(), 1)

@@ -4,6 +4,7 @@ import ast
 import copy
 import math
 import re
+import shutil
 import sys
 import tomllib
 from datetime import date
@@ -155,7 +156,7 @@ def test_the_last_file_that_holds_the_key_is_named(tmp_path):
         (("seed",), 10**400, "seed", "must be a finite number"),
         (("points",), "results/points\n", "points", "must match"),
         (("experiments", "gas\n"), GOOD["experiments"]["gas"], "experiments", "must match"),
-        (("animations",), {"gas\n": None}, "animations", "must match"),
+        (("animations",), {"gas\n": {}}, "animations", "must match"),
         ((*POINT, "radius"), 1e300, "experiments.gas.point.radius", "of a size from"),
         ((*POINT, "radius"), 1e-300, "experiments.gas.point.radius", "of a size from"),
         ((*POINT, "count"), 1e20, f"{ONE}].count", "must be at most"),
@@ -361,3 +362,28 @@ def test_numbers_with_an_exponent_are_read_as_the_documentation_says(tmp_path):
     read_numbers(config, [file])
     assert config["a"] == {"b": 1000.0, "c": "1e3", "d": [2, 0.01, "1e1", "x"]}
     assert (config["e"], config["given"], config["title"]) == (1500.0, 200.0, "1e3 discs")
+
+
+def test_null_removes_a_figure_and_a_partial_config_is_a_config(tmp_path, capsys):
+    """Of a config with a few keys, which is merged over the config of its folder."""
+    from gaspart.cli import main
+
+    shutil.copytree(ROOT / "config", tmp_path / "config")
+    tmp_path /= "config"
+    answers = {
+        "seed: 11": "54 figures",
+        "figures: {virial_discs: null}": "53 figures",
+        "figures: {virial_disc: null}": "unknown name to remove; did you mean virial_discs?",
+        "experiment: {virial_discs: {point: {count: 100}}}": "experiment = {'virial_discs'",
+        "animations: {gas: null}": "unknown name to remove",
+        "contianer: {lengths: [9.0, 9.0]}": "did you mean container?",
+    }
+    for text, answer in answers.items():
+        (tmp_path / "own.yaml").write_text(text)
+        main(["check", str(tmp_path / "own.yaml")])
+        assert answer in "".join(capsys.readouterr())
+    tmp_path = tmp_path.parent / "elsewhere"
+    tmp_path.mkdir()
+    (tmp_path / "own.yaml").write_text("seed: 11")
+    assert main(["check", str(tmp_path / "own.yaml")]) == 2
+    assert "has no config/config.yaml, over which others are laid" in capsys.readouterr().err

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from measured import COLUMNS, reference_values
 from reproduction.families.test_virial import equation_of_state
 
 import gaspart
 from gaspart import theory
-from gaspart.reproduction.measured import COLUMNS, reference_values
 from gaspart.reproduction.relaxation import relaxation
 
 

@@ -8,12 +8,12 @@ from pathlib import Path
 import jsonschema
 import pytest
 from malformed import SCENES
+from reference import in_words, pages
 
 from gaspart.reproduction.config import check, merged_with_default, scene_schema, schema
 from gaspart.reproduction.families.registry import families, settings
 from gaspart.reproduction.points import point_keys
 from gaspart.reproduction.points import points as config_keys
-from gaspart.reproduction.reference import in_words, pages
 from gaspart.yaml_text import read_yaml
 
 ROOT = Path(__file__).parents[2]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.reproduction.sweep_table import SweepTable
+from gaspart.reproduction.sweep_table import SweepTable, columns
 
 ETA, FACES = np.array([0.1, 0.2, 0.3]), ["x low", "x high"]
 ALONG = ("packing_fraction", "count")
@@ -13,6 +13,7 @@ TABLE = SweepTable(
         "Z": (ALONG, np.array([[1.2, 1.3], [1.6, 1.7], [2.4, 2.5]]), {"long_name": "Z", "units": "1"}),
         "Z_error": (ALONG, np.full((3, 2), 0.01)),
         "Z_theory": (ALONG, np.array([[1.25, 1.35], [1.65, 1.75], [2.45, 2.55]])),
+        "Z_theory_error": (ALONG, np.full((3, 2), 0.02)),
         "pressure": ((*ALONG, "face"), np.arange(12.0).reshape(3, 2, 2)),
         "pressure_error": ((*ALONG, "face"), np.ones((3, 2, 2))),
         "rdf": (("packing_fraction", "rdf_distance"), np.ones((3, 4))),
@@ -57,3 +58,15 @@ def test_names_that_the_table_lacks_are_refused():
         TABLE.plot("z")
     with pytest.raises(gp.SceneError, match="along = 'face': unknown name"):
         TABLE.plot("Z", along="face")
+
+
+def test_a_theory_has_its_uncertainty_and_source_and_is_no_observable():
+    assert TABLE.observables == ["Z", "pressure", "rdf"]
+    box = gp.Container((6.0, 6.0, 6.0), boundary="periodic")
+    simulation = gp.Simulation(gp.Scene(box, [gp.Species(40, 0.5, temperature=1.0)]), seed=1)
+    simulation.advance(8.0)
+    measured = gp.measure(simulation, "Z")
+    stated = dict(columns("Z", [measured, measured]))
+    assert list(stated) == ["Z", "Z_error", "Z_theory", "Z_theory_error"]
+    assert stated["Z_theory"].attrs["long_name"] == f"theory: {measured.attrs['source']}"
+    assert float(stated["Z_theory_error"]) == float(measured["compressibility_factor_theory_error"]) > 0.0

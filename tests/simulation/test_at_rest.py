@@ -16,6 +16,7 @@ def simulated(**scene):
     return gp.Simulation(gp.Scene(container=CONTAINER, species=species, **scene), seed=1)
 
 
+@pytest.mark.interpreted
 def test_a_gas_at_rest_warns():
     simulation = simulated()
     with pytest.warns(UserWarning, match="give a species a temperature or a speed"):
@@ -23,6 +24,7 @@ def test_a_gas_at_rest_warns():
     assert simulation.tally.collisions == simulation.tally.wall_hits.sum() == 0
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(
     "scene",
     [

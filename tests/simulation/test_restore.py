@@ -25,6 +25,7 @@ def bits(sim):
     return [array.tobytes() for array in arrays]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("change", "rule"),
     [
@@ -48,6 +49,7 @@ def test_another_simulation_is_refused_in_one_line(change, rule):
     assert "\n" not in str(caught.value) and bits(sim) == before
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(
     "other", [{"time_step": 0.02}, {"precision": "float32"}, {"rewind": False}, {"passes": 1}]
 )
@@ -76,6 +78,7 @@ SEARCH = {"search", "boxes_per_side", "origin", "skin", "per_side", "threads"}
 """What a checkpoint of another search does not have, or of another value."""
 
 
+@pytest.mark.thorough
 @pytest.mark.filterwarnings("ignore:gaspart")
 @pytest.mark.parametrize(
     ("engine", "tally"),

@@ -24,6 +24,7 @@ def test_same_seed_same_bits_and_another_seed_another_gas():
     assert not np.array_equal(ends[0], ends[3])
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("engine", [gp.EventDriven(), gp.TimeStepped(0.01)])
 @pytest.mark.parametrize(
     ("target", "key"),
@@ -56,6 +57,7 @@ def test_an_invalid_target_is_refused_and_changes_nothing(engine, target, key):
     sim.add_random(1, 0.1)  # which is refused after the first advance
 
 
+@pytest.mark.interpreted
 def test_the_time_stepped_engine_refuses_unreachable_targets():
     sim = gp.Simulation(gas(2, 20, 0.1, "wall"), gp.TimeStepped(0.01), seed=1)
     for target, key in (
@@ -95,6 +97,7 @@ def test_recording_changes_no_bit():
     assert np.allclose((r**2).sum(axis=1), 1.0, atol=1e-10)
 
 
+@pytest.mark.interpreted
 def test_replay_by_time_and_by_event():
     sim = gp.Simulation(gas(2, 10, 0.1, "wall"), gp.EventDriven(), seed=1)
     sim.advance(duration=4.0)
@@ -107,6 +110,7 @@ def test_replay_by_time_and_by_event():
     assert np.array_equal(events[-1].positions, sim.state.positions)
 
 
+@pytest.mark.interpreted
 def test_chosen_properties_at_any_time():
     sim = gp.Simulation(gas(2, 10, 0.1, "wall"), gp.EventDriven(), seed=1)
     sim.advance(duration=4.0)
@@ -126,6 +130,7 @@ def test_chosen_properties_at_any_time():
         sim.properties("time")
 
 
+@pytest.mark.interpreted
 def test_energies_of_spinning_and_fixed_particles():
     for spin in (2.0, (0.0, 0.0, 2.0)):
         d = 2 if isinstance(spin, float) else 3
@@ -138,6 +143,7 @@ def test_energies_of_spinning_and_fixed_particles():
         assert sim.state.kinetic_energy == 1.5 * d + 8.0
 
 
+@pytest.mark.interpreted
 def test_max_events_is_exact_and_tallies_can_be_reset():
     sim = gp.Simulation(gas(2, 50, 0.2), gp.EventDriven(), seed=1)
     sim.advance(max_events=123)
@@ -151,6 +157,7 @@ def test_max_events_is_exact_and_tallies_can_be_reset():
     assert sim.tally.collisions == 7
 
 
+@pytest.mark.interpreted
 def test_particles_are_added_before_the_start_only():
     sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0))), gp.EventDriven(), seed=1)
     sim.add(position=(5.0, 5.0), velocity=(1.0, 0.0), radius=1.0, mass=2.0)
@@ -165,6 +172,7 @@ def test_particles_are_added_before_the_start_only():
         sim.add_random(1, radius=0.3)
 
 
+@pytest.mark.interpreted
 def test_a_notebook_shows_what_a_simulation_is():
     simulation = gp.Simulation(gas(2, 20, 0.1), gp.EventDriven(), 1)
     simulation.advance(duration=2.0)
@@ -172,6 +180,7 @@ def test_a_notebook_shows_what_a_simulation_is():
     assert repr(simulation) == expected
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(
     ("arguments", "key"),
     [
@@ -210,12 +219,14 @@ def test_work_is_bounded_where_nothing_but_crossings_happens(search):
         assert np.array_equal(getattr(sim.state, name), getattr(whole.state, name)), name
 
 
+@pytest.mark.interpreted
 def test_work_is_counted_by_the_event_driven_engine_only():
     sim = gp.Simulation(gas(2, 5, 0.1), gp.TimeStepped(0.01), seed=1)
     with pytest.raises(gp.SceneError, match="max_work"):
         sim.advance(duration=1.0, max_work=5)
 
 
+@pytest.mark.interpreted
 def test_states_cannot_be_changed_and_copies_of_them_and_tallies_are_copies():
     sim = gp.Simulation(gas(2, 5, 0.1), gp.EventDriven(), seed=1)
     for state in (sim.initial_state, sim.state):

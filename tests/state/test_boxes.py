@@ -65,6 +65,7 @@ def test_the_number_of_boxes_follows_the_number_of_particles():
     assert np.prod(sides_for(dense)) < 1000
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("lengths", [(1e11, 1.0), (1e-6, 1e5), (1e10, 1.0, 1.0), (1e11, 1e11, 1.0)])
 def test_a_long_container_has_about_one_box_per_particle(lengths):
     scene = gp.Scene(gp.Container(lengths), [gp.Species(10, 0.1 * min(lengths), temperature=1.0)])

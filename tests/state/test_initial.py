@@ -175,6 +175,21 @@ def test_arrangements_that_share_a_lattice_do_not_mix():
         gp.Scene(gp.Container((8.0, 8.0, 8.0)), kinds)
 
 
+def test_random_particles_fill_the_space_between_a_lattice():
+    electrons = gp.Species(200, 0.02, temperature=1.0)
+    scatterers = gp.Species(160, 0.5, fixed=True, arrangement="lattice")
+    scene = gp.Scene(gp.Container((40.0, 20.0), ("wall", "periodic")), [electrons, scatterers])
+    state = initial_state(scene, seed=1)
+    assert np.array_equal(state.positions, initial_state(scene, seed=1).positions)
+    apart = np.abs(state.positions[:, None] - state.positions)
+    apart[..., 1] = np.minimum(apart[..., 1], 20.0 - apart[..., 1])
+    apart = np.linalg.norm(apart, axis=-1)
+    np.fill_diagonal(apart, np.inf)
+    assert (apart >= state.radii[:, None] + state.radii).all()
+    nearest = apart[200:, 200:].min(axis=1)
+    assert np.allclose(nearest, nearest[0]) and nearest[0] > 2.0  # all at one distance: a lattice
+
+
 # The deepest overlap of particles of any sizes.
 
 

@@ -76,6 +76,22 @@ def test_insertion_into_few_dilute_particles_has_no_correction():
     assert (np.abs(found) < 1e-8).all()
 
 
+def test_potentials_of_few_large_particles_among_many_small_ones():
+    """By hand, to second order in the density: mu_i = sum over j of 2 B_ij n_j, whatever the sizes; two large
+    particles in 250 small ones had negative numbers in the differences."""
+    sizes, counts, eta = np.array([1.0, 0.2]), np.array([2, 250]), 1e-7
+    density = eta * counts / (math.pi / 6.0 * float(counts @ sizes**3))
+    first = math.pi / 6.0 * np.add.outer(sizes, sizes) ** 3 @ density
+    np.testing.assert_allclose(theory.mixture_chemical_potentials(eta, 3, sizes, counts), first, rtol=1e-5)
+    dense = theory.mixture_chemical_potentials(0.168, 3, sizes, counts)
+    for factor in (0.5, 2.0):  # fractions, whatever their sum
+        same = theory.mixture_chemical_potentials(0.168, 3, sizes, factor * counts)
+        np.testing.assert_allclose(same, dense, rtol=1e-10)
+    many = theory.mixture_insertion_correction(0.168, 3, sizes, 1000 * counts)
+    few = theory.mixture_insertion_correction(0.168, 3, sizes, counts)
+    np.testing.assert_allclose(few, 1000.0 * many, rtol=1e-6)
+
+
 def binary(x, masses, sizes):
     """Hirschfelder, Curtiss and Bird (1954), 8.2-36, of spheres."""
     (m, n), (s, t) = masses, sizes

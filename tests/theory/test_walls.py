@@ -172,3 +172,17 @@ def test_a_slit_is_that_of_the_density_functional_within_the_uncertainty():
         mean = float(np.trapezoid(density, place)) / (width - 1.0)
         value, error = theory.wall_pressure(width, mean, 10**9, 3, 1)
         assert abs(value - density[0]) < 3.0 * error
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_pressure_of_a_rare_gas_is_that_of_points(dimension):
+    """P / (n k_B T) - 1 is 2^(d-1) eta (1 - 1/N) to first order, for any number of walls."""
+    volume = math.pi / 4.0 if dimension == 2 else math.pi / 6.0
+    for eta in (1e-9, 1e-6, 1e-4):
+        for axes in range(1, dimension + 1):
+            density = eta / volume
+            side = (50.0 / density) ** (1.0 / dimension)
+            value, error = theory.wall_pressure(side + 1.0, density, 50, dimension, axes)
+            first = 2.0 ** (dimension - 1) * eta * 0.98
+            assert value / density - 1.0 == pytest.approx(first, rel=0.04)
+            assert error < 1e-4 * first * density

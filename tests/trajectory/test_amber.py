@@ -42,6 +42,7 @@ def vectors(states, name):
     return np.pad(found, ((0, 0), (0, 0), (0, 3 - found.shape[2])))
 
 
+@pytest.mark.interpreted
 def test_mdanalysis_reads_it_as_it_is(written):
     from MDAnalysis.coordinates.TRJ import NCDFReader
 
@@ -143,6 +144,7 @@ def test_frames_with_a_step_are_read_one_by_one(written, monkeypatch, step):
     assert sorted(frames) == sorted(range(9)[::step])
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_rough_particles_have_spins_and_only_followed_particles_are_written(tmp_path, dimension):
     scene = replace(gas(dimension, 20, 0.2, "wall"), restitution=gp.Restitution(0.9, 0.5))
@@ -162,6 +164,7 @@ def test_rough_particles_have_spins_and_only_followed_particles_are_written(tmp_
     assert read_recipe(path) == Recipe(scene, ENGINE, 5, 4.0, 2.0, displacements=True, follow=3)
 
 
+@pytest.mark.interpreted
 def test_a_file_states_its_recipe(tmp_path):
     scene = mixture(3)
     engine = gp.TimeStepped(time_step=0.1, boxes_per_side=(3, 2, 2), precision="float32", rewind=False)

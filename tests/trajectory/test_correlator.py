@@ -56,6 +56,7 @@ def test_sums_are_those_of_all_pairs_of_samples(boundary, alike, fixed, displace
     assert len(found) == (3 if displacements else 1)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("engine", [gp.EventDriven(), gp.TimeStepped(time_step=0.05)], ids=lambda e: e.name)
 def test_a_run_accumulates_what_its_frames_give(tmp_path, engine):
     """To the rounding of the frames' velocities, which are float32."""
@@ -73,6 +74,7 @@ def test_a_run_accumulates_what_its_frames_give(tmp_path, engine):
     assert found.running == pytest.approx(expected.running, rel=1e-6, abs=1e-6)
 
 
+@pytest.mark.interpreted
 def test_frames_and_displacements_change_no_bit(tmp_path):
     files = [gp.run(**settings(), path=tmp_path / "a.nc")]
     files.append(gp.run(**settings(sample_interval=6.0), path=tmp_path / "b.nc"))
@@ -93,6 +95,7 @@ def test_frames_and_displacements_change_no_bit(tmp_path):
         assert np.array_equal(last[0][name], last[3][name])
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("samples", [0, 3, 13])
 def test_a_run_that_was_cut_short_continues_to_the_same_bytes(tmp_path, monkeypatch, samples):
     """Before the first sample, while the lags fill, and after; within an interval of frames."""

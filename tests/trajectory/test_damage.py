@@ -1,8 +1,10 @@
 """Damaged trajectories and checkpoints: each is detected, in one line, or costs work and nothing else."""
 
 import os
+import struct
 import subprocess
 import sys
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +13,7 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart.cli import main
-from gaspart.trajectory import recording
+from gaspart.trajectory import amber, recording
 from gaspart.trajectory.checkpoint import checkpoint_path, read_checkpoint
 from gaspart.trajectory.opening import TRAJECTORY, partial_path
 from gaspart.trajectory.recipe import read_recipe
@@ -87,6 +89,7 @@ def complains(capsys, *arguments):
     return code == 2
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("numbers", NUMBERS, ids=["sample", "search"])
 def test_damage_to_a_trajectory_is_detected(tmp_path, capsys, complete, numbers):
     path = tmp_path / "run.nc"
@@ -152,6 +155,53 @@ def test_edited_attributes_are_detected(tmp_path, capsys, complete, numbers):
             gp.open_trajectory(path)
 
 
+def with_checksums(content):
+    """`content` with the checksums of its header and frames as a forger would compute them."""
+    size = amber.frame_bytes(content[: amber._HEAD])
+    at = amber._value_at(content, "header_bytes")
+    header = bytearray(content[: int.from_bytes(content[at : at + 4], "big")])
+    frames, count = content[len(header) :], bytes(header[4:8])
+    at = amber._value_at(header, "header_crc32")
+    header[4:8] = header[at : at + 4] = bytes(4)
+    header[at : at + 4] = struct.pack(">I", zlib.crc32(header))
+    own, checked = zlib.crc32(header), b""
+    for n in range(len(frames) // size):
+        frame = frames[n * size : (n + 1) * size]
+        checked += frame[:-4] + amber._frame_checksum(frame, n, own)
+    header[4:8] = count
+    return bytes(header) + checked
+
+
+RENAMED = [
+    *("radius", "type", "time", "kinetic_energy", "collisions", "dissipated_energy"),
+    *("coordinates", "velocities", "checksum", "frame", "atom", "spatial", "face"),
+]
+
+
+@pytest.mark.parametrize("name", RENAMED)
+def test_a_forged_file_with_other_variables_than_its_recipe_is_one_line(tmp_path, capsys, complete, name):
+    assert with_checksums(complete) == complete
+    path, stored = tmp_path / "run.nc", struct.pack(">I", len(name)) + name.encode()
+    forged = complete.replace(stored, stored[:-1] + b"_")
+    assert forged != complete
+    path.write_bytes(with_checksums(forged))
+    (tmp_path / "out").mkdir()
+    for command in (
+        ["info"],
+        ["check"],
+        ["measure", "temperature"],
+        ["measure", "force"],
+        ["render"],
+        ["export"],
+    ):
+        arguments = [command[0], path, *command[1:]]
+        if command[0] in ("render", "export"):
+            arguments += ["-o", tmp_path / "out" / ("a.png" if command[0] == "render" else "a.data")]
+        refused = complains(capsys, *arguments)
+        assert refused or name == "face", command
+
+
+@pytest.mark.interpreted
 def test_exchanged_frames_and_frames_of_another_run_are_detected(tmp_path, capsys, complete):
     other = gp.run(SCENE, gp.EventDriven(), 2, 8.0, 0.5, tmp_path / "other.nc").read_bytes()
     path = tmp_path / "run.nc"
@@ -227,6 +277,7 @@ def header_ends(content, size):
     return np.array_equal(times, 0.5 * np.arange(17))
 
 
+@pytest.mark.interpreted
 def test_a_damaged_frame_stops_a_resumption_and_loses_nothing(tmp_path, complete, unfinished):
     path = tmp_path / "run.nc"
     partial, checkpoint = unfinished
@@ -255,6 +306,7 @@ def test_a_checkpoint_with_a_pickle_inside_is_not_loaded(tmp_path, unfinished):
     assert not (tmp_path / "owned").exists()
 
 
+@pytest.mark.interpreted
 def test_a_run_without_a_first_byte_is_named_as_such(tmp_path, capsys):
     (tmp_path / "run.nc.partial").touch()
     for command in ("resume", "info"):

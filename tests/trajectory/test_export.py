@@ -22,6 +22,7 @@ def state(request, tmp_path_factory):
         return folder, data.isel(frame=-1).load()
 
 
+@pytest.mark.thorough
 def test_gsd_is_read_back_and_nothing_overlaps(state):
     folder, last = state
     frames = read_frames(gp.export(folder / "run.nc", folder / "state.gsd"))
@@ -207,3 +208,9 @@ def test_an_xyz_file_of_another_program_is_not_replaced(state):
     path.write_text("1\nof mine\nA 0 0 0\n")
     with pytest.raises(gp.SceneError, match="not an XYZ file written by gaspart"):
         gp.export(folder / "run.nc", path, overwrite=True)
+
+
+def test_names_of_118_species_differ():
+    from gaspart.trajectory.export import _SYMBOLS
+
+    assert len(set(_SYMBOLS)) == len(_SYMBOLS) == 118 and _SYMBOLS[17] == "Ar"

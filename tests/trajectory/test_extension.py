@@ -42,7 +42,12 @@ class Cut(BaseException):
     """A kill."""
 
 
-@pytest.fixture(params=RUNS)
+CANONICAL = "event", "step", "DSMC"
+
+
+@pytest.fixture(
+    params=[pytest.param(name, marks=() if name in CANONICAL else pytest.mark.thorough) for name in RUNS]
+)
 def asked(request):
     scene, engine, options = RUNS[request.param]
     return (scene, engine, 5), options
@@ -60,6 +65,7 @@ def test_an_extended_run_has_the_bytes_of_one_in_one_go(tmp_path, asked, keep):
     assert path.read_bytes() == whole
 
 
+@pytest.mark.interpreted
 def test_it_goes_on_from_the_end_and_not_from_the_start(tmp_path, monkeypatch):
     """Only the new frames are computed."""
     path = gp.run(gas(2, 20, 0.3), gp.EventDriven(), 1, 2.0, 0.5, tmp_path / "run.nc", keep_checkpoint=True)
@@ -148,6 +154,7 @@ def test_what_cannot_be_extended_is_refused_in_one_line(tmp_path):
     refused("is unfinished: resume it without a duration")
 
 
+@pytest.mark.interpreted
 def test_a_file_of_another_version_is_not_extended(tmp_path, monkeypatch):
     path = gp.run(gas(2, 20, 0.3), gp.EventDriven(), 1, 2.0, 0.5, tmp_path / "run.nc")
     versions = run.provenance.versions()

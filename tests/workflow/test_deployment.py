@@ -98,6 +98,17 @@ def test_a_module_without_a_config_is_one_line(tmp_path):
     assert done.returncode == 2 and done.stdout.splitlines()[-1] == f"gaspart: config = {{}}: {stated}"
 
 
+def test_the_module_of_the_docs_beside_a_rule_all_of_its_own(tmp_path):
+    assert OWN
+    page = (ROOT / "docs/workflow.md").read_text(encoding="utf-8")
+    block = re.search(r'^    configfile: "settings.yaml"\n.*?(?=^\S)', page, re.MULTILINE | re.DOTALL)[0]
+    text = "\n".join(line.removeprefix("    ") for line in block.splitlines())
+    (tmp_path / "Snakefile").write_text(text.replace("/path/to/gaspart/Snakefile", str(ROOT / "Snakefile")))
+    config = {"title": "my gas", "seed": 1, "points": "results/points", **parse_yaml(OWN[1])}
+    write_yaml(tmp_path / "settings.yaml", config)
+    assert Workspace(tmp_path).plan(source=ROOT)["draw"] == 1
+
+
 STAGES = {"warm": 1, "simulate": 3, "measure": 1, "judge": 1, "draw": 1}
 
 

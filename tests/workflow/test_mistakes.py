@@ -94,7 +94,7 @@ def test_a_folder_without_a_config_is_one_line(fresh, tmp_path):
     assert result.returncode == 2
     assert result.stdout.splitlines()[-1] == (
         f"gaspart: folder = {str(elsewhere)!r}: has no config/config.yaml, over which others are laid: "
-        "run Snakemake in the project's folder"
+        "run this in the project's folder"
     )
 
 

@@ -23,7 +23,7 @@ from gaspart.reproduction import job_server
 from gaspart.reproduction.claims.table import fill_caption
 from gaspart.reproduction.claims.table import summary
 from gaspart.reproduction.config import check, explain_error
-from gaspart.reproduction.config import read_numbers
+from gaspart.reproduction.config import read_numbers, remove_null
 from gaspart.reproduction.families import registry
 from gaspart.reproduction.families.registry import caption, functions, of_claims, titles
 from gaspart.reproduction.points.modules import digest, kernel_digest
@@ -51,6 +51,7 @@ if workflow.is_main_process:
         print(f"gaspart: {explain_error(error, config, used)}", file=sys.stderr)
         sys.exit(2)
 else:
+    remove_null(config)
     read_numbers(config, files)
     POINTS = all_points(config)
 
@@ -65,7 +66,7 @@ pathvars:
     results=RESULTS,
 
 
-ANIMATIONS = [name for name, block in config.get("animations", {}).items() if block]
+ANIMATIONS = list(config.get("animations", {}))
 FILMS = {name: config["animations"][name].get("figure", "") for name in ANIMATIONS}  # beside which figure
 
 

@@ -11,7 +11,6 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -25,6 +24,7 @@ from gaspart.analysis.run import EQUILIBRATION, open_run
 from gaspart.engines import Engine, engine_to_dict, reference_engine
 from gaspart.engines.engine import Candidate
 from gaspart.errors import SceneError, SimulationError
+from gaspart.interruption import scratch_folder
 from gaspart.kernels.compile.cache import cache_directory
 from gaspart.kernels.compile.sources import source_digest
 from gaspart.simulation import Simulation
@@ -156,7 +156,7 @@ def _speed_of_sampling(target: Target, engine: Engine) -> float:
     """
     took, correlations = math.inf, target.correlations(engine)
     interval = correlations.lags * correlations.interval
-    with TemporaryDirectory() as folder:
+    with scratch_folder() as folder:
         for name in ("first.nc", "second.nc"):
             start = time.process_time()
             scheduled = _TIMED * interval, interval, correlations
@@ -192,7 +192,7 @@ def require_defined(target: Target) -> None:
     if target.correlated:  # the engines state these requirements
         return
     interval = _BRIEF * target.crossing / _TRIED
-    with TemporaryDirectory() as folder:
+    with scratch_folder() as folder:
         path = _make(f"{folder}/brief.nc", target, reference_engine(), (_TRIED * interval, interval, None))
         with open_trajectory(path) as trajectory:
             _estimate(trajectory, target)

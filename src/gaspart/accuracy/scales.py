@@ -14,13 +14,15 @@ from gaspart.scene.face_checks import attempt_rate, piston_end
 from gaspart.scene.faces import Open
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Particle, Species
-from gaspart.theory.rates import MEAN_SQUARE, rates, square_of
+from gaspart.theory.rates import MEAN_SQUARE, rate_at_scatterers, rates, square_of
 
 _COLLISIONS, _CROSSINGS = 200.0, 10.0
 """Minimum numbers of collisions and of container crossings per particle in the suggested duration."""
 _FRAMES = 1000  # largest suggested number of frames
-_KNUDSEN = 10.0
+KNUDSEN = 10.0
 """Mean free path, in lengths of the shortest side, beyond which a gas is free-molecular."""
+_DILUTE = 0.02
+"""Packing fraction below which particles are points in a column under gravity."""
 _KINDS = 200
 """Maximum number of kinds whose pairs are evaluated; each single particle is a kind."""
 _REDUCED = 1e5
@@ -40,6 +42,7 @@ class Scales:
     end : maximum suggested duration, if a piston moves at a prescribed speed.
     walled : True if any side is not periodic.
     attempts : particles of reservoirs that try to enter, per time.
+    fallen : temperatures at the start and after particles have fallen from random heights, if they differ.
     """
 
     thermal_speed: float
@@ -50,12 +53,13 @@ class Scales:
     end: float = math.inf
     walled: bool = False
     attempts: float = 0.0
+    fallen: tuple[float, float] | None = None
 
     @property
     def free_molecular(self) -> bool:
         """True if particles meet walls far more often than one another."""
         is_comparable = self.walled and math.isfinite(self.mean_free_path)
-        return is_comparable and self.collision_time > _KNUDSEN * self.crossing_time
+        return is_comparable and self.collision_time > KNUDSEN * self.crossing_time
 
     @property
     def event_time(self) -> float:
@@ -116,11 +120,43 @@ class Scales:
         lines = [f"scales: {', '.join(words)}; packing fraction {self.packing_fraction:.3g}"]
         if self.attempts:
             lines += [f"reservoirs: {self.attempts:.3g} particles try to enter per time"]
+        if self.fallen:
+            rule = "heats a dilute gas from the temperature {:.3g} to about {:.3g}".format(*self.fallen)
+            lines += [f"gravity: the fall from random heights {rule}"]
         lines += [f"suggested: {self.proposal}"]
         if self.thermal_speed and not 1.0 / _REDUCED < self.thermal_speed < _REDUCED:
             rule = "k_B is 1: a temperature is an energy, of one system of units with the masses and lengths"
             lines += [f"units: {rule} (docs/conventions.md)"]
         return lines
+
+
+def _fallen(scene: Scene) -> tuple[float, float] | None:
+    """Return the temperatures at the start and in equilibrium of a dilute gas under gravity.
+
+    The energy of a particle is conserved: d / 2 T + m g <z>. <z> is T / (m g) - h / (exp(m g h / T) - 1) in
+    equilibrium between walls at the distance h, and h / 2 at the start. None for a dense gas, if energy is
+    exchanged, or if particles differ or do not start at random positions everywhere.
+    """
+    pulls = [(axis, abs(pull)) for axis, pull in enumerate(scene.gravity or ()) if pull != 0.0]
+    kinds = scene.species
+    random = all(kind.arrangement == "random" and kind.region is None and not kind.fixed for kind in kinds)
+    kept = not (scene.dissipates or scene.faces or scene.walls or scene.thermostat or scene.particles)
+    if (
+        len(pulls) != 1
+        or pulls[0][0] not in scene.walled_axes
+        or not (kinds and random and kept and scene.alike)
+    ):
+        return None
+    (axis, pull), d = pulls[0], scene.dimension
+    lower, upper = scene.reach(scene.smallest_radius)
+    weight = kinds[0].mass * pull * (upper[axis] - lower[axis])
+    start = sum(kind.count * kind.initial_temperature(d) for kind in kinds) / max(1, scene.count)
+    energy, low, high = 0.5 * (d * start + weight), 0.0, start + weight
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        height = middle - weight / math.expm1(min(weight / middle, 700.0))
+        low, high = (middle, high) if 0.5 * d * middle + height < energy else (low, middle)
+    return (start, low) if low > 1.05 * start else None
 
 
 def scales(scene: Scene) -> Scales:
@@ -134,7 +170,7 @@ def scales(scene: Scene) -> Scales:
     side = min(scene.container.lengths)
     fall = math.sqrt(math.hypot(*scene.gravity) * side) if scene.gravity else 0.0
     fastest = max(thermal, fall)
-    frequency = collision_frequency(scene) or gas_rates.frequency
+    frequency = (collision_frequency(scene) or gas_rates.frequency) + rate_at_scatterers(scene)
     return Scales(
         thermal_speed=thermal,
         mean_free_path=gas_rates.speed / frequency if frequency else math.inf,
@@ -144,6 +180,7 @@ def scales(scene: Scene) -> Scales:
         end=0.5 * piston_end(scene),  # at this density no free volume remains
         walled=not all(scene.container.periodic),
         attempts=sum(attempt_rate(scene, number, face) for number, face in scene.faces_of(Open)),
+        fallen=_fallen(scene),
     )
 
 

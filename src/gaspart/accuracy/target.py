@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from gaspart.accuracy.scales import KNUDSEN
 from gaspart.analysis.diffusion import LINEAR_FROM
 from gaspart.analysis.impulses import USUAL_BINS, knows_energies, useful_impulses
 from gaspart.analysis.observables import (
@@ -32,7 +33,7 @@ from gaspart.state.initial import initial_state
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
 from gaspart.theory.conditions import Conditions, known_conditions
-from gaspart.theory.rates import rates
+from gaspart.theory.rates import rate_at_scatterers, rates
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.run_options import required_contents
 
@@ -115,13 +116,16 @@ class Target:
         """Collisions of a particle per time.
 
         The frequency is computed from theory, for a gas at its initial temperature, or for the column that
-        the gas forms under gravity. If the particles start at rest, it is measured in the second half of a
-        short run.
+        the gas forms under gravity. In a free-molecular gas between walls, it is the number of crossings of
+        the container per time. If the particles start at rest, it is measured in the second half of a short
+        run.
         """
-        at_start = rates(self.scene, dense=True).frequency
-        if at_start > 0.0:
+        frequency = rates(self.scene, dense=True).frequency + rate_at_scatterers(self.scene)
+        if frequency > 0.0:
             gas = self.conditions if self.scene.gravity else None
-            return at_start if gas is None or gas.columns is None else at_start * gas.quickened
+            frequency *= 1.0 if gas is None or gas.columns is None else gas.quickened
+            free = not self.scene.is_periodic and frequency * self.crossing * KNUDSEN < 1.0
+            return 1.0 / self.crossing if free else frequency
         simulation = Simulation(self.scene, reference_engine(), SEED, initial=self.start)
         times, counts = [0.0], [0.0]
         while times[-1] < _FALL * self.crossing and counts[-1] < _COLLIDED * self.scene.count:

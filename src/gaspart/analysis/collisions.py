@@ -66,7 +66,9 @@ def collision_data(
     -------
     Dataset
         Dimensions: collision, of (the two particles), and axis. `free_time` and `free_path` are NaN for the
-        first event of a particle. Attributes: scene, seed, versions, revision.
+        first event of a particle. Attributes: scene, seed, versions, revision, and `mean_free_path`, the path
+        of all particles in the record divided by the number of flights that collisions ended. The mean of
+        `free_path` in a short record is smaller, because long flights do not end in it.
 
     Raises
     ------
@@ -103,12 +105,14 @@ def collision_data(
         np.full(state.count, np.nan),
         state.velocities,
     )  # time and velocity after each particle's last event
-    parts, progress, alone = [], 0, 0
+    parts, progress, alone, flown, ended = [], 0, 0, 0.0, 0
     while progress < collisions:
         simulation.record_events = True  # starts a new, empty list
-        events = min(_CHUNK, max(collisions - progress, 1))
+        events, begun = min(_CHUNK, max(collisions - progress, 1)), simulation.time
         simulation.advance(max_events=events)
+        flown += _path_flown(simulation.events, last[1], begun, simulation.time)
         part, last = pair_rows(simulation.events, last, scene)
+        ended += int(np.isfinite(state.masses[part["particles"].values]).sum())
         parts.append(part)
         progress += part.sizes["collision"]
         alone = 0 if part.sizes["collision"] else alone + events
@@ -119,9 +123,22 @@ def collision_data(
         seed=json.dumps(seed),
         equilibration=equilibration,
         duration=simulation.time - equilibration,
+        mean_free_path=flown / ended,
         gaspart_revision=git_revision(),
         **versions(),
     )
+
+
+def _path_flown(events: dict, velocities: np.ndarray, begun: float, end: float) -> float:
+    """Return the total path of all particles between two times, from the velocities (N, d) at the first."""
+    inside, every = events["particles"] >= 0, np.arange(len(velocities))
+    times = np.broadcast_to(events["time"][:, None], inside.shape)[inside]
+    index = np.concatenate([every, events["particles"][inside], every])
+    when = np.concatenate([np.full(len(every), begun), times, np.full(len(every), end)])
+    speed = np.sqrt((np.concatenate([velocities, events["velocities"][inside], velocities]) ** 2).sum(axis=1))
+    order = np.argsort(index, kind="stable")
+    flights = np.diff(when[order]) * speed[order][:-1]
+    return float(flights[np.diff(index[order]) == 0].sum())
 
 
 def record_collisions(

@@ -136,9 +136,17 @@ def walled_axis_of(scene: Scene, name: str | None) -> int:
 
 def elastic(scene: Scene, selection: Selection) -> None:
     """Require contacts that conserve energy."""
-    law = scene.restitution
-    if law is not None and law.normal < 1.0:
-        raise SceneError("restitution.normal", law.normal, "a gas that loses energy is in no equilibrium")
+    if scene.restitution is not None:
+        scene.restitution.refuse_loss("a gas that loses energy is in no equilibrium")
+
+
+def fluctuates_or_shears(scene: Scene, selection: Selection) -> None:
+    """Require a sheared gas, or contacts that conserve energy.
+
+    Transport coefficients follow from fluctuations only in equilibrium.
+    """
+    if scene.shear_rate is None:
+        elastic(scene, selection)
 
 
 def homogeneous(scene: Scene, selection: Selection) -> None:
@@ -248,9 +256,9 @@ def has_species(scene: Scene, selection: Selection) -> None:
 
 
 def free_axis(scene: Scene, selection: Selection) -> None:
-    """Raise SceneError unless at least one axis is periodic."""
-    if not any(scene.container.periodic):
-        rule = "has no periodic axis: displacements between walls are bounded, and there is no D"
+    """Raise SceneError unless at least one axis is periodic, or the user passes a lag."""
+    if selection.get("lag") is None and not any(scene.container.periodic):
+        rule = "has no periodic axis: displacements between walls are bounded, and there is no D but at a lag"
         raise SceneError("container.boundary", scene.container.boundary, rule)
 
 
@@ -306,7 +314,7 @@ def has_axis(scene: Scene, selection: Selection) -> None:
         one_of("axis", selection["axis"], tuple("xyz"[: scene.dimension]))
 
 
-def require_elastic_periodic(scene: Scene, selection: Selection) -> None:
+def require_stress(scene: Scene, selection: Selection) -> None:
     """Raise SceneError unless the container is periodic and only collisions change velocities."""
     StressTally().check(scene)
 

@@ -32,6 +32,8 @@ _WITHIN = 2.0
 """Maximum change of the slope, in standard errors, at which the slope counts as constant."""
 _SLOW = 0.06
 """Maximum relative change of the slope that is attributed to the slow tail of the correlations."""
+_BELOW = 3.0
+"""Standard errors below 0 at which a value has a remark."""
 _TAIL = 1.0 / (math.sqrt(2.0) - 1.0)
 """Sum of all further changes of the slope divided by its last change, if each lag is twice the previous one.
 The missing part of D decreases with the lag as t^(-1/2).
@@ -74,15 +76,16 @@ def diffusion_coefficient(
     Observable
         D in [length^2/time]. The result is a scalar for a periodic container. For a container with walls, or
         with `per_axis`, it has one value for each periodic axis, (axis,). Along an axis with walls
-        displacements are bounded, so D does not exist. The variable `lags` contains the first and the last
+        displacements are bounded, so D exists at a `lag` only; between walls along all axes it has one value
+        for each. The variable `lags` contains the first and the last
         lag of the slope.
 
     Raises
     ------
     SceneError
-        If there is no periodic axis, if the run is too short, or if it has too few frames. If no lag is
-        passed, also if the slope still changes at the longest lags, and for discs whose total momentum
-        persists for more than 12 collisions. The squared displacement of such discs grows as t ln t.
+        If there is neither a periodic axis nor a lag, if the run is too short, or if it has too few frames.
+        If no lag is passed, also if the slope still changes at the longest lags, and for discs whose total
+        momentum persists for more than 12 collisions. The squared displacement of such discs grows as t ln t.
 
     Notes
     -----
@@ -121,8 +124,9 @@ def diffusion_coefficient(
             require_spheres(run, lasting)
         of_mean = lasting & (run.about == FLOW)
         groups = groups_of(run, about=of_mean, chosen=chosen, stride=stride)
-        slopes = _slopes(groups, lags)[..., run.periodic]
-        along = axes_of(run, run.periodic)
+        axes = run.periodic if run.periodic.any() else ~run.periodic  # none is periodic: at a lag only
+        slopes = _slopes(groups, lags)[..., axes]
+        along = axes_of(run, axes)
         if run.periodic.all() and not per_axis:
             slopes, along = slopes.mean(axis=2), {}
         times = groups.interval * np.array(lags)
@@ -161,9 +165,10 @@ def _with_lags(result: Observable, ends: np.ndarray, rate: float) -> Observable:
     """Add to a result the first and the last lag of its slope."""
     collisions = " to ".join(f"{rate * end:.3g}" for end in ends)
     result.attrs["lags"] = ends
-    result.attrs["note"] = (
-        f"by the slope between the lags {ends[0]:.4g} and {ends[1]:.4g}, {collisions} collisions"
-    )
+    note = f"by the slope between the lags {ends[0]:.4g} and {ends[1]:.4g}, {collisions} collisions"
+    if (result.estimate < -_BELOW * result.error).any():
+        note += "; particles that are bound, as in a crystal, have no D: such a slope may be below 0"
+    result.attrs["note"] = note
     return result
 
 

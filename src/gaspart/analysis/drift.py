@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -36,6 +36,10 @@ SIGNIFICANT = 3.0
 """Coefficient, in standard errors, above which a quantity drifts. By chance one of 370 coefficients exceeds
 it, if its error is known; most errors are upper bounds.
 """
+_EXCESS = 2.0
+"""Standard deviation of the slow modes of grains and driven flows, in units of its value in equilibrium."""
+_BLOCKS = 16
+"""Number of blocks of a series with local fluctuations."""
 _MOST_FRAMES = 400
 """Maximum number of frames that a test reads."""
 _DEGREES = np.array([1, 2, 3])
@@ -56,6 +60,8 @@ class Series:
     relaxations : length of the run divided by the longest relaxation time.
     radians : phase through which the slowest oscillation passes in the run.
     thermal : True if `scatter` is an upper bound for all fluctuations.
+    local : True if all other fluctuations are faster than a block. Differences of consecutive blocks show
+        them. A sudden change, as of a crystal that melts, adds little to these differences.
     """
 
     values: np.ndarray
@@ -63,6 +69,7 @@ class Series:
     relaxations: float = math.inf
     radians: float = math.inf
     thermal: bool = False
+    local: bool = False
 
     @property
     def slow_variances(self) -> np.ndarray:
@@ -119,7 +126,11 @@ def trends(source: Source, start: float | None = None) -> dict[str, Trend]:
             return {}
         stride = -(-len(run.time) // _MOST_FRAMES)
         run = Run(run.scene, run.time[::stride], run.data.isel(frame=slice(None, None, stride)))
-        tested = {name: trend_of(series) for name, series in _series(run).items()}
+        excess = 1.0 if is_thermal(run.scene) else _EXCESS
+        tested = {
+            name: trend_of(replace(series, scatter=excess * series.scatter))
+            for name, series in _series(run).items()
+        }
     return {name: trend for name, trend in tested.items() if trend is not None}
 
 
@@ -131,6 +142,9 @@ def trend_of(series: Series) -> Trend | None:
     fit = np.polynomial.Legendre.fit(np.arange(len(values)), values, int(_DEGREES[-1]))
     rest = correlated_mean(values - fit(np.arange(len(values))), fitted=len(fit.coef)).estimate
     seen, freedom, slow = rest.error**2, np.full(3, rest.freedom), series.slow_variances
+    if series.local:
+        steps = np.diff([block.mean() for block in np.array_split(values, _BLOCKS)])
+        seen, freedom = 0.5 * float((steps**2).mean()) / _BLOCKS, np.full(3, 2.0 / 3.0 * len(steps))
     freedom[slow >= seen] = math.inf
     variances = np.maximum(seen, slow)
     if series.thermal:
@@ -157,7 +171,9 @@ def _series(run: Run) -> dict[str, Series]:
         series["the number of particles"] = Series(count, math.sqrt(number), relaxations, thermal=thermal)
     scatter = exchange_scatter(scene, number) * float(energy.mean())
     swaying = radians if any(scene.gravity or ()) or scene.moving_axes else math.inf
-    kinetic = Series(energy, scatter, relaxations, swaying, thermal and scatter > 0.0)
+    # energy that contacts take and nothing returns only falls
+    known = thermal if scatter > 0.0 else scene.dissipates
+    kinetic = Series(energy, scatter, relaxations, swaying, known)
     series["the kinetic energy of a particle"] = kinetic
     if run.has_states:
         series |= _of_particles(run, slow, number, thermal)
@@ -166,7 +182,8 @@ def _series(run: Run) -> dict[str, Series]:
         rate = per_time / np.sqrt(0.5 * (energy[1:] + energy[:-1]))
         relative = 4.0 / number if scene.mixture is not None else 1.0 / math.sqrt(number)
         title = "the collision rate divided by the thermal speed"
-        series[title] = Series(rate, relative * float(rate.mean()), relaxations, radians)
+        scatter, local = relative * float(rate.mean()), scene.mixture is not None
+        series[title] = Series(rate, scatter, relaxations, radians, local=local)
     return series
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import xarray as xr
 
@@ -203,8 +205,8 @@ def _energies(run: Run) -> list[np.ndarray]:
     """
     if run.is_subset:
         return []
-    energy = 0.5 * (_about_faces(run) ** 2).sum(axis=2) * run.masses[run.moving]
-    return _with_moments(run, energy)
+    masses = run.masses[run.moving]
+    return _with_moments(run, lambda part: 0.5 * (_about_faces(part) ** 2).sum(axis=2) * masses)
 
 
 def _momenta(run: Run, axis: int) -> list[np.ndarray]:
@@ -215,7 +217,8 @@ def _momenta(run: Run, axis: int) -> list[np.ndarray]:
     """
     if run.is_subset:
         return []
-    return _with_moments(run, _about_faces(run)[..., axis] * run.masses[run.moving])
+    masses = run.masses[run.moving]
+    return _with_moments(run, lambda part: _about_faces(part)[..., axis] * masses)
 
 
 def _about_faces(run: Run) -> np.ndarray:
@@ -229,15 +232,19 @@ def _about_faces(run: Run) -> np.ndarray:
     return np.asarray(run.velocities[:, run.moving] - frame)
 
 
-def _with_moments(run: Run, carried: np.ndarray) -> list[np.ndarray]:
+def _with_moments(run: Run, carried: Callable[[Run], np.ndarray]) -> list[np.ndarray]:
     """Sum an amount that particles carry, and its first moments across the thermal faces.
 
-    The amounts have the shape (T, M); each sum has the shape (T,). For the moments, positions are relative to
-    the middle of the container.
+    `carried` returns the amounts (T, M) in a part of the run; each sum has the shape (T,). For the moments,
+    positions are relative to the middle of the container.
     """
-    positions = run.positions[:, run.moving] - 0.5 * np.array(run.scene.container.lengths)
     across = sorted({number // 2 for number in run.scene.thermal_numbers})
-    return [carried.sum(axis=1), *((carried * positions[..., axis]).sum(axis=1) for axis in across)]
+    sums = []
+    for _, part in run.parts():
+        amounts = carried(part)
+        places = part.positions[:, run.moving] - 0.5 * np.array(run.scene.container.lengths)
+        sums.append([amounts.sum(axis=1), *((amounts * places[..., axis]).sum(axis=1) for axis in across)])
+    return list(np.concatenate(sums, axis=1))
 
 
 # Particles that cross a plane in the container, or an opening between interior walls in the plane.
@@ -304,7 +311,8 @@ def particle_flux(
         number = walled_axis_of(run.scene, axis)
         position = 0.5 * run.scene.container.lengths[number] if at is None else float(at)
         members = np.flatnonzero(run.moving)[select_particles(run, species, None)]
-        beyond = (run.positions[:, members, number] > position).sum(axis=1) - _entered_beyond(run, number)
+        there = [(part.positions[:, members, number] > position).sum(axis=1) for _, part in run.parts()]
+        beyond = np.concatenate(there) - _entered_beyond(run, number)
         if len(beyond) <= LEAST_INTERVALS:
             raise SceneError("frames", len(beyond), f"an error needs {LEAST_INTERVALS + 1} or more")
         estimate = correlated_mean(np.diff(beyond) / np.diff(run.time), LEAST_INTERVALS).estimate

@@ -424,10 +424,13 @@ def stores(run: Run) -> np.ndarray:
     """
     if not run.has_states:
         return np.zeros((run.dimension, len(run.time), 0))
-    velocities, masses = run.velocities[:, run.moving], run.masses[run.moving]
-    centred = run.positions[:, run.moving] - 0.5 * np.array(run.scene.container.lengths)
-    momentum = np.einsum("tnd,n->dt", velocities, masses)
-    return np.stack([momentum, np.einsum("tnd,tnd,n->dt", centred, velocities, masses)], axis=2)
+    moving, masses, sums = run.moving, run.masses[run.moving], []
+    for _, part in run.parts():
+        velocities = part.velocities[:, moving]
+        centred = part.positions[:, moving] - 0.5 * np.array(run.scene.container.lengths)
+        momentum = np.einsum("tnd,n->dt", velocities, masses)
+        sums.append(np.stack([momentum, np.einsum("tnd,tnd,n->dt", centred, velocities, masses)], axis=2))
+    return np.concatenate(sums, axis=1)
 
 
 def group_count(run: Run) -> int:

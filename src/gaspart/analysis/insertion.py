@@ -272,6 +272,9 @@ def chemical_potential(source: Source, trials: int = TRIALS, start: float | None
         edges = np.append(time, 2.0 * time[-1] - time[-2])
         about = describe("chemical_potential", run)
         tried = [_insert(run, frames, hosts, trials) for hosts in _hosts(run)]
+        if not any(counts["successes"] for _, counts in tried):
+            rule = f"of {trials} places in each of {len(time)} frames none was free: a fluid too dense"
+            raise SceneError("packing_fraction", run.scene.packing_fraction, rule)
         if run.scene.alike:
             series, counts = tried[0]
             result = scalar("chemical_potential", series, edges, **about)
@@ -300,8 +303,8 @@ def _insert(run: Run, frames: slice, hosts: Hosts, trials: int) -> tuple[np.ndar
     )
     chance = float(result.probability.mean())
     if chance == 0.0:
-        rule = f"of {trials} places in each of {len(result.share)} frames none was free: a fluid too dense"
-        raise SceneError("packing_fraction", run.scene.packing_fraction, rule)
+        counts = dict.fromkeys(_MEANINGS, np.nan) | {"probability": 0.0, "resolution": result.resolution}
+        return np.full(len(result.share), np.nan), counts | {"successes": 0, "frames_with_success": 0}
     series = -np.log(chance) - (result.probability / chance - 1.0)  # first-order expansion
     error = correlated_mean(series, LEAST_INTERVALS).estimate.error
     if not _is_sampled(result.probability, error):
@@ -333,7 +336,10 @@ def _is_sampled(probability: np.ndarray, error: float) -> bool:
 
 def _with_note(result: Observable) -> Observable:
     """Add a note to a result whose error is unknown."""
-    if np.isnan(result.error).any():
+    unknown = np.isnan(result.estimate.values)
+    if unknown.any():
+        result.attrs["note"] = f"no place was free for species {', '.join(map(str, np.flatnonzero(unknown)))}"
+    elif np.isnan(result.error).any():
         frames = int(np.min(result["frames_with_success"].values))
         result.attrs["note"] = (
             f"probably too large, by an unknown error: a place was free in {frames} frames, and rarer frames "
@@ -344,14 +350,21 @@ def _with_note(result: Observable) -> Observable:
 
 def _of_species(run: Run, tried: list[tuple[np.ndarray, dict[str, float]]], about: dict) -> Observable:
     """Return the result for a mixture."""
-    means = [correlated_mean(series, LEAST_INTERVALS).estimate for series, _ in tried]
-    values, errors, freedoms = np.array([[mean.value, mean.error, mean.freedom] for mean in means]).T
+    values, errors, freedoms = np.array([_mean(series) for series, _ in tried]).T
     errors[[np.isnan(each["probability_error"]) for _, each in tried]] = np.nan
     along = {"species": (np.unique(run.species), {"long_name": "number of the species"})}
     result = observable("chemical_potential", along, values, errors, **about)
     result = with_freedom(result, freedoms)
     counts = {name: np.array([each[name] for _, each in tried]) for name in tried[0][1]}
     return _with_note(result.assign(_variables(("species",), counts)))
+
+
+def _mean(series: np.ndarray) -> tuple[float, float, float]:
+    """Return mean, error and degrees of freedom of a series; NaN if it is unknown."""
+    if np.isnan(series).any():
+        return np.nan, np.nan, np.nan
+    mean = correlated_mean(series, LEAST_INTERVALS).estimate
+    return mean.value, mean.error, mean.freedom
 
 
 _MEANINGS = {

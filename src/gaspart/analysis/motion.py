@@ -38,6 +38,8 @@ from gaspart.trajectory.correlator import SUMS
 # .. [1] V. Calandrini and others, Collection SFN 12, 201 (2011).
 
 
+_FEW_LAGS = 5
+"""Number of lags below which a curve has a remark."""
 _BLOCK = 256
 """Number of coordinates whose Fourier transforms are computed at once."""
 _DIRECT = 1e-4
@@ -305,7 +307,11 @@ def mean_squared_displacement(
         )
         time = groups.interval * np.arange(number)
         values, errors = means_of(curves if per_axis else curves[:, 0], groups.sizes)
-        return _displacement(run, time, values, errors, len(curves) - 1.0)
+        result = _displacement(run, time, values, errors, len(curves) - 1.0)
+        if lags is None and number < _FEW_LAGS:
+            rule = "each block of the run must contain them; store frames more often, or make the run longer"
+            result.attrs["note"] = f"{number} lags: {rule}"
+        return result
 
 
 def velocity_autocorrelation(

@@ -274,14 +274,27 @@ def _values(result: Observable, name: str) -> list[str]:
     """Return each value with its uncertainty and, if it exists, its theory."""
     estimate, lines = result.estimate, []
     errors = np.broadcast_to(result.error.values, estimate.shape)
-    theory = np.full(estimate.shape, np.nan) if result.theory is None else result.theory.values
+    theory = unsure = np.full(estimate.shape, np.nan)
+    if result.theory is not None:
+        theory, unsure = result.theory.values, result[f"{estimate.name}_theory_error"].values
     for index in np.ndindex(estimate.shape):
         indices = zip(estimate.dims, index, strict=True)
         words = [name, *(str(result[dim].values[n]) for dim, n in indices if dim in result.coords)]
-        expected = f", theory {theory[index]:.4g}" if np.isfinite(theory[index]) else ""
+        expected = _theory_text(float(theory[index]), float(unsure[index]))
         value = concise(float(estimate.values[index]), float(errors[index]))
         lines.append(f"{', '.join(words)} = {value}{expected}")
     return lines
+
+
+_SHOWN = 5e-4
+"""Relative uncertainty of a theory below which a summary does not show it."""
+
+
+def _theory_text(theory: float, error: float) -> str:
+    """Return a theory with its uncertainty as a part of a summary."""
+    if not np.isfinite(theory):
+        return ""
+    return f", theory {concise(theory, error) if error > _SHOWN * abs(theory) else format(theory, '.4g')}"
 
 
 def _embed_plot(result: Observable) -> str:

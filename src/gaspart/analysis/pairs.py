@@ -246,8 +246,8 @@ def rdf(
 
     If the run has stored pair impulses, and each bin consists of an equal number of stored shells, g(r) is
     more accurate than from counts alone (`gaspart.analysis.pairs`). The attribute `estimator` names the
-    method. A theoretical value exists only in the first bins beyond the diameter. It is the contact value
-    that corresponds to the pressure of N particles. The error of an empty bin is NaN, or 0 at distances at
+    method. The theoretical value is the mean over each bin of the approximation of Verlet and Weis, for
+    spheres in the fluid phase. The error of an empty bin is NaN, or 0 at distances at
     which hard particles would overlap.
 
     References

@@ -84,12 +84,19 @@ class Run:
 
     def increments(self, name: str) -> np.ndarray:
         """Compute the growth of a counter in each interval, shape (T - 1, ...)."""
-        return np.diff(self.data[name].values, axis=0)
+        return np.diff(self._counter(name), axis=0)
 
     def growth(self, name: str) -> np.ndarray:
         """Compute the growth of a counter per time."""
-        first, last = self.data[name].values[[0, -1]]
+        first, last = self._counter(name)[[0, -1]]
         return (last - first) / (self.time[-1] - self.time[0])
+
+    def _counter(self, name: str) -> np.ndarray:
+        if name not in self.data:
+            raise SceneError(
+                name, "missing", "the engine does not tally it, or an older version wrote the file"
+            )
+        return np.asarray(self.data[name].values)
 
     def block_length(self, blocks: int) -> int:
         """Return the number of frames in each of `blocks` equal blocks, after the first frame.
@@ -359,12 +366,26 @@ class Run:
     def fluid(self) -> Gas | None:
         """Gas of the scene, if the scene has at least two particles in a periodic container.
 
-        None otherwise, and outside the density range of the fluid's equation of state.
+        None otherwise, and unless the particles are a fluid in the density range of its equation of state.
         """
         gas = self.scene.gas
         if gas is None or gas.count < 2 or not self.periodic.all():
             return None
-        return gas if gas.packing_fraction <= theory.HIGHEST_PACKING_FRACTION[gas.dimension] else None
+        return gas if self._is_fluid else None
+
+    @property
+    def _is_fluid(self) -> bool:
+        """True if the density is in the range of the fluid, and the run does not begin in a crystal.
+
+        Above the freezing density a crystal does not melt, whereas a compressed fluid remains one for long.
+        """
+        scene = self.scene
+        if scene.packing_fraction > theory.HIGHEST_PACKING_FRACTION[scene.dimension]:
+            return False
+        lattice = any(kind.arrangement == "lattice" for kind in scene.species)
+        given = "initial_positions" in self.data
+        freezing = theory.coexistence_packing_fractions(scene.dimension)[0]
+        return scene.packing_fraction <= freezing or not (lattice or given)
 
     @property
     def mixture(self) -> Mixture | None:
@@ -372,11 +393,7 @@ class Run:
         mixture = self.scene.mixture
         if mixture is None or not self.periodic.all() or self.count < 2:
             return None
-        return (
-            mixture
-            if mixture.packing_fraction <= theory.HIGHEST_PACKING_FRACTION[mixture.dimension]
-            else None
-        )
+        return mixture if self._is_fluid else None
 
     @property
     def moving_fluid(self) -> Gas | None:

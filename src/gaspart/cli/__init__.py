@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import errno
+import logging
 import os
 import sys
 import warnings
@@ -69,10 +70,16 @@ def main(arguments: Sequence[str] | None = None, without_output: bool = False) -
         set_note("")
         try:
             words = sys.argv[1:] if arguments is None else arguments
-            options, unknown = _parser(words).parse_known_args(words)
+            try:
+                options, unknown = _parser(words).parse_known_args(words)
+            except SystemExit:  # after --help or --version
+                if without_output:
+                    raise OSError(errno.EBADF, os.strerror(errno.EBADF)) from None
+                raise
             if unknown:
                 raise UsageError(_describe_unrecognised(unknown, options.parser))
-            if without_output and getattr(options, "output", None) is None and words[0] not in _WRITE_FILES:
+            writes_file = words[0] in _WRITE_FILES and not getattr(options, "list", False)
+            if without_output and getattr(options, "output", None) is None and not writes_file:
                 raise OSError(errno.EBADF, os.strerror(errno.EBADF))
             options.command(options)
         finally:
@@ -138,7 +145,11 @@ def _complain(text: str, code: int) -> int:
 
 
 def show_warnings_in_a_line() -> None:
-    """Print warnings of gaspart in one line, without Python's source line, until the process ends."""
+    """Print warnings of gaspart in one line, without Python's source line, until the process ends.
+
+    Remarks of matplotlib, such as one about a home folder that cannot be written, are not printed.
+    """
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
     print_with_place = warnings.showwarning
 
     def show(message: Warning | str, *location: object, **more: object) -> None:

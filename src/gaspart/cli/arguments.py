@@ -42,6 +42,10 @@ class Parser(argparse.ArgumentParser):
         """Raise UsageError with a message of argparse."""
         raise UsageError(message + (f"; see `{self.prog} --help`" if "are required" in message else ""))
 
+    def _print_message(self, message: str, file: Any = None) -> None:
+        """Print a text; argparse itself ignores errors, such as that of a full disk."""
+        print(message, end="", file=file)
+
     def options(self) -> list[str]:
         """Return all options, such as --seed."""
         return [option for action in self._actions for option in action.option_strings]

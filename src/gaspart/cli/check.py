@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import fields
 from pathlib import Path
 
 from gaspart.cli.arguments import (
@@ -17,9 +18,11 @@ from gaspart.cli.arguments import (
 )
 from gaspart.cli.progress import waiting
 from gaspart.errors import SceneError
+from gaspart.errors.words import meant
 from gaspart.scene.scene import Scene
 from gaspart.yaml_text import read_yaml
 
+_SCENE = [field.name for field in fields(Scene)]
 _EXAMPLES = """examples:
   gaspart check scene.yaml                   # validity, placement
   gaspart check config/paper.yaml            # every point of every grid
@@ -52,6 +55,10 @@ def add_check(parser: Parser) -> None:
     add("--origin", type=_corner, metavar="X,Y[,Z]", help=text)
     text = "time of a step (GSD) or between frames (netCDF, XYZ)"
     add("--time-step", type=real(above=0.0), metavar="T", help=text)
+    text = (
+        "a force, a thermostat or inelastic contacts may change the energy of a trajectory of another program"
+    )
+    add("--driven", action="store_true", default=None, help=text)
     add("--tolerance", type=real(least=0.0), metavar="X", help="allowed overlap, as a fraction of a diameter")
 
 
@@ -80,7 +87,7 @@ def _check(options: argparse.Namespace) -> None:
 def _is_healthy(options: argparse.Namespace, file: str) -> bool:
     """Print the checks of a file; return False if a check fails."""
     if Path(file).suffix in (".yaml", ".yml"):
-        for key in ("radius", "lengths", "boundary", "origin", "time_step"):
+        for key in ("radius", "lengths", "boundary", "origin", "time_step", "driven"):
             if getattr(options, key) is not None:
                 raise SceneError(key, getattr(options, key), "has a meaning for trajectories only")
         checks, scales = _written(file, options.tolerance)
@@ -112,7 +119,7 @@ def _check_frames(file: str, options: argparse.Namespace) -> tuple[str, list]:
     frames = read_frames(file, **stated)
     kind = "discs" if frames.dimension == 2 else "spheres"
     title = f"{file}: {frames.count} {kind} in {len(frames.positions)} frames"
-    return title, judge(frames, options.tolerance)
+    return title, judge(frames, options.tolerance, bool(options.driven))
 
 
 def _written(file: str, tolerance: float | None) -> tuple[list, list[str]]:
@@ -121,6 +128,6 @@ def _written(file: str, tolerance: float | None) -> tuple[list, list[str]]:
     from gaspart.inspection.checks import judge_scene
 
     content, path = read_yaml(file), Path(file)
-    if isinstance(content, dict) and ("experiments" in content or "figures" in content):
+    if isinstance(content, dict) and content and not any(meant(str(key), _SCENE) for key in content):
         return config_command("check")(path), []
     return judge_scene(path, tolerance), scales(Scene.from_file(path)).lines

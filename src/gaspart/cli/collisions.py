@@ -36,5 +36,5 @@ def _collisions(options: argparse.Namespace) -> None:
         data = record_collisions(
             scene, options.output, options.count, options.seed, options.equilibration, overwrite=options.force
         )
-    paths = data["free_path"].mean().item()
-    print_line(f"{options.output}: {data.sizes['collision']} collisions, mean free path {paths:.6g}")
+    path = data.attrs["mean_free_path"]
+    print_line(f"{options.output}: {data.sizes['collision']} collisions, mean free path {path:.6g}")

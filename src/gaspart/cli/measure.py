@@ -293,17 +293,30 @@ def _print_curve(name: str, observable: Observable) -> None:
     stride = max(1, -(-rows // _ROWS))
     heads, columns = [str(along)], [observable[along]]
     for label, part in _parts(observable):
-        columns += [part.estimate, part.error, *([] if part.theory is None else [part.theory])]
-        heads += [f"{name} {label}".rstrip(), "error", *([] if part.theory is None else ["theory"])]
+        theory = _theory_columns(part)
+        columns += [part.estimate, part.error, *theory.values()]
+        heads += [f"{name} {label}".rstrip(), "error", *theory]
     wide = [max(14, len(head) + 2) for head in heads]
     print_line("".join(f"{head:>{width}}" for head, width in zip(heads, wide, strict=True)))
     for row in range(0, rows, stride):
         cells = [column.values[row] for column in columns]
         texts = [cell if isinstance(cell, str) else f"{cell:.5g}" for cell in cells]
         print_line("".join(f"{text:>{width}}" for text, width in zip(texts, wide, strict=True)))
+    if observable.theory is not None:
+        unsure = observable[f"{observable.estimate.name}_theory_error"]
+        unknown = "" if np.isfinite(unsure).any() else "; its uncertainty is unknown"
+        print_line(f"(theory: {observable.attrs['source']}{unknown})")
     if stride > 1:
         printed = -(-rows // stride)
         print_line(f"({printed} of {rows} rows; -o {name}.csv writes all, -o {name}.png draws them)")
+
+
+def _theory_columns(part: Observable) -> dict[str, Any]:
+    """Return the columns of theory and of its uncertainty, as far as they exist."""
+    if part.theory is None:
+        return {}
+    unsure = part[f"{part.estimate.name}_theory_error"]
+    return {"theory": part.theory} | ({"its error": unsure} if (unsure > 0.0).any() else {})
 
 
 def _parts(observable: Observable) -> list[tuple[str, Observable]]:
@@ -333,6 +346,7 @@ def _write_table(path: Any, overwrite: bool, observable: Observable) -> None:
         observable = _with_columns(observable)
         units = {name: variable.attrs.get("units", "1") for name, variable in observable.variables.items()}
         title = f"{_TITLE}: units " + ", ".join(f"{name}: {unit}" for name, unit in units.items())
+        title += f"; theory: {observable.attrs['source']}" if observable.theory is not None else ""
         scratch.write_text(f"{title}\n{observable.to_dataframe().to_csv()}", encoding="utf-8")
     print_line(path)
 

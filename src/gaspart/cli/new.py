@@ -38,6 +38,7 @@ _CHAPTERS = {
 """Names of all templates by chapter of the gallery; in a chapter, simple scenes come first."""
 _EXAMPLES = """examples:
   gaspart new gas.yaml
+  gaspart new hourglass.yaml      # of the template with this name
   gaspart new hot.yaml --template heat
   gaspart new --list"""
 
@@ -92,7 +93,9 @@ def add_new(parser: Parser) -> None:
     set_command(parser, _new, text, _EXAMPLES)
     add = parser.add_argument
     add("scene", nargs="?", metavar="FILE", help="ends in .yaml")
-    add("--template", choices=tuple(templates()), default="gas", metavar="NAME", help="default: gas")
+    add(
+        "--template", choices=tuple(templates()), metavar="NAME", help="default: the name of the file, or gas"
+    )
     add("--list", action="store_true", help="print the names and titles of all templates")
     add("--force", action="store_true", help="replace a scene file")
 
@@ -104,7 +107,9 @@ def _new(options: argparse.Namespace) -> None:
         return
     if options.scene is None:
         raise SceneError("scene", None, "give the name of the file, or --list")
-    output, template = output_path(options.scene), templates()[options.template]
+    output = output_path(options.scene)
+    usual = output.stem if output.stem in templates() else "gas"
+    template = templates()[options.template or usual]
     if output.suffix not in (".yaml", ".yml") or not options.scene.isprintable():
         raise SceneError("scene", options.scene, "must be a printable name that ends in .yaml")
     command, lines = named_command(template, output), template.text.splitlines(keepends=True)

@@ -203,7 +203,7 @@ def _of_mixture(options: argparse.Namespace) -> None:
 
 
 def _pairs(value: Any) -> str:
-    """Format a number, or the numbers of all pairs of species, which count from 1."""
+    """Format a number, or the numbers of all pairs of species, which count from 0."""
     if np.ndim(value) == 0:
         return f"{float(value):.8g}"
-    return ", ".join(f"{i + 1}-{j + 1} {number:.8g}" for (i, j), number in np.ndenumerate(value))
+    return ", ".join(f"{i}-{j} {number:.8g}" for (i, j), number in np.ndenumerate(value))

@@ -8,7 +8,6 @@ import io
 import os
 import shlex
 import sys
-import tempfile
 from pathlib import Path
 
 from gaspart.cli.arguments import (
@@ -26,6 +25,7 @@ from gaspart.cli.new import Template, named_command, templates
 from gaspart.cli.progress import clear_line, picture_progress, waiting
 from gaspart.errors import SceneError, unknown_word
 from gaspart.files import output_path, writing
+from gaspart.interruption import scratch_folder
 
 _EXAMPLES = """examples:
   gaspart view run.nc -o run.html
@@ -225,9 +225,9 @@ def _films(options: argparse.Namespace) -> None:
     for name in options.names or gallery:
         output = folder / f"{name}.{'gif' if options.gif else 'mp4'}"
         if not output.exists():
-            with tempfile.TemporaryDirectory() as scratch:
+            with scratch_folder() as scratch:
                 with waiting(f"running {name}"):
-                    trajectory = run_template(gallery[name], Path(scratch))
+                    trajectory = run_template(gallery[name], scratch)
                 colour = colour_of(gallery[name])
                 film(trajectory, output, size=options.size, colour=colour, progress=picture_progress())
                 print(clear_line(), end="", file=sys.stderr)

@@ -207,6 +207,10 @@ class Engine:
         """
         return {}
 
+    def added_bulk_viscosity(self, scene: Scene) -> float:
+        """Return the bulk viscosity of a dilute gas, which is due to cells alone."""
+        return 0.0
+
     def cells_along(self, scene: Scene) -> int:
         """Return the largest number of DSMC cells along an axis; 0 for other engines."""
         return 0
@@ -301,6 +305,8 @@ def resolve_engine(engine: Engine | str | None) -> Engine:
     if engine is None:
         return reference_engine()
     if isinstance(engine, str):
+        if engine.endswith(".nc"):
+            raise SceneError("engine", engine, "must be an engine; path= names the file")
         return engine_from_dict({"name": engine})
     if not isinstance(engine, Engine):
         raise SceneError("engine", engine, f"must be an engine: {constructors()}")

@@ -63,12 +63,13 @@ _LEAST_FRAMES = 16
 _PRESSURE, _DIFFUSION = "pressure Z", "diffusion coefficient D"
 
 
-def judge(frames: Frames, tolerance: float | None = None) -> list[Check]:
+def judge(frames: Frames, tolerance: float | None = None, driven: bool = False) -> list[Check]:
     """Perform all checks of a trajectory.
 
-    `tolerance` is the allowed overlap, as a fraction of a diameter.
+    tolerance : the allowed overlap, as a fraction of a diameter.
+    driven : True if something may give energy to the particles or take it.
     """
-    checks = [*judge_places(frames, tolerance), *judge_conserved(frames)]
+    checks = [*judge_places(frames, tolerance), *judge_conserved(frames, driven)]
     reason, acting = frames.no_identity, [check.name for check in checks if check.acts]
     if acting and not reason:  # more than elastic contacts: the equilibrium is unknown
         reason = f"something acts on the particles (see {' and '.join(acting)})"
@@ -85,8 +86,14 @@ def judge_places(frames: Frames, tolerance: float | None = None) -> list[Check]:
 
 def _allowed_overlap(frames: Frames, tolerance: float | None) -> float:
     """Return the allowed overlap as a fraction of the smallest diameter."""
-    coarse = 4.0 * frames.resolution / (2.0 * float(frames.radii.min()))
-    return min(max(TOUCH, coarse), COARSEST) if tolerance is None else tolerance
+    diameter = 2.0 * float(frames.radii.min())
+    coarse = min(max(TOUCH, 4.0 * frames.resolution / diameter), COARSEST)
+    step = frames.engine.quantum if frames.engine else None
+    if (
+        step and frames.velocities is not None
+    ):  # a pair that a step has pushed together separates in later steps
+        coarse = max(coarse, 2.0 * math.sqrt(float(frames.squares.max())) * step / diameter)
+    return coarse if tolerance is None else tolerance
 
 
 def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Check:

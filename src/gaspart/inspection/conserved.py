@@ -74,12 +74,18 @@ def resolution(values: np.ndarray) -> float:
     return 0.0
 
 
+_ONE_WAY = 0.9
+"""Net change of the energy divided by the sum of all changes, above which the energy is lost or gained."""
 DRIFT = 1e-6
 """Relative change between frames that is attributed to rounding in the program that wrote the file."""
 
 
-def judge_conserved(frames: Frames) -> list[Check]:
-    """Check the kinetic energy, the momentum along periodic axes, and flights between frames."""
+def judge_conserved(frames: Frames, driven: bool = False) -> list[Check]:
+    """Check the kinetic energy, the momentum along periodic axes, and flights between frames.
+
+    driven : True if something may give energy to the particles or take it. Otherwise the energy in a file of
+        another program must not change in one direction.
+    """
     names = "energy", "momentum", "flights"
     if reason := why_not_speeds(frames):
         return [Check(name, None, reason) for name in names]
@@ -90,6 +96,13 @@ def judge_conserved(frames: Frames) -> list[Check]:
     allowed = DRIFT + 2.0 * resolution(frames.velocities) / root
     energy = frames.squares.sum(axis=1) / (frames.count * root**2)
     checks = [_steady("energy", np.abs(np.diff(energy)), allowed, frames.isolated)]
+    net = float(energy[-1] - energy[0])
+    one_way = abs(net) > _ONE_WAY * float(np.abs(np.diff(energy)).sum())
+    if checks[0].acts and one_way and not driven and frames.scene is None:
+        verb = "falls" if net < 0.0 else "rises"
+        text = f"{verb} in nearly every frame, by {abs(net):.2g} of it: contacts must conserve it "
+        text += "(--driven if a force, a thermostat or inelastic contacts change it)"
+        checks = [Check("energy", False, text, acts=True)]
     if any(frames.periodic):
         axes = np.flatnonzero(frames.periodic)
         mean = np.stack([frames.velocities[..., k].mean(axis=1) for k in axes], axis=1) / root

@@ -82,7 +82,10 @@ def read_contents(path: Path, overrides: Overrides) -> Contents:
 def _contents(path: Path, overrides: Overrides) -> Contents:
     reader = _READERS.get(path.suffix.lower())
     if reader is None:
-        raise SceneError("file", str(path), f"must end in {', '.join(SUFFIXES)}")
+        rule = f"must end in {', '.join(SUFFIXES)}"
+        if path.suffix.lower() in (".lammpstrj", ".dump", ".atom"):
+            rule += "; in LAMMPS `dump 1 all netcdf 100 dump.nc id x y z vx vy vz` writes a file that is read"
+        raise SceneError("file", str(path), rule)
     _require_memory(path)
     return reader(path, overrides)
 

@@ -244,11 +244,26 @@ def pieces(path: list[np.ndarray], lengths: np.ndarray) -> list[np.ndarray]:
 
 
 def _gif(scratch: Path, pictures: Iterator[np.ndarray], size: tuple[int, int], rate: float) -> None:
-    from PIL import Image
+    """Write each picture when it is drawn: the part that differs from the picture before, with its palette.
 
-    images = (Image.fromarray(image) for image in pictures)
-    first = next(images)
-    first.save(scratch, "GIF", save_all=True, append_images=images, duration=1000.0 / rate, loop=0)
+    Pillow's own films are written at the end, with all pictures in memory.
+    """
+    from PIL import Image, ImageChops
+    from PIL.GifImagePlugin import getdata, getheader
+
+    timing, before = {"duration": 1000.0 / rate}, None
+    with scratch.open("wb") as file:
+        for pixels in pictures:
+            image = Image.fromarray(pixels)
+            indexed = image.convert("P", palette=Image.Palette.ADAPTIVE)
+            if before is None:
+                file.writelines(getheader(indexed, info={"loop": 0, **timing})[0])
+                file.writelines(getdata(indexed, (0, 0), **timing))
+            else:
+                box = ImageChops.difference(before, image).getbbox() or (0, 0, 1, 1)
+                file.writelines(getdata(indexed.crop(box), box[:2], include_color_table=True, **timing))
+            before = image
+        file.write(b";")
 
 
 def _ffmpeg() -> ModuleType:

@@ -142,6 +142,9 @@ def render(
     >>> gp.render(scene, size=(80, 60)).shape
     (60, 80, 3)
     """
+    second: object = frame
+    if isinstance(second, str | Path):
+        raise SceneError("frame", str(second), "must be a number; render(source).save(path) writes the file")
     size = checked_size(size)
     with open_source(source) as opened:
         particles = particles_of(opened, frame)

@@ -141,6 +141,9 @@ def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order:
     >>> gp.view(simulation, frames=5).save("gas.html").name
     'gas.html'
     """
+    second: object = frames
+    if isinstance(second, str | Path):
+        raise SceneError("frames", str(second), "must be a number; view(source).save(path) writes the page")
     count_of("frames", frames, least=1)
     with open_source(source) as opened:
         if isinstance(opened, Scene):

@@ -58,6 +58,30 @@ def _merge(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
     return {**below, **above, **{key: _merge(below[key], value) for key, value in both.items()}}
 
 
+def remove_null(config: dict) -> None:
+    """Remove the keys of a merged config whose value is null."""
+    for key, value in list(config.items()):
+        if value is None:
+            del config[key]
+        elif isinstance(value, dict):
+            remove_null(value)
+
+
+def _check_removed(config: dict, contents: list[tuple[str, Any]]) -> None:
+    """Raise SceneError for an experiment, a figure or a film that is removed but is in no file."""
+    for section in ("experiments", "figures", "animations"):
+        named = config.get(section)
+        for name, value in named.items() if isinstance(named, dict) else ():
+            blocks = [
+                part for _, part in contents if isinstance(part, dict) and isinstance(part.get(section), dict)
+            ]
+            known = {key for part in blocks for key, block in part[section].items() if block is not None}
+            if value is None and contents and name not in known:
+                raise SceneError(
+                    f"{section}.{name}", None, unknown_word(name, sorted(known), "name to remove")
+                )
+
+
 def read_numbers(config: dict, files: Sequence[str | Path]) -> None:
     """Convert numbers such as 1e3 in a merged config; Snakemake reads them as text.
 
@@ -159,7 +183,11 @@ def open_config(path: str | Path) -> Iterator[tuple[dict[str, Any], dict[str, di
     merged, files = merged_with_default(Path(path))
     folder = files[-1].parent
     with chdir(folder.parent if folder.name == "config" else folder):
-        yield merged, check(merged, files)
+        try:
+            planned = check(merged, files)
+        except SceneError as error:
+            raise error if "experiments" in merged else explain_error(error, merged, False) from None
+        yield merged, planned
 
 
 def check(config: dict, files: Sequence[str | Path] = ()) -> dict[str, dict[str, Point]]:
@@ -171,6 +199,8 @@ def check(config: dict, files: Sequence[str | Path] = ()) -> dict[str, dict[str,
     contents = [(str(file), read_yaml(file)) for file in files]
     try:
         check_values(config)
+        _check_removed(config, contents)
+        remove_null(config)
         _check_names(config)
         require(schema(_installed_kinds(config)), config, "")
         planned = {experiment: checked_points(config, experiment) for experiment in config["experiments"]}
@@ -272,14 +302,14 @@ def _check_caption(figure: str, block: dict) -> None:
         raise SceneError(f"figures.{figure}.caption", text, fault)
 
 
-def _animation(config: dict, animation: str, block: dict | None) -> None:
+def _animation(config: dict, animation: str, block: dict) -> None:
     """Raise SceneError for a film whose experiment is missing, or has no trajectories."""
-    experiment = block["experiment"] if block else None
+    experiment = block["experiment"]
     kinds = {name: definition.get("job", "simulate") for name, definition in config["experiments"].items()}
-    if block and kinds.get(experiment) != TRAJECTORIES:
+    if kinds.get(experiment) != TRAJECTORIES:
         rule = "must be the name of an experiment that makes trajectories"
         raise SceneError(f"animations.{animation}.experiment", experiment, rule)
-    figure = block.get("figure") if block else None
+    figure = block.get("figure")
     if figure is not None and figure not in config["figures"]:
         raise SceneError(f"animations.{animation}.figure", figure, unknown_word(figure, config["figures"]))
 
@@ -347,7 +377,7 @@ def explain_error(error: SceneError, config: dict, module: bool) -> SceneError:
     if module:
         rule = 'is empty: the Snakefile that has the module states `configfile: "..."` above it'
         return SceneError("config", config, rule)
-    rule = "has no config/config.yaml, over which others are laid: run Snakemake in the project's folder"
+    rule = "has no config/config.yaml, over which others are laid: run this in the project's folder"
     return SceneError("folder", str(Path.cwd()), rule)
 
 

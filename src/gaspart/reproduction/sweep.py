@@ -127,11 +127,12 @@ def sweep(
     -------
     SweepTable
         A Dataset with a method to plot itself (`SweepTable.plot`), and a dimension for each key. Variables
-        are each observable, its standard uncertainty (suffix _error), its theoretical value if known (suffix
-        _theory), `duration`, `failure` and `drift`. `failure` is the reason why a result is NaN, and `drift`
-        states which quantities drift in the measured part of the run; both are "" otherwise. A curve has its
-        own dimension, such as `rdf_distance`; if positions differ between points, they are in
-        `rdf_distance_places`. All observables share the dimensions `face` and `component`.
+        are each observable, its standard uncertainty (suffix _error), its theoretical value and the
+        uncertainty of this value if known (suffixes _theory and _theory_error), `duration`, `failure` and
+        `drift`. `failure` is the reason why a result is NaN, and `drift` states which quantities drift in the
+        measured part of the run; both are "" otherwise. A curve has its own dimension, such as
+        `rdf_distance`; if positions differ between points, they are in `rdf_distance_places`. All observables
+        share the dimensions `face` and `component`.
 
     Raises
     ------
@@ -221,7 +222,9 @@ def _axes(over: object, engine: Engine) -> dict[str, list]:
     keys, parts = _point_keys(engine), {field.name for field in fields(Scene)}
     for key, values in axes.items():
         if key in inspect.signature(sweep).parameters:
-            raise SceneError(f"over.{key}", values, "is an argument of a sweep and the same for all points")
+            rule = "is an argument of a sweep and the same for all points"
+            rule += "; replicas= makes runs of several seeds" if key == "seed" else ""
+            raise SceneError(f"over.{key}", values, rule)
         if key not in keys and key.partition(".")[0] not in parts:
             raise SceneError(f"over.{key}", values, unknown_word(key, keys | parts))
         if key not in keys and None in values:
@@ -357,6 +360,9 @@ def _settings(scene: Scene, axes: Mapping[str, list], engine: Engine) -> dict[st
     if "side" not in axes and "side" not in kept and len(set(lengths)) > 1:
         raise SceneError(f"over.{varied}", axes[varied], "needs a container with equal sides")
     extents["packing_fraction"] = scene.packing_fraction
+    if "side" not in kept and "side" not in axes:
+        stated = " and ".join(f"{key} = {extents[key]:.6g}" for key in kept)
+        print(f"over.{varied}: the container's side follows; kept: {stated}", file=sys.stderr, flush=True)
     settings |= gas | {key: extents[key] for key in kept}
     return {key: value for key, value in settings.items() if key not in axes}
 

@@ -27,7 +27,8 @@ class SweepTable(ByFace):
     @property
     def observables(self) -> list[str]:
         """Names of the measured observables."""
-        return [str(name) for name in self.data_vars if f"{name}_error" in self]
+        names = (str(name) for name in self.data_vars if f"{name}_error" in self)
+        return [name for name in names if not name.endswith("_theory")]
 
     def plot(  # type: ignore[override]
         self, observable: str | None = None, along: str | None = None, axis: Axes | None = None
@@ -96,7 +97,7 @@ def _check_name(key: str, name: str | None, names: list[str]) -> str:
 
 
 def _draw_curve(axis: Axes, curve: xr.Dataset, name: str, along: str, label: str) -> None:
-    """Draw a curve, with theory as a line of the same colour.
+    """Draw a curve, with theory as a line of the same colour; a single curve, without label, in black.
 
     If positions are words, theory is drawn as crosses.
     """
@@ -107,7 +108,8 @@ def _draw_curve(axis: Axes, curve: xr.Dataset, name: str, along: str, label: str
         form: dict[str, Any] = {} if x.dtype.kind in "fiu" else {"marker": "x", "linestyle": ""}
         order = np.argsort(x)
         theory = curve[f"{name}_theory"].values
-        axis.plot(x[order], theory[order], color=bars.lines[0].get_color(), **form)
+        colour = bars.lines[0].get_color() if label else "black"
+        axis.plot(x[order], theory[order], color=colour, **form)
 
 
 def columns(name: str, replicas: list[Observable]) -> Iterable[tuple[str, xr.DataArray]]:
@@ -116,16 +118,17 @@ def columns(name: str, replicas: list[Observable]) -> Iterable[tuple[str, xr.Dat
     All observables share dimensions whose coordinates are names. Other dimensions belong to one observable;
     their positions are a variable, because they may differ from point to point.
     """
-    first = replicas[0].estimate
+    first, quantity = replicas[0].estimate, replicas[0].attrs["quantity"]
     own = {dim: f"{name}_{dim}" for dim in first.dims if not DIMENSIONS[str(dim)].names}
     coordinates = {dim: first[dim] for dim in first.dims if dim not in own}
-    for part in ("", "_error", "_theory"):
+    for part in ("", "_error", "_theory", "_theory_error"):
         values = mean_of(replicas, part)
         if values is not None:
             sizes = zip(first.dims, values.shape, strict=True)
             numbered = {own[dim]: np.arange(size) for dim, size in sizes if dim in own}
             dims = [own.get(dim, dim) for dim in first.dims]
-            yield name + part, xr.DataArray(values, {**coordinates, **numbered}, dims, attrs=first.attrs)
+            about = replicas[0][quantity + part].attrs
+            yield name + part, xr.DataArray(values, {**coordinates, **numbered}, dims, attrs=about)
     for dim, new in own.items():
         positions = first[dim]
         yield (

@@ -11,7 +11,7 @@ these properties by name, and do not compute them again. All facts are attribute
   `packing_fraction`, `gas`, `mixture`;
 - motion: `is_open`, `open_axes`, `moving_axes`, `moving_wall`, `has_piston`, `load_axis`, `shear_rate`,
   `driven_axes`, `flow_axes`, `flow_changes`, `frame_velocity`, `drags_faces`, `dragged_axes`,
-  `conserved_axes`, `dissipates`, `vibrates`, `rough`;
+  `conserved_axes`, `has_equilibrium`, `dissipates`, `vibrates`, `rough`;
 - `features`, the names of its features.
 
 The accessible volume and areas for particle centres are in `accessible`.
@@ -354,6 +354,18 @@ class Facts:
             return (0.0,) * self.dimension
         parts = [velocity or (0.0,) * self.dimension for velocity in dragging]
         return tuple(math.fsum(component) / len(parts) for component in zip(*parts, strict=True))
+
+    @cached_property
+    def has_equilibrium(self) -> bool:
+        """True if the gas tends to a state at one temperature in which nothing flows.
+
+        Nothing moves or drives the gas, contacts lose no energy, and all faces and reservoirs are equal.
+        """
+        moved = self.moving_axes or self.sliding_faces or self.driven_axes or self.shear_rate is not None
+        reservoirs = {(face.activity, face.temperature) for _, face in self.faces_of(Open)}
+        vacuum = any(not activity for activity, _ in reservoirs)
+        unequal = len(self.face_temperatures) > 1 or len(reservoirs) > 1 or vacuum
+        return not (moved or unequal or self.dissipates or self.thermostat is not None)
 
     @cached_property
     def flow_changes(self) -> bool:

@@ -109,6 +109,30 @@ class Restitution:
         """
         return self.normal < 1.0 or -1.0 < self.tangential < 1.0
 
+    def refuse_loss(self, rule: str) -> None:
+        """Raise SceneError if contacts lose energy.
+
+        Parameters
+        ----------
+        rule : str
+            Rule of the error message.
+
+        Raises
+        ------
+        SceneError
+            If contacts lose energy. The message names the coefficient by which they lose it.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> gp.Restitution(tangential=0.5).refuse_loss("loses energy")
+        Traceback (most recent call last):
+        gaspart.errors.SceneError: restitution.tangential = 0.5: loses energy
+        """
+        if self.dissipative:
+            key = "normal" if self.normal < 1.0 else "tangential"
+            raise SceneError(f"restitution.{key}", getattr(self, key), rule)
+
     @property
     def rough(self) -> bool:
         """True if contacts change spins.

@@ -164,7 +164,8 @@ class Scene(Facts):
             check_region(self.container, f"species[{n}].region", kind)
         arrangements = {kind.arrangement for kind in self.species}
         for shared in arrangements & set(SHARED):
-            if self.particles or arrangements != {shared}:
+            beside = {"random"} if shared == "lattice" and not self.particles else set()
+            if self.particles or arrangements - beside != {shared}:
                 raise SceneError("arrangement", shared, "is shared by all particles of a scene")
         earlier = Nearby(
             self.container, max((2.0 * particle.radius for particle in self.particles), default=0.0)

@@ -22,7 +22,15 @@ from gaspart.keys import (
     validate,
     vector,
 )
-from gaspart.keys.values import LARGEST, MOST_PARTICLES, SMALLEST, finite_vector, number, size
+from gaspart.keys.values import (
+    LARGEST,
+    MOST_PARTICLES,
+    SMALLEST,
+    finite_vector,
+    number,
+    positive_number,
+    size,
+)
 from gaspart.scene.sizes import DISTRIBUTIONS, MOST_UNIFORM, relative_radii
 
 if TYPE_CHECKING:
@@ -33,7 +41,16 @@ SHARED = (*LATTICES, "compressed")
 """Arrangements that apply to all particles of a scene together."""
 ARRANGEMENTS = ("random", *SHARED)
 
-_RADIUS = declare(positive("radius"))
+
+def _radius(name: str, value: object) -> float:
+    """Return a radius; raise SceneError unless it is positive."""
+    if isinstance(value, int | float) and value == 0.0:
+        rule = "must be positive; points are particles with a radius of 1e-9 of the container"
+        raise SceneError(name, value, rule)
+    return positive_number(name, value)
+
+
+_RADIUS = declare(describe(POSITIVE, "radius", _radius))
 _MASS = declare(positive("mass"))
 _MOMENT = declare(
     describe(
@@ -82,9 +99,10 @@ class Species:
         axes on which momentum is conserved. All such species have one factor, so that only their common
         energy is exact; species that start in separate regions have their own.
     arrangement : {"random", "lattice", "slab", "compressed"}, default "random"
-        Initial positions. "random": sequential insertion. "slab": a lattice whose vacancies are all in one
-        half, so that this half melts. "compressed": growth to a density that insertion cannot reach (see
-        `compress`).
+        Initial positions. "random": sequential insertion. "lattice": sites of a triangular or face-centred
+        cubic lattice, which all species with this value share; "random" species fill the space between them.
+        "slab": a lattice whose vacancies are all in one half, so that this half melts. "compressed": growth
+        to a density that insertion cannot reach (see `compress`).
     region : sequence of two vectors, shape (2, d), [length], optional
         Lower and upper corner of the box in which all particles start. Requires "random". Default: the
         container.
@@ -129,7 +147,9 @@ class Species:
     """
 
     count: int = field(metadata=declare(count("number of particles", 0, maximum=MOST_PARTICLES)))
-    radius: float = field(metadata=declare(positive("radius; the mean, if there is a polydispersity")))
+    radius: float = field(
+        metadata=declare(describe(POSITIVE, "radius; the mean, if there is a polydispersity", _radius))
+    )
     _: KW_ONLY
     mass: float = field(default=1.0, metadata=_MASS)
     speed: float | None = field(default=None, metadata=declare(not_negative("one initial speed for all")))

@@ -116,13 +116,13 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
     rng = stream(seed, _POSITIONS)
     arrangements = {kind.arrangement for kind in scene.species if kind.count}
     ordered = arrangements & set(LATTICES)
-    if ordered:
+    if ordered and "random" not in arrangements:
         positions = _on_lattice(scene, rng, min(ordered))
     elif "compressed" in arrangements:
         positions = compress_positions(scene, seed)
     else:
         try:
-            positions, _ = random_insertion(scene, rng)
+            positions, _ = random_insertion(scene, rng, given=_sites(scene, rng))
         except SceneError as error:
             rule = f"{error.rule}; {_instead_of_random(scene, seed)}"
             raise SceneError(error.key, error.value, rule) from None
@@ -230,6 +230,17 @@ def _on_lattice(scene: Scene, rng: np.random.Generator, arrangement: str) -> np.
     if scene.walls and any(hit):
         raise SceneError("arrangement", arrangement, "a particle would overlap an interior wall; use random")
     return positions
+
+
+def _sites(scene: Scene, rng: np.random.Generator) -> dict[int, np.ndarray]:
+    """Return the positions of species on a lattice that random species fill, by number of the species."""
+    numbers = [n for n, kind in enumerate(scene.species) if kind.arrangement == "lattice" and kind.count]
+    if not numbers:
+        return {}
+    listed = [scene.species[n] for n in numbers]
+    positions = _on_lattice(replace(scene, species=listed), rng, "lattice")
+    parts = np.split(positions, np.cumsum([kind.count for kind in listed])[:-1])
+    return dict(zip(numbers, parts, strict=True))
 
 
 def _instead_of_random(scene: Scene, seed: int | tuple[int, ...]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -106,7 +107,10 @@ def empty_arrays(scene: Scene, boxes: Boxes, radii: np.ndarray) -> tuple[Placed,
 
 
 def random_insertion(
-    scene: Scene, rng: np.random.Generator, patience: int = PATIENCE
+    scene: Scene,
+    rng: np.random.Generator,
+    patience: int = PATIENCE,
+    given: Mapping[int, np.ndarray] | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Place the species in sequence at random free positions, larger radii first.
 
@@ -118,6 +122,8 @@ def random_insertion(
         Generator of the attempts.
     patience : int, default 2_000_000
         Number of failed attempts for one particle after which the container is considered full.
+    given : mapping of int to ndarray, shape (n, d), [length], optional
+        Positions of species that are placed before the others, by number of the species.
 
     Returns
     -------
@@ -133,8 +139,9 @@ def random_insertion(
     """
     from gaspart.kernels.insertion import Task, place, put
 
-    dimension, explicit = scene.dimension, len(scene.particles)
-    species = sorted(range(len(scene.species)), key=lambda n: -scene.species[n].largest_radius)
+    dimension, explicit, given = scene.dimension, len(scene.particles), given or {}
+    radius = [kind.largest_radius for kind in scene.species]
+    species = sorted(range(len(radius)), key=lambda n: (n not in given, -radius[n]))
     order = [np.arange(explicit)]  # particles in the order of placement
     first = explicit + np.cumsum([0, *(kind.count for kind in scene.species)])
     order += [np.arange(first[n], first[n + 1]) for n in species]
@@ -161,6 +168,10 @@ def random_insertion(
     for n in species:
         kind = scene.species[n]
         stop = done + kind.count
+        for position in given.get(n, ()):
+            placed.positions[done], placed.failures[done] = position, 0
+            put(placed, boxes.index_of(position), done)
+            done += 1
         lower, upper = range_of_centres(scene, kind)
         failures = 0
         numbers = np.empty((max(256, min(1_000_000, 2 * kind.count)), dimension))

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from gaspart.errors import SceneError
 from gaspart.scene.faces import FLOW, GRADIENT
 from gaspart.scene.scene import Scene
 from gaspart.scene.shear import flow
@@ -94,6 +95,14 @@ class State:
     displaced: float | None = None
     shear_rate: float | None = None
     numbers: np.ndarray | None = None
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if vars(self).get("_fixed"):  # a new array in a view would not affect the simulation
+            rule = (
+                "cannot be set in the state of a simulation: change its copy(), and start from the copy by "
+            )
+            raise SceneError(name, value, rule + "Simulation(scene, initial=copy)")
+        super().__setattr__(name, value)
 
     def __repr__(self) -> str:
         kind = "discs" if self.dimension == 2 else "spheres"
@@ -379,6 +388,7 @@ class State:
                 view = value.view()
                 view.flags.writeable = False
                 setattr(state, key, view)
+        vars(state)["_fixed"] = True
         return state
 
 

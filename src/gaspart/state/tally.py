@@ -325,9 +325,8 @@ def _require_equilibrium(scene: Scene) -> None:
     if len({particle.mass for particle in scene.particles}) > 1:
         rule = "must have one mass for an impulse tally, which sums over all single particles"
         raise SceneError("particles.mass", len(scene.particles), rule)
-    if scene.restitution is not None and scene.restitution.dissipative:
-        rule = "excludes impulses, which require equilibrium; this gas loses energy"
-        raise SceneError("restitution", scene.restitution.normal, rule)
+    if scene.restitution is not None:
+        scene.restitution.refuse_loss("excludes impulses, which require equilibrium; this gas loses energy")
     for name in _DISTURBING:
         if FEATURES[name].value(scene) is not None:
             rule = f"excludes impulses, which require equilibrium at rest, not {FEATURES[name].meaning}"

@@ -168,12 +168,13 @@ class GravityColumn:
 def gravity_column(scene: Scene) -> GravityColumn | None:
     """Return the column of a scene under gravity; None if there is no theory for it.
 
-    Theory covers equal-sized particles that lose no energy, between hard walls or walls at one temperature.
+    Theory covers equal-sized particles that lose no energy, between hard walls or walls at one temperature
+    across gravity. Along a periodic axis gravity drives a flow, and the gas is uniform.
     """
     pull = [(k, g) for k, g in enumerate(scene.gravity or ()) if g]
     kinds = [kind for kind in scene.kinds if kind.count]
     law, thermal = scene.restitution, scene.face_temperatures
-    if len(pull) != 1 or scene.thermostat is not None or scene.walls or not kinds:
+    if len(pull) != 1 or scene.driven_axes or scene.thermostat is not None or scene.walls or not kinds:
         return None
     if law is not None and (law.dissipative or law.rough):
         return None

@@ -14,8 +14,8 @@ from gaspart.theory.geometry import Numbers, check_ranges, particle_volume
 from gaspart.theory.mixtures import Sizes, checked_mixture, contact_coefficients, virial_sum
 
 _STEP, _WIDE = 1e-3, 1e-2
-"""Steps of central differences of the free energy and of its second derivatives, divided by the total number
-of particles.
+"""Steps of central differences of the free energy and of its second derivatives: largest relative change of a
+moment of the diameters.
 """
 _NODES = 32  # number of nodes of the integral over the packing fraction
 
@@ -64,8 +64,8 @@ def mixture_chemical_potentials(
     >>> theory.mixture_chemical_potentials(0.3, 3, [1.0, 2.0]).round(3)
     array([1.969, 6.307])
     """
-    parts, free_energy = _free_energy(packing_fraction, dimension, diameters, fractions, theory)
-    return _gradient(free_energy, parts, _STEP)
+    parts, unit, free_energy = _free_energy(packing_fraction, dimension, diameters, fractions, theory)
+    return _gradient(free_energy, parts, _STEP * unit)
 
 
 def mixture_insertion_correction(
@@ -117,30 +117,33 @@ def mixture_insertion_correction(
     >>> theory.mixture_insertion_correction(0.3, 3, [1.0, 2.0], [50, 50]).round(4)
     array([0.0038, 0.0738])
     """
-    parts, free_energy = _free_energy(packing_fraction, dimension, diameters, counts, theory)
+    parts, unit, free_energy = _free_energy(packing_fraction, dimension, diameters, counts, theory)
+    step = _STEP * unit
 
     def curvature(numbers: np.ndarray) -> np.ndarray:
-        return _gradient(lambda at: _gradient(free_energy, at, _STEP), numbers, _STEP)
+        return _gradient(lambda at: _gradient(free_energy, at, step), numbers, step)
 
     def fluctuations(numbers: np.ndarray) -> float:
         return float(np.linalg.slogdet(np.eye(len(parts)) + numbers[:, None] * curvature(numbers))[1])
 
     total = float(np.sum(np.asarray(counts, dtype=float)))
-    change = np.diag(curvature(parts)) - _gradient(fluctuations, parts, _WIDE)
+    change = np.diag(curvature(parts)) - _gradient(fluctuations, parts, _WIDE * unit)
     return 0.5 * change / total
 
 
 def _free_energy(
     packing_fraction: float, dimension: int, diameters: Sizes, fractions: Sizes | None, theory: str
-) -> tuple[np.ndarray, Callable[[np.ndarray], float]]:
-    """Return the fractions (S,), and F / k_B T as a function of numbers (S,).
+) -> tuple[np.ndarray, np.ndarray, Callable[[np.ndarray], float]]:
+    """Return fractions (S,), units of changes (S,), and F / k_B T as a function of numbers (S,).
 
     The volume is constant. It is chosen such that F is per particle if the numbers are equal to the
-    fractions.
+    fractions. F depends on moments of the diameters. A unit of change is the number of particles of a species
+    that doubles a moment.
     """
     eta, sizes, parts = checked_mixture(theory, packing_fraction, dimension, diameters, fractions)
     powers = (sizes / sizes.max()) ** np.arange(dimension + 1)[:, None]
     covered = eta / float(powers[dimension] @ parts)
+    unit = ((powers @ parts)[:, None] / powers).min(axis=0)
     nodes, weights = np.polynomial.legendre.leggauss(_NODES)
 
     def free_energy(numbers: np.ndarray) -> float:
@@ -153,15 +156,15 @@ def _free_energy(
         total = 0.5 * filled * virial_sum(integrals, moments)
         return float(2.0 ** (dimension - 1) * total / moments[dimension])
 
-    return parts, free_energy
+    return parts, unit, free_energy
 
 
 def _gradient(
-    function: Callable[[np.ndarray], float | np.ndarray], at: np.ndarray, step: float
+    function: Callable[[np.ndarray], float | np.ndarray], at: np.ndarray, steps: np.ndarray
 ) -> np.ndarray:
     """Return derivatives (S, ...) with respect to each number, by central differences of fourth order."""
     derivatives = []
-    for shift in step * np.eye(len(at)):
+    for step, shift in zip(steps, np.diag(steps), strict=True):
         near = np.subtract(function(at + shift), function(at - shift))
         far = np.subtract(function(at + 2.0 * shift), function(at - 2.0 * shift))
         derivatives.append((8.0 * near - far) / (12.0 * step))

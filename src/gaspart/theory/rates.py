@@ -15,6 +15,7 @@ from typing import TypeAlias
 import numpy as np
 
 from gaspart.scene.face_checks import mean_count
+from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Particle, Species
 from gaspart.theory.discretisation import contact_values
@@ -76,6 +77,31 @@ def rates(scene: Scene, dense: bool, instead: Kinds | None = None) -> Rates:
     squares = [max(square_of(kind, d), heat / kind.mass) for kind in kinds]
     often, speed = _rates(scene, kinds, dense, [1.0 / kind.mass for kind in kinds])
     return Rates(*_rates(scene, kinds, dense, squares), path=speed / often if often > 0.0 else math.inf)
+
+
+def rate_at_scatterers(scene: Scene) -> float:
+    """Compute the collisions per time of a moving particle with fixed particles.
+
+    In a container that the particles fill evenly, the rate is the mean speed times the cross section of all
+    fixed particles, divided by the volume that they leave free.
+    """
+    d, moving = scene.dimension, scene.moving_kinds
+    fixed = [kind for kind in scene.kinds if kind.fixed and kind.count]
+    if not fixed or not moving:
+        return 0.0
+    heat, (lower, upper) = max(scene.face_temperatures, default=0.0), accessible(scene)
+    number, radius = (
+        np.array([getattr(kind, key) for kind in fixed], dtype=float) for key in ("count", "radius")
+    )
+    volume, total = float((upper - lower).prod()), 0.0
+    for kind in moving:
+        sigma = radius + kind.radius
+        covered = ball_volume(d) * float((number * sigma**d).sum()) / volume
+        free = volume * (1.0 - covered if covered < 1.0 else math.exp(-covered))  # they may overlap
+        section = float((number * (2.0 * sigma if d == 2 else math.pi * sigma**2)).sum())
+        speed = math.sqrt(MEAN_SQUARE[d] * max(square_of(kind, d), heat / kind.mass))
+        total += kind.count * speed * section / free
+    return total / sum(kind.count for kind in moving)
 
 
 def highest_speed(scene: Scene) -> float:

@@ -142,6 +142,10 @@ def _circles(eta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return t, circles.ravel() / _NODES, ((1.0 + 0.5 * eta) * t + 1.0 + 2.0 * eta) / np.polyval(cubic, t)
 
 
+_RARE = 1e-5
+"""Packing fraction below which the term that Verlet and Weis add, of order eta^2, is lost in rounding."""
+
+
 @cache
 def _verlet_weis(eta: float) -> tuple[float, float, float, float]:
     """Return the parameters of the g(r) of Verlet and Weis at a packing fraction.
@@ -154,6 +158,8 @@ def _verlet_weis(eta: float) -> tuple[float, float, float, float]:
     """
     effective = eta - eta**2 / 16.0
     diameter = (effective / eta) ** (1.0 / 3.0)
+    if eta < _RARE:
+        return effective, diameter, 0.0, 1.0
     contact = (carnahan_starling(eta) - 1.0) / (4.0 * eta)
     amplitude = float(contact - percus_yevick_rdf(1.0 / diameter, effective))
     inverse = (1.0 + 4.0 * eta + 4.0 * eta**2 - 4.0 * eta**3 + eta**4) / (1.0 - eta) ** 4

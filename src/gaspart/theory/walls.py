@@ -67,7 +67,8 @@ SHORTEST = 2.0
 """Minimum distance between walls, in diameters, for `wall_pressure`."""
 LARGEST_UNCERTAINTY = 0.1
 """Maximum relative uncertainty for `wall_pressure`; above it an error is raised."""
-_STEP = 1e-4  # step of the central differences in the packing fraction
+_STEP, _RELATIVE_STEP = 1e-4, 1e-2
+"""Steps of central differences in the packing fraction: the first, or this fraction of a small one."""
 _STRETCH = 1e-3  # relative step in length
 
 
@@ -290,13 +291,13 @@ class _Container:
 
     def bulk(self, particles: float) -> float:
         """Return the bulk packing fraction that gives this number of particles, by bisection."""
-        low, high = 3.0 * _STEP, _DENSEST - 3.0 * _STEP
+        low, high = 0.0, _DENSEST - 3.0 * _STEP
         if self.particles(high) < particles:
             raise ValueError(f"density: {particles} (the fluid would be denser than {_DENSEST})")
-        while high - low > 1e-13:
+        while high - low > 1e-13 * high:
             middle = 0.5 * (low + high)
             low, high = (middle, high) if self.particles(middle) < particles else (low, middle)
-        return low
+        return high
 
 
 def _in_container(
@@ -334,4 +335,5 @@ def _canonical(stretch: Callable[[float], _Container], density: float, count: in
 
 def _slope(function: Callable[[float], Values], eta: float) -> float:
     """Return d function / d eta by a central difference."""
-    return float(function(eta + _STEP) - function(eta - _STEP)) / (2.0 * _STEP)
+    step = min(_STEP, _RELATIVE_STEP * eta)
+    return float(function(eta + step) - function(eta - step)) / (2.0 * step)

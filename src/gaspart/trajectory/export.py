@@ -7,6 +7,7 @@ therefore overlap by 1e-7 of a diameter. Walls, faces and gravity are not part o
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import chain
@@ -39,26 +40,12 @@ EXPORT_FORMATS = {
     ".xyz": FileKind("an XYZ file written by gaspart", _is_xyz),
     ".data": FileKind("LAMMPS data written by gaspart", begins_with(b"gaspart: ")),
 }
-_SYMBOLS = (
-    "H",
-    "He",
-    "Li",
-    "Be",
-    "B",
-    "C",
-    "N",
-    "O",
-    "F",
-    "Ne",
-    "Na",
-    "Mg",
-    "Al",
-    "Si",
-    "P",
-    "S",
-    "Cl",
-    "Ar",
-)
+_ELEMENTS = """
+H He Li Be B C N O F Ne Na Mg Al Si P S Cl Ar K Ca Sc Ti V Cr Mn Fe Co Ni Cu Zn Ga Ge As Se Br Kr Rb
+Sr Y Zr Nb Mo Tc Ru Rh Pd Ag Cd In Sn Sb Te I Xe Cs Ba La Ce Pr Nd Pm Sm Eu Gd Tb Dy Ho Er Tm Yb Lu
+Hf Ta W Re Os Ir Pt Au Hg Tl Pb Bi Po At Rn Fr Ra Ac Th Pa U Np Pu Am Cm Bk Cf Es Fm Md No Lr Rf Db
+Sg Bh Hs Mt Ds Rg Cn Nh Fl Mc Lv Ts Og"""
+_SYMBOLS = _ELEMENTS.split()
 """Names of species in an XYZ file. They are chemical symbols, because readers such as ASE accept no other
 names."""
 _ROWS = 4096  # number of table rows that are formatted at once
@@ -254,6 +241,8 @@ def _write_xyz(path: Path, snapshots: Iterator[Snapshot]) -> None:
                 f'Lattice="{cell}" Origin="{origin}" pbc="{pbc}" Properties={columns} Time={snapshot.time!r}'
             )
             file.write(f"{len(snapshot.positions)}\n{comment} Program=gaspart\n")
+            if snapshot.types.max(initial=0) >= len(_SYMBOLS):
+                warnings.warn(f"names of species repeat after {len(_SYMBOLS)}; radii differ", stacklevel=2)
             kinds = [_SYMBOLS[kind % len(_SYMBOLS)] for kind in snapshot.types.tolist()]
             numbers = *snapshot.positions.T, *snapshot.velocities.T, 0.5 * snapshot.diameters, snapshot.masses
             template = f"%s {' '.join(['%.9g'] * len(numbers))} %d\n"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -47,8 +48,8 @@ def last_state(path: str | Path) -> State:
     Notes
     -----
     The state is exact if the run was made with `keep_checkpoint`. Otherwise positions, velocities and spins
-    are from the last frame, in single precision. The motion of a piston and the displacement of sheared
-    images are exact.
+    are from the last frame, in single precision, and a warning is issued. The motion of a piston and the
+    displacement of sheared images are exact.
 
     Examples
     --------
@@ -74,7 +75,10 @@ def last_state(path: str | Path) -> State:
     with open_trajectory(path) as data:
         if data.sizes["frame"] == 0:
             raise SceneError("frame", 0, "the trajectory has no frame yet")
-        return _of_frame(recipe, data.isel(frame=-1))
+        state = _of_frame(recipe, data.isel(frame=-1))
+    rule = "has no checkpoint of its end (keep_checkpoint): its last state is known in single precision only"
+    warnings.warn(f"gaspart: {path}: {rule}", stacklevel=2)
+    return state
 
 
 def _of_frame(recipe: Recipe, frame: xr.Dataset) -> State:

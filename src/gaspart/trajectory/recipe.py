@@ -281,7 +281,7 @@ def stored_recipe(file: netCDF4.Dataset, path: Path) -> Recipe:
     try:
         scene = Scene.from_dict(parse_yaml(stored["scene"], f"{path}, attribute scene"), str(path))
         seed = json.loads(stored["seed"])
-        return Recipe(
+        recipe = Recipe(
             scene=scene,
             engine=engine_from_dict(json.loads(stored["engine"])),
             seed=tuple(seed) if isinstance(seed, list) else seed,
@@ -292,10 +292,32 @@ def stored_recipe(file: netCDF4.Dataset, path: Path) -> Recipe:
             replica=(int(stored["replica"]), int(stored["replicas"])) if "replica" in stored else None,
             **stored_contents(stored),
         )
+        _require_variables(file, recipe)
+        return recipe
     except SceneError:
         raise
     except (KeyError, TypeError, ValueError) as error:  # a forged header could have this
-        raise SceneError("file", str(path), f"has an attribute that cannot be used: {error}") from None
+        raise SceneError("file", str(path), f"has a header that cannot be used: {error}") from None
+
+
+_ALWAYS = (
+    *("time", "cell_lengths", "kinetic_energy", "coordinates", "velocities", "checksum"),
+    *("collisions", "virial_sum", "worst_contact", "dissipated_energy", "wall_energy", "thermostat_energy"),
+)
+"""Variables of `Layout` that files of all versions have, if their runs have them."""
+
+
+def _require_variables(file: netCDF4.Dataset, recipe: Recipe) -> None:
+    """Raise ValueError unless an open trajectory has the variables of its recipe, with their dimensions."""
+    layout = recipe.layout
+    needed = {name: ("frame", *layout.variables[name][1]) for name in _ALWAYS if name in layout.variables}
+    needed |= dict.fromkeys(("radius", "type"), ("atom",))
+    for name, dimensions in needed.items():
+        if name not in file.variables or file[name].dimensions != dimensions:
+            raise ValueError(f"it does not have {name} of dimensions {', '.join(dimensions)}")
+        sizes = layout.sizes | {"frame": len(file.dimensions["frame"])}
+        if file[name].shape != tuple(sizes[dimension] for dimension in dimensions):
+            raise ValueError(f"{name} has the shape {file[name].shape}, which is not that of its scene")
 
 
 def _stored_initial(file: netCDF4.Dataset, scene: Scene) -> State | None:

@@ -13,8 +13,6 @@ import gaspart as gp
 from gaspart.engines.dsmc.defaults import LONGEST, MOST, ROOM, rates, reach_of
 from gaspart.engines.dsmc.resolution import EPOCH
 
-pytestmark = pytest.mark.thorough
-
 
 def driven(speed=0.01, power=0.05, interval=0.1, count=150):
     """A granular gas that starts cold and is heated 1e4 times."""
@@ -54,12 +52,14 @@ def check_split(scene, engine, steps, threads):
     return whole
 
 
+@pytest.mark.thorough
 def test_divided_steps_give_the_same_bits_however_a_run_is_split():
     sim = check_split(driven(), gp.DSMC(time_step=20.0, adapt="both"), 40, 2)
     assert sim.tally.steps > 100 * 40  # parts
     assert sim.tally.time == 800.0
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("model", ["boltzmann", "enskog"])
 def test_cells_that_follow_the_density_give_the_same_bits_however_a_run_is_split(model):
     scene = falling()
@@ -71,6 +71,7 @@ def test_cells_that_follow_the_density_give_the_same_bits_however_a_run_is_split
     assert np.mean(heights) < 3.0
 
 
+@pytest.mark.thorough
 def test_a_cold_gas_that_is_heated_comes_to_the_temperature_of_the_event_driven_engine():
     """With steps of its own, from a hundredth of the final speed on. The Boltzmann model has fewer
     collisions, by the contact value, and so a higher temperature, by its power 2/3."""
@@ -90,6 +91,7 @@ def test_a_cold_gas_that_is_heated_comes_to_the_temperature_of_the_event_driven_
     assert mean == pytest.approx(exact, abs=3.0 * error + 0.0035 * exact)  # kicks of a whole part, at its end
 
 
+@pytest.mark.thorough
 def test_tiny_energies_are_counted():
     """From rest, with a power of 1e-40 or less: what is given is kept or dissipated."""
     for power in (1e-40, 1e-60):
@@ -103,6 +105,7 @@ def test_tiny_energies_are_counted():
         sim.check_invariants()
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("speed", "step", "duration"), [(1e-5, 0.5, 100.0), (1e-3, 0.1, 20.0)])
 def test_energies_a_thousand_million_times_those_of_the_start_balance(speed, step, duration):
     scene = driven(speed, 1.0, 0.1, 100)
@@ -119,6 +122,7 @@ def test_energies_a_thousand_million_times_those_of_the_start_balance(speed, ste
     assert tally.dissipated_energy > 0.0
 
 
+@pytest.mark.interpreted
 def test_a_step_of_its_own_allows_for_what_accelerates_the_particles():
     """They fly no farther in it than a fifth of a mean free path, by what gravity and kicks give them."""
     scene = driven(0.0)
@@ -133,6 +137,7 @@ def test_a_step_of_its_own_allows_for_what_accelerates_the_particles():
         gp.DSMC().for_scene(gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(9, 0.01)]))
 
 
+@pytest.mark.thorough
 def test_parts_of_a_step_are_as_short_as_is_stated():
     """At every end of a step the mean speed times the last part is within sqrt 2 of what is recommended."""
     scene = driven()
@@ -146,6 +151,7 @@ def test_parts_of_a_step_are_as_short_as_is_stated():
         assert speed * part < ROOM * 1.3 * reach.recommended
 
 
+@pytest.mark.thorough
 def test_a_step_that_was_given_is_kept_and_warned_of_once():
     scene = driven()
     sim = gp.Simulation(scene, gp.DSMC(time_step=20.0), 1)
@@ -157,6 +163,7 @@ def test_a_step_that_was_given_is_kept_and_warned_of_once():
         sim.advance(duration=200.0)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("step", [1e9, 1e59])
 @pytest.mark.parametrize("start", [{"temperature": 1.0}, {}])
 def test_a_step_of_many_mean_free_times_is_refused_with_one_that_would_do(step, start):
@@ -166,6 +173,7 @@ def test_a_step_of_many_mean_free_times_is_refused_with_one_that_would_do(step, 
         gp.Simulation(scene, gp.DSMC(time_step=step), 1)
 
 
+@pytest.mark.thorough
 def test_a_gas_that_becomes_too_fast_for_its_step_stops_with_a_line_and_its_state():
     scene = driven(0.01, 1e-3, 0.1)
     hot = gp.Scene(scene.container, scene.species, thermostat=gp.Thermostat(1e8, 1e-3))
@@ -182,6 +190,7 @@ def test_a_gas_that_becomes_too_fast_for_its_step_stops_with_a_line_and_its_stat
     assert sim.time > 0.0 and sim.time % 30.0 == 0.0
 
 
+@pytest.mark.thorough
 def test_a_heated_gas_with_divided_steps_goes_on():
     """The same, with its own steps."""
     scene = driven(0.01, 1.0, 1e-3, 20)
@@ -191,6 +200,7 @@ def test_a_heated_gas_with_divided_steps_goes_on():
     assert sim.state.kinetic_energy == pytest.approx(20 * sim.time, rel=0.5)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(
     ("settings", "adapt"),
     [

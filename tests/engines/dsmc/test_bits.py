@@ -13,8 +13,6 @@ from scenes import gas
 import gaspart as gp
 from gaspart.engines.dsmc import arrays
 
-pytestmark = pytest.mark.thorough
-
 
 @st.composite
 def scenes(draw, most=60):
@@ -48,6 +46,7 @@ def drawn(scene, model, seed):
         return None
 
 
+@pytest.mark.thorough
 @settings(max_examples=settings.default.max_examples // 2)
 @given(scenes(), st.sampled_from(["boltzmann", "enskog"]), st.integers(0, 2**32))
 @pytest.mark.filterwarnings("ignore:gaspart")
@@ -77,6 +76,7 @@ def test_random_scenes_keep_what_is_conserved(scene, model, seed):
         assert np.allclose(change, 0.0, atol=1e-12 * scale)
 
 
+@pytest.mark.thorough
 @settings(max_examples=settings.default.max_examples // 5)
 @given(
     scenes(), st.sampled_from(["boltzmann", "enskog"]), st.lists(st.floats(0.0, 2.0), min_size=1, max_size=3)
@@ -96,6 +96,7 @@ DENSE = {"model": "enskog", "cells_per_side": (16, 2, 2)}
 """Cells in slabs, between which collisions pass."""
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("boundary", ["periodic", "wall"])
 @pytest.mark.filterwarnings("ignore:gaspart")
 def test_threads_share_the_slabs_of_a_dense_gas(boundary):
@@ -118,6 +119,7 @@ def test_threads_share_the_slabs_of_a_dense_gas(boundary):
     assert met > 1000 and abs(met - expected) < 4.0 * math.sqrt(met + expected)
 
 
+@pytest.mark.interpreted
 def test_slabs_are_two_reaches_wide_and_even_in_number():
     for cells in ((64, 1, 1), (9, 30, 7), (13, 13), (1000, 3)):
         for reach in (1, 2, 3):
@@ -129,6 +131,7 @@ def test_slabs_are_two_reaches_wide_and_even_in_number():
     assert len(arrays.slabs_of(np.array([25, 25, 25]), np.ones(3, np.int64))[1]) == 13
 
 
+@pytest.mark.thorough
 def test_momentum_and_energy_are_kept_to_rounding():
     sim = advanced(gas(3, 2000, 0.001), 1500)
     before, after = sim.initial_state, sim.state

@@ -2,7 +2,9 @@
 
 import math
 import warnings
+from dataclasses import replace
 
+import numpy as np
 import pytest
 from scenes import gas
 
@@ -94,6 +96,23 @@ def test_right_cells_are_not_warned_of():
     assert not gp.DSMC(cells_per_side=(1, 1, 34)).remarks(scene)
     (line,) = gp.DSMC(cells_per_side=3).remarks(scene)
     assert line.startswith("cells ") and "with cells_per_side = (1, 1, " in line
+
+
+def test_a_start_that_layers_do_not_resolve_is_stated():
+    """A wave of the velocity along x; the start of the scene has none."""
+    scene = plates(radius=0.05)
+    start = gp.Simulation(scene, gp.DSMC(), 1).state
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        gp.Simulation(scene, gp.DSMC(), 2, initial=start)
+    velocities = start.velocities.copy()
+    velocities[:, 1] += np.sin(2.0 * math.pi * start.positions[:, 0] / 10.0)
+    wave = replace(start, velocities=velocities)
+    with pytest.warns(UserWarning, match="the initial state, which varies along x: give the cells"):
+        gp.Simulation(scene, gp.DSMC(), 2, initial=wave)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        gp.Simulation(scene, gp.DSMC(cells_per_side=(9, 1, 20)), 2, initial=wave)
 
 
 def test_what_the_boltzmann_model_neglects_is_stated():

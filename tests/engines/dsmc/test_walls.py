@@ -163,3 +163,92 @@ def test_images_that_cannot_be_counted_end_a_run_with_a_line():
         gp.SimulationError, match=r"at time 3 a particle has crossed the container 2\^31 times"
     ):
         sim.advance(until=3.0)
+
+
+def rate_in_slit(scene, model):
+    """Collisions per time of a dilute gas between walls of z, of kinds that are uniform in what they reach.
+
+    Boltzmann: pairs collide where both are. Enskog: centres are a contact distance apart in any direction.
+    """
+    x, y, width = scene.container.lengths
+    total, cosines = 0.0, np.linspace(-1.0, 1.0, 1001)
+    for n, first in enumerate(scene.species):
+        heights = np.linspace(first.radius, width - first.radius, 1001)
+        for second in scene.species[n:]:
+            same = first is second
+            pairs = first.count * (second.count - same) / (2.0 if same else 1.0)
+            sigma = first.radius + second.radius
+            room = width - 2.0 * min(first.radius, second.radius)
+            part = 1.0
+            if model == "enskog":
+                room, ends = width - 2.0 * second.radius, heights[:, None] + sigma * cosines
+                part = ((ends >= second.radius) & (ends <= width - second.radius)).mean()
+            speed = math.sqrt(16.0 / math.pi)  # mean relative speed for masses and temperature of 1
+            total += pairs * math.pi * sigma**2 * speed * part / (x * y * room)
+    return total
+
+
+@pytest.mark.parametrize(
+    ("model", "cells", "side"),
+    [
+        ("boltzmann", (1, 1, 4), 40.0),
+        ("boltzmann", (2, 2, 9), 40.0),
+        pytest.param("enskog", (1, 1, 4), 160.0, marks=pytest.mark.thorough),
+    ],
+)
+def test_particles_of_two_sizes_collide_as_often_as_their_room_says(model, cells, side):
+    """The large ones reach three quarters of the slit, and a part of the outermost cells."""
+    container = gp.Container((side, side, 8.0), ("periodic", "periodic", "wall"))
+    species = [gp.Species(100, r, temperature=1.0, exact_temperature=True) for r in (0.2, 1.0)]
+    scene = gp.Scene(container, species)
+    sim = advanced(scene, 3000, settle=50, model=model, cells_per_side=cells)
+    assert sim._dynamics._workspace.counts[:, 2].sum() == 0  # chances above 1
+    found = sim.tally.collisions
+    expected = rate_in_slit(scene, model) * sim.tally.time
+    lost = sim.engine.bias(scene, "rates")
+    assert found == pytest.approx(expected, abs=3.0 * math.sqrt(found) + lost * found)
+    assert found > 5000
+
+
+def stress_of(scene, model, duration, interval, path):
+    """Stress on the upper plate with default cells: value, error, theory and its error."""
+    gp.run(scene, gp.DSMC(model=model), seed=1, duration=duration, sample_interval=interval, path=path)
+    found = gp.measure(path, "wall_shear")
+    names = ("wall_shear", "wall_shear_error", "wall_shear_theory", "wall_shear_theory_error")
+    return [float(found[name].values[-1, 0]) if name in found else math.nan for name in names]
+
+
+def sliding(axis, speed, dimension):
+    """Plates across an axis that slide along x in opposite directions."""
+    ends = {"low": -speed, "high": speed}
+    rest = (0.0,) * (dimension - 1)
+    return {f"{axis}_{end}": gp.Thermal(1.0, velocity=(v, *rest)) for end, v in ends.items()}
+
+
+def test_default_cells_give_the_stress_between_sliding_plates(tmp_path):
+    """Eleven free paths apart. Cubes of the same number exceed it by 31 %."""
+    container = gp.Container((10.0,) * 3, ("periodic", "periodic", "wall"))
+    faces = sliding("z", 0.5, 3)
+    scene = gp.Scene(
+        container,
+        [gp.Species(2000, 0.177953, temperature=1.0)],
+        faces=faces,
+        centres_to_walls=True,
+    )
+    value, error, theory, unsure = stress_of(scene, "boltzmann", 400.0, 2.0, tmp_path / "run.nc")
+    assert value == pytest.approx(theory, abs=3.0 * math.hypot(error, unsure))
+    assert math.hypot(error, unsure) < 0.07 * abs(theory)
+
+
+def test_default_cells_give_the_stress_of_a_dense_gas(tmp_path):
+    """Of the template `shear`, which cubes of 64 discs exceed 3.8 times."""
+    scene = gp.Scene(
+        gp.Container((60.0, 40.0), ("periodic", "wall")),
+        [gp.Species(400, 0.5, temperature=1.0)],
+        faces=sliding("y", 1.0, 2),
+    )
+    value, error, _, _ = stress_of(scene, "enskog", 2000.0, 10.0, tmp_path / "run.nc")
+    exact, unsure = -0.01645, 0.00047  # by the event-driven engine, in a run of 2000
+    bias = gp.DSMC(model="enskog").bias(scene, "fluxes")
+    assert value == pytest.approx(exact, abs=3.0 * math.hypot(error, unsure) + bias * abs(exact))
+    assert error < 0.05 * abs(exact) and bias < 0.15

@@ -33,6 +33,7 @@ def separations(sim, points):
     return np.linalg.norm(gaps, axis=2)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("boundary", ["periodic", "wall", ("periodic", "wall", "periodic")])
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_lists_hold_exactly_what_the_centres_say(dimension, boundary):
@@ -52,6 +53,7 @@ def test_lists_hold_exactly_what_the_centres_say(dimension, boundary):
         assert np.linalg.norm(moved, axis=1).max() < margin * (1 + 1e-9)
 
 
+@pytest.mark.thorough
 def test_lists_and_cells_grow_when_they_are_full():
     """Small particles among large ones are more than there is room for at first."""
     species = [gp.Species(2, 1.5, temperature=1.0), gp.Species(900, 0.1, temperature=1.0)]
@@ -84,6 +86,7 @@ def test_the_engine_chooses_by_density(dimension, eta, chosen):
     assert chosen_search(scene, "automatic", True) == "boxes"
 
 
+@pytest.mark.interpreted
 def test_what_lists_do_not_support_is_refused():
     species = [gp.Species(5, 0.5, temperature=1.0)]
     falling = gp.Scene(gp.Container((12.0, 12.0)), species, gravity=(0.0, -1.0))

@@ -19,6 +19,7 @@ def uneven_gas(dimension, count, ratio):
     return gp.Scene(gp.Container((4.0,) * dimension), [small], [large])
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_size_ratios_to_ten_thousand(dimension):
     """The same events, from less than a tenth of the particles looked at, and no energy lost."""
@@ -39,6 +40,7 @@ def test_which_particles_are_kept_outside():
     assert largest_in_boxes(gp.Scene(gp.Container((4.0, 4.0)))) == 0.0
 
 
+@pytest.mark.interpreted
 def test_boxes_narrower_than_most_particles_are_refused():
     scene = gp.Scene(gp.Container((10.0, 10.0)), [gp.Species(5, 0.1), gp.Species(5, 0.6)])
     with pytest.raises(gp.SceneError, match="boxes_per_side = 9: boxes must not be narrower"):

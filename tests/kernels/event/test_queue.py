@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 import gaspart as gp
 from gaspart.kernels.event.queue import MOST_UNSORTED, RUNS
@@ -32,6 +33,7 @@ def test_events_come_in_order_and_their_work_hardly_grows_with_their_number():
     assert many["evenly spread"] < 7.0
 
 
+@pytest.mark.thorough
 def test_a_lattice_on_edges_of_boxes_has_the_same_bits_in_all_searches():
     """Many particles cross into another box, or a periodic face, at the beginning."""
     scene = gp.Scene(

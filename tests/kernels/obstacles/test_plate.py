@@ -22,6 +22,7 @@ def sent(position, velocity, search="boxes", walls=(PLATE,), gravity=(0.0, 0.0, 
     return sim
 
 
+@pytest.mark.interpreted
 @SEARCHES
 @pytest.mark.parametrize(("x", "v"), [(2.0, 1.0), (10.0, -1.0)])
 def test_a_side(search, x, v):
@@ -32,6 +33,7 @@ def test_a_side(search, x, v):
     assert sim.tally.wall_impulse.tolist() == [0.0] * 6 + [2.0]
 
 
+@pytest.mark.interpreted
 @SEARCHES
 @pytest.mark.parametrize("degrees", [0, 10, 45, 80])
 def test_an_edge_is_a_cylinder(search, degrees):
@@ -42,6 +44,7 @@ def test_an_edge_is_a_cylinder(search, degrees):
     assert sim.state.velocities[0] == pytest.approx([math.sin(2 * a), -math.cos(2 * a), 0.25], abs=1e-14)
 
 
+@pytest.mark.interpreted
 @SEARCHES
 def test_a_corner_is_a_sphere(search):
     """Sent along the diagonal of a cube at a corner, a particle comes back; beside it, it passes."""
@@ -55,6 +58,7 @@ def test_a_corner_is_a_sphere(search):
         assert (sim.tally.wall_hits[6] == 1) == hit
 
 
+@pytest.mark.interpreted
 @SEARCHES
 def test_a_rim_is_met_where_side_and_edge_meet(search):
     for y in (4.0, 4.0 - 1e-15, 4.0 + 1e-15, 8.0):
@@ -62,6 +66,7 @@ def test_a_rim_is_met_where_side_and_edge_meet(search):
         assert sim.state.velocities[0] == pytest.approx([-1.0, 0.0, 0.0], abs=1e-12)
 
 
+@pytest.mark.interpreted
 @SEARCHES
 def test_thrown_over_an_edge_and_back_onto_it(search):
     """Beside the end of an edge a particle passes its line, rises, and comes down on the edge itself."""
@@ -81,6 +86,7 @@ def test_the_summit_between_two_approaches():
     assert time_of_summit(0.0, 0.0, 2.5, 0.0, 1.0) == math.inf  # one that turns before the centre
 
 
+@pytest.mark.interpreted
 def test_a_plate_is_met_across_a_periodic_face():
     wall = gp.Plate((0.2, 3.0, 3.0), ((0.0, 6.0, 0.0), (0.0, 0.0, 6.0)))
     sim = sent((9.0, 6.0, 6.0), (1.0, 0.0, 0.0), walls=[wall], boundary=("periodic", "wall", "wall"))
@@ -88,6 +94,7 @@ def test_a_plate_is_met_across_a_periodic_face():
     assert sim.tally.wall_hits.tolist() == [0] * 6 + [1]
 
 
+@pytest.mark.interpreted
 def test_a_box_of_plates_keeps_a_gas():
     particle = gp.Particle((5.5, 6.0, 6.0), (1.0, 0.3, 0.7), 0.3)
     scene = gp.Scene(gp.Container((12.0,) * 3), particles=[particle], gravity=(0.0, 0.0, -0.1))
@@ -122,6 +129,7 @@ def test_what_is_refused(plate, key):
     assert caught.value.key == key
 
 
+@pytest.mark.interpreted
 def test_random_particles_keep_clear_and_files_keep_plates():
     scene = gp.Scene(gp.Container((12.0,) * 3), [gp.Species(300, 0.4)], walls=[PLATE])
     state = gp.Simulation(scene, gp.EventDriven(), seed=3).initial_state

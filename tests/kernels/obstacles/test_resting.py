@@ -49,17 +49,20 @@ def close(sim, positions, velocities):
     assert sim.state.velocities == pytest.approx(np.array(velocities), abs=1e-9)
 
 
+@pytest.mark.interpreted
 def test_a_disc_at_rest_stays():
     sim = after(discs([((10.0, 10.5), (0.0, 0.0))]), 1000.0)
     close(sim, [(10.0, 10.5)], [(0.0, 0.0)])
     assert sim.tally.wall_hits.sum() <= 2
 
 
+@pytest.mark.interpreted
 def test_a_disc_slides_to_the_end_and_falls():
     sim = after(discs([((10.0, 10.5), (2.0, 0.0))]), 4.0)
     close(sim, [(18.0, 10.5 - 0.5 * 1.5**2)], [(2.0, -1.5)])
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("angle", [0.01, 0.3, 1.2, -0.3])
 def test_a_disc_slides_down_a_slope(angle):
     c, s = math.cos(angle), math.sin(angle)
@@ -70,6 +73,7 @@ def test_a_disc_slides_down_a_slope(angle):
     close(sim, [start - 0.5 * s * time**2 * np.array([c, s])], [-s * time * np.array([c, s])])
 
 
+@pytest.mark.interpreted
 def test_a_disc_comes_to_rest_and_slides_on():
     """Bounces that lose energy add up to a finite time; what is left is the motion along the wall."""
     sim = after(discs([((8.0, 11.0), (0.1, 0.0))], restitution=gp.Restitution(0.5)), 20.0)
@@ -77,6 +81,7 @@ def test_a_disc_comes_to_rest_and_slides_on():
     assert sim.tally.dissipated_energy == pytest.approx(0.5, rel=1e-9)
 
 
+@pytest.mark.interpreted
 def test_a_disc_at_rest_in_a_wedge_and_one_balanced_on_an_end():
     wedge = [gp.Wall((10.0, 10.0), (15.0, 15.0)), gp.Wall((10.0, 10.0), (5.0, 15.0))]
     place = (10.0, 10.0 + 0.5 / ROOT)
@@ -85,6 +90,7 @@ def test_a_disc_at_rest_in_a_wedge_and_one_balanced_on_an_end():
     close(after(discs([((10.0, 10.5), (0.0, 0.0))], end), 100.0), [(10.0, 10.5)], [(0.0, 0.0)])
 
 
+@pytest.mark.interpreted
 def test_a_disc_slides_from_wall_to_wall_and_across_a_periodic_face():
     walls = [gp.Wall((5.0, 10.0), (10.0, 10.0)), gp.Wall((10.0, 10.0), (15.0, 10.0))]
     close(after(discs([((6.0, 10.5), (1.0, 0.0))], walls), 8.0), [(14.0, 10.5)], [(1.0, 0.0)])
@@ -93,6 +99,7 @@ def test_a_disc_slides_from_wall_to_wall_and_across_a_periodic_face():
     close(after(scene, 100.0), [(6.0, 10.5)], [(1.0, 0.0)])
 
 
+@pytest.mark.interpreted
 def test_a_disc_at_rest_is_pushed_and_hit_from_above():
     sim = after(discs([((7.0, 10.5), (1.0, 0.0)), ((10.0, 10.5), (0.0, 0.0))]), 4.0)
     close(sim, [(9.0, 10.5), (12.0, 10.5)], [(0.0, 0.0), (1.0, 0.0)])
@@ -100,6 +107,7 @@ def test_a_disc_at_rest_is_pushed_and_hit_from_above():
     assert sim.state.energy == pytest.approx(sim.initial_state.energy, rel=1e-12)
 
 
+@pytest.mark.thorough
 def test_a_disc_that_is_slow_goes_round_the_end():
     """Until the angle a at which gravity no longer holds it there, cos a = 2/3 + v^2/3gR."""
     speed = 0.2
@@ -115,6 +123,7 @@ def test_a_disc_that_is_slow_goes_round_the_end():
     assert sim.state.energy == pytest.approx(sim.initial_state.energy, rel=1e-7)
 
 
+@pytest.mark.interpreted
 def test_a_sphere_on_a_plate_and_in_the_trough_of_two():
     plate = [gp.Plate((2.0, 2.0, 5.0), ((6.0, 0.0, 0.0), (0.0, 6.0, 0.0)))]
     close(
@@ -128,6 +137,7 @@ def test_a_sphere_on_a_plate_and_in_the_trough_of_two():
     close(sim, [(8.0, *start[1:])], [(0.5, 0.0, 0.0)])
 
 
+@pytest.mark.interpreted
 def test_a_sphere_slides_down_a_tilted_plate():
     c, s = math.cos(0.3), math.sin(0.3)
     plate = gp.Plate((2.0, 5.0 - 3.0 * c, 5.0 - 3.0 * s), ((6.0, 0.0, 0.0), (0.0, 6.0 * c, 6.0 * s)))
@@ -136,6 +146,7 @@ def test_a_sphere_slides_down_a_tilted_plate():
     close(sim, [start + np.array([0.6, -2.0 * s * c, -2.0 * s * s])], [(0.3, -2.0 * s * c, -2.0 * s * s)])
 
 
+@pytest.mark.thorough
 @given(
     st.floats(-1.4, 1.4).map(lambda x: round(x, 6)),
     st.floats(-3.0, 3.0).map(lambda x: round(x, 6)),

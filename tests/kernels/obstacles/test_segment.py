@@ -10,6 +10,7 @@ from scenes import sent
 import gaspart as gp
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("search", ["boxes", "direct", "pairs"])
 def test_a_container_of_walls_keeps_a_gas(search):
     container = gp.Container((20.0, 20.0))
@@ -30,6 +31,7 @@ def test_a_container_of_walls_keeps_a_gas(search):
         sim.add_wall((1.0, 1.0), (2.0, 2.0))
 
 
+@pytest.mark.interpreted
 def test_a_particle_passes_just_beside_an_end_and_does_not_pass_just_inside():
     wall = gp.Wall((6.0, 4.0), (6.0, 6.0))
     for beside, hits in ((0.5 + 1e-9, 0), (0.5 - 1e-9, 1)):
@@ -38,6 +40,7 @@ def test_a_particle_passes_just_beside_an_end_and_does_not_pass_just_inside():
         assert sim.tally.wall_hits[4] == hits
 
 
+@pytest.mark.interpreted
 def test_a_side_hit_where_the_side_ends():
     wall = gp.Wall((6.0, 4.0), (6.0, 6.0))
     for y in (6.0, 6.0 - 1e-15, 6.0 + 1e-15, 4.0):
@@ -47,6 +50,7 @@ def test_a_side_hit_where_the_side_ends():
         assert sim.state.velocities[0] == pytest.approx([-1.0, 0.0], abs=1e-13)
 
 
+@pytest.mark.interpreted
 def test_an_oblique_wall_mirrors_the_velocity():
     sim = sent((2.0, 6.0), (1.0, 0.0), [gp.Wall((4.0, 4.0), (8.0, 8.0))])
     sim.record_events = True
@@ -55,6 +59,7 @@ def test_an_oblique_wall_mirrors_the_velocity():
     assert sim.state.velocities[0] == pytest.approx([0.0, 1.0], abs=1e-14)
 
 
+@pytest.mark.interpreted
 def test_walls_that_cross_are_corners():
     walls = [gp.Wall((6.0, 2.0), (6.0, 10.0)), gp.Wall((2.0, 6.0), (10.0, 6.0))]
     sim = sent((4.0, 4.0), (1.0, 1.0), walls)
@@ -63,6 +68,7 @@ def test_walls_that_cross_are_corners():
     assert sim.state.velocities[0] == pytest.approx([-1.0, -1.0], abs=1e-14)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("boxes_per_side", [1, 2, 4])
 def test_a_wall_is_met_across_a_periodic_face(boxes_per_side):
     # the wall stands a little inside the low face; the particle comes to the high face and touches its image
@@ -73,6 +79,7 @@ def test_a_wall_is_met_across_a_periodic_face(boxes_per_side):
     assert sim.state.positions[0] == pytest.approx([10.4, 6.0], rel=1e-14)
 
 
+@pytest.mark.interpreted
 def test_gravity_and_a_shelf():
     """Let go over a shelf, a ball bounces on it for ever; thrown up from below, it hits the other side."""
     shelf = gp.Wall((4.0, 6.0), (8.0, 6.0))
@@ -87,6 +94,7 @@ def test_gravity_and_a_shelf():
     assert sim.events["time"] == pytest.approx([5.0 - math.sqrt(25.0 - 7.0)], rel=1e-14)
 
 
+@pytest.mark.interpreted
 def test_thrown_round_the_end_of_a_shelf_onto_its_other_side():
     """Up beside the end, over it, and down on the top: the side that it was not on when thrown."""
     shelf = gp.Wall((6.0, 6.0), (11.0, 6.0))
@@ -102,6 +110,7 @@ def test_thrown_round_the_end_of_a_shelf_onto_its_other_side():
         assert sim.state.positions[0] == pytest.approx([4.5 + 0.5 * down, 6.5], rel=1e-13)
 
 
+@pytest.mark.interpreted
 def test_dropped_on_the_end_of_a_wall():
     wall = gp.Wall((6.0, 1.0), (6.0, 5.0))
     sim = sent((6.3, 9.4), (0.0, 0.0), [wall], gravity=(0.0, -2.0))
@@ -112,6 +121,7 @@ def test_dropped_on_the_end_of_a_wall():
     assert sim.state.velocities[0] == pytest.approx(np.array([0.0, -4.0]) + 2 * 4.0 * 0.8 * n, rel=1e-13)
 
 
+@pytest.mark.interpreted
 def test_a_rough_wall_follows_its_formula():
     """Spencer 2022, Eq. 40, at an oblique wall."""
     law, n = (
@@ -134,6 +144,7 @@ def test_a_rough_wall_follows_its_formula():
     assert sim.tally.wall_impulse[4] == pytest.approx(-q @ n, rel=1e-14)
 
 
+@pytest.mark.interpreted
 def test_random_particles_keep_clear_of_walls():
     walls = [gp.Wall((1.0, 1.0), (19.0, 19.0)), gp.Wall((0.0, 10.0), (20.0, 10.0))]
     scene = gp.Scene(gp.Container((20.0, 20.0), "periodic"), [gp.Species(100, 0.5)], walls=walls)
@@ -163,6 +174,7 @@ def test_what_is_refused(change, key):
     assert caught.value.key == key
 
 
+@pytest.mark.interpreted
 def test_overlaps_across_a_periodic_face_lattices_and_files():
     container, wall = gp.Container((12.0, 12.0), "periodic"), gp.Wall((0.1, 3.0), (0.1, 9.0))
     with pytest.raises(gp.SceneError, match=r"overlaps walls\[0\]"):

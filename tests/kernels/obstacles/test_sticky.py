@@ -23,6 +23,7 @@ def smallest_change(sim):
     return least
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("seed", [13, 14])
 def test_what_sticks_is_not_met_again_by_rounding(seed):
     """A disc in a corner is hit, gives its velocity to two faces, and is approached again at 1e-17; or one

@@ -17,6 +17,7 @@ def between(hot, cold, dimension=3, components="all", count=200, temperature=1.0
     return gp.Scene(container, [gp.Species(count, 1e-3, temperature=temperature)], faces=faces)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("components", ["all", "normal"])
 def test_velocities_after_a_wall(components):
     """Outgoing normal speeds of mean sqrt(pi T/2m) and mean square 2T/m; tangential ones drawn or kept."""
@@ -44,6 +45,7 @@ def test_velocities_after_a_wall(components):
         assert np.mean(v[:, 1:] == first) > 0.9
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("components", "share"), [("all", 1.0), ("normal", 0.5)])
 def test_heat_between_the_walls_of_a_thin_gas(components, share):
     """Free-molecular flux n sqrt(8/pi m) sqrt(T1 T2) (sqrt T1 - sqrt T2); by the rule of Frederickx & Meerts
@@ -58,6 +60,7 @@ def test_heat_between_the_walls_of_a_thin_gas(components, share):
     assert heat == pytest.approx(expected, abs=3 * sigma)
 
 
+@pytest.mark.thorough
 def test_a_gas_takes_the_temperature_of_its_walls():
     """In each direction, spins included; the energy of a canonical gas has a variance to compare with."""
     scene = gp.Scene(
@@ -121,6 +124,7 @@ def drift(sim):
     return sim.state.energy + sim.tally.wall_energy.sum() - sim.initial_state.energy
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("count", [1, 3])
 def test_a_correct_run_between_thermal_walls_is_not_aborted(count):
     """The heat that goes through grows for ever, and with it the rounding of a plain sum of it."""
@@ -140,6 +144,7 @@ def test_thirty_million_events_between_thermal_walls():
     assert abs(drift(sim)) < 2.0**-52 * abs(sim.tally.wall_energy).sum() + 1e-9 * sim.state.energy
 
 
+@pytest.mark.thorough
 def test_an_error_of_the_energy_is_still_found():
     sim = gp.Simulation(box_of_discs(3), gp.EventDriven(), seed=1)
     sim.advance(max_events=100_000)

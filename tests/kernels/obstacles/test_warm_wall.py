@@ -32,6 +32,7 @@ def areas(scene):
     return np.append(faces, 2.0 * (math.sqrt(20.0) if scene.dimension == 2 else 2.0 * math.sqrt(5.0)))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_heat_from_a_hot_wall_to_cold_faces_in_free_flight(dimension):
     """All surfaces are hit equally often per area, and a hit carries (d + 1) k_B T / 2. No ray leads from one
@@ -59,6 +60,7 @@ def test_heat_from_a_hot_wall_to_cold_faces_in_free_flight(dimension):
     assert np.array(heat).sum() == pytest.approx(0.0, abs=0.02 * np.abs(heat).sum())
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_velocities_after_a_wall(dimension):
     """On both sides alike: m v_n^2 / T has the mean 2, along the wall 1, without a mean velocity there."""
@@ -81,6 +83,7 @@ def test_velocities_after_a_wall(dimension):
         assert abs((across[side] * along[side, 0]).mean()) < 3.5 * HOT * math.sqrt(2.0 / count)
 
 
+@pytest.mark.thorough
 def test_a_gas_takes_the_temperature_of_a_wall():
     """Of two masses, by collisions and hits, from another temperature; the energy is counted."""
     kinds = [gp.Species(40, 0.2, mass=mass, temperature=0.3) for mass in (1.0, 3.0)]
@@ -108,6 +111,7 @@ def test_a_wall_and_a_force_have_a_steady_state():
         replace(scene, walls=[replace(walls[0], temperature=None)])
 
 
+@pytest.mark.interpreted
 def test_what_is_refused():
     wall = {"start": [1.0, 1.0], "end": [5.0, 5.0], "temperature": 0.0}
     with pytest.raises(gp.SceneError, match=r"walls\[0\].temperature = 0.0: must be positive"):

@@ -32,6 +32,7 @@ def after(scene, duration):
     return sim
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("angle", [0.2, 0.6, 0.77])
 @pytest.mark.parametrize("walls", [[BELOW], []])
 def test_a_disc_comes_to_rest_in_an_acute_wedge(angle, walls):
@@ -46,6 +47,7 @@ def test_a_disc_comes_to_rest_in_an_acute_wedge(angle, walls):
     assert sim.tally.wall_hits.sum() < 20
 
 
+@pytest.mark.interpreted
 def test_a_disc_returns_from_a_wedge_that_is_less_acute():
     """Of 50 degrees, with what the contact leaves of its speed along the wall below."""
     angle = math.radians(50.0)
@@ -56,6 +58,7 @@ def test_a_disc_returns_from_a_wedge_that_is_less_acute():
     assert sim.state.velocities[0] == pytest.approx([left * SPEED, 0.0], abs=1e-12)
 
 
+@pytest.mark.interpreted
 def test_a_disc_slides_out_of_a_wedge_along_a_slope():
     """Up into it, where it stops, and down again from rest."""
     slope, angle = 1e-4, 0.6
@@ -69,6 +72,7 @@ def test_a_disc_slides_out_of_a_wedge_along_a_slope():
     assert sim.state.velocities[0] == pytest.approx([100.0 * pull, 0.0], abs=1e-12)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("walls", [[BELOW], []])
 def test_a_disc_comes_to_rest_below_a_fixed_one(walls):
     """At a speed at which it does not bounce so soon after the contact."""
@@ -81,6 +85,7 @@ def test_a_disc_comes_to_rest_below_a_fixed_one(walls):
     assert sim.tally.collisions < 20
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("along", [0.0, 0.002])
 @pytest.mark.parametrize("plates", [1, 2])
 def test_a_sphere_slides_along_a_wedge(plates, along):

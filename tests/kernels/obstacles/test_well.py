@@ -21,6 +21,7 @@ def sent(speed, face, x=5.0, mass=1.0, across=0.25, particles=(), search="boxes"
     return sim
 
 
+@pytest.mark.interpreted
 @SEARCHES
 def test_a_particle_falls_into_a_well_and_climbs_out(search):
     """In at x = 1.5 with sqrt(v^2 + 2 depth/m), thrown back at 0.5, out with the old speed."""
@@ -38,6 +39,7 @@ def test_a_particle_falls_into_a_well_and_climbs_out(search):
     assert sim.tally.wall_impulse[0] == 4.0  # of the way in, the hit and the way out together
 
 
+@pytest.mark.interpreted
 def test_the_energy_counts_the_well():
     sim = sent(-1.0, gp.Well(depth=3.0, width=1.0), mass=2.0)
     assert sim.state.energy == 1.0625
@@ -48,6 +50,7 @@ def test_the_energy_counts_the_well():
     sim.check_invariants()
 
 
+@pytest.mark.interpreted
 @SEARCHES
 def test_a_slow_particle_does_not_leave_a_well(search):
     face = gp.Well(depth=0.5, width=1.0)
@@ -60,6 +63,7 @@ def test_a_slow_particle_does_not_leave_a_well(search):
         sim.check_invariants()
 
 
+@pytest.mark.thorough
 def test_an_ideal_gas_in_a_well():
     """N_ads/N_gas = w/(L - w) e^{depth/T}; and the wall, well and all, is pressed with P = n T of the gas."""
     count, depth, temperature, width, side = 500, 1.5, 1.0, 0.25, 3.0
@@ -85,6 +89,7 @@ def test_an_ideal_gas_in_a_well():
     assert pressures == pytest.approx([density * temperature] * 2, rel=0.015)
 
 
+@pytest.mark.interpreted
 @SEARCHES
 def test_a_slow_particle_sticks_and_glides(search):
     sim = sent(-0.5, gp.Sticky(momentum=1.0), mass=2.0 - 1e-9, search=search)
@@ -100,6 +105,7 @@ def test_a_slow_particle_sticks_and_glides(search):
     assert fast.state.velocities[0, 0] == 0.5
 
 
+@pytest.mark.interpreted
 @SEARCHES
 @pytest.mark.parametrize(("speed", "held"), [(0.6, 0.305), (0.9, 0.0)])
 def test_a_stuck_particle_is_set_free_with_all_its_energy(search, speed, held):

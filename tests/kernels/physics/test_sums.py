@@ -178,6 +178,7 @@ def check_sums(scene, engine, chunks, rel, **chunk):
         assert found == pytest.approx(np.array(exact[name]), rel=rel), name
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("scene", list(scenes()))
 def test_a_tally_is_the_sum_of_its_parts(scene):
     check_sums(scene, gp.EventDriven(), 300, 1e-15, max_events=1000)
@@ -209,6 +210,7 @@ def test_a_thousand_million_terms():
     assert net(sums[0]) == float(Fraction(total, 2**33))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("settings", [{}, {"precision": "float32"}, {"threads": 2}])
 def test_the_steps_tally_is_the_sum_of_its_parts(settings):
     scene = gas(2, 30, 0.1, "wall")

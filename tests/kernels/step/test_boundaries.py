@@ -34,6 +34,7 @@ def rough_gas(boundary="wall", faces=None, count=120):
     return gp.Scene(gp.Container((12.0, 12.0), boundary), kinds, restitution=ROUGH, faces=faces)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "parts",
     [
@@ -68,6 +69,7 @@ def test_few_particles_follow_the_event_driven_engine(parts):
             assert np.allclose(sim.state.vibrations, exact.state.vibrations, atol=1e-9)
 
 
+@pytest.mark.thorough
 def test_heat_through_a_gas_is_that_of_the_event_driven_engine():
     """What the walls give the gas has, and what flows from the hot to the cold one is the same in both."""
     scene = rough_gas(("wall", "periodic"), {"x_low": gp.Thermal(4.0), "x_high": gp.Thermal(1.0)})
@@ -82,6 +84,7 @@ def test_heat_through_a_gas_is_that_of_the_event_driven_engine():
     assert flux[1] == pytest.approx(flux[0], abs=3 * math.hypot(*sigma))
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(
     ("change", "what"),
     [

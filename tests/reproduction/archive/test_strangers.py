@@ -2,10 +2,13 @@
 outside is read, and no text of theirs controls the terminal."""
 
 import io
+import json
 import os
+import re
 import resource
 import shutil
 import socket
+import tempfile
 import zipfile
 from pathlib import Path
 
@@ -15,6 +18,7 @@ from hypothesis import strategies as st
 from malformed import within
 from strangers import (
     MANIFEST,
+    POINT,
     broken_tables,
     broken_zips,
     contents,
@@ -31,6 +35,7 @@ from gaspart.errors import SceneError
 from gaspart.reproduction.archive import limits, stored, tables
 from gaspart.reproduction.archive.contents import scene_files
 from gaspart.reproduction.archive.stored import verify
+from gaspart.trajectory import recording
 
 
 def outcome(capsys, path):
@@ -164,6 +169,31 @@ def test_a_rerun_reads_no_scene_of_this_machine(tmp_path, capsys, scene, in_grid
     assert main(["verify", str(path), "--rerun", "1"]) == 2
     error = capsys.readouterr().err
     assert "has a config with a scene that is not in the archive" in error and "secret" not in error
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "rule"),
+    [
+        ("samples", 10**9, "a point gas/single of .* bytes of 8 particles; simulated are at most"),
+        ("samples", 1, "a trajectory that takes more than"),
+    ],
+)
+def test_a_rerun_is_bounded_and_leaves_no_folder(tmp_path, monkeypatch, capsys, key, value, rule):
+    monkeypatch.setattr(stored, "_LONGEST_RUN", 0.0)
+    monkeypatch.setattr(recording, "_PROGRESS", 0.0)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    gas = {"count": 8, "dimension": 2, "packing_fraction": 0.1, "radius": 0.5, "temperature": 1.0}
+    gas |= {"collisions_per_particle": 1e7, key: value}
+    config = {"title": "t", "seed": 1, "points": "results/points", "figures": {}}
+    config["experiments"] = {"gas": {"point": gas}}
+    row = ("gas", "single", "simulate", "0", POINT, "7", sha256(b"a point"), sha256(b"a point"), "", "")
+    table = tables.text_of([row[: len(tables.PointFile._fields)]], tables.PointFile._fields)
+    files = contents() | {tables.CONFIG: json.dumps(config).encode(), tables.POINTS: table.encode()}
+    path = folder(tmp_path / "a", stated(files))
+    assert main(["verify", str(path), "--rerun", "1"]) == 2
+    error = capsys.readouterr().err
+    assert re.search(rule, error), error
+    assert os.listdir(tmp_path) == ["a"]
 
 
 def test_text_of_a_stranger_does_not_control_the_terminal(tmp_path, capsys):

@@ -14,8 +14,10 @@ from gaspart.analysis import observables
 from gaspart.analysis.flow import FLOW
 from gaspart.analysis.run import Run
 from gaspart.engines import Engine, engine_from_dict
+from gaspart.scene.faces import Thermal
 from gaspart.scene.gas import Mixture
 from gaspart.scene.scene import Scene
+from gaspart.scene.species import Species
 from gaspart.theory import bulk, discretisation
 from gaspart.theory.bulk import BOLTZMANN, ENSKOG, EXACT
 from gaspart.theory.geometry import unit_sphere_surface
@@ -86,6 +88,37 @@ def partners(run: Run) -> float:
     A particle has N - 1 partners, whereas the theory for an infinite system assumes N.
     """
     return 1.0 - 1.0 / run.count
+
+
+RELAXED = 10.0
+"""Number of changes of its speed after which a particle has an independent speed, for equal masses."""
+
+
+def is_relaxed(run: Run) -> bool:
+    """Return True if velocities have Maxwell's distribution in the measured part of a run.
+
+    Either they are drawn from it, or particles have changed them often enough.
+    """
+    scene = run.scene
+    kinds, masses = scene.moving_kinds, [kind.mass for kind in scene.moving_kinds]
+    temperatures = {kind.initial_temperature(run.dimension) for kind in kinds} | scene.face_temperatures
+    drawn = all(isinstance(kind, Species) and kind.temperature is not None for kind in kinds)
+    if drawn and len(temperatures) == 1 and "initial_velocities" not in run.data:
+        return True
+    return changes_of_velocity(run)[0] >= RELAXED * max(masses) / min(masses)
+
+
+def changes_of_velocity(run: Run) -> np.ndarray:
+    """Return how often a particle has changed its speed until each frame, shape (T,).
+
+    Speeds change in collisions with particles that move, and at faces at a temperature.
+    """
+    scene, data = run.scene, run.data
+    fixed = data["fixed_collisions"].values if "fixed_collisions" in data else 0.0
+    changes = 2.0 * (data["collisions"].values - fixed)
+    for number, face in scene.faces_of(Thermal):
+        changes = changes + (face.accommodation or 1.0) * data["wall_hits"].values[:, number]
+    return np.asarray(changes / scene.moving_count)
 
 
 def contact_of_number(run: Run, packing_fraction: float, dimension: int) -> tuple[float, float] | None:
@@ -174,7 +207,7 @@ def _pairs_of_enskog(mixture: Mixture) -> float:
 def collision_rate(run: Run) -> Expected | None:
     """Compute the expected collision rate at fixed energy; it is exact apart from the contact value."""
     gas, equation = run.moving_fluid, equation_of(run)
-    if gas is None:
+    if gas is None or not is_relaxed(run):
         return None
     eta, d = gas.packing_fraction, gas.dimension
     value = bulk.collision_rate(gas, equation) * mean_speed_factor(d * (run.count - 1)) * partners(run)
@@ -215,11 +248,11 @@ def _by_pair(run: Run, values: np.ndarray) -> np.ndarray:
 
 
 def _mixture_of_species(run: Run) -> Mixture | None:
-    """Return the mixture of a run, if its species are distinct and have single sizes."""
+    """Return the mixture of a run, if its species are distinct and relaxed, with one size each."""
     mixture = run.mixture
     if mixture is None or len(mixture.counts) != len(run.scene.species) or equation_of(run) != EXACT:
         return None
-    return mixture
+    return mixture if is_relaxed(run) else None
 
 
 def wall_pressure(run: Run, touched: np.ndarray) -> Expected | None:
@@ -289,13 +322,29 @@ def speeds(run: Run, edges: np.ndarray, mass: float | None, fixed: bool) -> Expe
     """Compute Maxwell's density (bins,) of speeds; None unless all particles have the same mass.
 
     The bins lie between `edges`. If `fixed` is True, the kinetic energy is constant, and the exact
-    distribution for the finite number of particles is used.
+    distribution for the finite number of particles is used. Spins share in a constant energy: the
+    distribution is exact with their degrees of freedom. If a potential shares in it, the distribution lies
+    between the one at a constant kinetic energy and Maxwell's, whose difference is the uncertainty.
     """
-    if mass is None:
+    scene = run.scene
+    if mass is None or not scene.has_equilibrium or not is_relaxed(run):
         return None
-    law = theory.maxwell_cdf(edges, run.dimension, run.temperature, mass, int(run.freedom) if fixed else None)
-    source = f"Maxwell's distribution{', of this number at fixed energy' if fixed else ''}"
-    return Expected(np.diff(law) / np.diff(edges), 0.0, source, 0.0)
+    if np.ptp(changes_of_velocity(run)) < RELAXED:  # the speeds are those of the start
+        return None
+    shared = _densities(run, edges, mass, None)
+    if scene.face_temperatures:
+        return Expected(shared, 0.0, "Maxwell's distribution", 0.0)
+    of_spins = scene.rough * run.count * (run.dimension * (run.dimension - 1) // 2)
+    alone = _densities(run, edges, mass, int(run.freedom) + of_spins)
+    if fixed or scene.features <= {"roughness", "centres_to_walls", "polydispersity"}:
+        return Expected(alone, 0.0, "Maxwell's distribution, of this number at fixed energy", 0.0)
+    return Expected(shared, np.abs(shared - alone), "Maxwell's distribution", 0.0)
+
+
+def _densities(run: Run, edges: np.ndarray, mass: float, freedoms: int | None) -> np.ndarray:
+    """Return densities (bins,) of speeds in equilibrium, at a constant energy if `freedoms` share it."""
+    law = theory.maxwell_cdf(edges, run.dimension, run.temperature, mass, freedoms)
+    return np.asarray(np.diff(law) / np.diff(edges))
 
 
 # Description of an observable of a run: units, label, and expected value.

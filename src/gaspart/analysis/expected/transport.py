@@ -15,6 +15,7 @@ from gaspart.analysis.expected.equilibrium import (
     Expected,
     engine_of,
     equation_of,
+    is_relaxed,
 )
 from gaspart.analysis.run import Run
 from gaspart.engines import Engine
@@ -37,20 +38,28 @@ def mean_squared_displacement(run: Run, time: np.ndarray, axes: bool = False) ->
     If `axes` is True, the result is the mean-squared displacement along each axis.
     """
     gas = None if run.is_subset else run.moving_fluid
-    if gas is None:
+    if gas is None or not is_relaxed(run):
         return None
     equation = equation_of(run)
     contact = bulk.contact_value(gas, equation)
     curve = theory.enskog_mean_squared_displacement(time, **gas.parameters, contact=contact)
     source = SOURCES[equation]
     curve = curve / (run.dimension if axes else 1)
-    return Expected(curve, math.nan, f"{source}, linear Boltzmann equation")
+    return Expected(curve, curve * _memory(gas, equation), f"{source}, linear Boltzmann equation")
+
+
+def _memory(gas: Gas, equation: str) -> float:
+    """Return the relative change of D by correlated collisions; NaN if it is unknown."""
+    if equation != EXACT:
+        return math.nan
+    ratio = bulk.diffusion(gas, EXACT) / bulk.diffusion(gas, ENSKOG)
+    return abs(ratio - 1.0)
 
 
 def velocity_autocorrelation(run: Run, time: np.ndarray) -> Expected | None:
     """Compute the expected velocity autocorrelation (lag,), with the exact initial decay."""
     gas = None if run.is_subset else run.moving_fluid
-    if gas is None:
+    if gas is None or not is_relaxed(run):
         return None
     equation = equation_of(run)
     rate = float(theory.velocity_decay_rate(**gas.parameters, contact=bulk.contact_value(gas, equation)))
@@ -178,8 +187,15 @@ def _transport(
 
 
 def bulk_viscosity(run: Run, temperature: float) -> Expected | None:
-    """Compute the expected bulk viscosity from fluctuations."""
-    return _transport(run, temperature, bulk.bulk_viscosity)
+    """Compute the expected bulk viscosity from fluctuations.
+
+    In the Boltzmann equation it is 0, and the result is the value of the engine's cells.
+    """
+    expected, engine = _transport(run, temperature, bulk.bulk_viscosity), engine_of(run)
+    if expected is None or engine is None or engine.equation != BOLTZMANN:
+        return expected
+    added = engine.added_bulk_viscosity(run.scene)
+    return Expected(expected.value + added, 0.0, f"{expected.source}, transfer within cells")
 
 
 def thermal_conductivity(run: Run, temperature: float) -> Expected | None:

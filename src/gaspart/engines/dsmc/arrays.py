@@ -16,6 +16,7 @@ from gaspart.engines.features.faces import (
     sliding_velocities,
 )
 from gaspart.errors import SceneError
+from gaspart.kernels.dsmc.cells import LEAST_PART
 from gaspart.kernels.dsmc.enskog import Dense
 from gaspart.kernels.dsmc.model import PADDED, Faces, Grid, Law, Particles, Workspace
 from gaspart.kernels.model import ContactLaw, Open, flight_dtype
@@ -141,6 +142,8 @@ def law_for(law: ContactLaw | None) -> Law | None:
 
 _SAMPLES = 4000.0
 """Number of particles from which the density of a cell is averaged, over one or more steps."""
+_LEAST_PART = 0.25
+"""Smallest part of a cell by which collision rates are divided, because all cells then have more trials."""
 _MOST_DENSE_KINDS = 16
 """Maximum number of kinds of particles in a dense gas. With many kinds most trials fail."""
 
@@ -212,4 +215,21 @@ def dense_for(scene: Scene, state: State, grid: Grid, kinds: int) -> Dense:
         slope=SLOPE[d],
         bend=BEND[d],
         highest=np.ones(1),
+        least_part=least_part(scene, np.unique(state.radii), grid),
     )
+
+
+def least_part(scene: Scene, radii: np.ndarray, grid: Grid) -> float | None:
+    """Return the smallest part of a cell that particles of some radius (K,) can reach, see `Dense`."""
+    if len(radii) < 2 or scene.centres_to_walls or scene.is_periodic:
+        return None
+    least = 1.0
+    for radius in radii:
+        part = 1.0
+        for axis in scene.walled_axes:
+            low = (radius - radii[0]) * grid.inverse[axis]
+            covered = np.minimum(np.arange(1.0, grid.per_side[axis] + 1.0), grid.per_side[axis] - low)
+            covered -= np.maximum(np.arange(float(grid.per_side[axis])), low)
+            part *= float(covered[covered > 0.0].min().clip(LEAST_PART, 1.0))
+        least = min(least, part)
+    return max(least, _LEAST_PART)

@@ -29,7 +29,7 @@ import numpy as np
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.state.boxes import cube_side
-from gaspart.theory.discretisation import CELL_VISCOSITY, DENSE_VISCOSITY, STEP_COEFFICIENTS
+from gaspart.theory.discretisation import CELL_VISCOSITY, DENSE_VISCOSITY, STEP_COEFFICIENTS, STRESS_TRANSFER
 from gaspart.theory.rates import MEAN_SQUARE, Rates, accessible, rates, usual_count
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ FEWEST = 8.0
 """Minimum number of particles per cell with `LAYERS` cells across the walls."""
 LAYERS = 8
 """Minimum number of cells between walls across which the gas varies."""
-CELL_LOSS = {2: 0.65, 3: 0.5}
+CELL_LOSS = {2: 0.85, 3: 0.6}
 """Maximum fraction of collisions that the Enskog model misses, multiplied by the number of particles per
 cell, by dimension (docs/dsmc.md).
 """
@@ -197,6 +197,12 @@ class Medium:
         thermal = math.sqrt(2.0) * gas_rates.speed / math.sqrt(MEAN_SQUARE[d]) * step / gas_rates.path
         steps = [STEP_COEFFICIENTS[name] * thermal**2 for name in ("viscosity", "diffusion")]
         return Errors(width, repeats, lost, *steps)
+
+    def bulk_viscosity(self, cells: tuple[int, ...]) -> float:
+        """Return the bulk viscosity due to the distance of partners in cells, see `STRESS_TRANSFER`."""
+        d, widths = self.scene.dimension, widths_of(cells, self.scene)
+        mass = self.scene.number_density * self.scene.moving_kinds[0].mass
+        return STRESS_TRANSFER[d] / d**2 * mass * self.gas_rates.frequency * float((widths**2).sum())
 
     def recommended(self, step: float) -> tuple[int, ...]:
         """Return the recommended number of cells along each axis (d,).

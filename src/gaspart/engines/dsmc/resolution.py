@@ -50,6 +50,10 @@ _CHANGED = 0.75
 """Difference between the measured density and the present level, in levels, at which the level changes."""
 
 
+_SIGNIFICANT = 25.0
+"""Squared amplitude of a wave above which it is no fluctuation, in units of its mean in a homogeneous gas."""
+
+
 def may_crowd(scene: Scene) -> bool:
     """Return True if the density can become nonuniform."""
     return scene.is_open or (
@@ -84,6 +88,17 @@ def next_level(level: int, times: float) -> int:
     return level if abs(exact - level) <= _CHANGED else min(round(exact), HIGHEST)
 
 
+def varies_along(state: State, axis: int, length: float) -> bool:
+    """Return True if density or velocity of a state have a significant longest wave along an axis."""
+    moving = np.isfinite(state.masses) & np.isfinite(state.positions).all(axis=1)
+    if not moving.any():
+        return False
+    phases = np.exp(2j * math.pi * state.positions[moving, axis] / length)
+    velocities = state.velocities[moving]
+    fields = np.column_stack([np.ones(len(phases)), velocities - velocities.mean(axis=0)])
+    return bool((np.abs(phases @ fields) ** 2 > _SIGNIFICANT * (fields**2).sum(axis=0)).any())
+
+
 class Resolution:
     """Present cells and step lengths of a run.
 
@@ -111,9 +126,19 @@ class Resolution:
         self.dense: Dense | None = None
         self.grid: Grid | None = None
         self.set(0)
-        if text := neglected(engine, scene):
+        texts = [neglected(engine, scene), self._unresolved() if engine.adapts_cells else None]
+        for text in filter(None, texts):
             warnings.warn(f"gaspart: {text}", stacklevel=5)
         self._warn(self._medium(0), "")
+
+    def _unresolved(self) -> str | None:
+        """Return a remark if the initial state varies along a periodic axis with a single default cell."""
+        periodic = self._scene.container.periodic
+        for axis, (n, around) in enumerate(zip(self.cells, periodic, strict=True)):
+            if n == 1 and around and varies_along(self._state, axis, self._scene.container.lengths[axis]):
+                rule = f"does not resolve the initial state, which varies along {'xyz'[axis]}: give the cells"
+                return f"cells_per_side = {self.cells} {rule}"
+        return None
 
     def _medium(self, crowded: int) -> Medium:
         """Return the gas at a density level."""

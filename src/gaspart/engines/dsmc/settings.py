@@ -301,6 +301,31 @@ class DSMC(Engine):
         """
         return max(self._chosen(scene)[1])
 
+    def added_bulk_viscosity(self, scene: Scene) -> float:
+        """Return the bulk viscosity of the Boltzmann model, which is due to its cells alone.
+
+        Parameters
+        ----------
+        scene : Scene
+            Scene of particles with one mass.
+
+        Returns
+        -------
+        float, [mass length^(2-d)/time]
+            (A / d^2) n m nu times the sum of the squared sides of a cell, where n is the number density, nu
+            the collision rate, and A = 1/18 for spheres and 1/12 for discs.
+
+        Examples
+        --------
+        >>> import gaspart as gp
+        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
+        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
+        >>> round(gp.DSMC().added_bulk_viscosity(scene), 4)
+        0.0042
+        """
+        medium, cells, _ = self._chosen(scene)
+        return medium.bulk_viscosity(cells)
+
     def bias(self, scene: Scene, kind: str) -> float:
         """Bound the relative error of a quantity due to cells, steps and lost collisions.
 
@@ -430,7 +455,7 @@ class DSMC(Engine):
         >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
         >>> request = AccuracyRequest("collision_rate", 0.01, even_conditions(scene, 1.0))
         >>> round(gp.DSMC(model="enskog").candidate(request).bias, 3)
-        0.01
+        0.011
         """
         from gaspart.engines.dsmc.accuracy import candidate
 

@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gaspart.kernels.compile.policy import inner_helper, inner_kernel
+from gaspart.kernels.dsmc.cells import accessible_part
 from gaspart.kernels.dsmc.model import (
     COLLISIONS,
     EXCEEDED,
@@ -361,13 +362,32 @@ def bounds_of(u, v, w, first, end):
 
 
 @inner_helper
-def section_of(particles, pair, context):
-    """Return the cross-section of the particles in two slots."""
+def smallest_part(particles, cell, slots, grid, context):
+    """Return the smallest `accessible_part` of a cell for any of its particles."""
+    workspace, periodic, part = context.workspace, context.space.periodic, 1.0
+    if len(workspace.kind) > 0 and accessible_part(cell, workspace.largest, periodic, grid, workspace) < 1.0:
+        for slot in range(slots[0], slots[1]):
+            radius = workspace.radius[kind_in(particles, slot, workspace)]
+            part = min(part, accessible_part(cell, radius, periodic, grid, workspace))
+    return part
+
+
+@inner_helper
+def section_of(particles, pair, cell, grid, context):
+    """Return the cross-section of the particles in two slots, divided by the part of the cell for pairs.
+
+    In a part of the cell that only the smaller particle reaches, there is no collision. So the collision rate
+    is inversely proportional to the part that the smaller particle reaches.
+    """
     d, kinds = len(context.space.lengths), context.workspace
     if len(kinds.kind) == 0:
         return cross_section(2.0 * kinds.largest, d)
-    first, second = kind_in(particles, pair[0], kinds), kind_in(particles, pair[1], kinds)
-    return cross_section(kinds.radius[first] + kinds.radius[second], d)
+    first = kinds.radius[kind_in(particles, pair[0], kinds)]
+    second = kinds.radius[kind_in(particles, pair[1], kinds)]
+    smaller = min(first, second)
+    return cross_section(first + second, d) / accessible_part(
+        cell, smaller, context.space.periodic, grid, kinds
+    )
 
 
 @inner_helper
@@ -420,7 +440,7 @@ def separation_vector(particles, pair):
 
 
 @inner_helper
-def collide_cell(particles, cell, slots, volume, context, law, stress):
+def collide_cell(particles, cell, slots, grid, context, law, stress):
     """Perform the collisions of one step in a cell.
 
     The particles of the cell are in slots[0] to slots[1]. For the stress of the algorithm, momentum is
@@ -439,7 +459,8 @@ def collide_cell(particles, cell, slots, volume, context, law, stress):
     low_u, high_u, low_v, high_v, low_w, high_w = bounds_of(u, v, w, first, end)
     flat = 0.0 if d == 2 else 1.0
     most = cross_section(2.0 * context.workspace.largest, d)
-    pairs = 0.5 * number * (number - 1.0) * most / volume * context.workspace.dt
+    most /= smallest_part(particles, cell, slots, grid, context)
+    pairs = 0.5 * number * (number - 1.0) * most / grid.volume * context.workspace.dt
     bound, remaining, trial, met, exceeded = -1.0, 1.0, 0, 0, 0
     while True:
         if bound < 0.0:
@@ -453,7 +474,7 @@ def collide_cell(particles, cell, slots, volume, context, law, stress):
         j += j >= i
         g = u[j] - u[i], v[j] - v[i], flat * (w[j] - w[i])
         square = g[0] * g[0] + g[1] * g[1] + g[2] * g[2]
-        share = section_of(particles, (i, j), context) / most
+        share = section_of(particles, (i, j), cell, grid, context) / most
         threshold, offered = fraction(words[3]) * bound, square * share * share
         exceeded += offered > bound * bound * _ROUNDED
         if threshold * threshold < offered:
@@ -482,4 +503,4 @@ def collide_cells(particles, cells, grid, context, law, stress):
     for cell in range(cells[0], cells[1]):
         slots = np.int64(grid.starts[cell]), np.int64(grid.starts[cell + 1])
         if slots[1] - slots[0] > 1:
-            collide_cell(particles, cell, slots, grid.volume, context, law, stress)
+            collide_cell(particles, cell, slots, grid, context, law, stress)

@@ -138,3 +138,24 @@ def share_cells(grid, shares):
             else:
                 high = middle
         shares[part] = low
+
+
+LEAST_PART = 1.0 / 16.0
+"""Smallest part of a cell by which a collision rate is divided, because more trials are needed."""
+
+
+@inner_helper
+def accessible_part(cell, radius, periodic, grid, workspace):
+    """Return the part of a cell that the centres of particles of a radius can reach, at least `LEAST_PART`.
+
+    The cells cover what the smallest particles can reach.
+
+    periodic : (d,), True for periodic axes
+    """
+    part, gap = 1.0, (radius - workspace.radius[0]) * workspace.margin
+    for k in range(len(periodic)):
+        if not periodic[k]:
+            at, low = np.float64(cell // grid.strides[k] % grid.per_side[k]), gap * grid.inverse[k]
+            covered = min(at + 1.0, grid.per_side[k] - low) - max(at, low)
+            part *= min(max(covered, LEAST_PART), 1.0)
+    return part

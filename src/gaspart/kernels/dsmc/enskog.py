@@ -33,6 +33,7 @@ from gaspart.kernels.dsmc.boltzmann import (
     store_particle,
     unit_vector,
 )
+from gaspart.kernels.dsmc.cells import accessible_part
 from gaspart.kernels.dsmc.model import (
     COLLISIONS,
     EXCEEDED,
@@ -73,6 +74,8 @@ class Dense(NamedTuple):
     weight : weight of a step in the smoothed fields; 0 if the fields are known
     slope, bend : coefficients of the contact value, see `contact_value`
     highest : (1,), highest contact value of any pair of particles
+    least_part : smallest part of a cell by which rates are divided, see `cells.accessible_part`; None unless
+        walls stop particles of several sizes
     """
 
     fields: np.ndarray
@@ -90,6 +93,7 @@ class Dense(NamedTuple):
     slope: float
     bend: float
     highest: np.ndarray
+    least_part: float | None
 
 
 @inner_helper
@@ -316,14 +320,44 @@ def relative_chance(pair, cells, kinds, largest, dense, workspace, dimension):
 
 
 @inner_helper
+def weight_of_partner(particles, slot, partner, cell, grid, context, dense, least_part):
+    """Return the collision probability relative to its maximum if sizes differ between walls, otherwise 1.
+
+    The grid covers what the smallest particles can reach. The weight is 0 for a partner that cannot be where
+    the contact direction puts it. It is larger in a cell of which the partners can reach only a part, because
+    this part contains all of them.
+
+    partner : radius of the partner, contact distance and contact direction
+    cell : cell of the partner
+    least_part : see `Dense`
+    """
+    if least_part is None:
+        return 1.0
+    (radius, sigma, direction), workspace = partner, context.workspace
+    gap = (radius - workspace.radius[0]) * workspace.margin
+    for k in range(len(context.space.lengths)):
+        along = particles.data[position_row(particles, k), slot] + sigma * direction[k] - grid.origin[k]
+        along, low = along * grid.inverse[k], gap * grid.inverse[k]
+        if not dense.wraps[k] and not low <= along <= grid.per_side[k] - low:
+            return 0.0
+    return least_part / max(accessible_part(cell, radius, dense.wraps, grid, workspace), least_part)
+
+
+@inner_helper
+def increase(rate, least_part):
+    """Return a rate of trials for the largest `weight_of_partner`."""
+    return rate if least_part is None else rate / least_part
+
+
+@inner_helper
 def try_once(particles, counter, words, bound, grid, context, dense, options):
     """Perform one trial; return whether it is a collision, and whether its probability exceeded 1.
 
     counter : key, step, cell and trial
-    options : the law, the sums of the stress, and the slab
+    options : the law, the sums of the stress, the slab, and `least_part`, see `Dense`
     """
     key, step, cell, trial = counter
-    law, stress, slab = options
+    law, stress, slab, least_part = options
     workspace, d = context.workspace, len(context.space.lengths)
     first = np.int64(grid.starts[cell])
     i = first + below(words[1], np.int64(grid.starts[cell + 1]) - first)
@@ -332,7 +366,8 @@ def try_once(particles, counter, words, bound, grid, context, dense, options):
         extra = words_of(key, step, cell, trial, KIND_BLOCK)
         other_kind = below(extra[0], len(workspace.radius))
     direction = in_plane(key, step, cell, trial) if d == 2 else unit_vector(key, step, cell, trial)
-    sigma = workspace.radius[kind] + workspace.radius[other_kind]
+    radii = workspace.radius[kind], workspace.radius[other_kind]
+    sigma = radii[0] + radii[1]
     pick = below(words[2], np.int64(dense.near_count[cell]))
     j, there = partner_of(particles, i, sigma, direction, pick, grid, context, dense)
     if j < 0:
@@ -342,6 +377,8 @@ def try_once(particles, counter, words, bound, grid, context, dense, options):
     pair, kinds = (i, j), (kind, other_kind)
     approach = approach_along(particles, pair, direction)
     chance = relative_chance(pair, (cell, there), kinds, dense.highest[0], dense, workspace, d)
+    partner = radii[1], sigma, direction
+    chance *= weight_of_partner(particles, i, partner, there, grid, context, dense, least_part)
     exceeded = approach * chance > bound * _ROUNDED
     if fraction(words[3]) * bound < approach * chance:
         collide_at(particles, pair, kinds, direction, sigma, context, law, stress)
@@ -385,11 +422,13 @@ def collide_slab(particles, slab, grid, context, dense, law, stress):
     sigma = 2.0 * workspace.largest
     around = 6.283185307179586 * (sigma if d == 2 else 2.0 * sigma * sigma)
     rate = 0.5 * around * dense.highest[0] / grid.volume * workspace.dt * len(workspace.radius)
+    rate = increase(rate, dense.least_part)
+    options = law, stress, slab, dense.least_part
     stride = grid.strides[dense.axis]
     row = stride * grid.per_side[dense.axis]
     for start in range(0, len(grid.starts) - 1, row):
         first, end = start + dense.slabs[slab] * stride, start + dense.slabs[slab + 1] * stride
         for cell in range(first, end):
-            collide_dense_cell(particles, cell, rate, grid, context, dense, (law, stress, slab))
+            collide_dense_cell(particles, cell, rate, grid, context, dense, options)
             if stress is not None:
                 finish_cell(context, stress)

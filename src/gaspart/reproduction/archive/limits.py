@@ -122,6 +122,13 @@ def check_directory(path: Path, file: IO[bytes]) -> None:
             offset = tail.find(mark, offset + 1)
 
 
+def check_end(path: Path, file: IO[bytes], comment: int) -> None:
+    """Raise SceneError if bytes follow the end of a zip file, which has a comment of this length."""
+    file.seek(-_END_BYTES - comment, os.SEEK_END)
+    if not file.read().startswith(_END):
+        raise SceneError("archive", str(path), "has bytes after its end")
+
+
 # SHA-256 digests of files, of the numbers in a trajectory, and of sets of files.
 
 

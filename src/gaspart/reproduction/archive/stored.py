@@ -13,6 +13,7 @@ import random
 import shutil
 import stat
 import struct
+import time
 import warnings
 import zipfile
 import zlib
@@ -20,12 +21,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import IO, Any
 
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
 from gaspart.inspection.verdict import Check
+from gaspart.interruption import scratch_folder
 from gaspart.kernels.compile.cache import load_numba
 from gaspart.reproduction.archive import tables
 from gaspart.reproduction.archive.contents import scene_files
@@ -33,6 +34,7 @@ from gaspart.reproduction.archive.limits import (
     MOST_BYTES,
     MOST_FILES,
     check_directory,
+    check_end,
     check_names,
     check_places,
     check_size,
@@ -196,6 +198,7 @@ def _zip_file(path: Path, source: IO[bytes]) -> Stored:
     except DAMAGE:
         raise SceneError("archive", str(path), "is no zip file, or one that is cut short") from None
     entries = file.infolist()
+    check_end(path, source, len(file.comment))
     for entry in entries:
         _check_entry(path, entry)
     check_names(path, [entry.orig_filename for entry in entries])
@@ -289,9 +292,19 @@ def _write_config(stored: Stored, folder: Path) -> None:
     write_yaml(folder / "config/config.yaml", config)
 
 
+_LONGEST_RUN = 3600.0
+"""Time of a trajectory, in seconds, after which it is not simulated further."""
+_MOST_WRITTEN, _MOST_PARTICLES = 10**10, 10**7
+"""Largest trajectory that is simulated again, in bytes and in particles."""
+
+
 def rerun(stored: Stored, point: Point, folder: Path) -> Check:
-    """Simulate all replicas of a point, and compare their digests with the archive's digests."""
+    """Simulate all replicas of a point, and compare their digests with the archive's digests.
+
+    Raises SceneError for a trajectory beyond the limits, which a stranger may have planned.
+    """
     load_numba(ours=True)
+    name = f"{point.experiment}/{point.name}"
     rows = stored.rows(tables.POINTS, tables.PointFile._fields)
     digests = {
         row["replica"]: row["numbers_sha256"]
@@ -301,13 +314,24 @@ def rerun(stored: Stored, point: Point, folder: Path) -> Check:
     other = []
     for replica, recipe in enumerate(recipes(**point.arguments)):
         output = folder / "again.nc"
+        bytes_written = recipe.frames * recipe.layout.frame.itemsize
+        if bytes_written > _MOST_WRITTEN or recipe.scene.count > _MOST_PARTICLES:
+            size = f"{bytes_written:.3g} bytes of {recipe.scene.count} particles"
+            most = f"{_MOST_WRITTEN:.0e} bytes and {_MOST_PARTICLES:.0e} particles"
+            raise stored.make_error(f"has a point {name} of {size}; simulated are at most {most}")
+        started = time.monotonic()
+
+        def stop(*reached: float, started: float = started) -> None:
+            if time.monotonic() - started > _LONGEST_RUN:
+                rule = f"{_LONGEST_RUN:g} s: nothing is known of its bits"
+                raise stored.make_error(f"has a point {name} with a trajectory that takes more than {rule}")
+
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # warnings of coarse settings, which the config has on purpose
-            record(recipe, output, True)
+            record(recipe, output, True, stop)
         if digest_of_numbers(output) != digests.get(str(replica)):
             other.append(str(replica))
         output.unlink()
-    name = f"{point.experiment}/{point.name}"
     if not other:
         return Check("rerun", True, f"{name}: the same bits in each of its {point.replicas} trajectories")
     then = stored.summary()
@@ -344,9 +368,9 @@ def verify(path: str | Path, points: int = 0) -> Iterator[Check]:
             return
         yield from _tables(stored, stated)
         if points:
-            with TemporaryDirectory(prefix="gaspart-") as folder:
-                for point in chosen(stored, Path(folder), points):
-                    yield rerun(stored, point, Path(folder))
+            with scratch_folder() as folder:
+                for point in chosen(stored, folder, points):
+                    yield rerun(stored, point, folder)
 
 
 def _files(stored: Stored, stated: Mapping[str, str]) -> Check:
@@ -408,8 +432,8 @@ def _claims(stored: Stored, stated: Mapping[str, str]) -> Check:
 
 def _inputs(stored: Stored, name: str) -> list[str]:
     """Return the points, or tables of claims, from which a measurement in an archive is made."""
-    with TemporaryDirectory(prefix="gaspart-") as folder:
-        copy = Path(folder, "measurement.nc")
+    with scratch_folder() as folder:
+        copy = folder / "measurement.nc"
         stored.copy(name, copy)
         try:
             return tables.inputs_of(copy)

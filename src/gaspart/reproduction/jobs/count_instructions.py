@@ -13,10 +13,10 @@ import os
 import shutil
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gaspart.interruption import scratch_folder
 from gaspart.keys import Kind
 from gaspart.reproduction.jobs.data import PointData
 
@@ -100,9 +100,9 @@ def count_instructions(scene: Scene) -> PointData:
     features. Both are compiled in separate processes with separate caches.
     """
     counts = []
-    with tempfile.TemporaryDirectory() as folder:
+    with scratch_folder() as folder:
         for strip in (False, True):
-            package = Path(folder) / str(strip) / "gaspart"
+            package = folder / str(strip) / "gaspart"
             shutil.copytree(_PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__"))
             if strip:
                 for module in package.joinpath("kernels").rglob("*.py"):

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from gaspart.engines import Engine
     from gaspart.reproduction.points.point import Point
     from gaspart.trajectory.recipe import Recipe
+    from gaspart.trajectory.recording import Progress
 
 RESULT = "trajectories"
 KEYS: dict[str, Kind] = {
@@ -129,7 +130,7 @@ def simulate(folder: Path, **arguments: Any) -> None:
     write_replicas(record, recipes(**arguments), folder, print)
 
 
-def record(recipe: Recipe, path: Path, overwrite: bool) -> None:
+def record(recipe: Recipe, path: Path, overwrite: bool, progress: Progress | None = None) -> None:
     """Make, continue, or verify a trajectory.
 
     A complete trajectory is left unchanged.
@@ -137,7 +138,8 @@ def record(recipe: Recipe, path: Path, overwrite: bool) -> None:
     from gaspart.trajectory import run as trajectory
 
     examiner = import_module(EXAMINER).Examiner() if recipe.until else None
-    trajectory.record(recipe, path, trajectory.WriteOptions(overwrite=overwrite, examiner=examiner))
+    options = trajectory.WriteOptions(progress=progress, overwrite=overwrite, examiner=examiner)
+    trajectory.record(recipe, path, options)
 
 
 def recipes(seeds: Sequence[tuple[int, ...]], **settings: Any) -> list[Recipe]:

@@ -212,8 +212,8 @@ def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
             "what is drawn, and the settings of its measurement; a figure with another name has a `kind`",
         ),
         "animations": describe(
-            {**named, "additionalProperties": nullable(record(ANIMATION))},
-            "films; null takes one back",
+            {**named, "additionalProperties": record(ANIMATION)},
+            "films",
             default={},
         ),
     }

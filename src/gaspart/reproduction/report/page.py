@@ -273,11 +273,15 @@ def _inline(text: str) -> str:
 
 
 def headline(rows: list[dict[str, Any]]) -> dict[str, Any]:
-    """Return the claims on the first screen: counts by kind and verdict, and disagreements.
+    """Return the result of all claims: numbers by verdict, by kind and verdict, and disagreements.
 
     Families are counted too, so that the numbers of all kinds add up to the total.
     """
+    found = verdicts(rows)
     return {
+        "agree": found.get("agrees", 0) + found.get("reproduced", 0),
+        "open": found.get("inconclusive", 0),
+        "in_error": found.get("source in error", 0),
         "kinds": counts(rows),
         "disagree": [row for row in rows if row["verdict"] == "disagrees"],
     }

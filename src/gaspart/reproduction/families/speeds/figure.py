@@ -98,6 +98,13 @@ def speed_distribution_discs(dataset: xr.Dataset) -> Figure:
     return _distribution(Table(dataset, "point"))
 
 
+def _in_words(value: float) -> str:
+    """Return a number with two digits for a formula, 10^{-5} instead of 1e-05."""
+    digits, _, power = f"{value:.2g}".partition("e")
+    factor = "" if digits == "1" else rf"{digits}\cdot "
+    return rf"{factor}10^{{{int(power)}}}" if power else digits
+
+
 def _distribution(gases: Table) -> Figure:
     figure, (density, residual, tail, difference) = style.new((2.3, 1.1), (2.3, 1.1))
     end, dimension = gases.upper[-1], gases.dimension
@@ -111,7 +118,7 @@ def _distribution(gases: Table) -> Figure:
     style.level(difference, 0.0)
     middle, width = 0.5 * (gases.lower + gases.upper), gases.upper[0] - gases.lower[0]
     for kind, gas in enumerate(gases):
-        label = rf"$\eta={gas.packing_fraction:.2g}$, {ENGINE_TITLES[gas.engine]}"
+        label = f"$\\eta={_in_words(gas.packing_fraction)}$, {ENGINE_TITLES[gas.engine]}"
         style.points(density, middle, gas.density, kind=kind, hollow=True, label=label)
         # Points of different packing fractions are drawn side by side in their bin.
         beside = middle + width * 0.25 * (kind - 0.5 * (len(gases) - 1))

@@ -1,6 +1,6 @@
 """Table of numbers measured by gaspart, from the measurements of a finished reproduction.
 
-    python -m gaspart.reproduction.measured results/measurements > src/gaspart/theory/data/measured.csv
+    python tools/measured.py results/measurements > src/gaspart/theory/data/measured.csv
 
 writes the table that `gaspart.theory.measurements` reads. It has Z, contact values and transport coefficients
 with their uncertainties.

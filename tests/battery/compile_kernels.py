@@ -1,0 +1,54 @@
+"""Compile the kernels of the canonical runs, as many processes as there are cores, before tests share them.
+
+    PYTHONPATH=tests python -m battery.compile_kernels
+
+Otherwise two processes that need a kernel at the same time would both compile it.
+"""
+
+import os
+from concurrent.futures import ProcessPoolExecutor
+
+from battery.disturbed import ROWS
+from battery.kinds_of_runs import CANONICAL, start_of
+from battery.test_bits import CANONICAL as CANONICAL_ROWS
+
+from gaspart.reproduction.points.point import compiled_features
+
+
+def different(chosen):
+    """Return the runs that differ in their kernels."""
+    found = {}
+    for engine, name in chosen:
+        start = start_of(engine, name)
+        features = sorted(compiled_features(start.scene))
+        variant = engine, start.engine.variant(start.scene), *features, *start.forms
+        found.setdefault(variant, (engine, name))
+    return list(found.values())
+
+
+def compile_run(engine, name):
+    """Record two intervals of a run in each form that the battery looks at."""
+    start = start_of(engine, name)
+    for form in start.forms:
+        start.record(form, 2)
+
+
+def compile_row(name):
+    """Begin a run under each of its engines, and with events if engines are compared."""
+    row = ROWS[name]
+    for engine in row.engines:
+        for record in {False, len(row.engines) > 1}:
+            row.simulation(engine, record=record).advance(until=1e-3 * row.until)
+
+
+def main():
+    """Compile all."""
+    with ProcessPoolExecutor(os.cpu_count()) as pool:
+        done = [pool.submit(compile_run, *run) for run in different(CANONICAL)]
+        done += [pool.submit(compile_row, name) for name in ROWS if name in CANONICAL_ROWS]
+        for future in done:
+            future.result()
+
+
+if __name__ == "__main__":
+    main()
