@@ -82,7 +82,7 @@ TEST = .venv/bin/python -m pytest --numprocesses=auto --timeout=1500 --timeout-m
 INTERPRETED = $(shell grep -rl mark.interpreted tests --include='test_*.py')
 test: develop
 	NUMBA_DISABLE_JIT=1 $(TEST) -m interpreted --hypothesis-profile=few $(INTERPRETED) $(OPTIONS)
-	PYTHONPATH=tests .venv/bin/python -m battery.compile_kernels
+	PYTHONPATH=tests .venv/bin/python -W ignore -m battery.compile_kernels
 	$(TEST) -m "not thorough and not interpreted" $(OPTIONS)
 
 test-all: develop

@@ -229,6 +229,7 @@ def test_observables_that_points_do_not_have_are_refused():
     assert "is 1 of particles" in candidates(target, 0.1, target.conditions)[1]["dsmc"]
 
 
+@pytest.mark.thorough
 def test_a_heated_gas_has_the_layers_of_its_run(tmp_path):
     """Where theory knows nothing: hot and thin at one plate. One that is even shows no gradient."""
     faces = {"z_low": gp.Thermal(1.0), "z_high": gp.Thermal(9.0)}

@@ -89,6 +89,7 @@ def test_paths_are_followed_however_far_frames_are_apart(tmp_path, observable):
         measure(paths[1], observable)
 
 
+@pytest.mark.thorough
 def test_particles_that_start_at_rest_set_the_lags_by_their_collisions_later():
     """Of which theory says nothing: those of a bed of discs on a floor that moves."""
     scene = bed(0.3)
@@ -104,6 +105,7 @@ def test_particles_that_start_at_rest_set_the_lags_by_their_collisions_later():
     assert gas_of_theory.frequency == pytest.approx(1.6, rel=0.5)
 
 
+@pytest.mark.thorough
 def test_their_frequency_is_known_however_soon_they_have_collided(monkeypatch):
     monkeypatch.setattr(target_module, "_COLLIDED", 1e-9)
     assert Target(bed(0.3), "vacf").frequency > 0.0
@@ -120,6 +122,7 @@ def bed(amplitude):
     )
 
 
+@pytest.mark.thorough
 def test_the_pressure_on_one_wall(tmp_path):
     """Of a wall that nothing hits there is no relative accuracy."""
     made = plan.plan_from_pilots(bed(0.3), "pressure:y low", 0.05, pilot_seconds=0.4)
@@ -131,6 +134,7 @@ def test_the_pressure_on_one_wall(tmp_path):
         plan.plan_from_pilots(bed(0.3), "pressure", 0.05, pilot_seconds=0.4)
 
 
+@pytest.mark.thorough
 def test_an_engine_that_cannot_start_is_no_candidate():
     """Of a few large particles among many small ones DSMC draws no partners."""
     large = gp.Particle((6.0, 6.0), (0.0, 0.0), radius=2.0, mass=16.0)
@@ -149,6 +153,7 @@ def test_pilots_of_diffusion_and_structure_are_their_own():
         assert found.measured > 0.0 and found.seconds > 0.0
 
 
+@pytest.mark.thorough
 def test_particles_that_are_compressed_are_made_once(monkeypatch):
     dense = gp.Species(200, 0.5, temperature=1.0, exact_temperature=True, arrangement="compressed")
     scene = gp.Scene(gp.Container((15.0, 15.0), "periodic"), [dense])
@@ -164,6 +169,7 @@ def test_particles_that_are_compressed_are_made_once(monkeypatch):
     assert len(made) == 1
 
 
+@pytest.mark.thorough
 def test_a_sheared_gas_has_a_steady_state():
     made = plan.plan_from_pilots(SHEARED, "shear_viscosity", 0.1, pilot_seconds=0.4)
     assert made.affordable and made.recipe.correlations.stress

@@ -276,6 +276,7 @@ def test_until_d_is_accurate_paths_are_kept(tmp_path):
     assert gp.reached_accuracy(path)[0].met
 
 
+@pytest.mark.thorough
 def test_what_no_longer_run_can_measure_ends_it_with_one_line(tmp_path):
     """The thrust of particles at rest, which an obstacle may carry. What is measured later, as D from 48
     collisions on, is waited for."""

@@ -76,6 +76,7 @@ def test_an_atmosphere_that_falls_is_remarked_by_every_way_to_measure_it(tmp_pat
     assert REMARK not in repr(gp.measure(paths[0], "force", start=50.0, end=60.0))  # too few frames to know
 
 
+@pytest.mark.thorough
 def test_an_open_scene_that_still_fills_is_said_to_drift(tmp_path, capsys):
     """From few particles: the density of the whole run is below that to which the faces lead."""
     container = gp.Container((40.0, 20.0), ("wall", "periodic"))

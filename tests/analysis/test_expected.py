@@ -101,6 +101,7 @@ def test_a_mixture_by_the_enskog_equation_is_its_contact_values():
     assert found[0] == pytest.approx(1.0 + 0.95 * beyond, rel=1e-9)
 
 
+@pytest.mark.thorough
 def test_fluxes_by_the_boltzmann_equation(tmp_path):
     """The pressure of 64 particles about their centre of mass, and the viscosity of points."""
     scene = gas(3, 64, 0.01, exact_temperature=True)

@@ -55,6 +55,7 @@ def test_speeds_are_those_about_the_flow(couette):
         assert square == pytest.approx(2.0 * run.temperature, rel=0.01)
 
 
+@pytest.mark.thorough
 def test_behind_a_shock_it_is_about_the_flow_of_the_moment(tmp_path):
     """A wall at speed 2 drives a shock at 4.59; 2.78 behind it, by the jump conditions. With the flow 4.1."""
     faces = {"z_low": gp.Vibrating(40.0, 40.0, "sawtooth")}
@@ -102,6 +103,7 @@ def test_a_gas_blown_past_an_obstacle_has_the_temperature_about_the_wind(tmp_pat
     assert float(A.by_species(path, start=2.0)["temperature"][0]) == pytest.approx(expected, rel=0.05)
 
 
+@pytest.mark.thorough
 def test_a_force_along_a_channel_drives_a_flow_however_weak(tmp_path):
     faces = dict.fromkeys(("x_low", "x_high"), gp.Thermal(1.0))
     container = gp.Container((20.0, 20.0), ("wall", "periodic"))
@@ -133,6 +135,7 @@ def driven(tmp_path_factory):
     return gp.run(scene, gp.EventDriven(), 1, 150.0, 0.25, path, displacements=True)
 
 
+@pytest.mark.thorough
 def test_particles_spread_along_a_flow_as_across_it(driven):
     """About the flow the squared displacement does not grow like t^2, and both directions are alike."""
     found = gp.measure(driven, "msd", per_axis=True)
@@ -188,6 +191,7 @@ def test_momentum_is_kept_about_rest_and_has_no_theory(tmp_path):
     assert flow.theory is not None and rest.theory is None
 
 
+@pytest.mark.thorough
 def test_a_flow_that_changes_has_no_displacements_about_it(tmp_path):
     gas = gp.Species(32, 0.1, temperature=1.0)
     scene = gp.Scene(gp.Container((8.0, 6.0), ("wall", "periodic")), [gas])

@@ -145,6 +145,7 @@ def test_along_a_periodic_axis_a_gas_is_uniform_in_a_moving_frame_too():
     assert abs(float((apart**2).mean()) - 1.0) < 3.0 * math.sqrt(2.0 / 12.0) + 0.2
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ENGINES)
 def test_a_run_that_is_extended_keeps_its_impulses(name, tmp_path):
     engine = ENGINES[name]
@@ -259,6 +260,7 @@ UNEVEN = {
 }
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", UNEVEN)
 def test_where_the_energy_is_not_constant_there_are_no_controls(name, tmp_path):
     path = gp.run(
@@ -271,6 +273,7 @@ def test_where_the_energy_is_not_constant_there_are_no_controls(name, tmp_path):
     assert not Target(UNEVEN[name], "pressure").tallies(gp.EventDriven())
 
 
+@pytest.mark.thorough
 def test_steps_keep_no_impulses_for_a_pressure_as_they_share_energy_unevenly(tmp_path):
     steps = gp.TimeStepped(0.02)
     run = gp.run(SCENE, steps, 1, 100.0, 0.5, tmp_path / "run.nc", tallies=[gp.ImpulseTally("z", 8)])

@@ -16,7 +16,6 @@ PLACES = {
     # impulses over the area of the moment; forces that a balance of momentum needs, without an area
     r'"wall_impulse"': {
         "analysis/series.py",
-        "analysis/counters.py",
         "reproduction/families/shared/columns.py",
     },
 }

@@ -84,6 +84,7 @@ def test_the_chemical_potential_agrees_with_theory(fluid):
     assert found.plot(theory=True).get_ylabel()
 
 
+@pytest.mark.thorough
 def test_a_chemical_potential_has_no_error_without_the_frames_that_contribute_most(tmp_path):
     """100 spheres at 0.48, where 15.2 is known: 3 of 193 frames have a free place, and 21.8(7) was stated."""
     scene = gas(3, 100, 0.48, arrangement="compressed", exact_temperature=True)

@@ -25,6 +25,7 @@ def at_rest(tmp_path_factory):
     return gp.run(pile(), gp.EventDriven(), 1, 80.0, 0.5, path)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("start", "error"), [(None, 0.01), (40.0, 1e-9)])
 def test_a_pile_presses_the_floor_by_its_weight(at_rest, start, error):
     found = A.wall_pressure(at_rest, start=start)
@@ -43,6 +44,7 @@ def test_while_it_falls_the_floor_carries_what_the_balance_of_momentum_says(at_r
     assert float(found.estimate.sel(face="y low")) == pytest.approx(weight / 19.0, rel=1e-5)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("engine", [gp.EventDriven(), gp.TimeStepped(time_step=0.005)])
 def test_without_rest_the_impulses_balance_gravity(engine):
     species = [gp.Species(60, 0.5, temperature=4.0)]
@@ -69,6 +71,7 @@ def rough(normal, **more):
     return gp.Scene(gp.Container((6.0, 20.0)), species, gravity=GRAVITY, restitution=law, **more)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "scene",
     [
@@ -99,6 +102,7 @@ def test_the_floor_of_rough_particles_at_rest_has_no_known_force():
     assert float(found.estimate.sel(face="y high")) == 0.0
 
 
+@pytest.mark.interpreted
 def test_rest_among_obstacles_is_refused(tmp_path):
     post = gp.Particle((10.0, 3.0), (0.0, 0.0), 1.0, fixed=True)
     path = gp.run(pile(10, particles=[post]), gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "a.nc")

@@ -35,6 +35,7 @@ def test_the_side_walls_under_a_piston_feel_its_pressure(pushed):
     assert (found.error < 0.1).all()
 
 
+@pytest.mark.thorough
 def test_the_area_is_that_of_the_moment():
     """Of a floor that vibrates fast and one that rises: means by sums over many instants."""
     for face in (gp.Vibrating(1.0, 0.5), gp.Vibrating(2.0, 40.0, "sawtooth")):
@@ -49,6 +50,7 @@ def test_the_area_is_that_of_the_moment():
         assert areas[3] == pytest.approx([height, height, 29.8, 29.8], rel=1e-3)
 
 
+@pytest.mark.thorough
 def test_faces_of_both_ends_and_two_axes_move_at_once():
     faces = {
         "x_low": gp.Vibrating(1.0, 2.0),
@@ -99,6 +101,7 @@ def agrees(found, exact, uncertainty=0.0):
     assert abs(float(found.estimate) - exact) < 4.0 * error
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("engine", [gp.EventDriven(), gp.TimeStepped(0.03125)])
 def test_a_particle_among_fixed_ones_has_the_rate_of_santalo(engine, tmp_path):
     """v S / (pi A), with the perimeter S and the area A outside of the posts, which its radius widens."""
@@ -110,6 +113,7 @@ def test_a_particle_among_fixed_ones_has_the_rate_of_santalo(engine, tmp_path):
     agrees(gp.analysis.collision_rate(path), exact)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("engine", [gp.EventDriven(), gp.TimeStepped(0.004, threads=2)])
 def test_collisions_with_fixed_particles_count_once(engine, tmp_path):
     """20 discs around 4 posts: 1.2435(12) by a Metropolis sampler, from the densities of pairs at contact."""

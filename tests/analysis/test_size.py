@@ -59,6 +59,7 @@ def disagreements(dimension, count, eta, folder):
     return stated, wrong
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("dimension", "count", "eta"), CASES)
 def test_few_particles_are_as_theory_states(dimension, count, eta, tmp_path):
     stated, wrong = disagreements(dimension, count, eta, tmp_path)

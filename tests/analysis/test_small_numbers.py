@@ -111,6 +111,7 @@ def about_the_centre_of_mass(side, total, bins):
     return 2.0 / side**2 * (room / room.mean()).reshape(bins, -1).mean(axis=1)
 
 
+@pytest.mark.thorough
 def test_the_density_of_two_discs_is_that_about_their_centre_of_mass():
     deviations, uniform, side = [], [], math.sqrt(2.0 * math.pi / 4.0 / 0.3)
     kind = gp.Species(2, 0.5, temperature=1.0, arrangement="compressed", exact_temperature=True)

@@ -31,6 +31,7 @@ def table(path):
     return gp.analysis.by_species(path)
 
 
+@pytest.mark.thorough
 def test_a_row_for_each_species_that_moves(table):
     assert table["species"].values.tolist() == [0, 1, 3]
     assert table["count"].values.tolist() == [100, 40, 1]

@@ -33,6 +33,7 @@ def results(path):
     return [variable.values for table in tables for variable in table.data_vars.values()]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", SCENES)
 def test_results_have_the_same_bits_for_parts_of_any_length(tmp_path, monkeypatch, name):
     path = gp.run(SCENES[name], gp.EventDriven(), 1, 20.0, 0.5, tmp_path / "run.nc")

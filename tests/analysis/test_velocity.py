@@ -81,6 +81,7 @@ def between_plates(knudsen, seed):
     return simulation
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("knudsen", [0.05, 1e6])
 def test_between_sliding_plates(knudsen):
     """A fluid slips by 1.11 free paths at each plate: its slope is 0.90 of that without slip. In free flight
@@ -109,6 +110,7 @@ CHANNELS = {  # (lengths, number, force, engine, duration), at Knudsen numbers o
 }
 
 
+@pytest.mark.thorough
 @pytest.mark.filterwarnings("ignore:gaspart. cells_per_side")  # they are long along the flow
 @pytest.mark.parametrize("name", CHANNELS)
 def test_a_force_drives_poiseuilles_flow_between_plates(name):
@@ -141,6 +143,7 @@ def test_a_force_drives_poiseuilles_flow_between_plates(name):
     assert abs(mean - 1.0) < 4.9 * error + wrong  # Student's, as rare as 3 sigma
 
 
+@pytest.mark.thorough
 def test_profiles_of_a_species():
     """Two species under gravity, of one temperature: their densities add up to that of all."""
     species = [gp.Species(60, 0.4, temperature=1.0), gp.Species(30, 0.3, mass=4.0, temperature=1.0)]

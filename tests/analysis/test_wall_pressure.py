@@ -26,6 +26,7 @@ def small_and(*particles):
     return gp.Scene(gp.Container((10.0, 10.0)), [gas], particles=particles)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("fixed", [True, False])
 def test_a_body_that_touches_no_face_leaves_the_pressure_of_an_ideal_gas(fixed, tmp_path):
     """n k_B T of the area that centres can reach, with the second virial coefficient of small discs, 0.6 %.
@@ -96,6 +97,7 @@ def test_two_discs_of_two_sizes_press_as_the_contact_theorem_states(tmp_path):
         agrees(value, error, one)
 
 
+@pytest.mark.thorough
 def test_a_mixture_of_points_presses_as_an_ideal_one(tmp_path):
     """Ideal mixtures: the sum over species of N k_B T over the volume that each can reach."""
     sizes = (0.03, 0.02)
@@ -107,6 +109,7 @@ def test_a_mixture_of_points_presses_as_an_ideal_one(tmp_path):
     agrees(found.estimate.values.mean(), math.hypot(*found.error.values) / 4.0, exact)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("engine", "speed"), [(gp.EventDriven(), 1.0), (gp.TimeStepped(0.005), 0.0), (gp.DSMC(0.02, (6, 5)), 1.0)]
 )
@@ -130,6 +133,7 @@ def test_the_tally_per_area_is_that_of_the_size_that_hits(engine, speed):
         np.testing.assert_allclose(shear, tally.wall_shear[:2, 1], rtol=1e-9)
 
 
+@pytest.mark.thorough
 def test_the_pressure_on_a_loaded_piston_is_its_load(tmp_path):
     faces = {"x_low": gp.Thermal(1.0), "x_high": gp.Piston(mass=5.0, pressure=1.0)}
     scene = gp.Scene(gp.Container((16.0, 3.0)), [gp.Species(10, 0.4, temperature=1.0)], faces=faces)
@@ -140,6 +144,7 @@ def test_the_pressure_on_a_loaded_piston_is_its_load(tmp_path):
     assert float(found.estimate.sel(face="y low")) > 1.1  # over the length that centres reach
 
 
+@pytest.mark.thorough
 def test_heat_is_given_per_area_that_moving_particles_reach(tmp_path):
     post = gp.Particle((3.0, 3.0), STILL, 2.0, fixed=True)
     faces = {"x_low": gp.Thermal(1.0), "x_high": gp.Thermal(2.0)}
@@ -169,6 +174,7 @@ def test_sides_of_a_mixture_beside_a_wall_that_moves_have_a_force_only(tmp_path)
     assert np.isfinite(gp.analysis.wall_force(path).estimate.values).all()
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("interval", [0.02, 6.0])
 def test_the_force_beside_a_well_does_not_depend_on_the_interval_between_frames(interval, tmp_path):
     """The edge of a well pulls at particles, so that the face gets impulses of both signs."""

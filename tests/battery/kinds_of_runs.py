@@ -196,7 +196,7 @@ _EVENT = ("periodic", "walls", "gravity", "lees_edwards", "plates", "piston", "t
 _EVENT += ("wind", "two", "ten")
 CANONICAL = [
     *(("event", name) for name in _EVENT),
-    *(("step", name) for name in ("periodic", "walls", "plates", "mixture")),
+    *(("step", name) for name in ("periodic", "walls", "mixture")),
     *(("dsmc boltzmann", name) for name in ("periodic", "plates", "mixture")),
     *(("dsmc enskog", name) for name in ("periodic", "mixture")),
 ]

@@ -55,6 +55,7 @@ def test_a_healthy_short_run_gets_no_false_verdict(kind, tmp_path):
         assert found["energy"].passed and found["flights"].passed
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("foreign", [False, True])
 @pytest.mark.parametrize(("dimension", "count", "eta"), [(3, 500, 0.5113), (3, 300, 0.49), (2, 300, 0.69)])
 def test_a_healthy_dense_run_is_never_wrong(dimension, count, eta, foreign, tmp_path):

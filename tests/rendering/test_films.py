@@ -28,6 +28,7 @@ def runs(tmp_path_factory):
     return folder
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("suffix", ["mp4", "gif"])
 def test_a_film_has_a_picture_for_every_frame(runs, suffix):
     path = runs / f"discs.{suffix}"

@@ -205,6 +205,7 @@ def test_spheres_are_seen_from_the_direction_of_the_camera():
     assert red[0] == 0 and red[1] > 50
 
 
+@pytest.mark.thorough
 @pytest.mark.interpreted
 @pytest.mark.parametrize(("name", "at"), [("y_low", 1.0), ("y_high", 5.0)])
 def test_a_face_that_vibrates_is_drawn_where_it_is(name, at):
@@ -238,6 +239,7 @@ def test_a_piston_is_drawn_where_it_is(tmp_path):
                 assert np.ptp(walls[..., 0]) == 8.0
 
 
+@pytest.mark.thorough
 @pytest.mark.interpreted
 def test_an_interior_wall_that_moves_is_drawn_where_it_is(tmp_path):
     """A particle at speed 1 pushes one of its own mass, which rests between it and another."""

@@ -34,6 +34,7 @@ def test_a_picture_shows_itself_and_what_is_none_is_an_array():
         assert other._repr_png_() is None
 
 
+@pytest.mark.thorough
 @pytest.mark.interpreted
 def test_a_scene_shows_its_particles_and_states_what_it_is():
     falling = replace(BOX, gravity=(0.0, -1.0), restitution=gp.Restitution(0.9))

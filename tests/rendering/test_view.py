@@ -90,6 +90,7 @@ def test_the_page_has_the_positions_of_every_frame_and_needs_no_other_file(pages
     assert len(lines) == data["ends"] / 2 == (12 if name == "discs" else 16)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("face", [gp.Vibrating(0.5, 1.0), gp.Piston(20.0, 1.0)], ids=["vibrating", "piston"])
 def test_a_wall_that_moves_is_in_every_frame(face):
     scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.3, temperature=1.0)], faces={"x_high": face})
@@ -192,6 +193,7 @@ def faces(tmp_path_factory):
     return folder
 
 
+@pytest.mark.thorough
 def test_faces_have_the_looks_of_pictures_where_they_are(faces):
     data = content((faces / "faces.html").read_text())
     assert [one["text"] for one in data["surfaces"]] == [

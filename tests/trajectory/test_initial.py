@@ -111,6 +111,7 @@ def test_spins_are_taken_over_and_gravity_and_faces_may_differ(tmp_path):
     assert not smooth.state.spins.any()
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "scene", [gas(2, 2000, 0.7, arrangement="compressed"), gas(3, 2000, 0.5, "wall", arrangement="lattice")]
 )

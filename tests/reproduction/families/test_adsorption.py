@@ -113,6 +113,7 @@ def test_only_particles_without_a_velocity_along_the_normal_are_stuck():
     assert slowly == flux.sum() == flux[2] == 0.5  # one leaves, with 0.5
 
 
+@pytest.mark.thorough
 def test_a_real_well_holds_as_many_as_it_must(tmp_path):
     one = point("ideal", tmp_path, **{"scene.faces.x_low.depth": 1.0})
     path = one.replica_path(0)
