@@ -210,9 +210,9 @@ def deviation_of(observable, kind, result, part, right):
         freedom = freedom[chosen] if np.ndim(freedom) else freedom
     value, error = np.asarray(value, float), np.asarray(error, float)
     freedom = np.broadcast_to(np.asarray(freedom, float), value.shape)
-    return compared(
-        value, error, freedom, np.broadcast_to(at, value.shape), np.broadcast_to(known_error, value.shape)
-    )
+    right, known_error = (np.broadcast_to(one, value.shape) for one in (at, known_error))
+    independent = not kind.points  # a point crosses many bins with one velocity
+    return compared(value, error, freedom, right, known_error, independent)
 
 
 def _at(names_in, values):

@@ -38,6 +38,8 @@ it, if its error is known; most errors are upper bounds.
 """
 _EXCESS = 2.0
 """Standard deviation of the slow modes of grains and driven flows, in units of its value in equilibrium."""
+_BLOCKS = 16
+"""Number of blocks of a series with local fluctuations."""
 _MOST_FRAMES = 400
 """Maximum number of frames that a test reads."""
 _DEGREES = np.array([1, 2, 3])
@@ -58,6 +60,8 @@ class Series:
     relaxations : length of the run divided by the longest relaxation time.
     radians : phase through which the slowest oscillation passes in the run.
     thermal : True if `scatter` is an upper bound for all fluctuations.
+    local : True if all other fluctuations are faster than a block. Differences of consecutive blocks show
+        them. A sudden change, as of a crystal that melts, adds little to these differences.
     """
 
     values: np.ndarray
@@ -65,6 +69,7 @@ class Series:
     relaxations: float = math.inf
     radians: float = math.inf
     thermal: bool = False
+    local: bool = False
 
     @property
     def slow_variances(self) -> np.ndarray:
@@ -137,6 +142,9 @@ def trend_of(series: Series) -> Trend | None:
     fit = np.polynomial.Legendre.fit(np.arange(len(values)), values, int(_DEGREES[-1]))
     rest = correlated_mean(values - fit(np.arange(len(values))), fitted=len(fit.coef)).estimate
     seen, freedom, slow = rest.error**2, np.full(3, rest.freedom), series.slow_variances
+    if series.local:
+        steps = np.diff([block.mean() for block in np.array_split(values, _BLOCKS)])
+        seen, freedom = 0.5 * float((steps**2).mean()) / _BLOCKS, np.full(3, 2.0 / 3.0 * len(steps))
     freedom[slow >= seen] = math.inf
     variances = np.maximum(seen, slow)
     if series.thermal:
@@ -174,7 +182,8 @@ def _series(run: Run) -> dict[str, Series]:
         rate = per_time / np.sqrt(0.5 * (energy[1:] + energy[:-1]))
         relative = 4.0 / number if scene.mixture is not None else 1.0 / math.sqrt(number)
         title = "the collision rate divided by the thermal speed"
-        series[title] = Series(rate, relative * float(rate.mean()), relaxations, radians)
+        scatter, local = relative * float(rate.mean()), scene.mixture is not None
+        series[title] = Series(rate, scatter, relaxations, radians, local=local)
     return series
 
 

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import argparse
 
-import yaml
-
 from gaspart.cli.arguments import Parser, UsageError, add_output, integer, print_line, set_command
 from gaspart.cli.new import templates
 from gaspart.cli.progress import waiting
-from gaspart.scene.scene import Scene
 
 _EXAMPLES = """examples:
   gaspart play -o gas.html
@@ -34,7 +31,10 @@ def add_play(parser: Parser) -> None:
 
 
 def _play(options: argparse.Namespace) -> None:
+    import yaml
+
     from gaspart.rendering.play import play
+    from gaspart.scene.scene import Scene
 
     if options.scene and options.template:
         raise UsageError("give a scene or --template, not both")

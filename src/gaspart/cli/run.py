@@ -66,9 +66,9 @@ def add_run(parser: Parser) -> None:
     add("--engine", default="event", metavar="NAME", help=f"{one_of(ENGINES)}; default: event")
     add("--seed", type=several(int), default=(0,), metavar="N[,N...]", help="default: 0")
     text = (
-        "start from the last state of this run, or from the last frame of a .gsd or .xyz file with "
-        "velocities, of the same particles in a container of the same size: other contacts, gravity, faces "
-        "or engine, such as images that slide or a piston"
+        "start from the last state of this run, from a .json file of `gaspart play`, or from the last frame "
+        "of a .gsd or .xyz file with velocities, of the same particles in a container of the same size: "
+        "other contacts, gravity, faces or engine, such as images that slide or a piston"
     )
     add("--from", dest="initial", metavar="FILE", help=text)
     _add_ends(parser.add_argument_group("when the run ends"))

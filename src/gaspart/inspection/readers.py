@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -21,7 +22,7 @@ from gaspart.inspection.gsd_contents import read_gsd
 from gaspart.inspection.netcdf_contents import is_own, read_netcdf
 from gaspart.inspection.xyz_contents import read_xyz
 from gaspart.scene.scene import Scene
-from gaspart.state.given import state_at_time_zero
+from gaspart.state.given import state_at_time_zero, state_from_arrays
 from gaspart.state.initial import assemble_state
 from gaspart.state.insertion import per_particle
 from gaspart.state.state import State
@@ -122,21 +123,21 @@ def _require_memory(path: Path) -> None:
 # Last frame of a GSD or XYZ file of another program, as the initial state of a scene.
 
 
-STARTS = (".gsd", ".xyz", ".extxyz")
+STARTS = (".gsd", ".xyz", ".extxyz", ".json")
 """Suffixes of the files that `read_state` reads."""
 _SAME = 1e-6
 """Relative deviation of a size or a mass that is attributed to rounding, as in `contents`."""
 
 
 def read_state(path: str | Path, scene: Scene) -> State:
-    r"""Return the initial state of a scene from a GSD or XYZ file.
+    r"""Return the initial state of a scene from a GSD or XYZ file, or from a file of `gaspart play`.
 
     The state is the last frame of the file.
 
     Parameters
     ----------
     path : str or Path
-        GSD file, or XYZ file (extended, with velocities).
+        GSD file, XYZ file (extended, with velocities), or .json file that a page of `gaspart play` has saved.
     scene : Scene
         The scene, which defines the radii, the masses and the container.
 
@@ -172,6 +173,8 @@ def read_state(path: str | Path, scene: Scene) -> State:
     path = Path(path)
     if path.suffix not in STARTS:
         raise SceneError("file", str(path), f"must end in {', '.join(STARTS)}")
+    if path.suffix == ".json":
+        return _state_of_page(path, scene)
     contents = read_contents(path, Overrides(last=True))
     if contents.velocities is None:
         raise SceneError("file", str(path), "has no velocities in its last frame, which a run starts from")
@@ -192,6 +195,15 @@ def read_state(path: str | Path, scene: Scene) -> State:
         return state_at_time_zero(scene, plain)
     except SceneError as error:
         raise SceneError(error.key, error.value, error.rule, str(path)) from None
+
+
+def _state_of_page(path: Path, scene: Scene) -> State:
+    """Return the state in a file that a page of `gaspart play` has saved, with all bits."""
+    with _reading(path), open_regular(path) as file:
+        saved = json.loads(file.read())["state"]
+        values = [np.array(saved[name], dtype=float) for name in ("positions", "velocities", "spins")]
+        piston = None if saved["piston"] is None else np.array(saved["piston"], dtype=float)
+    return state_from_arrays(scene, *values, piston)
 
 
 def _in_dimensions(name: str, values: np.ndarray, scene: Scene, path: Path) -> np.ndarray:

@@ -8,6 +8,20 @@ async function unpacked(text) {
   const stream = new Blob([bytesOf(text)]).stream().pipeThrough(new DecompressionStream("deflate"));
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
+const sumOf = values => {  // in numpy's order, because a length may change where a sum is a power of two
+  const n = values.length, part = new Float64Array(8);
+  if (n > 128) {
+    const half = (n >> 1) - (n >> 1) % 8;
+    return sumOf(values.slice(0, half)) + sumOf(values.slice(half));
+  }
+  let total = 0, i = 0;
+  if (n >= 8) {
+    for (; i < n - n % 8; i++) part[i % 8] += values[i];
+    total = ((part[0] + part[1]) + (part[2] + part[3])) + ((part[4] + part[5]) + (part[6] + part[7]));
+  }
+  for (; i < n; i++) total += values[i];
+  return total;
+};
 const exponent = x => {  // e of x = m 2^e with m from 1/2 to 1
   let e = Math.floor(Math.log2(x)) + 1;
   while (x >= 2 ** e) e++;
@@ -61,7 +75,8 @@ class Gas {
         index = index * control.values.length + values[control.name];
       if (!patches[index]) throw Error("this combination is not in the page");
       const [words, changes] = patches[index], bytes = bytesOf(words), from = new DataView(bytes.buffer);
-      this.scene = { ...this.scene, ...changes, faces: { ...this.scene.faces, ...changes.faces } };
+      const present = mapping => Object.fromEntries(Object.entries(mapping).filter(([, value]) => value !== null));
+      this.scene = present({ ...this.scene, ...changes, faces: present({ ...this.scene.faces, ...changes.faces }) });
       for (let at = 0; at < bytes.length; at += 12)
         this.view.setBigInt64(from.getUint32(at, true), from.getBigInt64(at + 4, true), true);
     }
@@ -173,31 +188,23 @@ class Gas {
     this.image.scaled.forEach((at, n) => this.view.setFloat64(at, this.factors[n] * length, true));
   }
   // Length of an epoch: `gaspart.engines.event.tally.Epochs`.
-  #squares(weight) {
-    const { count, dimension: d } = this;
-    let sum = 0;
-    for (let i = 0; i < count; i++) {
-      let square = 0;
-      for (let k = 0; k < d; k++) square += this.flights[8 * i + d + k] ** 2;
-      sum += weight(i) * square;
-    }
-    return sum;
+  #squares() {
+    const { count, dimension: d } = this, squares = new Float64Array(count);
+    for (let i = 0; i < count; i++) for (let k = 0; k < d; k++) squares[i] += this.flights[8 * i + d + k] ** 2;
+    return squares;
   }
   #speed() {
     const [pull, piston, walls, ...faces] = this.numbers.slice(0, -2);
-    return Math.sqrt(this.#squares(() => 1) / this.count + pull + Math.max(walls, ...faces) + piston);
+    return Math.sqrt(sumOf(this.#squares()) / this.count + (pull + Math.max(walls, ...faces) + piston));
   }
   #nextBase(present) {
     const { masses, inertia } = this.start, kept = (length, before) => before / OTHER < length && length < before * OTHER ? before : length;
     const of = speed => speed > 0 ? powerOfTwo(this.start.diameter / speed, EPOCH) : AT_REST;
-    let energy = 0, inverse = 0, moving = 0;
-    energy = this.#squares(i => Number.isFinite(masses[i]) ? masses[i] : 0) / 2;
-    for (let i = 0; i < this.count; i++) {
-      if (Number.isFinite(masses[i])) { moving++; inverse += 1 / masses[i]; }
-      if (this.spins && this.spins[3 * i + 2]) energy += inertia[i] * this.spins[3 * i + 2] ** 2 / 2;
-    }
-    const length = kept(of(this.#speed()), present);
-    return Math.min(length, kept(of(moving ? Math.sqrt(2 * energy / moving * inverse / moving) : 0), length));
+    const squares = this.#squares(), moving = masses.filter(Number.isFinite), { length: number } = moving;
+    const turning = this.spins ? inertia.map((value, i) => this.spins[3 * i + 2] ? this.spins[3 * i + 2] ** 2 * value : 0) : [];
+    const energy = 0.5 * sumOf(squares.map((square, i) => masses[i] * square).filter((_, i) => Number.isFinite(masses[i]))) + 0.5 * sumOf(turning);
+    const length = kept(of(this.#speed()), present), inverse = sumOf(moving.map(mass => 1 / mass)) / number;
+    return Math.min(length, kept(of(number ? Math.sqrt(2 * energy / number * inverse) : 0), length));
   }
 }
 // The data of a page from its text.

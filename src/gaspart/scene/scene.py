@@ -487,7 +487,7 @@ class Scene(Facts):
 
     @classmethod
     def from_file(cls, path: str | Path) -> Scene:
-        """Read a YAML scene file.
+        """Read a YAML scene file, or the scene in a file that a page of `gaspart play` has saved.
 
         Parameters
         ----------
@@ -511,7 +511,9 @@ class Scene(Facts):
         >>> gp.Scene.from_file("empty.yaml").container.lengths
         (9.0, 9.0)
         """
-        return cls.from_dict(read_yaml(path), file=str(path))
+        content = read_yaml(path)
+        of_page = isinstance(content, dict) and {"scene", "state"} <= content.keys()
+        return cls.from_dict(content["scene"] if of_page else content, file=str(path))
 
     def to_file(self, path: str | Path) -> None:
         """Write the scene as YAML.

@@ -27,7 +27,8 @@ import llvmlite.binding as llvm
 
 from gaspart.files import scratch_beside
 from gaspart.kernels.compile.cache import load_numba, shipped_content, usable_cache
-from gaspart.kernels.compile.policy import inner_kernel, source_digest
+from gaspart.kernels.compile.policy import inner_kernel
+from gaspart.kernels.compile.sources import closure_digests
 
 Kernels = dict[str, tuple[str, str, tuple]]
 """Functions of a module by their names: the Python module, the name there, and the types of the arguments."""
@@ -112,7 +113,11 @@ def modules(kinds: list[Kernels]) -> list[bytes]:
 def _key(kernels: Kernels) -> str:
     """Return a hash of all on which the bytes of a module depend."""
     described = sorted((name, *function[:2], str(function[2])) for name, function in kernels.items())
-    versions = load_numba().__version__, llvmlite.__version__, source_digest()
+    digests = closure_digests()
+    sources = [
+        digests[str(import_module(name).__file__)] for name in (__name__, *(row[1] for row in described))
+    ]
+    versions = load_numba().__version__, llvmlite.__version__, sources
     return hashlib.sha256(repr((described, versions)).encode()).hexdigest()[:32]
 
 
