@@ -31,11 +31,11 @@ def test_the_radial_distribution_of_few_spheres(twenty):
     far = found.estimate.sel(distance=slice(2.0, None))
     error = float(np.sqrt((found.error.sel(distance=far["distance"]) ** 2).sum())) / far.size
     assert abs(float(far.mean()) - limit) < 4.0 * error < 0.03
-    contact = float(found.theory.dropna("distance")[0])
-    assert contact == pytest.approx(1.0036 * 20.0 / 19.0, abs=2e-4)
-    near = found.estimate.sel(distance=slice(1.0, 1.3))
-    error = float(np.sqrt((found.error.sel(distance=near["distance"]) ** 2).sum())) / near.size
-    assert abs(float(near.mean()) - contact) < 4.0 * error < 0.2
+    near = found.sel(distance=slice(1.1, 1.3))  # bins above contact
+    dilute = 1.0 + 8.0 * eta * (1.0 - 0.75 * near["distance"] + near["distance"] ** 3 / 16.0)
+    assert np.allclose(near.theory, dilute, atol=4.0 * eta**2)
+    error = float(np.sqrt((near.error**2).sum())) / near["distance"].size
+    assert abs(float((near.estimate - near.theory).mean()) - (limit - 1.0)) < 4.0 * error < 0.2
 
 
 def test_empty_bins_state_no_error_but_where_hard_particles_would_overlap(twenty):
