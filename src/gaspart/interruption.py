@@ -33,14 +33,7 @@ _TOGETHER = 1.0  # in seconds
 
 
 class Deferral:
-    """Block of work during which signals wait.
-
-    Attributes
-    ----------
-    pending : waiting signal, or None
-    since : arrival time of the signal
-    unsaved : True if an exit would lose work. Before that, a process of gaspart ends at once
-    """
+    """Block of work during which signals wait."""
 
     def __init__(self) -> None:
         self.pending: int | None = None
@@ -74,13 +67,7 @@ class Deferral:
 
 
 class _Process:
-    """State shared with the watching thread.
-
-    Attributes
-    ----------
-    announce : function that prints the line
-    note : description of the work that is saved
-    """
+    """State shared with the watching thread."""
 
     def __init__(self) -> None:
         self.watched = False

@@ -43,20 +43,6 @@ def in_threads(function: Callable[[Any], Any], items: Iterable[Any], threads: in
     """Return the results of a function for all items, in their order.
 
     Threads speed up functions that mostly run kernels, because kernels release the interpreter lock.
-
-    Parameters
-    ----------
-    function : callable
-        Function of an item.
-    items : iterable
-        The items.
-    threads : int
-        Number of items processed at the same time.
-
-    Returns
-    -------
-    list
-        The results.
     """
     if threads == 1:
         return [function(item) for item in items]

@@ -149,36 +149,7 @@ def record_collisions(
     equilibration: float = 0.0,
     overwrite: bool = False,
 ) -> xr.Dataset:
-    """Write `collision_data` to a netCDF-3 file.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    path : str or Path
-        The file.
-    collisions : int
-        Minimum number of collisions.
-    seed : int or tuple of int, default 0
-        Seed of the run.
-    equilibration : float, default 0.0, [time]
-        Simulated time before the recording begins.
-    overwrite : bool, default False
-        If True, replace an existing data set of collisions. Files of other kinds are never replaced.
-
-    Returns
-    -------
-    Dataset
-        The data set of collisions.
-
-    Raises
-    ------
-    SceneError
-        If the file exists and may not be replaced, or if it cannot be written. Also under the conditions of
-        `collision_data`.
-    SimulationError
-        Under the conditions of `collision_data`.
-    """
+    """Write `collision_data` to a netCDF-3 file."""
     with writing(path, COLLISIONS, overwrite) as scratch:
         data = collision_data(scene, collisions, seed, equilibration)
         # The file is made in memory first, because the library does not report why it cannot write a file.
@@ -267,24 +238,7 @@ def contact_value(data: xr.Dataset, blocks: int = 20) -> Estimate:
 
 
 def pair_rows(events: dict, last: tuple, scene: Scene) -> tuple[xr.Dataset, tuple]:
-    """Select the collisions of two particles from events, as rows of `collision_data`.
-
-    Parameters
-    ----------
-    events : dict of str to ndarray
-        Events from `Simulation.events`.
-    last : tuple of ndarray
-        Time and velocity of each particle after its last event before `events`.
-    scene : Scene
-        The scene.
-
-    Returns
-    -------
-    rows : Dataset
-        The collisions of two particles.
-    last : tuple of ndarray
-        Time and velocity of each particle after its last event in `events`.
-    """
+    """Select the collisions of two particles from events, as rows of `collision_data`."""
     particles, times, after = events["particles"], events["time"], events["velocities"]
     number_of_particles = len(last[0])
     # history of each particle in order: its initial state, then its state after each event

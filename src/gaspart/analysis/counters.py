@@ -206,21 +206,7 @@ def _of_faces(function: str, run: Run, ends: np.ndarray, about: dict[str, Any]) 
 
 
 def controlled_on_walls(run: Run, name: str) -> dict[int, tuple[str, int, np.ndarray]]:
-    """Compute pressures or forces on walls with control variates from stored impulses.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    name : {"pressure", "force"}
-        The quantity.
-
-    Returns
-    -------
-    dict of int to tuple
-        Keys: index among all walls. Values: name of the wall, number of control variates, and pressure or
-        force in each interval, shape (T - 1,).
-    """
+    """Compute pressures or forces on walls with control variates from stored impulses."""
     faces, each = on_walls(run, np.arange(len(run.time)), name)
     groups, by_face = group_count(run) if run.has_states else 0, {}
     for index, face in enumerate(map(str, faces)) if groups else ():
@@ -232,29 +218,7 @@ def controlled_on_walls(run: Run, name: str) -> dict[int, tuple[str, int, np.nda
 
 
 def on_walls(run: Run, ends: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the mean pressure or force on each wall between given frames.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    ends : ndarray of int, shape (K + 1,)
-        Indices of the frames that bound the K intervals.
-    name : {"pressure", "force"}
-        The quantity.
-
-    Returns
-    -------
-    names : ndarray of str, shape (W,)
-        Names of the faces that are walls.
-    values : ndarray, shape (K, W)
-        The quantity.
-
-    Raises
-    ------
-    SceneError
-        Under the conditions of `wall_pressure`.
-    """
+    """Compute the mean pressure or force on each wall between given frames."""
     require_defined(name, run.scene)
     time, walls = np.diff(run.time)[:, None], np.repeat(~run.periodic, 2)
     impulses, resting = series.over(series.face_impulses(run), ends), _rest_on_floors(run, ends)
@@ -321,20 +285,7 @@ def count_at_rest(run: Run) -> int:
 
 
 def refuse_rest(run: Run, rule: str) -> None:
-    """Raise SceneError if a particle rests under gravity.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    rule : str
-        Rule that the error message states.
-
-    Raises
-    ------
-    SceneError
-        If a particle rests.
-    """
+    """Raise SceneError if a particle rests under gravity."""
     resting = count_at_rest(run) if run.has_gravity else 0
     if resting:
         raise SceneError("particles at rest", resting, rule)

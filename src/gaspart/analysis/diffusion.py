@@ -194,20 +194,7 @@ def _lags_about(run: Run, lag: float, stride: int, parts: int) -> tuple[int, ...
 
 
 def require_spheres(run: Run, lasting: np.ndarray) -> None:
-    """Raise SceneError for discs whose total momentum persists along an axis.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    lasting : ndarray of bool, shape (d,)
-        True for axes along which the momentum persists.
-
-    Raises
-    ------
-    SceneError
-        If the particles are discs.
-    """
+    """Raise SceneError for discs whose total momentum persists along an axis."""
     if run.dimension == 2 and lasting.any():
         raise SceneError("container.lengths", run.scene.container.lengths, DISCS)
 
@@ -217,45 +204,13 @@ def linear_lags(rate: float, interval: float) -> tuple[int, int, int]:
 
     The slope that gives D lies between the second and the third lag. The first lag serves to test that the
     slope is constant.
-
-    Parameters
-    ----------
-    rate : float, [1/time]
-        Collisions of a particle per time.
-    interval : float, [time]
-        Time between frames.
-
-    Returns
-    -------
-    tuple of int
-        The three lags.
     """
     first, middle, last = (math.ceil(k * LINEAR_FROM / rate / interval) for k in (0.5, 1.0, 2.0))
     return first, middle, last
 
 
 def lags_of_slopes(run: Run, stride: int = 1, parts: int = 1) -> tuple[int, ...]:
-    """Return the `linear_lags` of a run without duplicates.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    stride : int, default 1
-        Use every `stride`-th frame.
-    parts : int, default 1
-        Number of parts of the run; the lags must fit into each part.
-
-    Returns
-    -------
-    tuple of int
-        The lags.
-
-    Raises
-    ------
-    SceneError
-        If there are too few frames.
-    """
+    """Return the `linear_lags` of a run without duplicates."""
     interval = run.interval * stride
     duration, rate = float(run.time[-1] - run.time[0]), _rate(run)
     if rate * (duration / parts + interval) < 4.0 * LINEAR_FROM:

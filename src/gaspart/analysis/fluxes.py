@@ -340,18 +340,6 @@ def particle_numbers(scene: Scene, data: xr.Dataset) -> np.ndarray:
     """Return the number of particles in the container in each frame.
 
     This number is the initial number plus the particles that have entered minus the particles that have left.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    data : Dataset
-        The trajectory.
-
-    Returns
-    -------
-    ndarray, shape (T,)
-        The numbers.
     """
     opened = [number for number, _ in scene.faces_of(Open)]
     moved = data["entries"].values.sum(axis=1) - data["wall_hits"].values[:, opened].sum(axis=1)

@@ -56,20 +56,7 @@ def until_time(source: Source, end: float | None, pairs: bool = False) -> Iterat
 
 @contextmanager
 def open_frames(source: Source, pairs: bool = False) -> Iterator[xr.Dataset]:
-    """Yield the frames of a source; they are read or computed only once.
-
-    Parameters
-    ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
-    pairs : bool, default False
-        For a simulation, also count the collisions of each pair of species.
-
-    Yields
-    ------
-    Dataset
-        The frames. If the source is a file, it is closed at the end of the `with` block.
-    """
+    """Yield the frames of a source; they are read or computed only once."""
     from gaspart.analysis.run import repeat_run
     from gaspart.simulation import Simulation
     from gaspart.trajectory.reading import open_trajectory

@@ -51,17 +51,7 @@ _WORTH = 0.6
 
 @dataclass(frozen=True)
 class Insertions:
-    """Results of trial insertions in T frames.
-
-    Attributes
-    ----------
-    share : ndarray, shape (T,), [1]
-        Fraction of the container in which positions were drawn.
-    successes : ndarray of int, shape (T,)
-        Number of free positions found.
-    trials : int
-        Number of trials in each frame in which some volume is not covered.
-    """
+    """Results of trial insertions in T frames."""
 
     share: np.ndarray
     successes: np.ndarray
@@ -95,26 +85,7 @@ def insertions(
     trials: int,
     seed: int | Sequence[int] = 0,
 ) -> Insertions:
-    """Try random positions in each frame of a periodic container.
-
-    Parameters
-    ----------
-    frames : ndarray, shape (T, N, d), [length]
-        Positions.
-    lengths : sequence of float, shape (d,), [length]
-        Side lengths of the container.
-    hosts : Hosts
-        The particles in the fluid, with their contact distances to the inserted particle.
-    trials : int
-        Number of positions in each frame.
-    seed : int or sequence of int, default 0
-        Seed of the positions.
-
-    Returns
-    -------
-    Insertions
-        The result of the trials.
-    """
+    """Try random positions in each frame of a periodic container."""
     generator = np.random.default_rng(seed)
     size = np.asarray(lengths, dtype=float)
     share, successes = np.zeros(len(frames)), np.zeros(len(frames), dtype=int)

@@ -87,24 +87,7 @@ class Deviation:
 
 
 def follow(deviation: Deviation, scene: Scene, masses: np.ndarray, events: Mapping[str, np.ndarray]) -> None:
-    """Propagate a deviation through the events of a run, in their order (see `Simulation.events`).
-
-    Parameters
-    ----------
-    deviation : Deviation
-        The deviation.
-    scene : Scene
-        The scene.
-    masses : ndarray, shape (N,), [mass]
-        Masses of the particles.
-    events : mapping of str to ndarray
-        The events.
-
-    Raises
-    ------
-    SceneError
-        If the scene has contacts other than smooth elastic ones.
-    """
+    """Propagate a deviation through the events of a run, in their order (see `Simulation.events`)."""
     _require_plain(scene)
     lengths, weights = np.array(scene.container.lengths), masses.tolist()
     away = events["positions"][:, 0] - events["positions"][:, 1]

@@ -84,20 +84,7 @@ def correlate(displacements: np.ndarray, velocities: np.ndarray, interval: float
 
 
 def squared_displacement(paths: np.ndarray, lags: int) -> np.ndarray:
-    """Compute the mean of |r(t) - r(0)|^2 over particles and time origins.
-
-    Parameters
-    ----------
-    paths : ndarray, shape (T, N, d), [length]
-        Unwrapped positions at equally spaced times.
-    lags : int
-        Number of lags, in frames, starting with 0.
-
-    Returns
-    -------
-    ndarray, shape (lags,), [length^2]
-        The mean-squared displacement.
-    """
+    """Compute the mean of |r(t) - r(0)|^2 over particles and time origins."""
     frames, count, _ = paths.shape
     r = _columns(paths)
     r = r - r.mean(axis=0)  # relative to the middle of each path, to keep the digits of the differences
@@ -114,20 +101,7 @@ def squared_displacement(paths: np.ndarray, lags: int) -> np.ndarray:
 
 
 def autocorrelation(values: np.ndarray, lags: int) -> np.ndarray:
-    """Compute the mean of a(0) a(t) over particles, axes and time origins.
-
-    Parameters
-    ----------
-    values : ndarray, shape (T, N, d)
-        Values at equally spaced times.
-    lags : int
-        Number of lags, in frames, starting with 0.
-
-    Returns
-    -------
-    ndarray, shape (lags,)
-        The autocorrelation.
-    """
+    """Compute the mean of a(0) a(t) over particles, axes and time origins."""
     flat = _columns(values)
     return _products(flat)[:lags] / ((len(flat) - np.arange(lags)) * flat.shape[1])
 
@@ -410,20 +384,7 @@ def _autocorrelation(
 
 
 def axes_of(run: Run, chosen: np.ndarray | slice = slice(None)) -> dict[str, Any]:
-    """Return the dimension `axis` of an observable that is resolved along axes.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    chosen : ndarray or slice, optional
-        The axes. Default: all.
-
-    Returns
-    -------
-    dict of str to object
-        The dimension with its coordinate.
-    """
+    """Return the dimension `axis` of an observable that is resolved along axes."""
     return {"axis": (np.array(list("xyz"[: run.dimension]))[chosen], {"long_name": "axis"})}
 
 

@@ -360,18 +360,7 @@ def _plot_field(result: Observable, axis: Axes, cells: list[str]) -> None:
 
 
 def label_of(values: xr.DataArray) -> str:
-    """Return the label of a plotted axis: the meaning and the unit of a variable.
-
-    Parameters
-    ----------
-    values : DataArray
-        The variable.
-
-    Returns
-    -------
-    str
-        The label.
-    """
+    """Return the label of a plotted axis: the meaning and the unit of a variable."""
     text = values.attrs.get("long_name", str(values.name))
     units = values.attrs.get("units", "1")
     between = "\n" if len(text) + len(units) > _LONG else " "

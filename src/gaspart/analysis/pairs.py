@@ -41,30 +41,6 @@ def pair_counts(
     """Count the pairs of all frames in equal intervals of the distance.
 
     Distances are to the nearest image, in double precision.
-
-    Parameters
-    ----------
-    frames : ndarray, shape (T, N, d), [length]
-        Positions in a periodic container.
-    lengths : sequence of float, [length]
-        Lengths of the container.
-    bins : int
-        Number of intervals.
-    furthest : float, [length]
-        Largest distance.
-    threads : int, default 1
-        Number of threads. Each frame is counted by a single thread, so the counts do not depend on the number
-        of threads.
-
-    Returns
-    -------
-    ndarray of int, shape (bins,)
-        The counts.
-
-    Raises
-    ------
-    ValueError
-        If the distance exceeds half of the shortest side, because a pair then has several images.
     """
     from gaspart.kernels.analysis.pairs import MARGIN, count_pairs  # importing numba takes 0.4 s
 
@@ -119,24 +95,7 @@ def radial_distribution(
 
 
 def ideal_counts(count: int, lengths: Sequence[float] | np.ndarray, bins: int, furthest: float) -> np.ndarray:
-    """Compute the mean `pair_counts` of a frame of an ideal gas.
-
-    Parameters
-    ----------
-    count : int
-        Number of particles.
-    lengths : sequence of float, [length]
-        Lengths of the container.
-    bins : int
-        Number of intervals.
-    furthest : float, [length]
-        Largest distance.
-
-    Returns
-    -------
-    ndarray, shape (bins,)
-        The counts.
-    """
+    """Compute the mean `pair_counts` of a frame of an ideal gas."""
     dimension = len(lengths)
     unit = unit_sphere_surface(dimension) / dimension * (furthest / bins) ** dimension
     pairs = 0.5 * count * (count - 1)
@@ -299,48 +258,14 @@ def rdf(
 
 
 def chosen_frames(run: Run, values: np.ndarray) -> np.ndarray:
-    """Select the values in up to `MOST_FRAMES` evenly spaced frames.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    values : ndarray, shape (T, ...)
-        Values in all frames.
-
-    Returns
-    -------
-    ndarray
-        The values of the chosen frames.
-
-    Raises
-    ------
-    SceneError
-        If there are too few frames.
-    """
+    """Select the values in up to `MOST_FRAMES` evenly spaced frames."""
     if len(run.time) < STRETCHES:
         raise SceneError("frames", len(run.time), f"an error needs {STRETCHES} or more")
     return values[:: -(-len(run.time) // MOST_FRAMES)]
 
 
 def stretches_of(run: Run) -> list[slice]:
-    """Divide the `chosen_frames` of a run into 16 consecutive blocks.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-
-    Returns
-    -------
-    list of slice
-        The frames of each block.
-
-    Raises
-    ------
-    SceneError
-        If there are too few frames.
-    """
+    """Divide the `chosen_frames` of a run into 16 consecutive blocks."""
     numbers = chosen_frames(run, np.arange(len(run.time)))
     step = int(numbers[1] - numbers[0])
     return [slice(int(part[0]), int(part[-1]) + 1, step) for part in np.array_split(numbers, STRETCHES)]
@@ -450,16 +375,6 @@ def rate_scales(run: Run) -> np.ndarray:
     """Compute the number of collisions of each pair of species per collision of one particle.
 
     The particle belongs to the first species of the pair.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-
-    Returns
-    -------
-    ndarray, shape (pairs,)
-        The ratios.
     """
     counts = [kind.count for kind in run.scene.species]
     pairs = pairs_of(run.scene)
@@ -467,23 +382,7 @@ def rate_scales(run: Run) -> np.ndarray:
 
 
 def contact_scales(run: Run) -> np.ndarray:
-    """Compute the collision rate of each pair of species divided by its contact value.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-
-    Returns
-    -------
-    ndarray, shape (pairs,)
-        The ratios.
-
-    Raises
-    ------
-    SceneError
-        Under the conditions of `contact_values`.
-    """
+    """Compute the collision rate of each pair of species divided by its contact value."""
     require_defined("contact_values", run.scene)
     scene, d = run.scene, run.dimension
     scales = []
@@ -497,25 +396,7 @@ def contact_scales(run: Run) -> np.ndarray:
 
 
 def estimates_of(run: Run, scales: np.ndarray) -> list[Estimate]:
-    """Estimate the collision rate of each pair of species, divided by the scale of the pair.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    scales : ndarray, shape (pairs,)
-        Scales of the pairs.
-
-    Returns
-    -------
-    list of Estimate
-        The estimates.
-
-    Raises
-    ------
-    SceneError
-        If there are too few frames, or if the run has no collisions or has not counted them by pair.
-    """
+    """Estimate the collision rate of each pair of species, divided by the scale of the pair."""
     if "pair_collisions" not in run.data:
         raise SceneError(*KEPT["pairs"])
     if len(run.time) <= LEAST_INTERVALS:

@@ -28,20 +28,7 @@ _BLOCK = 1_000_000
 
 @dataclass(frozen=True)
 class Groups:
-    """Paths or velocities of groups of moving particles, read in blocks of particles.
-
-    Parameters
-    ----------
-    sizes : list of int
-        Numbers of particles in the groups.
-    frames : int
-        Number of frames.
-    interval : float, [time]
-        Time between frames.
-    blocks : callable
-        Function that returns a generator. Each item is the number of a group and the values (T, n, d) of some
-        of its particles. The items together contain all particles.
-    """
+    """Paths or velocities of groups of moving particles, read in blocks of particles."""
 
     sizes: list[int]
     frames: int
@@ -49,18 +36,7 @@ class Groups:
     blocks: Callable[[], Iterator[tuple[int, np.ndarray]]]
 
     def means(self, function: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-        """Average a function over the particles of each group.
-
-        Parameters
-        ----------
-        function : callable
-            Function of values (T, n, d) that averages over the n particles.
-
-        Returns
-        -------
-        ndarray, shape (G, ...)
-            The averages.
-        """
+        """Average a function over the particles of each group."""
         totals: list = [0.0] * len(self.sizes)
         for number, values in self.blocks():
             weight = values.shape[1] / self.sizes[number]
@@ -80,25 +56,6 @@ def groups_of(
     If there are fewer than `GROUPS` particles, the groups are blocks of the run. Relative to the centre of
     mass, the mean squared velocity of a particle of mass m is reduced by the factor 1 - m / M, where M is the
     total mass. If the gas flows, the values are relative to the local flow (`analysis.flow`).
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    paths : bool, default True
-        If True, return paths; otherwise velocities.
-    about : ndarray of bool, shape (d,), optional
-        Axes along which values are relative to the centre of mass. Default: axes along which its velocity is
-        conserved.
-    chosen : ndarray, optional
-        Indices of the selected particles among the moving particles. Default: all.
-    stride : int, optional
-        Use every `stride`-th frame. Default: `stride_of`.
-
-    Returns
-    -------
-    Groups
-        The groups.
     """
     steps = np.diff(run.time)
     if np.ptp(steps) > 1e-6 * steps.mean():
@@ -226,39 +183,12 @@ def stride_of(run: Run, count: int = GROUPS) -> int:
 
     The stride depends on the number of particles, because for fewer than `GROUPS` particles each group is a
     block of the run.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    count : int, optional
-        Number of particles.
-
-    Returns
-    -------
-    int
-        The stride.
     """
     return -(-len(run.time) // (MOST_FRAMES * (GROUPS if count < GROUPS else 1)))
 
 
 def unwrap_positions(run: Run, particles: np.ndarray | None = None, stride: int = 1) -> Iterator[np.ndarray]:
-    """Yield positions that are continuous across periodic faces.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    particles : ndarray, optional
-        Numbers of particles (n,) in increasing order. Default: all.
-    stride : int, default 1
-        Yield every `stride`-th frame.
-
-    Yields
-    ------
-    ndarray, shape (n, d)
-        Positions in the next frame.
-    """
+    """Yield positions that are continuous across periodic faces."""
     particles = np.arange(run.data.sizes["atom"]) if particles is None else particles
     if "displacements" in run.data:
         yield from _read_vectors(run, "displacements", particles, stride)

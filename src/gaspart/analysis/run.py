@@ -119,23 +119,7 @@ class Run:
         return self.vectors("velocities").values.astype(float)
 
     def vectors(self, name: str) -> xr.DataArray:
-        """Return the vectors of all frames; they are read from the file when they are used.
-
-        Parameters
-        ----------
-        name : {"coordinates", "velocities"}
-            Name of the vectors in the file.
-
-        Returns
-        -------
-        DataArray, shape (T, N, d)
-            The vectors.
-
-        Raises
-        ------
-        SceneError
-            If the file does not contain the vectors.
-        """
+        """Return the vectors of all frames; they are read from the file when they are used."""
         if name not in self.data:
             kept = self.data.attrs.get("keep")
             rule = f"the file holds only {kept} of the particles, and {name} are needed; run without keep"
@@ -147,20 +131,7 @@ class Run:
         return np.asarray(self.vectors(name)[number].values, dtype=float)
 
     def blocks(self, name: str, frames: slice) -> Iterator[np.ndarray]:
-        """Read the vectors of some frames in blocks that need limited memory.
-
-        Parameters
-        ----------
-        name : {"coordinates", "velocities"}
-            Name of the vectors in the file.
-        frames : slice
-            The frames.
-
-        Yields
-        ------
-        ndarray, shape (T, N, d)
-            Vectors of the next frames.
-        """
+        """Read the vectors of some frames in blocks that need limited memory."""
         values = self.vectors(name)[frames]
         for part in divide_frames(len(values), self._numbers):
             yield values[part].values
@@ -171,15 +142,7 @@ class Run:
         return self.data.sizes["atom"] * self.dimension
 
     def parts(self) -> Iterator[tuple[slice, Run]]:
-        """Divide the run into parts that need limited memory.
-
-        Yields
-        ------
-        frames : slice
-            Frames of the part.
-        part : Run Run with only these frames. Properties that depend on all frames, such as `flow_axes`, are
-            computed from the part only.
-        """
+        """Divide the run into parts that need limited memory."""
         for frames in divide_frames(len(self.time), self._numbers):
             yield frames, replace(self, time=self.time[frames], data=self.data.isel(frame=frames))
 

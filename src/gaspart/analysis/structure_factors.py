@@ -95,22 +95,6 @@ def amplitudes(
     """Compute the sum of exp(i k.r) over the particles in each frame, for several wave vectors.
 
     The wave vectors are k = 2 pi n / L.
-
-    Parameters
-    ----------
-    frames : ndarray, shape (T, N, d), [length]
-        Positions.
-    lengths : sequence of float, [length]
-        Lengths of the container.
-    waves : ndarray of int, shape (M, d)
-        The integers n.
-    threads : int, default 1
-        Number of threads. Each frame is summed by a single thread.
-
-    Returns
-    -------
-    ndarray of complex, shape (T, M)
-        The sums.
     """
     from gaspart.kernels.analysis.waves import sum_waves  # importing numba takes 0.4 s
 

@@ -401,23 +401,6 @@ def green_kubo(run: Run, name: str) -> np.ndarray:
     """Compute a transport coefficient from the correlation up to each lag, in each block.
 
     A block is an interval between frames. Only intervals in which pairs of samples of all lags end are used.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    name : str
-        Name of the flux in `trajectory.correlator.STRESS`.
-
-    Returns
-    -------
-    ndarray, shape (B, lags)
-        The coefficient.
-
-    Raises
-    ------
-    SceneError
-        If the run has no correlations of the stress.
     """
     interval = _read_settings(run).interval
     products, _ = _blocks(run, name)
@@ -425,20 +408,7 @@ def green_kubo(run: Run, name: str) -> np.ndarray:
 
 
 def helfand(run: Run, name: str) -> np.ndarray:
-    """Compute a transport coefficient from the squared change of G over each lag, by block.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    name : str
-        Name of the flux in `trajectory.correlator.STRESS`.
-
-    Returns
-    -------
-    ndarray, shape (B, lags)
-        The coefficient; NaN at lag 0.
-    """
+    """Compute a transport coefficient from the squared change of G over each lag, by block."""
     interval = _read_settings(run).interval
     _, squares = _blocks(run, name)
     time = interval * np.arange(squares.shape[1])

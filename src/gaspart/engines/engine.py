@@ -32,13 +32,6 @@ class AccuracyRequest:
     """Observable of a steady scene, and its requested relative accuracy.
 
     The requested accuracy is for the standard error and the bias together.
-
-    Attributes
-    ----------
-    conditions : local conditions of the scene
-    face : wall at which the observable, a pressure, is measured
-    transported : True if the observable depends on transport coefficients of the gas
-    initial : initial state, or None if only the errors of models are requested
     """
 
     observable: str
@@ -56,14 +49,7 @@ class AccuracyRequest:
 
 @dataclass(frozen=True)
 class Candidate:
-    """Engine with its settings for a scene, and bounds on its relative errors.
-
-    Attributes
-    ----------
-    engine : engine with its settings
-    model : bound on the error of the kinetic equation that the engine solves
-    discretisation : bound on the error due to time steps and cells
-    """
+    """Engine with its settings for a scene, and bounds on its relative errors."""
 
     engine: Engine
     model: float = 0.0

@@ -201,9 +201,11 @@ def _state_of_page(path: Path, scene: Scene) -> State:
     """Return the state in a file that a page of `gaspart play` has saved, with all bits."""
     with _reading(path), open_regular(path) as file:
         saved = json.loads(file.read())["state"]
-        values = [np.array(saved[name], dtype=float) for name in ("positions", "velocities", "spins")]
+        positions, velocities, spins = (
+            np.array(saved[name], dtype=float) for name in ("positions", "velocities", "spins")
+        )
         piston = None if saved["piston"] is None else np.array(saved["piston"], dtype=float)
-    return state_from_arrays(scene, *values, piston)
+    return state_from_arrays(scene, positions, velocities, spins, piston=piston)
 
 
 def _in_dimensions(name: str, values: np.ndarray, scene: Scene, path: Path) -> np.ndarray:

@@ -25,19 +25,7 @@ The box that most probably contains an overlapping particle is first.
 
 
 class Placed(NamedTuple):
-    """Particles, of which the first ones are placed, and the boxes that contain them.
-
-    Attributes
-    ----------
-    positions : (N, d)
-    radii : (N,)
-    failures : (N,), number of failed attempts before each particle was placed
-    near : (boxes, 4, PLACES), coordinates along three axes and radii of the first few particles of each box;
-        unused entries are infinite
-    filled : (boxes,), number of these particles in each box
-    head : (boxes,), start of the linked list with the other particles of each box
-    following : (N,), next particle in the linked list after each particle
-    """
+    """Particles, of which the first ones are placed, and the boxes that contain them."""
 
     positions: np.ndarray
     radii: np.ndarray
@@ -62,17 +50,7 @@ class PeriodicBoxes(NamedTuple):
 
 
 class Block(NamedTuple):
-    """Working arrays for the trials of one block.
-
-    Attributes
-    ----------
-    positions : (BLOCK, 3), positions of the trials
-    at : (BLOCK, 3), coordinates of their boxes
-    own : (BLOCK, 3), contribution of the trial's box to the index, along each axis
-    beside : (BLOCK, 3), contribution of the neighbouring box on the nearer side to the index, along each axis
-    remaining : (BLOCK,), trials that have not been rejected
-    box : (BLOCK,), next box with which each of these trials is compared
-    """
+    """Working arrays for the trials of one block."""
 
     positions: np.ndarray
     at: np.ndarray
@@ -83,15 +61,7 @@ class Block(NamedTuple):
 
 
 class Task(NamedTuple):
-    """Particles to place, from `first` to `stop`, all of equal radius.
-
-    Attributes
-    ----------
-    first, stop : first particle, and end of the particles
-    failures : number of failed attempts of the first particle so far
-    patience : maximum number of failed attempts
-    lower, upper : (d,), corners of the region for the centres
-    """
+    """Particles to place, from `first` to `stop`, all of equal radius."""
 
     first: int
     stop: int

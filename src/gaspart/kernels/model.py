@@ -66,14 +66,7 @@ PREDICTION = np.dtype(
 
 
 class Particles(NamedTuple):
-    """Particles: flights, periodic images, predictions.
-
-    Attributes
-    ----------
-    flights : (N,), see `flight_dtype`
-    images : (N, d), number of crossings of the container on periodic axes
-    predictions : (N,), see `PREDICTION`
-    """
+    """Particles: flights, periodic images, predictions."""
 
     flights: np.ndarray
     images: np.ndarray
@@ -81,13 +74,7 @@ class Particles(NamedTuple):
 
 
 class Space(NamedTuple):
-    """Container of the particles.
-
-    Attributes
-    ----------
-    lengths, periodic : (d,)
-    margin : 1 if walls stop surfaces, 0 if they stop centres
-    """
+    """Container of the particles."""
 
     lengths: tuple
     periodic: tuple
@@ -95,17 +82,7 @@ class Space(NamedTuple):
 
 
 class Support(NamedTuple):
-    """Planes on which particles rest or slide, at most three per particle.
-
-    Attributes
-    ----------
-    number : (N,), number of planes of each particle
-    normal : (N, 3, 3), unit vectors from the planes towards the particle
-    plane : (N, 3), coordinates of its centre along these vectors
-    row : (N, 3), row of an interior wall, or NONE for a face
-    pull : (N, 3), acceleration that the planes do not support
-    height : highest bounce on an interior wall that counts as rest
-    """
+    """Planes on which particles rest or slide, at most three per particle."""
 
     number: np.ndarray
     normal: np.ndarray
@@ -122,15 +99,7 @@ def no_support(count: int, height: float) -> Support:
 
 
 class Gravity(NamedTuple):
-    """Gravity and its effect on particles at rest.
-
-    Attributes
-    ----------
-    acceleration : (d,)
-    fixed : (N,), True for particles that gravity does not move, now or ever
-    shortest_bounce : longest bounce on a floor that counts as rest
-    support : None without interior walls
-    """
+    """Gravity and its effect on particles at rest."""
 
     acceleration: tuple
     fixed: np.ndarray
@@ -139,20 +108,7 @@ class Gravity(NamedTuple):
 
 
 class ContactDuration(NamedTuple):
-    """Contact duration: a contact less than `length` after an earlier contact is elastic.
-
-    Attributes
-    ----------
-    length : contact duration
-    latest : (N,), time of the latest contact of each particle
-    met : (N,), time of the latest contact of each particle with another particle
-    island : (N,), island or jam of each particle, see `event.jams`, or NONE
-    contacts : (N,), number of contacts since the last search for particles at rest
-    inverse_mass : (N,), inverse masses of the particles while no jam fixes them
-    moving : speed that frees a particle from a jam (`event.jams`)
-    elastic : (1,), number of lasting contacts
-    kept : (1, 2), energy that these contacts did not dissipate, see `physics.running_sum.add`
-    """
+    """Contact duration: a contact less than `length` after an earlier contact is elastic."""
 
     length: float
     latest: np.ndarray
@@ -166,20 +122,7 @@ class ContactDuration(NamedTuple):
 
 
 class ContactLaw(NamedTuple):
-    """Collision law of inelastic or rough particles.
-
-    Attributes
-    ----------
-    normal, tangential : coefficients of restitution
-    viscous : None, or for viscoelastic particles the damping divided by the fifth root of speed, radius and
-        squared inverse mass (`physics.contact.normal_restitution`)
-    inverse_mass : (N,), inverse masses; 0 if fixed or in a jam
-    inverse_inertia : (N,), 0 if fixed
-    spins : (N, 3)
-    vibrations : (N,), energies of vibrational modes, -1 for particles without a mode; None if no particle has
-        a mode
-    duration : None if every contact dissipates
-    """
+    """Collision law of inelastic or rough particles."""
 
     normal: float
     tangential: float
@@ -192,17 +135,7 @@ class ContactLaw(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """Vibrating faces.
-
-    Attributes
-    ----------
-    stroke : (2d,), distance by which each face of the container moves inwards; 0 if it does not move
-    period : (2d,)
-    sine : (2d,), True for a sine, False for a sawtooth
-    begun : (2d,), time within the period at which the clocks are at zero
-    slowest : (2d,), minimum separation speed of particles
-    epoch : (1,), length of the epoch of the clocks
-    """
+    """Vibrating faces."""
 
     stroke: np.ndarray
     period: np.ndarray
@@ -213,16 +146,7 @@ class Motion(NamedTuple):
 
 
 class Piston(NamedTuple):
-    """Face that is a piston.
-
-    Attributes
-    ----------
-    face : number of the face
-    mass : in the kernel's unit
-    push : inward acceleration due to its load
-    motion : (3,), inward position and velocity, and the time of its clock
-    slowest : (1,), minimum separation speed of particles
-    """
+    """Face that is a piston."""
 
     face: int
     mass: float
@@ -232,42 +156,21 @@ class Piston(NamedTuple):
 
 
 class Sliding(NamedTuple):
-    """Thermal faces that slide, or along which a force drives the gas.
-
-    Attributes
-    ----------
-    velocity : (2d, d), velocities of the faces
-    shear : (2d^2, 2), momentum along each axis that particles give to each face, see
-        `physics.running_sum.add`
-    """
+    """Thermal faces that slide, or along which a force drives the gas."""
 
     velocity: np.ndarray
     shear: np.ndarray
 
 
 class Ramp(NamedTuple):
-    """Thermal faces whose temperature varies along them.
-
-    Attributes
-    ----------
-    axis : (2d,), axis along which the temperature of each face varies, or NONE
-    high : (2d,), temperature at the upper end
-    """
+    """Thermal faces whose temperature varies along them."""
 
     axis: np.ndarray
     high: np.ndarray
 
 
 class Open(NamedTuple):
-    """Faces through which particles leave and enter.
-
-    Attributes
-    ----------
-    present : (N,), 1 for particles inside; 0 for the others, which have no position (NaN), are at rest and in
-        no box
-    vacant : (blocks,), number of absent particles in each block of numbers, see `obstacles.face`
-    entries : (2d,), number of particles that have entered through each face
-    """
+    """Faces through which particles leave and enter."""
 
     present: np.ndarray
     vacant: np.ndarray
@@ -275,19 +178,7 @@ class Open(NamedTuple):
 
 
 class Reservoirs(NamedTuple):
-    """Gases behind open faces, whose particles try to enter.
-
-    Attributes
-    ----------
-    key : (2,), key of the random numbers
-    rate : rate of attempts, summed over all faces
-    up_to : (2d,), cumulative fraction of the attempts up to each face
-    width : (2d,), (k_B T / m)^(1/2) of each gas
-    number : (1,), number of the next attempt
-    time : (1,), time of this attempt on the clocks of the epoch
-    position : (3,), workspace for the position of an attempt
-    opened : `Open` of the faces
-    """
+    """Gases behind open faces, whose particles try to enter."""
 
     key: np.ndarray
     rate: float
@@ -300,26 +191,7 @@ class Reservoirs(NamedTuple):
 
 
 class Faces(NamedTuple):
-    """Special faces.
-
-    Attributes
-    ----------
-    kind : (2d,)
-    level : (2d,), temperature (at the lower end if it varies), or momentum below which particles stick
-    depth, width : (2d,), depth and width of the well, 0 without a well
-    well_side : (N, d), -1 or 1 for a particle in the well of the low or high face of an axis, or stuck to
-        this face
-    held : (N, d), energy stored there as vibration
-    draws : (N,), number of random draws of each particle
-    key : (2,), key of these random numbers
-    sticky : (2d,), sticky faces, or None if no face is sticky
-    motion : None if no face vibrates
-    piston : None if no face is a piston
-    sliding : None if no face slides
-    accommodation : (2d,), fraction of hits that draw new velocities, or None if all hits do
-    ramp : None if no temperature varies along a face
-    open : None if no face is open
-    """
+    """Special faces."""
 
     kind: np.ndarray
     level: np.ndarray
@@ -339,14 +211,7 @@ class Faces(NamedTuple):
 
 
 class WarmWalls(NamedTuple):
-    """Interior walls at a temperature.
-
-    Attributes
-    ----------
-    level : (walls,), temperature, 0 for hard walls
-    draws : (N,), number of random draws of each particle
-    key : (2,), key of these random numbers
-    """
+    """Interior walls at a temperature."""
 
     level: np.ndarray
     draws: np.ndarray
@@ -354,15 +219,7 @@ class WarmWalls(NamedTuple):
 
 
 class MovingWall(NamedTuple):
-    """Interior wall that moves.
-
-    Attributes
-    ----------
-    axis : axis along which the wall moves
-    mass : in the kernel's unit
-    side : (N,), 1.0 for particles above the wall, -1.0 for particles below
-    motion : (3,), position along the axis and velocity, and the time of its clock
-    """
+    """Interior wall that moves."""
 
     axis: int
     mass: float
@@ -371,18 +228,7 @@ class MovingWall(NamedTuple):
 
 
 class InteriorWalls(NamedTuple):
-    """Interior walls, and lists of walls near each box.
-
-    Attributes
-    ----------
-    rows : (M, 5) or (M, 11), see `obstacles.distance`
-    wall : (M,), see `obstacles.distance`
-    first, listed : listed[first[b] : first[b + 1]] are the rows near box b, for particles of a radius up to
-        `largest_radius`. After the last box, `listed` contains all rows, for larger particles
-    largest_radius : see `listed`
-    warm : None if no wall has a temperature
-    moving : None if no wall moves; a moving wall is not in the rows
-    """
+    """Interior walls, and lists of walls near each box."""
 
     rows: np.ndarray
     wall: np.ndarray
@@ -401,16 +247,7 @@ class Oversized(NamedTuple):
 
 
 class Shear(NamedTuple):
-    """Periodic faces whose images slide, see `physics.lees_edwards`.
-
-    Attributes
-    ----------
-    rate : shear rate
-    velocity : velocity of the images above
-    origin : (1,), their displacement at clock time zero, modulo the length of the container
-    turns : (1,), number of whole lengths of the container in the displacement
-    kept : (3,), workspace for the position of a particle before a contact, and its velocity
-    """
+    """Periodic faces whose images slide, see `physics.lees_edwards`."""
 
     rate: float
     velocity: float
@@ -420,13 +257,7 @@ class Shear(NamedTuple):
 
 
 class Model(NamedTuple):
-    """Model of the simulated scene; missing parts have the value None.
-
-    Attributes
-    ----------
-    space : `Space`, for either engine
-    masses : (N,), or None if all masses are 1 or the law contains the masses
-    """
+    """Model of the simulated scene; missing parts have the value None."""
 
     space: Any
     masses: np.ndarray | None
@@ -440,22 +271,7 @@ class Model(NamedTuple):
 
 
 class Tally(NamedTuple):
-    """Counts and sums of events.
-
-    Attributes
-    ----------
-    counts : (of `COUNTS`,)
-    sums : (of `SUMS`, 2), see `physics.running_sum.add`
-    worst : (1,), largest value of |r^2/sigma^2 - 1| at a contact
-    wall_hits : (faces + walls,)
-    wall_impulse, wall_energy : (faces + walls, 2), momentum given to each face and interior wall, see
-        `physics.running_sum.add`
-    stress : `event.stress.Stress`, or None
-    impulses : `event.impulses.Impulses`, or None
-    pair_impulses : `event.impulses.PairImpulses`, or None
-    per_area : `physics.per_area.PerArea`, or None unless particles of different sizes reach different areas
-        of faces
-    """
+    """Counts and sums of events."""
 
     counts: np.ndarray
     sums: np.ndarray

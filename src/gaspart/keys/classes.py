@@ -20,35 +20,12 @@ T = TypeVar("T", bound="DataclassInstance")
 
 
 def declare(kind: Kind) -> dict[str, Any]:
-    """Return the metadata of a field of a dataclass.
-
-    Parameters
-    ----------
-    kind : Kind
-        Kind of the field.
-
-    Returns
-    -------
-    dict
-        Metadata, for `dataclasses.field`.
-    """
+    """Return the metadata of a field of a dataclass."""
     return {"kind": kind}
 
 
 def validate(instance: Any) -> None:
-    """Check and convert every field of a frozen dataclass during its construction.
-
-    Parameters
-    ----------
-    instance : dataclass
-        Instance. Each field is set to the converted value. None is accepted for a field whose default is
-        None.
-
-    Raises
-    ------
-    SceneError
-        If a value breaks its rule. The message contains key, value and rule.
-    """
+    """Check and convert every field of a frozen dataclass during its construction."""
     for name, check, optional in _checks(instance.__class__):
         value = getattr(instance, name)
         if value is not None or not optional:
@@ -65,15 +42,7 @@ def _checks(cls: Any) -> tuple[tuple[str, Check, bool], ...]:
 
 
 def set_fields(instance: Any, **checked: object) -> None:
-    """Write checked values into a frozen dataclass during its construction.
-
-    Parameters
-    ----------
-    instance : dataclass
-        Instance. Its cached properties are deleted, because they were computed from the previous values.
-    **checked : object
-        Values by the name of their field.
-    """
+    """Write checked values into a frozen dataclass during its construction."""
     for name, value in checked.items():
         object.__setattr__(instance, name, value)
     for name in set(vars(instance)) - {item.name for item in fields(instance)}:
@@ -81,37 +50,12 @@ def set_fields(instance: Any, **checked: object) -> None:
 
 
 def field_values(instance: Any) -> dict[str, Any]:
-    """Return the values of the fields of a dataclass by name, without cached properties.
-
-    Parameters
-    ----------
-    instance : dataclass
-        Instance.
-
-    Returns
-    -------
-    dict
-        Values by the name of their field.
-    """
+    """Return the values of the fields of a dataclass by name, without cached properties."""
     return {item.name: getattr(instance, item.name) for item in fields(instance)}
 
 
 def schema_of(cls: Any, **more: Kind) -> Kind:
-    """Return the JSON schema of a mapping whose keys are the fields of a dataclass.
-
-    Parameters
-    ----------
-    cls : type
-        Dataclass whose fields are declared by `declare`. The summary of its docstring is the meaning of the
-        mapping.
-    **more : Kind
-        Additional keys of the mapping, in front of the fields.
-
-    Returns
-    -------
-    Kind
-        Schema with the title of the class.
-    """
+    """Return the JSON schema of a mapping whose keys are the fields of a dataclass."""
     keys = dict(more)
     for item in fields(cls):
         kind = item.metadata["kind"]
@@ -125,27 +69,7 @@ def schema_of(cls: Any, **more: Kind) -> Kind:
 
 
 def from_mapping(cls: type[T], mapping: object, where: str) -> T:
-    """Make a dataclass from a mapping whose keys are its fields.
-
-    Parameters
-    ----------
-    cls : type
-        Dataclass.
-    mapping : object
-        Value of a file.
-    where : str
-        Key of the mapping in the file, for messages.
-
-    Returns
-    -------
-    cls
-        Instance.
-
-    Raises
-    ------
-    SceneError
-        If `mapping` is not a mapping, has an unknown key or an invalid value, or lacks a required key.
-    """
+    """Make a dataclass from a mapping whose keys are its fields."""
     if not isinstance(mapping, dict):
         raise SceneError(where, mapping, "must be a mapping of keys to values")
     refuse_unknown(cls, mapping, where)
@@ -160,22 +84,7 @@ def from_mapping(cls: type[T], mapping: object, where: str) -> T:
 
 
 def refuse_unknown(cls: Any, mapping: dict, where: str) -> None:
-    """Raise SceneError for a key that is not a field of a dataclass.
-
-    Parameters
-    ----------
-    cls : type
-        Dataclass.
-    mapping : dict
-        Mapping to check.
-    where : str
-        Key of the mapping in the file, for messages.
-
-    Raises
-    ------
-    SceneError
-        If a key is unknown. The rule in the message is the result of `unknown_word`.
-    """
+    """Raise SceneError for a key that is not a field of a dataclass."""
     names = [item.name for item in fields(cls)]
     for key, value in mapping.items():
         if key not in names:
@@ -183,21 +92,7 @@ def refuse_unknown(cls: Any, mapping: dict, where: str) -> None:
 
 
 def instance_of(cls: type, meaning: str) -> Kind:
-    """Return the kind of values that are instances of a dataclass.
-
-    Parameters
-    ----------
-    cls : type
-        Dataclass.
-    meaning : str
-        Meaning of the value.
-
-    Returns
-    -------
-    Kind
-        Kind with the schema of the class. In a file such a value is a mapping whose keys are the fields of
-        the class.
-    """
+    """Return the kind of values that are instances of a dataclass."""
 
     def check(key: str, value: Any) -> Any:
         if not isinstance(value, cls):
@@ -208,22 +103,7 @@ def instance_of(cls: type, meaning: str) -> Kind:
 
 
 def instances_of(meaning: str, *classes: type, rule: str) -> Kind:
-    """Return the kind of lists that contain instances of these dataclasses.
-
-    Parameters
-    ----------
-    meaning : str
-        Meaning of the list.
-    *classes : type
-        Dataclasses of the items.
-    rule : str
-        Rule that every item obeys, for messages.
-
-    Returns
-    -------
-    Kind
-        Kind whose check returns a tuple.
-    """
+    """Return the kind of lists that contain instances of these dataclasses."""
     items = [schema_of(cls) for cls in classes]
     schema = {"type": "array", "items": items[0] if len(items) == 1 else {"anyOf": items}}
 
@@ -237,22 +117,7 @@ def instances_of(meaning: str, *classes: type, rule: str) -> Kind:
 
 
 def require(kind: Mapping[str, Any], value: object, where: str) -> None:
-    """Raise SceneError if a value in a file breaks a schema.
-
-    Parameters
-    ----------
-    kind : mapping
-        JSON schema.
-    value : object
-        Value of the file.
-    where : str
-        Key of the value in the file; "" for the complete file.
-
-    Raises
-    ------
-    SceneError
-        With the most relevant rule that the value breaks.
-    """
+    """Raise SceneError if a value in a file breaks a schema."""
     from jsonschema.exceptions import best_match
 
     error = best_match(_validator()(kind).iter_errors(value))

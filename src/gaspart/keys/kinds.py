@@ -19,33 +19,14 @@ def _identity(_: str, value: Any) -> Any:
 
 
 class Kind(dict[str, Any]):
-    """JSON schema (draft 2020-12): the type, the rules, `description` and, for an optional key, `default`.
-
-    Parameters
-    ----------
-    schema : mapping
-        Entries of the schema.
-    check : Check, optional
-        Check of a field of a class. Default: no check, because the class itself checks the value.
-    """
+    """JSON schema (draft 2020-12): the type, the rules, `description` and, for an optional key, `default`."""
 
     def __init__(self, schema: Mapping[str, Any], check: Check = _identity) -> None:
         super().__init__(schema)
         self.check = check
 
     def stating(self, **more: Any) -> Kind:
-        """Return this kind with further entries in its schema.
-
-        Parameters
-        ----------
-        **more : object
-            Entries. They replace existing entries of the same name.
-
-        Returns
-        -------
-        Kind
-            New kind with the same check.
-        """
+        """Return this kind with further entries in its schema."""
         return Kind({**self, **more}, self.check)
 
 
@@ -59,95 +40,28 @@ _PER_AXIS = {"minItems": 2, "maxItems": 3}
 
 
 def describe(kind: Mapping[str, Any], meaning: str, check: Check | None = None, **more: Any) -> Kind:
-    """Return a copy of a kind with a meaning and further entries in its schema.
-
-    Parameters
-    ----------
-    kind : Kind or mapping
-        Kind or JSON schema.
-    meaning : str
-        Description; "" for no description.
-    check : Check, optional
-        Check for a field of a class. Default: the check of `kind`.
-    **more : object
-        Further entries of the schema, such as `default`.
-
-    Returns
-    -------
-    Kind
-        New kind.
-    """
+    """Return a copy of a kind with a meaning and further entries in its schema."""
     schema = {**kind, **more} | ({"description": meaning} if meaning else {})
     return Kind(schema, check or (kind.check if isinstance(kind, Kind) else _identity))
 
 
 def positive(meaning: str, **more: Any) -> Kind:
-    """Return the kind of a number above 0.
-
-    Parameters
-    ----------
-    meaning : str
-        Description.
-    **more : object
-        Further entries of the schema.
-
-    Returns
-    -------
-    Kind
-        The kind; its check returns a float.
-    """
+    """Return the kind of a number above 0."""
     return describe(POSITIVE, meaning, **more)
 
 
 def not_negative(meaning: str, **more: Any) -> Kind:
-    """Return the kind of a number of at least 0.
-
-    Parameters
-    ----------
-    meaning : str
-        Description.
-    **more : object
-        Further entries of the schema.
-
-    Returns
-    -------
-    Kind
-        The kind; its check returns a float.
-    """
+    """Return the kind of a number of at least 0."""
     return describe(NOT_NEGATIVE, meaning, **more)
 
 
 def real(meaning: str) -> Kind:
-    """Return the kind of a number of either sign, 0 or with an acceptable size.
-
-    Parameters
-    ----------
-    meaning : str
-        Description.
-
-    Returns
-    -------
-    Kind
-        The kind; its check returns a float.
-    """
+    """Return the kind of a number of either sign, 0 or with an acceptable size."""
     return describe(NUMBER, meaning)
 
 
 def in_range(meaning: str, least: float, most: float) -> Kind:
-    """Return the kind of a number in a range.
-
-    Parameters
-    ----------
-    meaning : str
-        Description.
-    least, most : float
-        Ends of the range, which belong to it.
-
-    Returns
-    -------
-    Kind
-        The kind; its check returns a float.
-    """
+    """Return the kind of a number in a range."""
     rule = f"must be from {least:g} to {most:g}"
 
     def check(key: str, value: Any) -> float:
@@ -157,18 +71,7 @@ def in_range(meaning: str, least: float, most: float) -> Kind:
 
 
 def fraction(meaning: str) -> Kind:
-    """Return the kind of a number above 0 and at most 1.
-
-    Parameters
-    ----------
-    meaning : str
-        Description.
-
-    Returns
-    -------
-    Kind
-        The kind; its check returns a float.
-    """
+    """Return the kind of a number above 0 and at most 1."""
 
     def check(key: str, value: Any) -> float:
         return values.number(key, value, "must be above 0 and at most 1", above=0.0, most=1.0)
@@ -177,22 +80,7 @@ def fraction(meaning: str) -> Kind:
 
 
 def count(meaning: str, minimum: int = 1, **more: Any) -> Kind:
-    """Return the kind of an integer.
-
-    Parameters
-    ----------
-    meaning : str
-        Description.
-    minimum : int, default 1
-        Smallest value.
-    **more : object
-        Further entries of the schema, such as `maximum`.
-
-    Returns
-    -------
-    Kind
-        The kind; its check returns an int.
-    """
+    """Return the kind of an integer."""
 
     def check(key: str, value: Any) -> int:
         return values.count_of(key, value, minimum, more.get("maximum", values.LARGEST_INTEGER))
@@ -201,40 +89,12 @@ def count(meaning: str, minimum: int = 1, **more: Any) -> Kind:
 
 
 def flag(meaning: str, **more: Any) -> Kind:
-    """Return the kind of a boolean.
-
-    Parameters
-    ----------
-    meaning : str
-        Description.
-    **more : object
-        Further entries of the schema.
-
-    Returns
-    -------
-    Kind
-        The kind; its check returns a bool.
-    """
+    """Return the kind of a boolean."""
     return describe(FLAG, meaning, **more)
 
 
 def choice(meaning: str, *accepted: Any, **more: Any) -> Kind:
-    """Return the kind of a value from a list.
-
-    Parameters
-    ----------
-    meaning : str
-        Description.
-    *accepted : object
-        Accepted values.
-    **more : object
-        Further entries of the schema.
-
-    Returns
-    -------
-    Kind
-        The kind; its check returns the value.
-    """
+    """Return the kind of a value from a list."""
 
     def check(key: str, value: Any) -> Any:
         return values.one_of(key, value, accepted)
@@ -243,22 +103,7 @@ def choice(meaning: str, *accepted: Any, **more: Any) -> Kind:
 
 
 def vector(meaning: str, dimension: int | None = None, sized: bool = True) -> Kind:
-    """Return the kind of a list of finite numbers.
-
-    Parameters
-    ----------
-    meaning : str
-        Description.
-    dimension : int, optional
-        Number of components. Default: 2 or 3 are both accepted.
-    sized : bool, default True
-        Require that the largest component is 0 or of an acceptable size.
-
-    Returns
-    -------
-    Kind
-        The kind; its check returns a tuple of float.
-    """
+    """Return the kind of a list of finite numbers."""
 
     def check(key: str, value: Any) -> tuple[float, ...]:
         components = values.finite_vector(key, value, dimension)
@@ -270,20 +115,7 @@ def vector(meaning: str, dimension: int | None = None, sized: bool = True) -> Ki
 
 
 def two_vectors(meaning: str, dimension: int | None = None) -> Kind:
-    """Return the kind of two lists of finite numbers.
-
-    Parameters
-    ----------
-    meaning : str
-        Description.
-    dimension : int, optional
-        Number of components of each list. Default: 2 or 3 are both accepted.
-
-    Returns
-    -------
-    Kind
-        The kind; its check returns a tuple of tuples of float.
-    """
+    """Return the kind of two lists of finite numbers."""
 
     def check(key: str, value: Any) -> tuple[tuple[float, ...], ...]:
         if not isinstance(value, (tuple, list)) or len(value) != 2:
@@ -300,19 +132,7 @@ def _numbers(dimension: int | None) -> Kind:
 
 
 def per_side(meaning: str) -> Kind:
-    """Return the kind of the numbers of boxes along the sides of a container.
-
-    Parameters
-    ----------
-    meaning : str
-        Description.
-
-    Returns
-    -------
-    Kind
-        Kind of a number for all sides, or of a list with a number for each side. Its check is
-        `values.partition`.
-    """
+    """Return the kind of the numbers of boxes along the sides of a container."""
     types = {"type": ["integer", "array"], "items": COUNT}
     return describe({**COUNT, **types, **_PER_AXIS}, meaning, values.partition)
 
@@ -320,83 +140,25 @@ def per_side(meaning: str) -> Kind:
 def list_of(
     item: Mapping[str, Any], meaning: str = "", least: int = 1, most: int | None = None, **more: Any
 ) -> Kind:
-    """Return the kind of a list of values of the same kind.
-
-    Parameters
-    ----------
-    item : mapping
-        Kind or JSON schema of an item.
-    meaning : str, default ""
-        Description.
-    least : int, default 1
-        Smallest number of items.
-    most : int, optional
-        Largest number of items. Default: no limit.
-    **more : object
-        Further entries of the schema.
-
-    Returns
-    -------
-    Kind
-        New kind, without a check.
-    """
+    """Return the kind of a list of values of the same kind."""
     ends = {"minItems": least} | ({} if most is None else {"maxItems": most})
     return describe({"type": "array", **ends, "items": item}, meaning, **more)
 
 
 def names(meaning: str, **more: Any) -> Kind:
-    """Return the kind of a list of distinct names.
-
-    Parameters
-    ----------
-    meaning : str
-        Description.
-    **more : object
-        Further entries of the schema.
-
-    Returns
-    -------
-    Kind
-        New kind, without a check.
-    """
+    """Return the kind of a list of distinct names."""
     return list_of(TEXT, meaning, uniqueItems=True, **more)
 
 
 def record(keys: Mapping[str, Mapping[str, Any]], meaning: str = "", **more: Any) -> Kind:
-    """Return the kind of a mapping that may have these keys only.
-
-    Parameters
-    ----------
-    keys : mapping of str to mapping
-        Kind of each key. All keys are required except keys with a default.
-    meaning : str, default ""
-        Description.
-    **more : object
-        Further entries of the schema.
-
-    Returns
-    -------
-    Kind
-        New kind, without a check.
-    """
+    """Return the kind of a mapping that may have these keys only."""
     required = [name for name, kind in keys.items() if "default" not in kind]
     closed = {"type": "object", "additionalProperties": False, "properties": keys}
     return describe(closed | ({"required": required} if required else {}), meaning, **more)
 
 
 def nullable(kind: Kind) -> Kind:
-    """Return a kind that also accepts null, which means that there is no value.
-
-    Parameters
-    ----------
-    kind : Kind
-        Kind of the value.
-
-    Returns
-    -------
-    Kind
-        The same kind if it accepts null, otherwise a new kind.
-    """
+    """Return a kind that also accepts null, which means that there is no value."""
     key, none = ("enum", None) if "enum" in kind else ("type", "null")
     accepted = [kind[key]] if isinstance(kind[key], str) else kind[key]
     return kind if none in accepted else kind.stating(**{key: [*accepted, none]})

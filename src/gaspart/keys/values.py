@@ -28,18 +28,7 @@ text."""
 
 
 def finite(value: object) -> float | None:
-    """Return `value` as a finite float, or None for any other object.
-
-    Parameters
-    ----------
-    value : object
-        Value. Booleans and text are not numbers.
-
-    Returns
-    -------
-    float or None
-        Number.
-    """
+    """Return `value` as a finite float, or None for any other object."""
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         return None
     try:
@@ -58,31 +47,7 @@ def number(
     least: float = -math.inf,
     most: float = math.inf,
 ) -> float:
-    """Return `value` as a finite float; raise SceneError if it is outside the range.
-
-    Parameters
-    ----------
-    key : str
-        Key of the value, for the message.
-    value : object
-        Value.
-    rule : str
-        Rule in words, for the message.
-    above : float, default -inf
-        Number that the value must exceed.
-    least, most : float, default -inf and inf
-        Ends of the range, which belong to it.
-
-    Returns
-    -------
-    float
-        Number.
-
-    Raises
-    ------
-    SceneError
-        If the value is not a finite number in the range.
-    """
+    """Return `value` as a finite float; raise SceneError if it is outside the range."""
     result = finite(value)
     if result is None or not (result > above and least <= result <= most):
         raise SceneError(key, value, rule)
@@ -90,20 +55,7 @@ def number(
 
 
 def size(key: str, value: float | tuple[float, ...]) -> None:
-    """Raise SceneError for a number that is too small or too large to compute contacts.
-
-    Parameters
-    ----------
-    key : str
-        Key of the value, for the message.
-    value : float or tuple of float
-        Number, or vector, whose size is its largest absolute component. The size 0 is accepted.
-
-    Raises
-    ------
-    SceneError
-        If the size is neither 0 nor between `SMALLEST` and `LARGEST`.
-    """
+    """Raise SceneError for a number that is too small or too large to compute contacts."""
     largest = max(map(abs, value), default=0.0) if isinstance(value, tuple) else abs(value)
     if largest and not SMALLEST <= largest <= LARGEST:
         rule = f"must be 0 or of a size from {SMALLEST:g} to {LARGEST:g}: choose other units"
@@ -117,25 +69,7 @@ def _refuse_text(key: str, value: Any) -> None:
 
 
 def positive_number(key: str, value: Any) -> float:
-    """Return `value` as a float above 0 of an acceptable `size`.
-
-    Parameters
-    ----------
-    key : str
-        Key of the value, for the message.
-    value : object
-        Value.
-
-    Returns
-    -------
-    float
-        Number.
-
-    Raises
-    ------
-    SceneError
-        If the value breaks this rule.
-    """
+    """Return `value` as a float above 0 of an acceptable `size`."""
     _refuse_text(key, value)
     result = number(key, value, "must be positive", above=0.0)
     if not SMALLEST <= result <= LARGEST:
@@ -144,25 +78,7 @@ def positive_number(key: str, value: Any) -> float:
 
 
 def not_negative_number(key: str, value: Any) -> float:
-    """Return `value` as a float of at least 0 of an acceptable `size`.
-
-    Parameters
-    ----------
-    key : str
-        Key of the value, for the message.
-    value : object
-        Value.
-
-    Returns
-    -------
-    float
-        Number.
-
-    Raises
-    ------
-    SceneError
-        If the value breaks this rule.
-    """
+    """Return `value` as a float of at least 0 of an acceptable `size`."""
     _refuse_text(key, value)
     result = number(key, value, "must not be negative", least=0.0)
     size(key, result)
@@ -170,52 +86,14 @@ def not_negative_number(key: str, value: Any) -> float:
 
 
 def sized_number(key: str, value: Any) -> float:
-    """Return `value` as a float of either sign, which is 0 or of an acceptable `size`.
-
-    Parameters
-    ----------
-    key : str
-        Key of the value, for the message.
-    value : object
-        Value.
-
-    Returns
-    -------
-    float
-        Number.
-
-    Raises
-    ------
-    SceneError
-        If the value breaks this rule.
-    """
+    """Return `value` as a float of either sign, which is 0 or of an acceptable `size`."""
     result = number(key, value, "must be a finite number")
     size(key, result)
     return result
 
 
 def count_of(key: str, value: Any, least: int = 0, most: int = LARGEST_INTEGER) -> int:
-    """Return `value` as an integer; raise SceneError if it is outside the range.
-
-    Parameters
-    ----------
-    key : str
-        Key of the value, for the message.
-    value : object
-        Value.
-    least, most : int, default 0 and `LARGEST_INTEGER`
-        Ends of the range, which belong to it.
-
-    Returns
-    -------
-    int
-        Number.
-
-    Raises
-    ------
-    SceneError
-        If the value is not an integer in the range.
-    """
+    """Return `value` as an integer; raise SceneError if it is outside the range."""
     rule = f"must be a whole number of at least {least}"
     if number(key, value, rule, least=least) != int(value):
         raise SceneError(key, value, rule)
@@ -225,27 +103,7 @@ def count_of(key: str, value: Any, least: int = 0, most: int = LARGEST_INTEGER) 
 
 
 def finite_vector(key: str, value: Any, dimension: int | None = None) -> tuple[float, ...]:
-    """Return `value` as a tuple of finite floats.
-
-    Parameters
-    ----------
-    key : str
-        Key of the value, for the message.
-    value : object
-        Value.
-    dimension : int, optional
-        Number of components. Default: 2 or 3 are both accepted.
-
-    Returns
-    -------
-    tuple of float
-        Vector.
-
-    Raises
-    ------
-    SceneError
-        If the value is not a list of finite numbers with this length.
-    """
+    """Return `value` as a tuple of finite floats."""
     rule = f"must be a list of {dimension or '2 or 3'} finite numbers"
     components = tuple(number(key, item, rule) for item in _items(key, value, rule, 4))
     if len(components) not in ((2, 3) if dimension is None else (dimension,)):
@@ -264,29 +122,7 @@ def _items(key: str, value: Any, rule: str, most: int) -> Iterable[Any]:
 
 
 def instances(key: str, value: Any, kinds: type | tuple[type, ...], rule: str) -> tuple:
-    """Return `value` as a tuple of instances of some classes.
-
-    Parameters
-    ----------
-    key : str
-        Key of the value, for the message.
-    value : object
-        A list or another iterable, or a single instance.
-    kinds : type or tuple of type
-        Classes of the instances.
-    rule : str
-        Rule for an item, for the message.
-
-    Returns
-    -------
-    tuple
-        Instances.
-
-    Raises
-    ------
-    SceneError
-        If an item has another class, or if there are more than `MOST_LISTED` items.
-    """
+    """Return `value` as a tuple of instances of some classes."""
     if isinstance(value, kinds):
         return (value,)
     items: list[Any] = []
@@ -300,78 +136,21 @@ def instances(key: str, value: Any, kinds: type | tuple[type, ...], rule: str) -
 
 
 def true_or_false(key: str, value: Any) -> bool:
-    """Return `value` if it is true or false; otherwise raise SceneError.
-
-    Parameters
-    ----------
-    key : str
-        Key of the value, for the message.
-    value : object
-        Value.
-
-    Returns
-    -------
-    bool
-        The same value.
-
-    Raises
-    ------
-    SceneError
-        If the value is not a boolean.
-    """
+    """Return `value` if it is true or false; otherwise raise SceneError."""
     if not isinstance(value, bool):
         raise SceneError(key, value, "must be true or false")
     return value
 
 
 def one_of(key: str, value: Any, accepted: Iterable[Any]) -> Any:
-    """Return `value` if it is an accepted word or number; otherwise raise SceneError.
-
-    Parameters
-    ----------
-    key : str
-        Key of the value, for the message.
-    value : object
-        Value.
-    accepted : iterable
-        Accepted values. A value of another type is not accepted even if it is numerically the same.
-
-    Returns
-    -------
-    object
-        The same value.
-
-    Raises
-    ------
-    SceneError
-        If the value is not accepted.
-    """
+    """Return `value` if it is an accepted word or number; otherwise raise SceneError."""
     if not any(isinstance(value, type(item)) and value == item for item in accepted):
         raise SceneError(key, value, f"must be one of {tuple(accepted)}")
     return value
 
 
 def partition(key: str, value: Any) -> int | tuple[int, ...]:
-    """Return the number of boxes per side as an integer, or as a tuple.
-
-    Parameters
-    ----------
-    key : str
-        Key of the value, for the message.
-    value : object
-        Value.
-
-    Returns
-    -------
-    int or tuple of int
-        An integer for all sides, or a tuple with a number for each side. The total number of boxes is at most
-        `MOST_BOXES`.
-
-    Raises
-    ------
-    SceneError
-        If the value is not such a number or list.
-    """
+    """Return the number of boxes per side as an integer, or as a tuple."""
     counts = value if isinstance(value, (tuple, list)) else (value,)
     sides = tuple(count_of(key, n, least=1) for n in counts)
     if math.prod(sides) > MOST_BOXES or len(sides) > 3:

@@ -44,20 +44,7 @@ class Camera:
         return 0.5 * width / (self.half_width * float((point - self.eye) @ self.forward))
 
     def pixels(self, points: np.ndarray, size: tuple[int, int]) -> np.ndarray:
-        """Return the columns and rows of points in a picture.
-
-        Parameters
-        ----------
-        points : ndarray, shape (M, 3), [length]
-            Points in front of the camera.
-        size : tuple of int, [pixel]
-            Width and height of the picture.
-
-        Returns
-        -------
-        ndarray, shape (M, 2), [pixel]
-            Column and row of each point.
-        """
+        """Return the columns and rows of points in a picture."""
         away = points - self.eye
         slopes = np.column_stack([away @ self.right, -(away @ self.up)]) / (away @ self.forward)[:, None]
         return 0.5 * np.array(size) * (1.0 + slopes / np.array([self.half_width, self.half_height]))

@@ -57,17 +57,7 @@ class Canvas:
             self.image[: low[1]] = self.image[high[1] :] = 1.0
 
     def line(self, points: np.ndarray, colour: tuple[float, ...] = INK, width: int = 1) -> None:
-        """Draw a line through points.
-
-        Parameters
-        ----------
-        points : ndarray, shape (N, 2), [length]
-            Corners of the line.
-        colour : tuple of float, shape (3,)
-            Red, green and blue, from 0 to 1.
-        width : int, [pixel]
-            Width, an odd number.
-        """
+        """Draw a line through points."""
         half = width // 2
         for shift in product(range(-half, half + 1), repeat=2):
             corners = self._pixels(points) + np.array(shift)
@@ -144,12 +134,6 @@ class Canvas:
                 self.line(line, shade, width)
 
     def path(self, points: np.ndarray) -> None:
-        """Draw a dark line with a bright border, which is visible on discs of any colour.
-
-        Parameters
-        ----------
-        points : ndarray, shape (N, 2), [length]
-            Corners of the line.
-        """
+        """Draw a dark line with a bright border, which is visible on discs of any colour."""
         self.line(points, PAPER, 5)
         self.line(points, INK, 3)

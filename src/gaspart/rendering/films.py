@@ -137,13 +137,6 @@ def poster(source: str | Path, path: str | Path) -> None:
     """Write the middle picture of an MP4 film as a JPEG file.
 
     A page shows this picture until the film plays.
-
-    Parameters
-    ----------
-    source : str or Path
-        The film.
-    path : str or Path
-        The JPEG file.
     """
     from imageio_ffmpeg import count_frames_and_secs, read_frames
     from PIL import Image

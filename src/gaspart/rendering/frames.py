@@ -161,18 +161,7 @@ def render(
 
 @contextmanager
 def open_source(source: Source) -> Iterator[xr.Dataset | Simulation | State | Scene]:
-    """Yield an open source; a trajectory given by its path is closed afterwards.
-
-    Parameters
-    ----------
-    source : str, Path, Dataset, Simulation, State or Scene
-        The source of a picture.
-
-    Yields
-    ------
-    Dataset, Simulation, State or Scene
-        The open source.
-    """
+    """Yield an open source; a trajectory given by its path is closed afterwards."""
     if isinstance(source, str | Path):
         with open_trajectory(source) as trajectory:
             yield trajectory
@@ -181,26 +170,7 @@ def open_source(source: Source) -> Iterator[xr.Dataset | Simulation | State | Sc
 
 
 def particles_of(source: State | Simulation | Scene | xr.Dataset, frame: int = -1) -> DrawnParticles:
-    """Return the particles of a source to draw.
-
-    Parameters
-    ----------
-    source : State, Simulation, Scene or Dataset
-        A simulation at the present time, a state, a scene at time 0, or an open trajectory. A state has no
-        interior walls and no periodic axes.
-    frame : int, default -1
-        Index of the frame of a trajectory, counted from the end if negative.
-
-    Returns
-    -------
-    DrawnParticles
-        The particles.
-
-    Raises
-    ------
-    SceneError
-        If the frame does not exist.
-    """
+    """Return the particles of a source to draw."""
     if isinstance(source, Simulation):
         return _of_state(source.state, source.scene)
     if isinstance(source, State):

@@ -39,31 +39,7 @@ _PIECES = 24
 
 @dataclass(frozen=True)
 class DrawnSurface:
-    """Look of a face or of a wall in a picture.
-
-    Attributes
-    ----------
-    ends : ndarray, shape (2, 2) or (4, 3), [length]
-        Ends of the line in 2D; corners around the rectangle in 3D.
-    inward : ndarray, shape (d,)
-        Unit vector into the container; 0 for a wall with gas on both sides.
-    colours : ndarray, shape (M, 3)
-        Red, green and blue from 0 to 1, for equal pieces along the surface.
-    text : str
-        Meaning of the surface, for the legend.
-    dashed, hatched : bool
-        True for dashes, and for hatching of the outer side.
-    motion : ndarray, shape (d,), optional
-        Unit vector in the direction of motion.
-    to_and_fro : bool
-        True if the surface moves in both directions.
-    through : tuple of int
-        Arrows across the surface: -1 outwards, 1 inwards.
-    depth : float, [length]
-        Thickness of the shaded region behind the surface.
-    band : float, [length]
-        Distance of a dotted line inside the surface; 0 if there is no dotted line.
-    """
+    """Look of a face or of a wall in a picture."""
 
     ends: np.ndarray
     inward: np.ndarray
@@ -79,17 +55,7 @@ class DrawnSurface:
 
 
 def surfaces_of(scene: Scene, time: float = 0.0, piston: float | None = None) -> tuple[DrawnSurface, ...]:
-    """Return the appearance of all surfaces except hard walls at rest.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    time : float, [time]
-        Time, which determines the positions of vibrating faces.
-    piston : float, [length], optional
-        Coordinate of the piston or of the moving wall.
-    """
+    """Return the appearance of all surfaces except hard walls at rest."""
     lengths = np.array(scene.container.lengths)
     drawn = []
     for name, face in scene.faces.items():

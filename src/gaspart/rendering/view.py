@@ -52,15 +52,7 @@ PAGE = FileKind("a page written by gaspart view or gaspart play", _is_view)
 
 @dataclass(frozen=True)
 class View:
-    """A page that shows the particles of a run, also in a notebook.
-
-    Parameters
-    ----------
-    page : str
-        HTML text of the page.
-    height : int, default 480
-        Height in a notebook in pixels.
-    """
+    """A page that shows the particles of a run, also in a notebook."""
 
     page: str
     height: int = 480
@@ -70,25 +62,7 @@ class View:
         return f"<View: a page of {size:.2g} MB, which shows itself in a notebook; save(path) writes it>"
 
     def save(self, path: str | Path, overwrite: bool = False) -> Path:
-        """Write the page to an .html file.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file.
-        overwrite : bool, default False
-            Replace a page of this kind. Files of other kinds are never replaced.
-
-        Returns
-        -------
-        Path
-            `path`.
-
-        Raises
-        ------
-        SceneError
-            If a file must not be replaced, or the suffix is not .html.
-        """
+        """Write the page to an .html file."""
         path = output_path(path)
         if path.suffix != ".html":
             raise SceneError("path", str(path), "a view must end in .html")

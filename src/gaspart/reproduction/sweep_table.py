@@ -36,25 +36,6 @@ class SweepTable(ByFace):
         """Draw an observable with bars of one standard deviation, and theory as lines.
 
         There is one curve for each value of the other dimensions.
-
-        Parameters
-        ----------
-        observable : str, optional
-            Name of the observable. Default: the first one.
-        along : str, optional
-            Dimension of the axis. Default: the dimension of a curve, else the first key with several values.
-        axis : matplotlib Axes, optional
-            Axes to draw in. Default: a new one.
-
-        Returns
-        -------
-        matplotlib Axes
-            The Axes.
-
-        Raises
-        ------
-        SceneError
-            For names that are not in the table.
         """
         import matplotlib.pyplot as plt
 

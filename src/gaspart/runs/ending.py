@@ -179,20 +179,6 @@ def require_reachable(requirement: Requirement, scene: Scene, replicas: int) -> 
 
     The initial energy differs between replicas, because each replica has its own seed. This scatter limits
     the accuracy of the mean.
-
-    Parameters
-    ----------
-    requirement : Requirement
-        The requested accuracy.
-    scene : Scene
-        The scene.
-    replicas : int
-        Number of replicas.
-
-    Raises
-    ------
-    SceneError
-        If the mean never reaches this accuracy.
     """
     if replicas == 1:
         return
@@ -217,25 +203,6 @@ def default_sample_interval(scene: Scene, engine: Engine, correlations: Correlat
     The interval is the mean time between two collisions of a particle. Without collisions it is the mean time
     in which a particle crosses the container. It is rounded to a multiple of the engine's steps and of the
     samples of correlations.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    engine : Engine
-        The engine.
-    correlations : Correlations, optional
-        Correlations that the run accumulates.
-
-    Returns
-    -------
-    float
-        The interval, in [time].
-
-    Raises
-    ------
-    SceneError
-        If no particle moves.
     """
     from gaspart.accuracy.scales import scales, two_digits
 

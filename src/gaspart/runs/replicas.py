@@ -30,30 +30,7 @@ Send: TypeAlias = Callable[[Any], None]
 def record_together(
     recipes: Sequence[Recipe], path: str | Path, options: WriteOptions, examined: Examined = None
 ) -> Path:
-    """Record the trajectories of all replicas of a run at `path`.
-
-    Parameters
-    ----------
-    recipes : sequence of Recipe
-        Recipes of the replicas.
-    path : str or Path
-        Path of the run.
-    options : WriteOptions
-        Options of writing.
-    examined : callable, optional
-        Function that is called with the list of `AccuracyStatus` after each test.
-
-    Returns
-    -------
-    Path
-        `path`.
-
-    Raises
-    ------
-    SceneError, SimulationError
-        Under the same conditions as in `gaspart.trajectory.run.record`. SimulationError is also raised if a
-        process was killed.
-    """
+    """Record the trajectories of all replicas of a run at `path`."""
     path = output_path(path)
     files = replica_paths(path, len(recipes))
     _carry_out(_record, list(zip(recipes, files, strict=True)), path, options, examined)
@@ -63,31 +40,7 @@ def record_together(
 def resume_together(
     file: Path, recipe: Recipe, options: WriteOptions, examined: Examined, duration: float | None
 ) -> Path:
-    """Finish all replicas of a run, or continue them to a duration.
-
-    Parameters
-    ----------
-    file : Path
-        File of one of the replicas.
-    recipe : Recipe
-        Recipe of this replica.
-    options : WriteOptions
-        Options of writing.
-    examined : callable, optional
-        Function that is called with the list of `AccuracyStatus` after each test.
-    duration : float, [time], optional
-        New length of the run.
-
-    Returns
-    -------
-    Path
-        Path of the run, common to all replicas.
-
-    Raises
-    ------
-    SceneError, SimulationError
-        Under the same conditions as in `gaspart.trajectory.run.resume` and `extend`.
-    """
+    """Finish all replicas of a run, or continue them to a duration."""
     path, replicas = path_of_all(file, recipe), beside(file, recipe)
     if duration is not None:
         _carry_out(

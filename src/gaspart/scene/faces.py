@@ -724,25 +724,7 @@ SCHEMA = {
 
 
 def surface_from_dict(mapping: object, where: str) -> Surface:
-    """Return the face from a mapping {"kind": one of `FACE_KINDS`, setting: value, ...}.
-
-    Parameters
-    ----------
-    mapping : object
-        The mapping.
-    where : str
-        Key of the face in messages.
-
-    Returns
-    -------
-    Surface
-        The face.
-
-    Raises
-    ------
-    SceneError
-        If the mapping describes no face.
-    """
+    """Return the face from a mapping {"kind": one of `FACE_KINDS`, setting: value, ...}."""
     if not isinstance(mapping, dict):
         raise SceneError(where, mapping, "must be a mapping with a kind")
     settings = dict(mapping)
@@ -751,18 +733,7 @@ def surface_from_dict(mapping: object, where: str) -> Surface:
 
 
 def surface_to_dict(surface: Surface) -> dict:
-    """Return the mapping that describes a face, the inverse of `surface_from_dict`.
-
-    Parameters
-    ----------
-    surface : Surface
-        The face.
-
-    Returns
-    -------
-    dict
-        The mapping.
-    """
+    """Return the mapping that describes a face, the inverse of `surface_from_dict`."""
     return {"kind": surface.kind, **asdict(surface)}
 
 
@@ -770,58 +741,19 @@ def key_of(face: Any) -> Any:
     """Return the key of a face for its key or its name as a wall.
 
     Other values are returned unchanged.
-
-    Parameters
-    ----------
-    face : object
-        Name or key of a face, `x low` or `x_low`.
-
-    Returns
-    -------
-    object
-        The key, `x_low`.
     """
     return face.strip().replace(" ", "_") if isinstance(face, str) else face
 
 
 def wall_of(face: Any) -> Any:
-    """Return the name of a face as a wall, `x low`. Other values are returned unchanged.
-
-    Parameters
-    ----------
-    face : object
-        Name of a face, `x low` or `x_low`, or a list of names.
-
-    Returns
-    -------
-    object
-        The name, or the list of names.
-    """
+    """Return the name of a face as a wall, `x low`. Other values are returned unchanged."""
     if isinstance(face, list | tuple):
         return [wall_of(name) for name in face]
     return face.strip().replace("_", " ") if isinstance(face, str) else face
 
 
 def thermal_face(scene: Scene, name: str) -> Thermal:
-    """Return the face with a name; raise SceneError unless it is thermal with a uniform temperature.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    name : str
-        Key of the face.
-
-    Returns
-    -------
-    Thermal
-        The face.
-
-    Raises
-    ------
-    SceneError
-        If the face is not thermal, or its temperature varies.
-    """
+    """Return the face with a name; raise SceneError unless it is thermal with a uniform temperature."""
     face = scene.faces.get(name)
     if not isinstance(face, Thermal) or face.varies_along is not None:
         raise SceneError(f"faces.{name}", face, "must be thermal, at one temperature")

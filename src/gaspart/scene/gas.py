@@ -14,15 +14,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Gas:
-    """Identical, smooth and elastic particles that collide only with each other and with hard faces.
-
-    Attributes
-    ----------
-    dimension : 2 or 3
-    packing_fraction : volume (area) of the particles divided by the volume of the container
-    count, diameter, mass : number of particles, diameter and mass of each particle
-    temperature : k_B T
-    """
+    """Identical, smooth and elastic particles that collide only with each other and with hard faces."""
 
     dimension: int
     packing_fraction: float
@@ -49,16 +41,7 @@ class Gas:
 
 @dataclass(frozen=True)
 class Mixture:
-    """Smooth, elastic particles of any sizes and masses that hit each other and hard faces only.
-
-    Attributes
-    ----------
-    dimension : 2 or 3
-    packing_fraction : volume (area) of the particles divided by the volume of the container
-    counts, diameters, masses : arrays of shape (S,), for S sizes; each particle of a polydisperse species has
-        its own size
-    temperature : k_B T of the initial velocities
-    """
+    """Smooth, elastic particles of any sizes and masses that hit each other and hard faces only."""
 
     dimension: int
     packing_fraction: float

@@ -539,17 +539,6 @@ class Scene(Facts):
 
 
 def require_scene(value: object) -> None:
-    """Raise SceneError for a value that is not a `Scene`, such as a file's path.
-
-    Parameters
-    ----------
-    value : object
-        The value.
-
-    Raises
-    ------
-    SceneError
-        If the value is not a scene.
-    """
+    """Raise SceneError for a value that is not a `Scene`, such as a file's path."""
     if not isinstance(value, Scene):
         raise SceneError("scene", value, "must be a Scene, such as Scene.from_file(path)")

@@ -270,20 +270,7 @@ class Plate:
 
 
 def box_of_walls(lower: tuple[float, ...], upper: tuple[float, ...]) -> tuple[Wall | Plate, ...]:
-    """Return the four walls of a rectangle, or the six walls of a cuboid.
-
-    Parameters
-    ----------
-    lower : tuple of float, shape (d,), [length]
-        Lower corner.
-    upper : tuple of float, shape (d,), [length]
-        Opposite corner.
-
-    Returns
-    -------
-    tuple of Wall or Plate
-        The walls.
-    """
+    """Return the four walls of a rectangle, or the six walls of a cuboid."""
     low = finite_vector("lower", lower)
     high = finite_vector("upper", upper, len(low))
     if len(low) == 2:
@@ -298,34 +285,12 @@ def box_of_walls(lower: tuple[float, ...], upper: tuple[float, ...]) -> tuple[Wa
 
 
 def wall_kind(container: Container) -> type[Wall] | type[Plate]:
-    """Return the class of interior walls for the dimension of a container.
-
-    Parameters
-    ----------
-    container : Container
-        The container.
-
-    Returns
-    -------
-    type
-        `Wall` in two dimensions, `Plate` in three.
-    """
+    """Return the class of interior walls for the dimension of a container."""
     return Wall if container.dimension == 2 else Plate
 
 
 def check_walls(scene: Scene) -> None:
-    """Raise SceneError for an interior wall that does not fit into the scene.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-
-    Raises
-    ------
-    SceneError
-        If a wall does not fit; the message names the key of the wall.
-    """
+    """Raise SceneError for an interior wall that does not fit into the scene."""
     for n, wall in enumerate(scene.walls):
         if not isinstance(wall, wall_kind(scene.container)):
             raise SceneError(f"walls[{n}]", wall, WALL_RULE)

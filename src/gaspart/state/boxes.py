@@ -26,21 +26,7 @@ NOWHERE = -1
 
 @dataclass(frozen=True)
 class Boxes:
-    """Grid of boxes.
-
-    Parameters
-    ----------
-    per_side : ndarray of int, shape (3,)
-        Boxes along each axis.
-    widths : ndarray, shape (3,), [length]
-        Sides of a box.
-    strides : ndarray of int, shape (3,)
-        Strides of the linear index.
-    neighbour : ndarray of int, shape (3, most, 3)
-        Change of the linear index for a step of -1, 0, +1 from a box coordinate; NOWHERE if there is no box.
-    shift : ndarray of int, shape (3, most, 3)
-        Number of container lengths by which this step crosses the periodic boundary.
-    """
+    """Grid of boxes."""
 
     per_side: np.ndarray
     widths: np.ndarray
@@ -54,19 +40,7 @@ class Boxes:
         return int(self.per_side.prod())
 
     def coordinates(self, positions: np.ndarray) -> np.ndarray:
-        """Return the box coordinates of positions.
-
-        Parameters
-        ----------
-        positions : ndarray, shape (N, d), [length]
-            Positions; NaN for a particle that has no position.
-
-        Returns
-        -------
-        ndarray of int, shape (N, 3)
-            Box coordinates. A position outside the container belongs to the outermost box, NaN to the first
-            box.
-        """
+        """Return the box coordinates of positions."""
         boxes, positions = np.zeros((len(positions), 3), dtype=np.int64), np.nan_to_num(positions)
         for k in range(positions.shape[1]):
             along = (positions[:, k] / self.widths[k]).astype(np.int64)
@@ -74,35 +48,13 @@ class Boxes:
         return boxes
 
     def cut(self, axis: int) -> Boxes:
-        """Return a grid whose first and last boxes along an axis are not neighbours.
-
-        Parameters
-        ----------
-        axis : int
-            Index of the axis.
-
-        Returns
-        -------
-        Boxes
-            Copy of the grid with this one difference.
-        """
+        """Return a grid whose first and last boxes along an axis are not neighbours."""
         neighbour, last = self.neighbour.copy(), self.per_side[axis] - 1
         neighbour[axis, 0, 0] = neighbour[axis, last, 2] = NOWHERE
         return replace(self, neighbour=neighbour)
 
     def index_of(self, position: np.ndarray) -> int:
-        """Return the linear index of the box that contains a position.
-
-        Parameters
-        ----------
-        position : ndarray, shape (d,), [length]
-            Position.
-
-        Returns
-        -------
-        int
-            Linear index.
-        """
+        """Return the linear index of the box that contains a position."""
         return int(self.coordinates(position[None])[0] @ self.strides)
 
 
@@ -110,37 +62,12 @@ def narrowest_box(scene: Scene) -> float:
     """Return the smallest allowed side of a box: the largest particle diameter.
 
     With narrower boxes, contacts would be missed.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene of the particles.
-
-    Returns
-    -------
-    float, [length]
-        Smallest side.
     """
     return 2.0 * scene.largest_radius
 
 
 def sides_for(scene: Scene, narrowest: float | None = None, per_particle: float = 1.0) -> tuple[int, ...]:
-    """Return the numbers of boxes per side for a number of boxes per particle.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene of the particles.
-    narrowest : float, optional, [length]
-        Smallest side of a box if larger particles are not put into boxes. Default: the largest diameter.
-    per_particle : float, default 1.0
-        Wanted number of boxes per particle; the result comes close to it.
-
-    Returns
-    -------
-    tuple of int, shape (d,)
-        Boxes along each axis.
-    """
+    """Return the numbers of boxes per side for a number of boxes per particle."""
     lengths = scene.container.lengths
     narrowest = narrowest_box(scene) if narrowest is None else narrowest
     width = max(cube_side(lengths, per_particle * scene.capacity), narrowest)
@@ -148,21 +75,7 @@ def sides_for(scene: Scene, narrowest: float | None = None, per_particle: float 
 
 
 def cube_side(lengths: tuple[float, ...], number: float) -> float:
-    """Return the side of a cube such that about `number` cubes fill a container.
-
-    Parameters
-    ----------
-    lengths : tuple of float, shape (d,), [length]
-        Sides of the container. Along a side shorter than the cube there is one cube, and the number is
-        reached by the other sides alone.
-    number : float
-        Number of cubes. Numbers below 1 count as 1.
-
-    Returns
-    -------
-    float, [length]
-        Side of a cube.
-    """
+    """Return the side of a cube such that about `number` cubes fill a container."""
     sides = lengths
     while True:
         width = (math.prod(sides) / max(1.0, number)) ** (1.0 / len(sides))
@@ -175,30 +88,7 @@ def cube_side(lengths: tuple[float, ...], number: float) -> float:
 def make_boxes(
     scene: Scene, boxes_per_side: int | tuple[int, ...], images: bool, narrowest: float | None = None
 ) -> Boxes:
-    """Return the grid of boxes for a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene of the particles.
-    boxes_per_side : int or tuple of int, shape (d,)
-        Boxes per side: one number for all axes, or one for each axis.
-    images : bool
-        On a periodic axis with fewer than three boxes, the same box is the neighbour on both sides. True: the
-        table has this box twice, with different shifts. False: the table has it once.
-    narrowest : float, optional, [length]
-        Smallest side of a box if some particles are not put into boxes. Default: the largest diameter.
-
-    Returns
-    -------
-    Boxes
-        Grid.
-
-    Raises
-    ------
-    SceneError
-        If a box would be narrower than `narrowest`, or if `boxes_per_side` is invalid.
-    """
+    """Return the grid of boxes for a scene."""
     lengths = scene.container.lengths
     partition("boxes_per_side", boxes_per_side)
     numbers = boxes_per_side
@@ -244,44 +134,14 @@ _BOXES = {2: (0.53, 0.5, 0.8), 3: (1.0, 3.0, 1.5)}
 
 
 def boxes_per_particle(scene: Scene) -> float:
-    """Return the number of boxes per particle for which searches are fastest.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene of the particles.
-
-    Returns
-    -------
-    float
-        Number of boxes. The number is at least 1 if gravity makes the gas denser in one part, or if random
-        kicks cause most searches.
-
-    Notes
-    -----
-    A search tests eight particles at once, so that several particles per box cost little. In a dilute gas of
-    discs, particles would cross many narrow boxes between contacts. Therefore wide boxes are best. The values
-    were measured with 10^4 particles at packing fractions of 0.01 to 0.4.
-    """
+    """Return the number of boxes per particle for which searches are fastest."""
     dilute, by_density, limit = _BOXES[scene.dimension]
     best = min(dilute + by_density * scene.packing_fraction, limit)
     return max(1.0, best) if scene.gravity is not None or scene.thermostat else best
 
 
 def largest_in_boxes(scene: Scene) -> float:
-    """Return the largest radius of particles that are put into boxes.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene of the particles.
-
-    Returns
-    -------
-    float, [length]
-        Radius that minimises the work of a search, with at most `MOST` particles outside the boxes. If this
-        saves less than a quarter of the work, the largest radius of all particles is returned instead.
-    """
+    """Return the largest radius of particles that are put into boxes."""
     radii, counts = sizes(scene)
     if len(radii) < 2 or scene.shear_rate is not None:
         return scene.largest_radius
@@ -292,27 +152,7 @@ def largest_in_boxes(scene: Scene) -> float:
 
 
 def boxes_and_largest(scene: Scene, boxes_per_side: int | tuple[int, ...] | None) -> tuple[Boxes, float]:
-    """Return the partition into boxes and the largest radius of the particles in boxes.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene of the particles.
-    boxes_per_side : int or tuple of int or None
-        Boxes per side. None: as many as suit the radius from `largest_in_boxes`.
-
-    Returns
-    -------
-    boxes : Boxes
-        Partition.
-    largest : float, [length]
-        Largest radius.
-
-    Raises
-    ------
-    SceneError
-        If boxes are narrower than most of the particles.
-    """
+    """Return the partition into boxes and the largest radius of the particles in boxes."""
     if boxes_per_side is None:
         largest = largest_in_boxes(scene)
         per_side = sides_for(scene, 2 * largest, boxes_per_particle(scene))
@@ -327,21 +167,7 @@ def boxes_and_largest(scene: Scene, boxes_per_side: int | tuple[int, ...] | None
 
 
 def sizes(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Return the distinct radii, and the number of particles with each radius.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene of the particles. All particles of a polydisperse species count as particles of its largest
-        radius, because boxes wide enough for this radius are faster than a long list of oversized particles.
-
-    Returns
-    -------
-    radii : ndarray, shape (K,), [length]
-        Distinct radii in ascending order.
-    counts : ndarray of int, shape (K,)
-        Number of particles with each radius.
-    """
+    """Return the distinct radii, and the number of particles with each radius."""
     kinds = [kind for kind in scene.kinds if kind.count]
     largest = np.array([kind.largest_radius for kind in kinds], float)
     different, which = np.unique(largest, return_inverse=True)
@@ -349,21 +175,7 @@ def sizes(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 
 
 def work(scene: Scene, largest: float) -> float:
-    """Return the number of boxes and particles visited per unit of path length of a particle.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene. Its particles are assumed to be uniformly distributed and equally fast.
-    largest : float, [length]
-        Largest radius of particles in the boxes.
-
-    Returns
-    -------
-    float, [1/length]
-        Number of boxes and particles in one search after every contact, and in a third of a search at every
-        face of a box.
-    """
+    """Return the number of boxes and particles visited per unit of path length of a particle."""
     dimension, volume = scene.dimension, scene.container.volume
     radii, counts = sizes(scene)
     listed = radii <= largest
@@ -412,30 +224,7 @@ def _reach_of_deepest(tree: cKDTree, other: cKDTree, reach: float) -> float:
 def deepest_overlap(
     positions: np.ndarray, radii: np.ndarray, lengths: np.ndarray, periodic: tuple[bool, ...]
 ) -> float:
-    """Return the largest relative overlap of two particles; on periodic axes, of their nearest images.
-
-    Parameters
-    ----------
-    positions : ndarray, shape (N, d), [length]
-        Positions, on periodic axes in [0, L].
-    radii : ndarray, shape (N,), [length]
-        Radii.
-    lengths : ndarray, shape (d,), [length]
-        Lengths of the container.
-    periodic : tuple of bool, shape (d,)
-        True for periodic axes.
-
-    Returns
-    -------
-    float, [1]
-        Largest value of 1 - distance / contact distance, or 0 if no particles overlap. A particle wider than
-        a periodic side overlaps its own image.
-
-    Notes
-    -----
-    Particles are sorted into classes of sizes within a factor of two, with a tree for each class. A search
-    for two classes covers only the distance at which their particles can touch.
-    """
+    """Return the largest relative overlap of two particles; on periodic axes, of their nearest images."""
     from scipy.spatial import cKDTree  # few runs need this import
 
     if not len(positions):

@@ -40,21 +40,7 @@ _POSITIONS, _MOTION = 0, 4
 
 @dataclass(frozen=True)
 class Packing:
-    """Result of `compress`: a packing of particles.
-
-    Parameters
-    ----------
-    positions : ndarray, shape (N, d), [length]
-        Positions.
-    scale : float, [1]
-        Ratio of the radii in the packing to the radii of the scene.
-    packing_fraction : float, [1]
-        Packing fraction.
-    pressure : float, [1]
-        Reduced pressure in the last block of collisions.
-    collisions : int
-        Total number of collisions.
-    """
+    """Result of `compress`: a packing of particles."""
 
     positions: np.ndarray
     scale: float
@@ -143,23 +129,6 @@ def compress_positions(scene: Scene, seed: int | tuple[int, ...]) -> np.ndarray:
     """Return positions for a scene from compression at the fastest sufficient rate of `RATES`.
 
     A growth rate is sufficient if the particles reach the packing fraction of the scene before they jam.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene that meets the conditions of `compress`.
-    seed : int or tuple of int
-        Seed of the random start.
-
-    Returns
-    -------
-    ndarray, shape (N, d), [length]
-        Positions.
-
-    Raises
-    ------
-    SceneError
-        If no rate reaches the packing fraction.
     """
     for rate in RATES[:-1]:
         with suppress(SceneError):

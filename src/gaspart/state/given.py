@@ -37,38 +37,7 @@ def state_from_arrays(
     displaced: float | np.ndarray | None = None,
     vibrations: np.ndarray | None = None,
 ) -> State:
-    """Return the state at time 0 of a scene from positions and velocities of its particles.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene.
-    positions : ndarray, shape (N, d), [length]
-        Positions. A position that is beyond a wall or the piston only by rounding in single precision is
-        moved to the wall or piston.
-    velocities : ndarray, shape (N, d), [length/time]
-        Velocities; in a sheared gas they include the flow.
-    spins : ndarray, shape (N,) in 2D or (N, 3) in 3D, optional, [1/time]
-        Spins of rough particles. Default: 0.
-    piston : ndarray, shape (2,), optional, [length] and [length/time]
-        Position of the piston along its axis, and its velocity. Default: at rest at its side of the
-        container.
-    displaced : float, optional, [length]
-        Displacement along x of the images above a sheared gas. Default: 0.
-    vibrations : ndarray, shape (N,), optional, [energy]
-        Vibrational energies, if particles of the scene can vibrate.
-
-    Returns
-    -------
-    State
-        State.
-
-    Raises
-    ------
-    SceneError
-        If a state of the scene requires other values than these; if values are missing or not finite; if
-        particles are outside the container, beyond the piston or in an interior wall.
-    """
+    """Return the state at time 0 of a scene from positions and velocities of its particles."""
     if "sticky" in scene.features:
         rule = "excludes a given initial state, which does not say which particles stick"
         raise FEATURES["sticky"].refuse(scene, rule)
@@ -103,36 +72,7 @@ def state_from_arrays(
 
 
 def state_at_time_zero(scene: Scene, other: State) -> State:
-    """Return the state at time 0 of a scene from the particles of another state.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene.
-    other : State
-        State of the same particles in a container of the same size, whose positions, velocities and spins are
-        used.
-
-    Returns
-    -------
-    State
-        State.
-
-    Raises
-    ------
-    SceneError
-        Under the same conditions as in `state_from_arrays`. Also if the particles or the container of the two
-        scenes differ, if another face is the piston, or if `other` has displaced images and the scene has no
-        sheared face.
-
-    Notes
-    -----
-    The piston keeps its position and velocity, even if its mass or the external pressure differs. If `other`
-    has no piston, the piston is at rest at its side. The images of a sheared gas keep their displacement.
-    Velocities are unchanged if both shear rates are the same. If the shear rates differ, the flow of `other`
-    is subtracted from the velocities, and the flow of the scene is added. Vibrating faces start again at
-    their initial position.
-    """
+    """Return the state at time 0 of a scene from the particles of another state."""
     if not isinstance(other, State):
         raise SceneError("initial", type(other).__name__, "must be a State, as of Simulation.state")
     if other.positions.shape != (scene.count, scene.dimension):
@@ -222,15 +162,7 @@ def _checked_piston(scene: Scene, piston: np.ndarray | None) -> np.ndarray | Non
 
 
 def check_apart(scene: Scene, state: State) -> None:
-    """Raise SceneError if particles overlap by more than rounding in single precision.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene of the state.
-    state : State
-        State.
-    """
+    """Raise SceneError if particles overlap by more than rounding in single precision."""
     if state.count == 0:
         return
     positions, radii = state.positions, state.radii

@@ -23,20 +23,7 @@ from gaspart.state.state import State
 
 
 def wells_of(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Return the depths and widths of the wells at all faces.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene of the faces.
-
-    Returns
-    -------
-    depths : ndarray, shape (2d,), [energy]
-        Depth of the well at each face; 0 for a face without a well.
-    widths : ndarray, shape (2d,), [length]
-        Width of the well at each face; 0 for a face without a well.
-    """
+    """Return the depths and widths of the wells at all faces."""
     faces = (scene.faces.get(name) for name in FACES[: 2 * scene.dimension])
     wells = [(face.depth, face.width) if isinstance(face, Well) else (0.0, 0.0) for face in faces]
     depths, widths = np.array(wells).T
@@ -44,22 +31,7 @@ def wells_of(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 
 
 def places_in_wells(scene: Scene, positions: np.ndarray, radii: np.ndarray) -> np.ndarray:
-    """Return for each particle the wells of faces in which it is.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene of the faces.
-    positions : ndarray, shape (N, d), [length]
-        Positions.
-    radii : ndarray, shape (N,), [length]
-        Radii.
-
-    Returns
-    -------
-    ndarray of int8, shape (N, d)
-        Value for each axis: -1 in the well of the low face, 1 in the well of the high face, otherwise 0.
-    """
+    """Return for each particle the wells of faces in which it is."""
     margins = 0.0 if scene.centres_to_walls else radii[:, None]
     _, widths = wells_of(scene)
     low = positions - margins < widths[::2]
@@ -68,20 +40,7 @@ def places_in_wells(scene: Scene, positions: np.ndarray, radii: np.ndarray) -> n
 
 
 def well_energies(scene: Scene, wells: np.ndarray) -> np.ndarray:
-    """Return the potential energy of each particle in wells.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene of the faces.
-    wells : ndarray of int8, shape (N, d)
-        Wells of the particles, as returned by `places_in_wells`.
-
-    Returns
-    -------
-    ndarray, shape (N,), [energy]
-        Energies.
-    """
+    """Return the potential energy of each particle in wells."""
     depths, _ = wells_of(scene)
     return -(np.where(wells < 0, depths[::2], 0.0) + np.where(wells > 0, depths[1::2], 0.0)).sum(axis=1)
 
@@ -90,25 +49,7 @@ _POSITIONS, _VELOCITIES, _VIBRATIONS = 0, 1, 3  # stream 2 is for velocities dra
 
 
 def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
-    """Return the state of a scene at time 0.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene.
-    seed : int or tuple of int
-        Seed. Positions and velocities use separate random streams that both depend on this seed.
-
-    Returns
-    -------
-    State
-        State.
-
-    Raises
-    ------
-    SceneError
-        If the particles cannot be placed.
-    """
+    """Return the state of a scene at time 0."""
     explicit = len(scene.particles)
     spins = np.zeros((scene.count, 3))
     if explicit:
@@ -140,43 +81,14 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
 
 
 def masses_of(scene: Scene) -> np.ndarray:
-    """Return the masses of all particles, infinite for fixed particles.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene.
-
-    Returns
-    -------
-    ndarray, shape (N,), [mass]
-        Masses.
-    """
+    """Return the masses of all particles, infinite for fixed particles."""
     return np.where(
         per_particle(scene, "fixed").astype(bool), np.inf, per_particle(scene, "mass").astype(float)
     )
 
 
 def assemble_state(scene: Scene, positions: np.ndarray, velocities: np.ndarray, spins: np.ndarray) -> State:
-    """Return the state at time 0 from positions, velocities and spins.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene.
-    positions : ndarray, shape (N, d), [length]
-        Positions.
-    velocities : ndarray, shape (N, d), [length/time]
-        Velocities.
-    spins : ndarray, shape (N,) in 2D or (N, 3) in 3D, [1/time]
-        Spins.
-
-    Returns
-    -------
-    State
-        State. A piston is at its initial position, and moves at its prescribed speed or is at rest. Images of
-        a sheared gas are not displaced.
-    """
+    """Return the state at time 0 from positions, velocities and spins."""
     radii, masses = per_particle(scene, "radius").astype(float), per_particle(scene, "mass").astype(float)
     # moment of inertia divided by m r^2, for uniform density
     shape = 1 / 2 if scene.dimension == 2 else 2 / 5
@@ -300,25 +212,7 @@ def _add_flow(scene: Scene, positions: np.ndarray, velocities: np.ndarray) -> No
 
 
 def in_flow(scene: Scene, masses: np.ndarray, positions: np.ndarray, velocities: np.ndarray) -> np.ndarray:
-    """Add the flow of a sheared gas to velocities, after their mean has been subtracted.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene of the flow.
-    masses : ndarray, shape (N,), [mass]
-        Finite masses.
-    positions : ndarray, shape (N, d), [length]
-        Positions.
-    velocities : ndarray, shape (N, d), [length/time]
-        Velocities without the flow.
-
-    Returns
-    -------
-    ndarray, shape (N, d), [length/time]
-        Velocities. Their mean is subtracted because a mean velocity along the gradient of the flow would make
-        the gas accelerate without limit.
-    """
+    """Add the flow of a sheared gas to velocities, after their mean has been subtracted."""
     peculiar = velocities.copy()
     for k in range(scene.dimension):
         peculiar[:, k] -= math.fsum(masses * velocities[:, k]) / math.fsum(masses)
@@ -379,30 +273,7 @@ def _overlap(one: Species, other: Species) -> bool:
 
 
 def lattice(scene: Scene, rng: np.random.Generator, slab: bool = False) -> np.ndarray:
-    """Return positions on a triangular (2D) or face-centred cubic (3D) lattice.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene. The lattice is stretched to fill its container.
-    rng : numpy.random.Generator
-        Generator of random numbers. If there are more sites than particles, the vacant sites are chosen at
-        random. The species of a mixture are distributed over the sites at random, too.
-    slab : bool, default False
-        If True, all vacant sites are in the upper half of the container along its longest side. This half
-        melts at densities at which a crystal without vacancies would not melt. The result is an initial state
-        for coexistence of crystal and fluid.
-
-    Returns
-    -------
-    ndarray, shape (N, d), [length]
-        Positions.
-
-    Raises
-    ------
-    SceneError
-        If the particles do not fit on the lattice, or if there are too few particles for the slab.
-    """
+    """Return positions on a triangular (2D) or face-centred cubic (3D) lattice."""
     margin = np.array(scene.reach(scene.largest_radius)[0])
     walled = ~np.array(scene.container.periodic)
     lengths = np.array(scene.container.lengths) - 2 * margin * walled

@@ -23,21 +23,7 @@ PATIENCE = 2_000_000
 
 
 def per_particle(scene: Scene, attribute: str) -> np.ndarray:
-    """Return the values of an attribute for all particles.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene of the particles.
-    attribute : str
-        Name of an attribute of `Particle` and `Species`. Except for the radius, all particles of a species
-        have the same value.
-
-    Returns
-    -------
-    ndarray, shape (N,)
-        Values.
-    """
+    """Return the values of an attribute for all particles."""
     alone = [getattr(particle, attribute) for particle in scene.particles]
     if attribute == "radius":
         return np.concatenate([alone, *(kind.radii for kind in scene.species)])
@@ -45,23 +31,7 @@ def per_particle(scene: Scene, attribute: str) -> np.ndarray:
 
 
 def range_of_centres(scene: Scene, kind: Species) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Return the lowest and highest coordinates for centres of a species.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene of the species.
-    kind : Species
-        Species. The distance of all its particles' centres from walls is at least the radius of its largest
-        particle.
-
-    Returns
-    -------
-    lowest : tuple of float, shape (d,), [length]
-        Lowest coordinates.
-    highest : tuple of float, shape (d,), [length]
-        Highest coordinates.
-    """
+    """Return the lowest and highest coordinates for centres of a species."""
     radius = kind.largest_radius
     if kind.region is None:
         return scene.reach(radius)
@@ -70,26 +40,7 @@ def range_of_centres(scene: Scene, kind: Species) -> tuple[tuple[float, ...], tu
 
 
 def empty_arrays(scene: Scene, boxes: Boxes, radii: np.ndarray) -> tuple[Placed, PeriodicBoxes, Block]:
-    """Return the arrays of an empty container for the insertion of particles.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene of the container.
-    boxes : Boxes
-        Partition of the container.
-    radii : ndarray, shape (N,), [length]
-        Radii of the particles, none of which is placed yet.
-
-    Returns
-    -------
-    placed : Placed
-        Particles.
-    grid : PeriodicBoxes
-        Boxes.
-    block : Block
-        Memory for a block of attempts.
-    """
+    """Return the arrays of an empty container for the insertion of particles."""
     from gaspart.kernels.insertion import BLOCK, PLACES, Block, PeriodicBoxes, Placed
 
     near = aligned_zeros((boxes.count, 4, PLACES), float)
@@ -112,31 +63,7 @@ def random_insertion(
     patience: int = PATIENCE,
     given: Mapping[int, np.ndarray] | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Place the species in sequence at random free positions, larger radii first.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene of the species.
-    rng : numpy.random.Generator
-        Generator of the attempts.
-    patience : int, default 2_000_000
-        Number of failed attempts for one particle after which the container is considered full.
-    given : mapping of int to ndarray, shape (n, d), [length], optional
-        Positions of species that are placed before the others, by number of the species.
-
-    Returns
-    -------
-    positions : ndarray, shape (N, d), [length]
-        Positions.
-    failures : ndarray of int, shape (N,)
-        Number of failed attempts before each particle was placed.
-
-    Raises
-    ------
-    SceneError
-        If `patience` attempts failed for one particle: the container is practically full.
-    """
+    """Place the species in sequence at random free positions, larger radii first."""
     from gaspart.kernels.insertion import Task, place, put
 
     dimension, explicit, given = scene.dimension, len(scene.particles), given or {}

@@ -20,20 +20,7 @@ _SLACK = 1e-9  # relative extension of neighbourhoods, so that rounding removes 
 
 
 def wall_rows(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Return interior walls and their images near periodic faces as rows of an array.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene of the walls.
-
-    Returns
-    -------
-    rows : ndarray, shape (M,)
-        Segments or plates.
-    walls : ndarray of int, shape (M,)
-        Index of the wall of each row.
-    """
+    """Return interior walls and their images near periodic faces as rows of an array."""
     from gaspart.kernels.obstacles.distance import PLATE, SEGMENT
 
     lengths, reach = np.array(scene.container.lengths), scene.largest_radius * (1 + _SLACK)
@@ -83,26 +70,7 @@ def _normal(row: np.ndarray) -> np.ndarray:
 
 
 def walls_near(rows: np.ndarray, boxes: Boxes, reach: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the walls within a distance of each box.
-
-    Parameters
-    ----------
-    rows : ndarray, shape (M,)
-        Segments or plates.
-    boxes : Boxes
-        Partition.
-    reach : float, [length]
-        Distance.
-
-    Returns
-    -------
-    first : ndarray of int, shape (boxes + 2,)
-        Index in `listed` of the first entry of each box: near box b are the walls listed[first[b] : first[b +
-        1]].
-    listed : ndarray of int
-        Indices of the rows. The entries of the last box are followed by the indices of all rows, for
-        particles that reach beyond the neighbouring boxes.
-    """
+    """Return the walls within a distance of each box."""
     reach *= 1 + _SLACK
     numbers = rows.view(float).reshape(len(rows), rows.itemsize // 8)
     d = 2 if numbers.shape[1] == 5 else 3

@@ -14,48 +14,12 @@ from gaspart.kernels.physics.logarithm import LN2, LOG_SERIES
 
 
 def stream(seed: int | tuple[int, ...], *purpose: int) -> np.random.Generator:
-    """Return an independent generator of random numbers for one purpose.
-
-    Parameters
-    ----------
-    seed : int or tuple of int
-        Seed.
-    *purpose : int
-        Small numbers that identify the purpose.
-
-    Returns
-    -------
-    numpy.random.Generator
-        Generator.
-
-    Raises
-    ------
-    SceneError
-        If the seed is neither a non-negative integer nor a sequence of non-negative integers.
-    """
+    """Return an independent generator of random numbers for one purpose."""
     return np.random.Generator(np.random.PCG64(_sequence(seed, purpose)))
 
 
 def key_of(seed: int | tuple[int, ...], *purpose: int) -> np.ndarray:
-    """Return the key of the random numbers inside kernels (see `draws`).
-
-    Parameters
-    ----------
-    seed : int or tuple of int
-        Seed.
-    *purpose : int
-        Small numbers that identify the purpose.
-
-    Returns
-    -------
-    ndarray of uint64, shape (2,)
-        Words of 64 bits.
-
-    Raises
-    ------
-    SceneError
-        If the seed is neither a non-negative integer nor a sequence of non-negative integers.
-    """
+    """Return the key of the random numbers inside kernels (see `draws`)."""
     return _sequence(seed, purpose).generate_state(2, np.uint64)
 
 
@@ -69,23 +33,7 @@ def _sequence(seed: int | tuple[int, ...], purpose: tuple[int, ...]) -> np.rando
 
 
 def natural_log(x: np.ndarray) -> np.ndarray:
-    """Compute ln x by basic arithmetic, accurate to 2 units in the last place.
-
-    Parameters
-    ----------
-    x : ndarray, [1]
-        Positive numbers.
-
-    Returns
-    -------
-    ndarray, same shape as `x`, [1]
-        Logarithms.
-
-    Notes
-    -----
-    Only +, -, x and / are used. With x = m 2^e and m in [1/sqrt 2, sqrt 2), ln m = 2 artanh((m - 1)/(m + 1))
-    is summed by its series.
-    """
+    """Compute ln x by basic arithmetic, accurate to 2 units in the last place."""
     mantissa, exponent = np.frexp(np.asarray(x, dtype=float))
     low = mantissa < 0.7071067811865476
     mantissa = np.where(low, 2.0 * mantissa, mantissa)
@@ -116,22 +64,7 @@ def _disc(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray,
 
 
 def directions(rng: np.random.Generator, count: int, dimension: int) -> np.ndarray:
-    """Draw isotropic unit vectors (Marsaglia, Ann. Math. Stat. 43, 645 (1972)).
-
-    Parameters
-    ----------
-    rng : numpy.random.Generator
-        Generator.
-    count : int
-        Number of vectors.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, shape (count, d), [1]
-        Vectors.
-    """
+    """Draw isotropic unit vectors (Marsaglia, Ann. Math. Stat. 43, 645 (1972))."""
     u, v, s = _disc(rng, count)
     if dimension == 2:
         return np.stack([(u * u - v * v) / s, 2.0 * u * v / s], axis=1)
@@ -140,22 +73,7 @@ def directions(rng: np.random.Generator, count: int, dimension: int) -> np.ndarr
 
 
 def normals(rng: np.random.Generator, count: int, dimension: int) -> np.ndarray:
-    """Draw independent standard normal numbers, by Marsaglia's polar method.
-
-    Parameters
-    ----------
-    rng : numpy.random.Generator
-        Generator.
-    count : int
-        Number of rows.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, shape (count, d), [1]
-        Numbers.
-    """
+    """Draw independent standard normal numbers, by Marsaglia's polar method."""
     pairs = (count * dimension + 1) // 2
     u, v, s = _disc(rng, pairs)
     factor = np.sqrt(-2.0 * natural_log(s) / s)

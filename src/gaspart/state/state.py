@@ -393,23 +393,7 @@ class State:
 
 
 def by_number(state: State, values: np.ndarray, capacity: int) -> np.ndarray:
-    """Return values of the particles of a state, ordered by the numbers of the particles.
-
-    Parameters
-    ----------
-    state : State
-        State whose particles have the values.
-    values : ndarray, shape (N, ...)
-        Values of the particles inside.
-    capacity : int
-        Largest number of particles of the run.
-
-    Returns
-    -------
-    ndarray, shape (capacity, ...)
-        Values; NaN for numbers that no particle inside has. If no face is open, `values` is returned
-        unchanged.
-    """
+    """Return values of the particles of a state, ordered by the numbers of the particles."""
     if state.numbers is None:
         return values
     every = np.full((capacity, *values.shape[1:]), np.nan)
@@ -435,20 +419,7 @@ _ROUNDED = 2.0**-46  # mean velocity, in units of the rms speed, that is attribu
 
 
 def drift_of(scene: Scene, state: State) -> np.ndarray:
-    """Return the velocity of the centre of mass of a state without fixed particles.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene of the state. In a sheared gas the velocity is relative to the flow.
-    state : State
-        State.
-
-    Returns
-    -------
-    ndarray, shape (d,), [length/time]
-        Velocity; 0 if it is not larger than rounding errors.
-    """
+    """Return the velocity of the centre of mass of a state without fixed particles."""
     velocities = state.velocities - flow(scene, state.positions)
     shares = (state.masses / state.masses.sum())[:, None] if state.count else np.zeros((0, 1))
     drift = (shares * velocities).sum(axis=0)

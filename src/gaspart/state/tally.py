@@ -190,26 +190,7 @@ class Tally:
 def compressibility_factor(
     virial: np.ndarray | float, count: int, dimension: int, temperature: float, time: np.ndarray | float
 ) -> np.ndarray:
-    """Compute the compressibility factor of a gas without walls from its virial sum.
-
-    Parameters
-    ----------
-    virial : float or ndarray, [mass length^2/time]
-        Sum of abs(dr.dp) over the collisions in a time t.
-    count : int
-        Number N of particles.
-    dimension : {2, 3}
-        Discs or spheres.
-    temperature : float, [energy]
-        Temperature k_B T.
-    time : float or ndarray, [time]
-        Time t.
-
-    Returns
-    -------
-    ndarray, [1]
-        Z = 1 + sum abs(dr.dp) / (d N k_B T t).
-    """
+    """Compute the compressibility factor of a gas without walls from its virial sum."""
     import numpy as np
 
     return np.asarray(1.0 + virial / (dimension * count * temperature * time))

@@ -30,30 +30,7 @@ correlation by 3e-5.
 def collisions(
     dimension: int, nodes: int, restitution: float = 1.0
 ) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
-    """Return quadrature weights and velocities for collisions of two Maxwellian particles.
-
-    Parameters
-    ----------
-    dimension : {2, 3}
-        Discs or spheres.
-    nodes : int
-        Number of nodes for each component of the velocities.
-    restitution : float, default 1.0, [1]
-        Coefficient of normal restitution.
-
-    Returns
-    -------
-    weights : ndarray, shape (Q,), [1]
-        Weights, which include the factor max(g.n, 0).
-    velocities : tuple of ndarray, shape (d, Q), [1]
-        Velocities of both particles before the collision, and of both particles after it.
-
-    Notes
-    -----
-    The normal of all collisions is the last axis. Its direction has no influence, because the integrands are
-    scalars. The quadrature is exact for polynomials whose degree in each velocity component is below 2
-    `nodes`.
-    """
+    """Return quadrature weights and velocities for collisions of two Maxwellian particles."""
     from scipy.special import roots_hermitenorm, roots_laguerre
 
     abscissae, share = roots_hermitenorm(nodes)
@@ -80,25 +57,7 @@ def brackets(
     met: tuple[np.ndarray, tuple[np.ndarray, ...]],
     tagged: bool = False,
 ) -> np.ndarray:
-    """Compute the collision integrals between products of Sonine polynomials and a harmonic tensor.
-
-    Parameters
-    ----------
-    rank : int
-        Rank of the harmonic tensor.
-    orders : range
-        Orders k of the K Sonine polynomials S_k(v^2/2).
-    met : tuple
-        Weights and velocities of `collisions`.
-    tagged : bool, default False
-        True for the distribution of a single tagged particle in a gas; False for the distribution of all
-        particles.
-
-    Returns
-    -------
-    ndarray, shape (K, K), [1]
-        Collision integrals, contracted over the components of the tensors.
-    """
+    """Compute the collision integrals between products of Sonine polynomials and a harmonic tensor."""
     from scipy.special import eval_genlaguerre
 
     weights, velocities = met
@@ -132,33 +91,7 @@ def _contraction(rank: int, v: np.ndarray, w: np.ndarray) -> np.ndarray:
 
 @lru_cache
 def flux_relaxation(quantity: str) -> tuple[np.ndarray, np.ndarray]:
-    """Compute decay rates and weights for the relaxation of a kinetic flux of discs.
-
-    Parameters
-    ----------
-    quantity : {"viscosity", "conductivity"}
-        Transport coefficient. The corresponding flux is the shear stress or the heat flux.
-
-    Returns
-    -------
-    rates : ndarray, shape (K,), [1]
-        Decay rates, per collision of a particle.
-    weights : ndarray, shape (K,), [1]
-        Weights, whose sum is 1.
-
-    Raises
-    ------
-    KeyError
-        If the quantity is unknown.
-
-    Notes
-    -----
-    The correlation of the flux after s collisions of a particle is sum w exp(-rate s). The spectrum of the
-    operator is continuous. The rates and weights are a Gauss quadrature of this spectrum. The relative error
-    of the integral and of the mean time of the correlation is 1e-4. The integrals are the Sonine factors
-    divided by the decay rate in the first Sonine approximation. The heat flux of discs relaxes half as fast
-    as their stress.
-    """
+    """Compute decay rates and weights for the relaxation of a kinetic flux of discs."""
     rank, first = _FLUXES[quantity]
     orders = range(first, first + _ORDERS)
     matrix = brackets(rank, orders, collisions(2, 2 * _ORDERS + 2))
@@ -187,19 +120,7 @@ a particle within a step are neglected; they would be 0.2 % of all collisions.
 
 @dataclass(frozen=True)
 class Homogeneous:
-    """Evolution of a homogeneous gas: values at the start and after S - 1 steps.
-
-    Parameters
-    ----------
-    collisions : ndarray, shape (S,), [1]
-        Mean number of collisions per particle since the start.
-    kurtosis : ndarray, shape (S,), [1]
-        Ratio <v^4>/<v^2>^2.
-    never_hit : ndarray, shape (S,), [1]
-        Fraction of the particles that have not collided since the start.
-    energy : ndarray, shape (S,), [1]
-        Mean square of the speed divided by its initial value.
-    """
+    """Evolution of a homogeneous gas: values at the start and after S - 1 steps."""
 
     collisions: np.ndarray
     kurtosis: np.ndarray
@@ -210,37 +131,7 @@ class Homogeneous:
 def homogeneous_gas(
     count: int, dimension: int, collisions: float, restitution: float = 1.0, seed: int = 0
 ) -> Homogeneous:
-    """Simulate a gas of particles that start with speed 1 and isotropic directions.
-
-    Parameters
-    ----------
-    count : int
-        Number of particles.
-    dimension : {2, 3}
-        Discs or spheres.
-    collisions : float
-        Collisions of a particle at the end.
-    restitution : float, default 1.0, [1]
-        Coefficient of normal restitution.
-    seed : int, default 0
-        Seed of the random numbers.
-
-    Returns
-    -------
-    Homogeneous
-        Collisions, kurtosis, fraction of particles without a collision, and energy after each step.
-
-    Raises
-    ------
-    SceneError
-        If the dimension is neither 2 nor 3.
-
-    Notes
-    -----
-    In each step all particles are paired at random. A pair with the relative velocity g collides along a
-    random normal n with a probability proportional to max(g.n, 0). This is the rate for hard particles in any
-    dimension. Statistical errors decrease as 1 / sqrt(count).
-    """
+    """Simulate a gas of particles that start with speed 1 and isotropic directions."""
     rng, d = np.random.default_rng(seed), checked_dimension(dimension)
     velocity = directions(rng, count, d)
     hit = np.zeros(count, dtype=bool)
@@ -258,25 +149,7 @@ def homogeneous_gas(
 
 
 def relaxing_speeds(count: int, times: np.ndarray, hits: float, seed: int = 0) -> np.ndarray:
-    """Simulate the speeds of a gas of spheres that all have speed 1 at time 0.
-
-    Parameters
-    ----------
-    count : int
-        Number of spheres.
-    times : ndarray, shape (T,), [time]
-        Times in increasing order.
-    hits : float, [1/length]
-        Number density times the collision cross-section, n pi d^2. A particle of speed v would collide with
-        particles at rest at the rate `hits` times v.
-    seed : int, default 0
-        Seed of the random numbers.
-
-    Returns
-    -------
-    ndarray, shape (T, count), [length/time]
-        Speeds of all spheres at these times.
-    """
+    """Simulate the speeds of a gas of spheres that all have speed 1 at time 0."""
     rng = np.random.default_rng(seed)
     velocity = directions(rng, count, 3)
     now, rows = 0.0, []
@@ -294,38 +167,7 @@ def relaxing_speeds(count: int, times: np.ndarray, hits: float, seed: int = 0) -
 def rough_discs(
     count: int, collisions: float, inertia: float, tangential: float, normal: float = 1.0, seed: int = 0
 ) -> np.ndarray:
-    """Simulate the ratio of rotational to translational temperature of cooling rough discs.
-
-    Parameters
-    ----------
-    count : int
-        Number of discs.
-    collisions : float
-        Collisions of a particle at the end.
-    inertia : float, [1]
-        Reduced moment of inertia q = I / (m R^2).
-    tangential : float, [1]
-        Coefficient of tangential restitution.
-    normal : float, default 1.0, [1]
-        Coefficient of normal restitution.
-    seed : int, default 0
-        Seed of the random numbers.
-
-    Returns
-    -------
-    ndarray, shape (S,), [1]
-        T_rot / T_tr after each step.
-
-    Raises
-    ------
-    ValueError
-        If the discs are smooth, or a coefficient is out of range.
-
-    Notes
-    -----
-    Velocities and spins initially have Maxwellian distributions, with the temperature ratio
-    `rough.rough_ratio`. Velocities and spins become correlated during the run.
-    """
+    """Simulate the ratio of rotational to translational temperature of cooling rough discs."""
     rng = np.random.default_rng(seed)
     velocity, spin = rng.standard_normal((count, 2)), rng.standard_normal(count)  # spin: R omega
     spin *= np.sqrt(rough_ratio(inertia, tangential, normal) / inertia)
@@ -339,26 +181,7 @@ def rough_discs(
 def rough_start(
     count: int, collisions: float, inertia: float, seed: int = 0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Simulate perfectly rough discs with initially Maxwellian velocities and zero spins.
-
-    Parameters
-    ----------
-    count : int
-        Number of discs.
-    collisions : float
-        Collisions of a particle at the end.
-    inertia : float, [1]
-        Reduced moment of inertia q = I / (m R^2).
-    seed : int, default 0
-        Seed of the random numbers.
-
-    Returns
-    -------
-    collisions : ndarray, shape (S,), [1]
-        Mean number of collisions per disc up to the end of each step.
-    difference : ndarray, shape (S,), [1]
-        T_tr - T_rot divided by the initial temperature.
-    """
+    """Simulate perfectly rough discs with initially Maxwellian velocities and zero spins."""
     rng = np.random.default_rng(seed)
     velocity, spin = rng.standard_normal((count, 2)), np.zeros(count)
     start = 0.5 * dot(velocity, velocity).mean()
@@ -414,63 +237,19 @@ def _step(velocity: np.ndarray) -> float:
 
 
 def directions(rng: np.random.Generator, count: int, dimension: int) -> np.ndarray:
-    """Draw random unit vectors, shape (count, dimension).
-
-    Parameters
-    ----------
-    rng : numpy.random.Generator
-        Generator of random numbers.
-    count : int
-        Number of vectors.
-    dimension : int
-        Number of components.
-
-    Returns
-    -------
-    ndarray, shape (count, dimension), [1]
-        Vectors.
-    """
+    """Draw random unit vectors, shape (count, dimension)."""
     vectors = rng.standard_normal((count, dimension))
     vectors /= lengths(vectors)[:, None]
     return vectors
 
 
 def lengths(vectors: np.ndarray) -> np.ndarray:
-    """Compute the lengths of vectors.
-
-    Parameters
-    ----------
-    vectors : ndarray, shape (count, dimension)
-        Vectors.
-
-    Returns
-    -------
-    ndarray, shape (count,)
-        Lengths.
-    """
+    """Compute the lengths of vectors."""
     return np.sqrt(dot(vectors, vectors))
 
 
 def dot(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Compute the scalar products of pairs of vectors.
-
-    Parameters
-    ----------
-    first : ndarray, shape (count, dimension)
-        First vectors.
-    second : ndarray, shape (count, dimension)
-        Second vectors.
-
-    Returns
-    -------
-    ndarray, shape (count,)
-        Scalar products.
-
-    Notes
-    -----
-    The products are added column by column. This is several times faster than numpy's sum over such a short
-    axis, and gives the same rounding.
-    """
+    """Compute the scalar products of pairs of vectors."""
     products = first[:, 0] * second[:, 0]
     for axis in range(1, first.shape[1]):
         products += first[:, axis] * second[:, axis]
@@ -495,15 +274,7 @@ def dot(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Tagged:
-    """Paths of N independent spheres at T + 1 evenly spaced times.
-
-    Parameters
-    ----------
-    displacements : ndarray, shape (T + 1, N, 3), [length]
-        Displacements from the start.
-    velocities : ndarray, shape (T + 1, N, 3), [length/time]
-        Velocities.
-    """
+    """Paths of N independent spheres at T + 1 evenly spaced times."""
 
     displacements: np.ndarray
     velocities: np.ndarray
@@ -512,33 +283,7 @@ class Tagged:
 def tagged_paths(
     speeds: Iterable[np.ndarray], interval: float, hits: float, mass: float, count: int, seed: int = 0
 ) -> Tagged:
-    """Simulate the paths of independent spheres from rest.
-
-    Parameters
-    ----------
-    speeds : iterable of ndarray, shape (G,), [length/time]
-        Speeds of gas particles, whose mass is 1, during each interval of time.
-    interval : float, [time]
-        Length of an interval.
-    hits : float, [1/length]
-        Number density n of the gas times the collision cross-section pi a^2, where a is the distance of
-        centres at contact.
-    mass : float
-        Mass of a sphere divided by the mass of a gas particle.
-    count : int
-        Number N of spheres.
-    seed : int, default 0
-        Seed of the random numbers.
-
-    Returns
-    -------
-    Tagged
-        Displacements and velocities at the start and after each interval.
-
-    Notes
-    -----
-    Statistical errors fall as 1 / sqrt(count).
-    """
+    """Simulate the paths of independent spheres from rest."""
     rng = np.random.default_rng(seed)
     velocity, position = np.zeros((count, 3)), np.zeros((count, 3))
     positions, velocities = [position.copy()], [velocity.copy()]

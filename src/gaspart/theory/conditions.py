@@ -30,18 +30,7 @@ _HELD = 0.02
 
 @dataclass(frozen=True)
 class Conditions:
-    """Layers of a steady scene across an axis, from wall to wall.
-
-    Attributes
-    ----------
-    scene : scene
-    share : (S,), fraction of all particles in each layer
-    crowding : (S,), density divided by the density of a homogeneous gas in the accessible volume
-    temperature : (S,), k_B T
-    axis : axis of the layers, None for a homogeneous gas
-    scale : shortest length along the axis over which density or temperature changes by a factor e
-    columns : under gravity, the columns of the real and of the ideal gas; None if theory does not cover them
-    """
+    """Layers of a steady scene across an axis, from wall to wall."""
 
     scene: Scene
     share: np.ndarray

@@ -59,28 +59,7 @@ Garcia & Wagner, Phys. Fluids 12, 2621 (2000)."""
 
 
 def contact_values(number_densities: np.ndarray, radii: np.ndarray, dimension: int) -> np.ndarray:
-    """Compute the contact values of a mixture in the Enskog model.
-
-    Parameters
-    ----------
-    number_densities : ndarray, shape (K,), [length^-d]
-        Number density of each kind of particles.
-    radii : ndarray, shape (K,), [length]
-        Radius of each kind.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, shape (K, K), [1]
-        Contact value of each pair of kinds. Above a packing fraction of 0.7 the free volume is that at 0.7.
-
-    Notes
-    -----
-    Spheres: Boublik, J. Chem. Phys. 53, 471 (1970), and Mansoori et al., J. Chem. Phys. 54, 1523 (1971); for
-    one species this is Carnahan & Starling's value. Discs: Jenkins & Mancini, J. Appl. Mech. 54, 27 (1987);
-    for one species this is Henderson's value.
-    """
+    """Compute the contact values of a mixture in the Enskog model."""
     filled = ball_volume(dimension) * float((number_densities * radii**dimension).sum())
     free = 1.0 - min(filled, _HIGHEST)
     surface = ball_volume(dimension) * float((number_densities * radii ** (dimension - 1)).sum())
@@ -89,48 +68,11 @@ def contact_values(number_densities: np.ndarray, radii: np.ndarray, dimension: i
 
 
 def cell_factor(quantity: str, width: Numbers) -> Values:
-    """Compute a transport coefficient of spheres in cells divided by its value in small cells.
-
-    Parameters
-    ----------
-    quantity : {"viscosity", "conductivity", "diffusion"}
-        Transport coefficient.
-    width : array_like, [1]
-        Width of a cell in mean free paths.
-
-    Returns
-    -------
-    float or ndarray, same shape as `width`, [1]
-        Factor of the coefficient.
-
-    Notes
-    -----
-    1 + a width^2 with a from `CELL_COEFFICIENTS`, and <dx^2> = width^2 / 6 for two positions in a cell (exact
-    for any width).
-    """
+    """Compute a transport coefficient of spheres in cells divided by its value in small cells."""
     return 1.0 + CELL_COEFFICIENTS[quantity] * np.square(width)
 
 
 def step_factor(quantity: str, step: Numbers) -> Values:
-    """Compute a transport coefficient of spheres with time steps divided by its value with short steps.
-
-    Parameters
-    ----------
-    quantity : {"viscosity", "conductivity", "diffusion"}
-        Transport coefficient.
-    step : array_like, [1]
-        Time step in mean free paths divided by sqrt(2 k_B T / m).
-
-    Returns
-    -------
-    float or ndarray, same shape as `step`, [1]
-        Factor of the coefficient.
-
-    Notes
-    -----
-    (x/2) coth(x/2) = 1 + x^2/12 - ..., where x is the step divided by the relaxation time of the flux. The
-    sum of the flux correlation over whole steps replaces the integral. The first order in the literature is
-    x^2/12, `STEP_COEFFICIENTS`.
-    """
+    """Compute a transport coefficient of spheres with time steps divided by its value with short steps."""
     half = np.sqrt(3.0 * STEP_COEFFICIENTS[quantity]) * np.maximum(step, 1e-6)  # limit of 0 / 0
     return half / np.tanh(half)

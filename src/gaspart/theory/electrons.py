@@ -27,32 +27,7 @@ different electrons within a step have no order.
 
 
 class MetalSlab:
-    """Electrons between a hot and a cold wall.
-
-    Parameters
-    ----------
-    hot : float
-        Temperature of the wall at 0; the other wall has the temperature 1.
-    gap : float
-        Distance of the walls in mean free paths.
-    count : int
-        Number N of electrons.
-    seed : int, default 0
-        Seed of the random numbers.
-
-    Attributes
-    ----------
-    place : ndarray, shape (N,)
-        Positions, in mean free paths.
-    velocity : ndarray, shape (N, 2)
-        Velocities, in units of sqrt(cold).
-    modes : ndarray, shape (C, M)
-        Energies of the modes in each of C cells of the gap.
-
-    Notes
-    -----
-    Initially all modes have the mean temperature.
-    """
+    """Electrons between a hot and a cold wall."""
 
     def __init__(self, hot: float, gap: float, count: int, seed: int = 0) -> None:
         self.hot, self.gap, self.rng = hot, gap, np.random.default_rng(seed)
@@ -62,20 +37,7 @@ class MetalSlab:
         self.modes = self.rng.exponential(mean, (_CELLS, round(_PER_CELL * count / _CELLS)))
 
     def profile(self, duration: float, bins: int) -> np.ndarray:
-        """Advance the electrons, and sum their energies and numbers in bins over time.
-
-        Parameters
-        ----------
-        duration : float
-            Time, in mean free paths divided by sqrt(cold).
-        bins : int
-            Number of bins of the gap.
-
-        Returns
-        -------
-        ndarray, shape (2, bins)
-            Sums over time and electrons in each bin: of v^2 / 2, and of the number of electrons.
-        """
+        """Advance the electrons, and sum their energies and numbers in bins over time."""
         sums = np.zeros((2, bins))
         for _ in range(round(duration / _STEP)):
             self._advance()

@@ -52,63 +52,12 @@ def _kinetic(
 
 
 def kinetic_viscosity(packing_fraction: Numbers, dimension: int, contact: Numbers | None = None) -> Values:
-    """Compute the contribution of the kinetic stress to `enskog_viscosity`.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    contact : array_like, [1], optional
-        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
-        points. Default: `contact_value`.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Kinetic part of the viscosity, in units of diameter = mass = k_B T = 1.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The result is the first term of `enskog_viscosity`. The kinetic stress relaxes within a few collisions.
-    """
+    """Compute the contribution of the kinetic stress to `enskog_viscosity`."""
     return _kinetic(_DILUTE_VISCOSITY[dimension], 2.0, packing_fraction, dimension, contact)
 
 
 def kinetic_conductivity(packing_fraction: Numbers, dimension: int, contact: Numbers | None = None) -> Values:
-    """Compute the contribution of the kinetic heat flux to `enskog_conductivity`.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    contact : array_like, [1], optional
-        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
-        points. Default: `contact_value`.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Kinetic part of the conductivity, in units of diameter = mass = k_B T = 1.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The result is the first term of `enskog_conductivity`. The kinetic heat flux relaxes within a few
-    collisions.
-    """
+    """Compute the contribution of the kinetic heat flux to `enskog_conductivity`."""
     return _kinetic(_DILUTE_CONDUCTIVITY[dimension], 3.0, packing_fraction, dimension, contact)
 
 
@@ -209,31 +158,7 @@ def collision_rate_finite_size_factor(packing_fraction: Numbers, dimension: int,
 
 
 def approach_factor(dimension: int, count: int) -> float:
-    """Compute the mean speed of approach among N particles divided by its Maxwellian value.
-
-    Parameters
-    ----------
-    dimension : int
-        Dimension d.
-    count : int
-        Number N of particles, with a fixed energy E and no total momentum.
-
-    Returns
-    -------
-    float, [1]
-        Mean of abs(v_12 . n), divided by its value for Maxwell's distribution at the temperature 2 E / (d N).
-
-    Notes
-    -----
-    The ratio is sqrt(d N / 2) Gamma(D/2) / Gamma((D+1)/2) with D = d (N-1). It is exact, because the
-    velocities are uniformly distributed on a sphere in D dimensions.
-
-    Examples
-    --------
-    >>> from gaspart.theory.enskog import approach_factor
-    >>> round(approach_factor(dimension=3, count=10), 5)
-    1.0639
-    """
+    """Compute the mean speed of approach among N particles divided by its Maxwellian value."""
     return math.sqrt(count / (count - 1.0)) * mean_speed_factor(dimension * (count - 1))
 
 

@@ -215,36 +215,7 @@ def _derivatives(
 
 
 def cluster_integrals(order: int, dimension: int, samples: int, seed: int = 0) -> np.ndarray:
-    """Compute the cluster integrals of bulk, walls, edges and corners by Monte Carlo.
-
-    Parameters
-    ----------
-    order : int
-        Number n of centres.
-    dimension : {2, 3}
-        Discs or spheres.
-    samples : int
-        Number of random configurations.
-    seed : int, default 0
-        Seed of the random numbers.
-
-    Returns
-    -------
-    ndarray, shape (d + 1,), [1]
-        Integrals of U_n / n! times 1, e_1, e_1 e_2 (and in 3D e_1 e_2 e_3), for the diameter 1.
-
-    Raises
-    ------
-    SceneError
-        If the dimension is neither 2 nor 3.
-
-    Notes
-    -----
-    The first integral is known: it is the coefficient of z^n in P / k_B T. A random tree on n centres is
-    drawn uniformly, and neighbours in the tree are placed within a diameter of each other. A configuration
-    whose overlaps contain T of the n^(n-2) trees is T times as likely as a configuration with a single tree,
-    so it contributes U_n / T.
-    """
+    """Compute the cluster integrals of bulk, walls, edges and corners by Monte Carlo."""
     d, rng = checked_dimension(dimension), np.random.default_rng(seed)
     ursell, trees = _graphs(order)
     positions = np.zeros((samples, order, d))

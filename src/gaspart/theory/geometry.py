@@ -44,18 +44,7 @@ _RANGES = {
 
 
 def check_ranges(function: Callable[P, R]) -> Callable[P, R]:
-    """Decorate a formula so that it raises SceneError for an argument outside of its range.
-
-    Parameters
-    ----------
-    function : callable
-        Formula. The ranges of its arguments are found by name in `_RANGES`; other names have no range.
-
-    Returns
-    -------
-    callable
-        Formula with validation of its arguments. SceneError is a ValueError.
-    """
+    """Decorate a formula so that it raises SceneError for an argument outside of its range."""
     names = tuple(inspect.signature(function).parameters)
 
     @wraps(function)
@@ -69,29 +58,7 @@ def check_ranges(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def checked_range(name: str, value: Any, least: float, most: float, rule: str) -> np.ndarray:
-    """Return `value` as a float64 array, if it is finite and within the range.
-
-    Parameters
-    ----------
-    name : str
-        Name of the argument.
-    value : array_like
-        Number or numbers.
-    least, most : float
-        Ends of the allowed range, inclusive.
-    rule : str
-        Rule in words, for the message.
-
-    Returns
-    -------
-    ndarray, same shape as `value`
-        Numbers.
-
-    Raises
-    ------
-    SceneError
-        If a number is not finite or out of range.
-    """
+    """Return `value` as a float64 array, if it is finite and within the range."""
     values = np.asarray(value, dtype=float)
     wrong = ~((values >= least) & (values <= most) & np.isfinite(values))
     if wrong.any():
@@ -100,48 +67,14 @@ def checked_range(name: str, value: Any, least: float, most: float, rule: str) -
 
 
 def checked_dimension(dimension: int) -> int:
-    """Return `dimension`, if it is 2 or 3.
-
-    Parameters
-    ----------
-    dimension : int
-        Number of dimensions.
-
-    Returns
-    -------
-    int
-        The same number.
-
-    Raises
-    ------
-    SceneError
-        If it is another number.
-    """
+    """Return `dimension`, if it is 2 or 3."""
     if dimension not in (2, 3):
         raise SceneError("dimension", dimension, "must be 2 or 3")
     return dimension
 
 
 def checked_packing_fraction(packing_fraction: Numbers, largest: float) -> np.ndarray:
-    """Return `packing_fraction` as a float64 array, if it is in the range of a formula.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction.
-    largest : float, [1]
-        Upper end of the range, which begins at 0.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Packing fraction.
-
-    Raises
-    ------
-    SceneError
-        If a number is out of range or NaN.
-    """
+    """Return `packing_fraction` as a float64 array, if it is in the range of a formula."""
     rule = f"this formula holds from 0 to {largest:g}"
     return checked_range("packing_fraction", packing_fraction, 0.0, largest, rule)
 

@@ -218,33 +218,7 @@ def interpolated_flux(length: float, density: float, hot: float, cold: float, di
 
 @check_ranges
 def steady_part(time: Numbers, length: float, diffusivity: float) -> Values:
-    """Compute the temperature difference between the halves of a slab divided by its steady value.
-
-    Parameters
-    ----------
-    time : array_like, [time]
-        Time since the walls have had different temperatures.
-    length : float, [length]
-        Width of the slab.
-    diffusivity : float, [length^2/time]
-        Thermal diffusivity at constant pressure.
-
-    Returns
-    -------
-    ndarray, same shape as `time`, [1]
-        Fraction of the steady difference.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    1 - (8 / pi^2) sum exp(-(2 pi k)^2 diffusivity time / length^2) / k^2 over k = 1, 3, 5, ... The slab
-    initially has a uniform temperature. The difference of the initial temperature from the mean of the walls
-    affects both halves equally. This is the exact solution of the heat equation with constant coefficients.
-    """
+    """Compute the temperature difference between the halves of a slab divided by its steady value."""
     odd = np.arange(1.0, 200.0, 2.0)
     decay = (2.0 * np.pi * odd) ** 2 * diffusivity / length**2
     modes = np.exp(-np.multiply.outer(np.asarray(time, dtype=float), decay)) / odd**2
@@ -253,19 +227,7 @@ def steady_part(time: Numbers, length: float, diffusivity: float) -> Values:
 
 @dataclass(frozen=True)
 class Slab:
-    """Steady gas between two walls.
-
-    Parameters
-    ----------
-    position : ndarray, shape (P,), [length]
-        Distances from the hot wall.
-    temperature : ndarray, shape (P,), [energy]
-        Temperature at each position.
-    density : ndarray, shape (P,), [1/length^3]
-        Number density at each position.
-    flux : float, [energy/(length^2 time)]
-        Heat flux.
-    """
+    """Steady gas between two walls."""
 
     position: np.ndarray
     temperature: np.ndarray

@@ -36,24 +36,7 @@ Sizes: TypeAlias = Sequence[float] | np.ndarray
 
 
 def contact_coefficients(theory: str, eta: Numbers, dimension: int, pure: Numbers | None) -> tuple[Any, ...]:
-    """Compute the coefficients of the powers of z in the contact values of a theory.
-
-    Parameters
-    ----------
-    theory : {"santos", "linear", "boublik"}
-        Theory of `mixture_contact_values`.
-    eta : array_like, [1]
-        Packing fraction.
-    dimension : {2, 3}
-        Discs or spheres.
-    pure : array_like or None, [1]
-        Contact value of equal particles at `eta`. Default (None): `contact_value`.
-
-    Returns
-    -------
-    tuple of float or ndarray, [1]
-        Coefficients of z^0, z^1, and z^2 if the theory has it.
-    """
+    """Compute the coefficients of the powers of z in the contact values of a theory."""
     point = 1.0 / (1.0 - eta)
     if theory == "boublik":
         return point, 1.5 * eta * point**2, 0.5 * eta**2 * point**3
@@ -68,35 +51,7 @@ def contact_coefficients(theory: str, eta: Numbers, dimension: int, pure: Number
 def checked_mixture(
     theory: str, packing_fraction: float, dimension: int, diameters: Sizes, fractions: Sizes | None
 ) -> tuple[float, np.ndarray, np.ndarray]:
-    """Return the arguments of a mixture as floats and arrays, if they are in range.
-
-    Parameters
-    ----------
-    theory : {"santos", "linear", "boublik"}
-        Theory of the mixture, which must exist in this dimension.
-    packing_fraction : float, [1]
-        Packing fraction, in the range of the reference equation of the pure fluid.
-    dimension : {2, 3}
-        Discs or spheres.
-    diameters : array_like, shape (S,), [length]
-        Positive diameters.
-    fractions : array_like, shape (S,), or None, [1]
-        Number fractions, not negative. None: equal.
-
-    Returns
-    -------
-    packing_fraction : float, [1]
-        Packing fraction.
-    diameters : ndarray, shape (S,), [length]
-        Diameters.
-    fractions : ndarray, shape (S,), [1]
-        Normalised number fractions.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-    """
+    """Return the arguments of a mixture as floats and arrays, if they are in range."""
     highest = HIGHEST_PACKING_FRACTION[checked_dimension(dimension)]
     if dimension not in MIXTURE_THEORIES.get(theory, ()):
         names = [name for name, where in MIXTURE_THEORIES.items() if dimension in where]
@@ -196,20 +151,7 @@ def mixture_compressibility_factor(
 
 
 def virial_sum(coefficients: Sequence[float], moments: Sequence[float]) -> float:
-    """Compute the mean of sigma_ij^d g_ij over pairs, for a polynomial g_ij in z_ij.
-
-    Parameters
-    ----------
-    coefficients : sequence of float, [1]
-        Coefficients of the powers of z_ij in g_ij.
-    moments : sequence of float, [length^n]
-        Moments <sigma^n> of the diameters, n from 0 to d.
-
-    Returns
-    -------
-    float, [length^d]
-        Mean over all pairs of particles.
-    """
+    """Compute the mean of sigma_ij^d g_ij over pairs, for a polynomial g_ij in z_ij."""
     dimension = len(moments) - 1
     ratio, total = moments[dimension - 1] / moments[dimension], 0.0
     for power, coefficient in enumerate(coefficients):

@@ -81,22 +81,7 @@ def sound_attenuation(packing_fraction: float, dimension: int) -> float:
 
 
 def heat_capacities(packing_fraction: float, dimension: int) -> tuple[float, float]:
-    """Compute the heat capacities per particle at constant volume and at constant pressure.
-
-    Parameters
-    ----------
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    constant_volume : float, [1]
-        c_v = d/2 (k_B = 1).
-    constant_pressure : float, [1]
-        c_p, with c_p - c_v = Z^2 / (d rho Z / d rho) (exact).
-    """
+    """Compute the heat capacities per particle at constant volume and at constant pressure."""
     z = float(compressibility_factor(packing_fraction, dimension))
     slope = float(speed_of_sound(packing_fraction, dimension)) ** 2 - 2.0 * z**2 / dimension  # (rho Z)'
     return 0.5 * dimension, 0.5 * dimension + z**2 / slope
@@ -209,22 +194,7 @@ def _sum(time: Numbers, eta: float, dimension: int, count: int, integrated: bool
 
 
 def wave_vectors(dimension: int, most: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the squares of nonzero integer vectors, and the number of vectors for each square.
-
-    Parameters
-    ----------
-    dimension : {2, 3}
-        Discs or spheres.
-    most : int
-        Largest absolute value of a component.
-
-    Returns
-    -------
-    squares : ndarray of int, shape (n,)
-        Squares in ascending order.
-    numbers : ndarray of int, shape (n,)
-        Number of vectors with each square.
-    """
+    """Return the squares of nonzero integer vectors, and the number of vectors for each square."""
     axis = np.arange(-most, most + 1) ** 2
     squares, numbers = np.unique(sum(np.meshgrid(*[axis] * dimension)), return_counts=True)
     return squares[1:], numbers[1:]
@@ -237,31 +207,7 @@ def sum_of_modes(
     inverse: float,
     integrated: bool,
 ) -> Values:
-    """Compute the sum of decaying modes over the wave vectors of a periodic square or cube.
-
-    Parameters
-    ----------
-    time : array_like, [time]
-        Positive times t.
-    modes : sequence of (float, float, float)
-        Weight w, diffusivity D and speed c of each mode: w exp(-D k^2 t) cos(c k t).
-    dimension : {2, 3}
-        Discs or spheres.
-    inverse : float, [1/length]
-        1 divided by the side of the container.
-    integrated : bool
-        Return the integral over time, except for a constant.
-
-    Returns
-    -------
-    float or ndarray, same shape as `time`
-        Sum over the modes and all nonzero wave vectors k.
-
-    Raises
-    ------
-    ValueError
-        If a time is not positive.
-    """
+    """Compute the sum of decaying modes over the wave vectors of a periodic square or cube."""
     times = np.atleast_1d(np.asarray(time, dtype=float))
     if np.any(times <= 0.0):
         raise ValueError("time: must be positive")
@@ -281,40 +227,7 @@ def sum_of_modes(
 def diffusion_by_modes(
     side: float, count: int, dimension: int, cells: int, path: float, spreading: float
 ) -> float:
-    """Estimate the contribution of the fluctuating flow to the self-diffusion of a kinetic equation.
-
-    Parameters
-    ----------
-    side : float, [length]
-        Side of the periodic cube or square.
-    count : int
-        Number N of particles.
-    dimension : {2, 3}
-        Discs or spheres.
-    cells : int
-        Number of cells along each side.
-    path : float, [length]
-        Mean free path.
-    spreading : float, [length^2/time]
-        Kinematic viscosity plus diffusion coefficient, nu + D.
-
-    Returns
-    -------
-    float, [time]
-        Contribution to D, divided by k_B T / m.
-
-    Notes
-    -----
-    (1 / d N) sum over k of (d - 1) / [(nu + D) k^2]. This is the integral of the shear modes in `modes`,
-    which transport particles [1]_. The sum includes the wave vectors k that the cells resolve, up to half of
-    `cells` along each side, and only waves longer than 2 pi mean free paths. With a single cell no mode
-    contributes, because collision partners are drawn at any distance. This is a hydrodynamic estimate with a
-    relative uncertainty of a half.
-
-    References
-    ----------
-    .. [1] A. Donev, J. B. Bell, A. de la Fuente and A. L. Garcia, Phys. Rev. Lett. 106, 204501 (2011).
-    """
+    """Estimate the contribution of the fluctuating flow to the self-diffusion of a kinetic equation."""
     squares, numbers = wave_vectors(dimension, int(min(0.5 * cells, 0.5 * side / (math.pi * path))))
     waves = (2.0 * math.pi / side) ** 2 * squares
     return float((dimension - 1.0) / (dimension * count * spreading) * (numbers / waves).sum())
@@ -347,13 +260,6 @@ class Modes:
 
     Correlations of the f hydrodynamic variables are sums over the modes n of amplitude[n, a] amplitude[n, b]
     exp(decay t). For long waves, the modes of the relaxing fluxes have small amplitudes.
-
-    Parameters
-    ----------
-    decay : ndarray of complex, shape (n, M), [1/time]
-        Decay rate of each mode, which changes as exp(decay t).
-    amplitude : ndarray of complex, shape (n, f, M), [1]
-        Amplitude of each mode in the hydrodynamic variables.
     """
 
     decay: np.ndarray
@@ -362,19 +268,7 @@ class Modes:
 
 @dataclass(frozen=True)
 class Relaxation:
-    """Relaxation of the kinetic parts of a flux.
-
-    Parameters
-    ----------
-    rates : ndarray, shape (K,), [1/time]
-        Rates of the parts.
-    weights : ndarray, shape (K,), [1]
-        Weights of the parts; their sum is 1.
-    slow : float
-        Contribution of the parts to the transport coefficient.
-    total : float
-        Complete transport coefficient.
-    """
+    """Relaxation of the kinetic parts of a flux."""
 
     rates: np.ndarray
     weights: np.ndarray
@@ -383,20 +277,7 @@ class Relaxation:
 
     @classmethod
     def of(cls, packing_fraction: float, quantity: str) -> Relaxation:
-        """Return the relaxation of a flux of discs, from Enskog theory.
-
-        Parameters
-        ----------
-        packing_fraction : float, [1]
-            Packing fraction eta.
-        quantity : {"viscosity", "conductivity"}
-            Transport coefficient of the flux.
-
-        Returns
-        -------
-        Relaxation
-            Relaxation of its parts.
-        """
+        """Return the relaxation of a flux of discs, from Enskog theory."""
         kinetic, total = {
             "viscosity": (kinetic_viscosity, enskog_viscosity),
             "conductivity": (kinetic_conductivity, enskog_conductivity),
@@ -418,72 +299,22 @@ class Relaxation:
         return self.slow * integrals / integrals.sum()
 
     def integral(self, time: np.ndarray) -> np.ndarray:
-        """Return the integral of the correlation of the kinetic part up to each time.
-
-        Parameters
-        ----------
-        time : ndarray, shape (T,), [time]
-            Times.
-
-        Returns
-        -------
-        ndarray, shape (T,)
-            Integrals, in the unit of the coefficient.
-        """
+        """Return the integral of the correlation of the kinetic part up to each time."""
         return self.parts @ -np.expm1(-np.multiply.outer(self.rates, time))
 
 
 def transverse_modes(packing_fraction: float, wave_numbers: np.ndarray) -> Modes:
-    """Compute the shear modes, in the velocity perpendicular to k.
-
-    Parameters
-    ----------
-    packing_fraction : float, [1]
-        Packing fraction eta.
-    wave_numbers : ndarray, shape (M,), [1/length]
-        Wave numbers k.
-
-    Returns
-    -------
-    Modes
-        Modes; the variable is the velocity perpendicular to k.
-    """
+    """Compute the shear modes, in the velocity perpendicular to k."""
     return _modes(transverse_matrix(packing_fraction, wave_numbers), 1)
 
 
 def longitudinal_modes(packing_fraction: float, wave_numbers: np.ndarray) -> Modes:
-    """Compute the sound and heat modes, in density, temperature and the velocity along k.
-
-    Parameters
-    ----------
-    packing_fraction : float, [1]
-        Packing fraction eta.
-    wave_numbers : ndarray, shape (M,), [1/length]
-        Wave numbers k.
-
-    Returns
-    -------
-    Modes
-        Modes; the variables are density, temperature and the velocity along k.
-    """
+    """Compute the sound and heat modes, in density, temperature and the velocity along k."""
     return _modes(longitudinal_matrix(packing_fraction, wave_numbers), 3)
 
 
 def transverse_matrix(packing_fraction: float, wave_numbers: np.ndarray) -> np.ndarray:
-    """Compute the matrix for the velocity perpendicular to k and the parts of the stress.
-
-    Parameters
-    ----------
-    packing_fraction : float, [1]
-        Packing fraction eta.
-    wave_numbers : ndarray, shape (M,), [1/length]
-        Wave numbers k.
-
-    Returns
-    -------
-    ndarray of complex, shape (M, n, n), [1/time]
-        Time derivatives of the variables as a linear function of the variables.
-    """
+    """Compute the matrix for the velocity perpendicular to k and the parts of the stress."""
     density, stress = float(number_density(packing_fraction, 2)), Relaxation.of(packing_fraction, "viscosity")
     matrix = _matrix(wave_numbers, 1, [(0, stress, density)])
     matrix[:, 0, 0] = -(wave_numbers**2) * (stress.total - stress.slow) / density
@@ -491,21 +322,7 @@ def transverse_matrix(packing_fraction: float, wave_numbers: np.ndarray) -> np.n
 
 
 def longitudinal_matrix(packing_fraction: float, wave_numbers: np.ndarray) -> np.ndarray:
-    """Compute the matrix for density, temperature, velocity along k, heat flux and stress.
-
-    Parameters
-    ----------
-    packing_fraction : float, [1]
-        Packing fraction eta.
-    wave_numbers : ndarray, shape (M,), [1/length]
-        Wave numbers k.
-
-    Returns
-    -------
-    ndarray of complex, shape (M, n, n), [1/time]
-        Time derivatives of the variables as a linear function of the variables. Heat flux and stress each
-        consist of several parts.
-    """
+    """Compute the matrix for density, temperature, velocity along k, heat flux and stress."""
     eta = packing_fraction
     density, z = float(number_density(eta, 2)), float(compressibility_factor(eta, 2))
     capacity, speed = heat_capacities(eta, 2)[0], float(speed_of_sound(eta, 2))

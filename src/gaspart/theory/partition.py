@@ -47,41 +47,7 @@ def _moments(per_side: int, side: float, radius: float) -> np.ndarray:
 def expected_pair_tests(
     count: float, per_side: int, dimension: int, side: float, radius: float
 ) -> tuple[float, float]:
-    """Compute the expected number of pair tests in a search, and its standard deviation.
-
-    Parameters
-    ----------
-    count : float
-        Number N of particles.
-    per_side : int
-        Number n of boxes along each side.
-    dimension : {2, 3}
-        Discs or spheres.
-    side : float, [length]
-        Side L of the container.
-    radius : float, [length]
-        Radius r of a particle.
-
-    Returns
-    -------
-    mean : float
-        Mean over random positions of the particles.
-    deviation : float
-        Standard deviation over random positions.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-    ValueError
-        If there is no box or the particle does not fit.
-
-    Notes
-    -----
-    The mean is N(N-1)/2 times the probability that two particles are neighbours; for one box it is exactly
-    N(N-1)/2. The variance is computed as for a sum over pairs of independent particles (Hoeffding 1948; exact
-    for points).
-    """
+    """Compute the expected number of pair tests in a search, and its standard deviation."""
     _, share, square = _moments(per_side, side, radius) ** checked_dimension(dimension)
     excluded = ball_volume(dimension, 2.0 * radius) / (side - 2.0 * radius) ** dimension
     pairs = 0.5 * count * (count - 1.0)
@@ -94,70 +60,20 @@ def expected_pair_tests(
 def neighbour_share(
     per_side: Sequence[int] | np.ndarray, dimension: int, side: float, radius: float
 ) -> np.ndarray:
-    """Compute the probability that two particles are in the same box or in neighbouring boxes.
-
-    Parameters
-    ----------
-    per_side : sequence of int, shape (n,)
-        Numbers of boxes along each side.
-    dimension : {2, 3}
-        Discs or spheres.
-    side : float, [length]
-        Side of the container.
-    radius : float, [length]
-        Radius of a particle.
-
-    Returns
-    -------
-    ndarray, shape (n,), [1]
-        Probability for each partition.
-    """
+    """Compute the probability that two particles are in the same box or in neighbouring boxes."""
     return np.array([_moments(int(n), side, radius)[1] for n in per_side]) ** checked_dimension(dimension)
 
 
 @check_ranges
 def expected_box_visits(per_side: int, dimension: int, side: float, radius: float) -> float:
-    """Compute the mean number of boxes that a particle searches.
-
-    Parameters
-    ----------
-    per_side : int
-        Number of boxes along each side.
-    dimension : {2, 3}
-        Discs or spheres.
-    side : float, [length]
-        Side of the container.
-    radius : float, [length]
-        Radius of a particle.
-
-    Returns
-    -------
-    float
-        Mean number of boxes: its own, and half of the others around it.
-    """
+    """Compute the mean number of boxes that a particle searches."""
     boxes, _, _ = _moments(per_side, side, radius) ** checked_dimension(dimension)
     return 0.5 * (1.0 + boxes)
 
 
 @check_ranges
 def boxes_in_reach(width: Numbers, reach: Numbers, dimension: int) -> Values:
-    """Compute the mean number of boxes within a distance of a random point.
-
-    Parameters
-    ----------
-    width : array_like, [length]
-        Side of a box.
-    reach : array_like, [length]
-        Distance.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    float or ndarray
-        Mean number, including the box of the point: the volume within `reach` of a box divided by the volume
-        of the box (Steiner's formula).
-    """
+    """Compute the mean number of boxes within a distance of a random point."""
     t = np.asarray(reach) / width
     if checked_dimension(dimension) == 2:
         return 1.0 + 4.0 * t + math.pi * t**2
@@ -165,23 +81,7 @@ def boxes_in_reach(width: Numbers, reach: Numbers, dimension: int) -> Values:
 
 
 def share_of_contacts_in_a_box(width: Numbers, diameter: Numbers, dimension: int) -> Values:
-    """Compute the probability that two particles in contact are in the same box.
-
-    Parameters
-    ----------
-    width : array_like, [length]
-        Side of a box, at least a diameter.
-    diameter : array_like, [length]
-        Diameter of a particle.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    float or ndarray, [1]
-        Probability: the mean over the directions n of the contact of prod(1 - abs(n_k) diameter / width), for
-        a position that is uniform in the box.
-    """
+    """Compute the probability that two particles in contact are in the same box."""
     s = np.asarray(diameter) / width
     if checked_dimension(dimension) == 2:
         return 1.0 - 4.0 * s / math.pi + s**2 / math.pi
@@ -189,25 +89,5 @@ def share_of_contacts_in_a_box(width: Numbers, diameter: Numbers, dimension: int
 
 
 def ideal_boxes_per_particle(test_cost: Numbers, box_cost: Numbers, dimension: int) -> Values:
-    """Compute the number of boxes per particle at which a step has the lowest cost.
-
-    Parameters
-    ----------
-    test_cost : array_like
-        Cost of a pair test.
-    box_cost : array_like
-        Cost of a box, in the same unit.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    float or ndarray
-        Number of boxes per particle.
-
-    Notes
-    -----
-    With M boxes and N particles, far from walls, there are 3^d N / (2 M) tests per particle, and every box
-    must be emptied in every step. The sum of both costs is minimal at M / N = sqrt(3^d c_test / (2 c_box)).
-    """
+    """Compute the number of boxes per particle at which a step has the lowest cost."""
     return np.sqrt(0.5 * 3.0 ** checked_dimension(dimension) * np.asarray(test_cost) / box_cost)

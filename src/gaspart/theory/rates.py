@@ -26,14 +26,7 @@ MEAN_SQUARE = {2: math.pi / 2.0, 3: 8.0 / math.pi}
 
 @dataclass(frozen=True)
 class Rates:
-    """Mean collision rate, speed and free path of a gas.
-
-    Attributes
-    ----------
-    frequency : number of collisions of a particle per time
-    speed : mean speed
-    path : mean free path with all kinds of particles at one temperature; infinite without collisions
-    """
+    """Mean collision rate, speed and free path of a gas."""
 
     frequency: float
     speed: float

@@ -159,26 +159,7 @@ def rough_ratio(inertia: float, tangential: float, normal: float = 1.0) -> float
 
 @cache
 def rough_cooling() -> np.ndarray:
-    """Return the temperature ratio of cooling rough discs from direct simulation.
-
-    Returns
-    -------
-    ndarray, shape (n, 5), [1]
-        Each row contains the inertia, the tangential and normal restitution, T_rot / T_tr, and its standard
-        uncertainty.
-
-    Notes
-    -----
-    The accuracy of `rough_ratio` is only 5 % here. The reason is that velocities and spins are correlated and
-    not Maxwellian. The values were computed by direct simulation of the homogeneous Boltzmann equation
-    (`boltzmann.rough_discs`).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.rough_cooling().shape[1]
-    5
-    """
+    """Return the temperature ratio of cooling rough discs from direct simulation."""
     return np.loadtxt(Path(__file__).parent / "data" / "rough_cooling.csv", delimiter=",", skiprows=1)
 
 

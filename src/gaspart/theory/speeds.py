@@ -72,19 +72,7 @@ def mean_speed(
 
 
 def mean_speed_factor(freedoms: float) -> float:
-    """Compute the mean speed at fixed energy divided by the value for Maxwell's distribution.
-
-    Parameters
-    ----------
-    freedoms : float
-        Number of degrees of freedom, 2 n.
-
-    Returns
-    -------
-    float, [1]
-        <abs(v)> of a velocity component at fixed energy divided by its value for Maxwell's distribution with
-        the same <v^2>: sqrt(n) Gamma(n) / Gamma(n + 1/2) (exact).
-    """
+    """Compute the mean speed at fixed energy divided by the value for Maxwell's distribution."""
     half = 0.5 * freedoms
     return math.sqrt(half) * math.exp(math.lgamma(half) - math.lgamma(half + 0.5))
 
@@ -542,29 +530,7 @@ class Relaxation:
 
 @cache
 def relaxation(dimension: int) -> Relaxation:
-    """Return the `Relaxation` of discs or spheres.
-
-    Parameters
-    ----------
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    Relaxation
-        Curves from the tables in `theory/data` (computed).
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.relaxation(2).dimension
-    2
-    """
+    """Return the `Relaxation` of discs or spheres."""
     time, s, fourth, _, never, speed = np.loadtxt(
         _TABLES / f"relaxation_{checked_dimension(dimension)}d.csv", delimiter=",", skiprows=1, unpack=True
     )

@@ -217,36 +217,7 @@ def linear_tail(packing_fraction: Numbers, dimension: int) -> Values:
 
 
 def linear_tail_uncertainty(packing_fraction: Numbers, dimension: int) -> Values:
-    """Compute the standard uncertainty of `linear_tail`.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to close packing.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Standard uncertainty.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    It combines the uncertainty of b_10 and the uncertainty of the slope. The latter combines the last change
-    of the slope and the uncertainty of b_10.
-
-    Examples
-    --------
-    >>> from gaspart.theory.virial import linear_tail_uncertainty
-    >>> float(f"{linear_tail_uncertainty(0.5, dimension=2):.2g}")
-    3.9e-05
-    """
+    """Compute the standard uncertainty of `linear_tail`."""
     coefficients, uncertainties = virial_coefficients(dimension)
     eta = checked_packing_fraction(packing_fraction, CLOSE_PACKING[dimension])
     last_change = coefficients[-1] - 2.0 * coefficients[-2] + coefficients[-3]

@@ -26,13 +26,7 @@ _COMMENT_LENGTH, _CHECKSUM = struct.Struct("<H"), struct.Struct("<I")  # record 
 
 @dataclass(frozen=True)
 class Checkpoint:
-    """Contents of the checkpoint of a run.
-
-    Attributes
-    ----------
-    frames : number of complete frames of the trajectory
-    arrays : arrays for `Simulation.restore`
-    """
+    """Contents of the checkpoint of a run."""
 
     frames: int
     arrays: dict[str, np.ndarray]

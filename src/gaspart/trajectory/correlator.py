@@ -155,18 +155,7 @@ class Correlations:
 
 
 def sums_of(displacements: bool) -> list[str]:
-    """Return the names of the sums of a run with or without displacements.
-
-    Parameters
-    ----------
-    displacements : bool
-        True if the run stores displacements.
-
-    Returns
-    -------
-    list of str
-        The names.
-    """
+    """Return the names of the sums of a run with or without displacements."""
     return [name for name in SUMS if displacements or "displacement" not in name]
 
 
@@ -177,20 +166,7 @@ def stress_sums() -> list[str]:
 
 
 def sum_names(settings: Correlations, displacements: bool) -> list[str]:
-    """Return the names of the sums of a run with these correlations, with or without displacements.
-
-    Parameters
-    ----------
-    settings : Correlations
-        The correlations.
-    displacements : bool
-        True if the run stores displacements.
-
-    Returns
-    -------
-    list of str
-        The names.
-    """
+    """Return the names of the sums of a run with these correlations, with or without displacements."""
     return stress_sums() if settings.stress else sums_of(displacements)
 
 
@@ -202,18 +178,7 @@ def stress_units() -> dict[str, str]:
 
 
 def meaning_of(name: str) -> str:
-    """Return a description of the terms in a sum.
-
-    Parameters
-    ----------
-    name : str
-        Name of the sum.
-
-    Returns
-    -------
-    str
-        The description.
-    """
+    """Return a description of the terms in a sum."""
     if name in SUMS:
         return f"mean over moving particles of {SUMS[name]}"
     group, kind = name.split("_")[:2]
@@ -268,22 +233,6 @@ class Correlator(_Correlator):
     subtracted. The subtraction of the motion of the centre of mass multiplies the mean square for a particle
     of mass m by 1 - m / M, where M is the total mass. If masses differ, or if momentum is not conserved along
     all axes, components are rescaled so that the factor is 1 - 1 / N for all N particles and all axes.
-
-    Parameters
-    ----------
-    settings : Correlations
-        The correlations.
-    scene : Scene
-        The scene.
-    masses : ndarray, shape (N,), [mass]
-        Masses, infinite for fixed particles.
-    displacements : bool
-        True if positions are correlated too.
-
-    Raises
-    ------
-    SceneError
-        If no particle moves.
     """
 
     def __init__(self, settings: Correlations, scene: Scene, masses: np.ndarray, displacements: bool) -> None:
@@ -301,13 +250,7 @@ class Correlator(_Correlator):
         super().__init__(settings, earlier, (len(sums_of(displacements)),))
 
     def add(self, simulation: Simulation) -> None:
-        """Add the next sample.
-
-        Parameters
-        ----------
-        simulation : Simulation
-            The simulation at the time of the sample.
-        """
+        """Add the next sample."""
         from gaspart.kernels.correlation import add_displacement_products, add_velocity_products
 
         state = simulation.state
@@ -369,13 +312,7 @@ class StressCorrelator(_Correlator):
         return super().next + self._begun
 
     def add(self, simulation: Simulation) -> None:
-        """Add the next sample from a simulation that tallies the stress.
-
-        Parameters
-        ----------
-        simulation : Simulation
-            The simulation at the time of the sample.
-        """
+        """Add the next sample from a simulation that tallies the stress."""
         from gaspart.kernels.correlation import add_flux_products, flux_components
 
         integrals = np.empty_like(self._latest)
@@ -410,27 +347,7 @@ class StressCorrelator(_Correlator):
 def correlator_for(
     settings: Correlations, simulation: Simulation, displacements: bool
 ) -> Correlator | StressCorrelator:
-    """Return the correlator of a run with these settings.
-
-    Parameters
-    ----------
-    settings : Correlations
-        The correlations.
-    simulation : Simulation
-        The simulation.
-    displacements : bool
-        True if positions are correlated too.
-
-    Returns
-    -------
-    Correlator or StressCorrelator
-        The correlator.
-
-    Raises
-    ------
-    SceneError
-        If no particle moves.
-    """
+    """Return the correlator of a run with these settings."""
     if settings.stress:
         return StressCorrelator(settings, simulation.scene.dimension)
     return Correlator(settings, simulation.scene, simulation.initial_state.masses, displacements)

@@ -53,25 +53,7 @@ _ROWS = 4096  # number of table rows that are formatted at once
 
 @dataclass(frozen=True)
 class Snapshot:
-    """Frame of a trajectory with N particles.
-
-    Attributes
-    ----------
-    positions, velocities : ndarray, shape (N, 3)
-        Positions and velocities.
-    numbers, diameters, masses, types : ndarray, shape (N,)
-        Numbers, diameters, masses and types of the particles.
-    lengths, origin : ndarray, shape (3,)
-        Side lengths and origin of the container.
-    periodic : tuple of bool, shape (3,)
-        Periodicity of the axes.
-    time : float
-        Time of the frame.
-    frame : int
-        Number of the frame.
-    dimension : int
-        Number of dimensions.
-    """
+    """Frame of a trajectory with N particles."""
 
     positions: np.ndarray
     velocities: np.ndarray

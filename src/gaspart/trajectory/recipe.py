@@ -53,16 +53,6 @@ class Recipe(Contents):
     """Everything that determines a trajectory; invalid settings raise SceneError.
 
     A recipe contains the scene, the engine, the seed, the length of the run, and the `Contents` of its file.
-
-    Attributes
-    ----------
-    duration, sample_interval : times in the units of the scene. The duration must be an integer multiple of
-        sample_interval. With the time-stepped engine, sample_interval must be an integer multiple of
-        time_step.
-    until : criterion that ends the run instead of a duration; the duration is then None.
-    initial : state at time 0, if scene and seed do not determine it. In this case the file contains this
-        state.
-    replica : number of the replica, from 1, and number of replicas of the run, if there are several.
     """
 
     scene: Scene

@@ -31,26 +31,7 @@ if TYPE_CHECKING:
 
 
 def in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
-    """Return the recipes of the replicas of a run; for 1 replica, the recipe itself.
-
-    Parameters
-    ----------
-    recipe : Recipe
-        Recipe of the run.
-    replicas : int
-        Number of replicas.
-
-    Returns
-    -------
-    list of Recipe
-        The recipes.
-
-    Raises
-    ------
-    SceneError
-        If the number is invalid, or if all replicas would be identical, because they start from the same
-        state and draw no random numbers.
-    """
+    """Return the recipes of the replicas of a run; for 1 replica, the recipe itself."""
     if count_of("replicas", replicas, least=1, most=MOST_REPLICAS) == 1:
         return [recipe]
     if not differ(recipe.scene, recipe.engine, recipe.initial is not None):
@@ -75,18 +56,7 @@ def _seed(recipe: Recipe, number: int) -> tuple[int, ...]:
 
 
 def of_all(recipe: Recipe) -> tuple[Recipe, int]:
-    """Return the recipe of the run to which a replica belongs, and the number of replicas.
-
-    Parameters
-    ----------
-    recipe : Recipe
-        Recipe of a replica, or of a run without replicas.
-
-    Returns
-    -------
-    tuple of Recipe and int
-        The recipe and the number.
-    """
+    """Return the recipe of the run to which a replica belongs, and the number of replicas."""
     if recipe.replica is None:
         return recipe, 1
     assert isinstance(recipe.seed, tuple)  # checked by `Recipe`
@@ -122,20 +92,7 @@ def replica_paths(path: str | Path, replicas: int) -> list[Path]:
 
 
 def path_of_all(path: Path, recipe: Recipe) -> Path:
-    """Return the path of the run to which a file belongs.
-
-    Parameters
-    ----------
-    path : Path
-        Trajectory, finished or not.
-    recipe : Recipe
-        Its recipe.
-
-    Returns
-    -------
-    Path
-        The path, common to all replicas.
-    """
+    """Return the path of the run to which a file belongs."""
     path = path.with_name(path.name.removesuffix(PARTIAL))
     if recipe.replica is None:
         return path
@@ -143,20 +100,7 @@ def path_of_all(path: Path, recipe: Recipe) -> Path:
 
 
 def beside(path: Path, recipe: Recipe) -> list[tuple[Path, Recipe]]:
-    """Return the paths of the finished files, and the recipes, of all replicas of a run.
-
-    Parameters
-    ----------
-    path : Path
-        File of one of the replicas.
-    recipe : Recipe
-        Its recipe.
-
-    Returns
-    -------
-    list of tuple of Path and Recipe
-        Paths and recipes.
-    """
+    """Return the paths of the finished files, and the recipes, of all replicas of a run."""
     common, replicas = of_all(recipe)
     if replicas == 1:
         return [(path, recipe)]
@@ -168,21 +112,6 @@ def find_run(path: str | Path) -> tuple[Path, Recipe]:
     """Return a file of the run at a path, finished or unfinished, and its recipe.
 
     The file is the file at the path itself, or the file of the first of several replicas.
-
-    Parameters
-    ----------
-    path : str or Path
-        Path of the run.
-
-    Returns
-    -------
-    tuple of Path and Recipe
-        The file and its recipe.
-
-    Raises
-    ------
-    SceneError
-        If `read_recipe` cannot read a recipe.
     """
     path = Path(path)
     first = replica_paths(path, 2)[0] if path.name else path
@@ -202,23 +131,7 @@ def run_files(path: str | Path) -> list[str]:
 
 
 def files_of(path: str | Path) -> list[Path]:
-    """Return the files of the run at a path, finished or unfinished.
-
-    Parameters
-    ----------
-    path : str or Path
-        Path of the run, or of one of its replicas.
-
-    Returns
-    -------
-    list of Path
-        One file, or the files of all replicas.
-
-    Raises
-    ------
-    SceneError
-        If a file is missing or belongs to another run, or if `read_recipe` cannot read its recipe.
-    """
+    """Return the files of the run at a path, finished or unfinished."""
     first, recipe = find_run(path)
     if recipe.replica is None:
         return [first]
@@ -242,21 +155,7 @@ def _places(path: Path) -> tuple[Path, Path]:
 
 
 def find_replicas(files: Sequence[tuple[Path, Recipe]], frames: int) -> list[Path] | None:
-    """Return the files of all replicas if each has the required number of frames.
-
-    Parameters
-    ----------
-    files : sequence of tuple of Path and Recipe
-        Paths and recipes of the replicas.
-    frames : int
-        Required number of frames.
-
-    Returns
-    -------
-    list of Path or None
-        The files, finished or unfinished. None if a replica has fewer frames, or was begun with another
-        recipe.
-    """
+    """Return the files of all replicas if each has the required number of frames."""
     if len(files) == 1:
         return [files[0][0]]
     available = [_with_frames(path, recipe, frames) for path, recipe in files]
@@ -276,22 +175,6 @@ def _with_frames(path: Path, recipe: Recipe, frames: int) -> Path | None:
 
 @contextmanager
 def opened_together(paths: Sequence[Path]) -> Iterator[list[xr.Dataset]]:
-    """Open several trajectories, which are closed at the end of the `with` block.
-
-    Parameters
-    ----------
-    paths : sequence of Path
-        The files.
-
-    Yields
-    ------
-    list of Dataset
-        The open trajectories.
-
-    Raises
-    ------
-    SceneError
-        If `open_trajectory` rejects one of the files.
-    """
+    """Open several trajectories, which are closed at the end of the `with` block."""
     with ExitStack() as stack:
         yield [stack.enter_context(open_trajectory(path)) for path in paths]

@@ -275,14 +275,6 @@ class WriteOptions:
     """Options for writing a trajectory; its content does not depend on them.
 
     A negative time raises SceneError.
-
-    Attributes
-    ----------
-    checkpoint_seconds : time between checkpoints
-    progress : function that is called to report the progress of the run
-    overwrite : True if the file of another run may be replaced
-    examiner : function that tests accuracies, for a recipe that ends at an accuracy
-    keep_checkpoint : True if the last checkpoint is stored with the file
     """
 
     checkpoint_seconds: float = 30.0

@@ -143,13 +143,7 @@ _PAIRS = "count the collisions of each pair of species, with which `contact_valu
 
 @dataclass(frozen=True, kw_only=True)
 class Contents:
-    """Contents of the file of a run; an invalid value raises SceneError.
-
-    Attributes
-    ----------
-    correlations : time correlations that the frames accumulate
-    tallies : requested tallies of the frames, in addition to the tallies that the correlations need
-    """
+    """Contents of the file of a run; an invalid value raises SceneError."""
 
     displacements: bool = field(
         default=False,

@@ -134,21 +134,6 @@ def slow_mean(series: ArrayLike, minimum_blocks: int = 16) -> Estimate:
     logarithm of this length. The fit uses blocks between a quarter of the longest length and the longest
     length. The fit is extrapolated to the length of the series. The result is the larger of this error and
     the error of `correlated_mean`.
-
-    Parameters
-    ----------
-    series : array_like, shape (n,)
-        Samples, at least 4 times `minimum_blocks`. For fewer samples the function returns `correlated_mean`.
-    minimum_blocks : int
-        Minimum number of blocks of the greatest length.
-
-    Returns
-    -------
-    Estimate
-        The mean with its error. The number of degrees of freedom is at most `minimum_blocks`. For free
-        particles, the distribution of deviations divided by errors is 1.01 to 1.13 times as wide as Student's
-        distribution in runs of at least 100 crossing times, and 1.2 times as wide in runs of 8 crossing times
-        (`tests/analysis/test_statistics.py`). With `correlated_mean` the factors are 1.2 to 1.65.
     """
     plain = correlated_mean(series, minimum_blocks)
     squares, own = plain.errors**2, plain.estimate

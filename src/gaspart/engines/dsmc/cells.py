@@ -113,15 +113,7 @@ def falling_axis(scene: Scene) -> int | None:
 
 @dataclass(frozen=True)
 class Errors:
-    """Relative errors due to cells and steps; each makes a transport coefficient too high.
-
-    Attributes
-    ----------
-    width : error of fluxes due to the width of cells
-    repeats : fraction of collisions that repeat the last collision of a pair, or are lost for this reason
-    lost : error of collision rates, and of the rate at which collisions dissipate energy
-    step, path : errors of the viscosity and of the diffusion coefficient due to the length of a step
-    """
+    """Relative errors due to cells and steps; each makes a transport coefficient too high."""
 
     width: float = 0.0
     repeats: float = 0.0
@@ -143,13 +135,7 @@ class Errors:
 
 @dataclass(frozen=True)
 class Medium:
-    """Gas of a scene as a collision model sees it.
-
-    Attributes
-    ----------
-    gas_rates : collision rates where most particles are, at the present time
-    number : number of particles of a gas that fills the container at the density there
-    """
+    """Gas of a scene as a collision model sees it."""
 
     model: str
     scene: Scene

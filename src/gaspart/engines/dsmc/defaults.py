@@ -62,18 +62,7 @@ _FIRST = 20
 
 @dataclass(frozen=True)
 class Reach:
-    """Bounds on the distance that a particle flies in a step.
-
-    Attributes
-    ----------
-    path : mean free path
-    across : shortest side
-    fall : side length between walls along the direction of fall
-    walled : shortest distance between two opposite walls
-    pull : acceleration by gravity along axes with walls
-    push : mean over particles of the width of kicks, divided by the square root of the time
-    interval : time between kicks
-    """
+    """Bounds on the distance that a particle flies in a step."""
 
     path: float
     across: float

@@ -103,15 +103,6 @@ class Resolution:
     """Present cells and step lengths of a run.
 
     The constructor raises SceneError for settings that do not fit the scene.
-
-    Attributes
-    ----------
-    step : length of a step
-    cells : number of cells along each axis, shape (d,)
-    crowded : density level: the relative density around the particles is about 2^crowded
-    crowds : True if the density level can change
-    grid, dense, pace : arrays for the kernels; there is a `dense` only for a dense gas, and a `pace` only if
-        steps adapt to speeds
     """
 
     def __init__(

@@ -40,14 +40,7 @@ def tally_parts(
 
 
 class EventTally:
-    """Counters of a running scene since the last `reset`.
-
-    Attributes
-    ----------
-    arrays : arrays to which the kernels add
-    since : time of the last reset
-    lost : (2,), values of `dissipated` and `exchanged` at the last reset
-    """
+    """Counters of a running scene since the last `reset`."""
 
     def __init__(self, scene: Scene, unit_mass: float, parts: Sequence[Part]) -> None:
         self._unit_mass, self._parts = unit_mass, parts

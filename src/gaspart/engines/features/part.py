@@ -25,17 +25,7 @@ if TYPE_CHECKING:
 
 
 class Part:
-    """State of a feature during a run. Its methods do nothing by default.
-
-    Attributes
-    ----------
-    arrays : arrays that change during a run, by their names in a checkpoint
-    sums : arrays (threads, ...) by name, in which each thread adds to its own row; a checkpoint contains
-        their sum over threads
-    times : names of the `arrays` that contain times on the clocks of the epoch
-    scheduled : (1,), time of the next event scheduled by the part
-    gained : square of the largest speed that the part can give a particle
-    """
+    """State of a feature during a run. Its methods do nothing by default."""
 
     gained = 0.0
 

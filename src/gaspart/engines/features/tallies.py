@@ -29,20 +29,7 @@ from gaspart.state.tally import ImpulseTally, PairImpulseTally, PerAreaTally
 
 
 def tallied_fluxes(sums: np.ndarray, drift: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the sums of the fluxes of momentum and heat as fields of `Tally`.
-
-    Parameters
-    ----------
-    sums : ndarray, shape (2 d^2 + d,)
-        Sums of the stress tensor by rows, of its collisional part by rows, and of the heat flux.
-    drift : ndarray, shape (d,), [length/time]
-        Velocity from which all velocities in the sums are measured.
-
-    Returns
-    -------
-    dict of str to ndarray
-        `stress_sum`, `collisional_stress_sum`, `heat_sum` and `flux_velocity`.
-    """
+    """Return the sums of the fluxes of momentum and heat as fields of `Tally`."""
     dimension = len(drift)
     stress = sums[: 2 * dimension**2].reshape(2, dimension, dimension)
     heat = sums[2 * dimension**2 :]

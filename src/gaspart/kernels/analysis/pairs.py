@@ -26,20 +26,7 @@ _TABLES = 4  # number of tables of counts, so that consecutive additions to one 
 
 @inner_allocating_kernel
 def sort_by_box(coordinates, lengths, numbers, start, boxes):
-    """Sort particles by box, and store the first particle of each box.
-
-    Parameters
-    ----------
-    coordinates : (3, N), positions
-    lengths : (3,), side lengths of the container
-    numbers : (3,), number of boxes along each axis
-    start : (boxes + 1,), filled with the first particle of each box, and the end
-    boxes : (N,), workspace for the box of each particle
-
-    Returns
-    -------
-    (3, N + WIDTH), coordinates in [0, L), in the order of boxes
-    """
+    """Sort particles by box, and store the first particle of each box."""
     count = coordinates.shape[1]
     wrapped, ordered = np.empty((3, count)), np.zeros((3, count + WIDTH))
     start[:] = 0
@@ -66,30 +53,14 @@ def sort_by_box(coordinates, lengths, numbers, start, boxes):
 
 @inner_helper
 def add_to_tables(indices, number, tables):
-    """Add 1 to the counts of the first `number` bins in `indices`.
-
-    Parameters
-    ----------
-    indices : bins of pairs
-    number : number of bins to count
-    tables : (tables, bins + 1), counts
-    """
+    """Add 1 to the counts of the first `number` bins in `indices`."""
     for n in range(number):
         tables[n % _TABLES, indices[n]] += 1
 
 
 @inner_helper
 def find_bins(ordered, first, stop, origin, scale, indices):
-    """Store the bins of the distances between a position and a range of particles.
-
-    Parameters
-    ----------
-    ordered : (3, N + WIDTH), positions of the particles
-    first, stop : range of particles; its end is rounded up to a multiple of `WIDTH`
-    origin : (3,), position
-    scale : bins per unit of distance, and the number of bins, which is also the bin of all larger distances
-    indices : bins of the distances
-    """
+    """Store the bins of the distances between a position and a range of particles."""
     per_length, most = scale
     x, y, z = origin
     for begin in range(0, stop - first, WIDTH):
@@ -101,14 +72,7 @@ def find_bins(ordered, first, stop, origin, scale, indices):
 
 @inner_helper
 def wrap_column(column, number, length):
-    """Return a column number wrapped into the container, and the displacement of its image.
-
-    Parameters
-    ----------
-    column : number of the column, which may be outside of the container
-    number : number of columns
-    length : side length of the container
-    """
+    """Return a column number wrapped into the container, and the displacement of its image."""
     if column < 0:
         return column + number, -length
     if column >= number:
@@ -118,37 +82,13 @@ def wrap_column(column, number, length):
 
 @inner_helper
 def gap_to_column(x, column, width):
-    """Return the distance between a column and a coordinate; 0 inside the column.
-
-    Parameters
-    ----------
-    x : coordinate
-    column : number of the column
-    width : width of a column
-    """
+    """Return the distance between a column and a coordinate; 0 inside the column."""
     return max(column * width - x, x - (column + 1) * width, 0.0)
 
 
 @inner_helper
 def count_of_particle(n, ordered, reach, image, boxes, tables, indices, filled):
-    """Find the bins of the pairs of a particle with the particles of a column.
-
-    Parameters
-    ----------
-    n : particle
-    ordered : (3, N + WIDTH), positions of the particles
-    reach : largest distance along the column
-    image : first box of the column, displacement of its image along two axes, and True if it is the
-        particle's own column
-    boxes : length of the columns, number of boxes, first particle of each box, and the scale
-    tables : (tables, bins + 1), counts
-    indices : bins that have not been counted yet
-    filled : number of these bins
-
-    Returns
-    -------
-    number of bins that have not been counted yet
-    """
+    """Find the bins of the pairs of a particle with the particles of a column."""
     first_box, shift_x, shift_y, is_own = image
     length, number, start, scale = boxes
     z = ordered[2, n]
@@ -172,17 +112,7 @@ def count_of_particle(n, ordered, reach, image, boxes, tables, indices, filled):
 
 @allocating_kernel
 def count_pairs(coordinates, lengths, numbers, spans, furthest, counts):
-    """Add the pairs closer than `furthest` to counts in equal intervals of the distance.
-
-    Parameters
-    ----------
-    coordinates : (3, N), positions, for discs with 0 along the first axis
-    lengths : (3,), side lengths of the container
-    numbers : (3,), number of boxes along each axis
-    spans : (2,), number of columns on each side, along the first two axes, that are close enough
-    furthest : largest distance, at most half of the shortest side
-    counts : (bins,), counts
-    """
+    """Add the pairs closer than `furthest` to counts in equal intervals of the distance."""
     count, bins = coordinates.shape[1], len(counts)
     start = np.empty(numbers[0] * numbers[1] * numbers[2] + 1, np.int32)
     ordered = sort_by_box(coordinates, lengths, numbers, start, np.empty(count, np.int32))

@@ -21,13 +21,6 @@ def tabulate_factors(cosines, sines, first, products, real, imaginary):
     """Compute the rows of factors of a block; beyond the last particle they are 0.
 
     Row 0 is 1, the next rows are the factors of the axes, and the other rows are `products`.
-
-    Parameters
-    ----------
-    cosines, sines : (d, N), cosines and sines of 2 pi x / L along each axis
-    first : first particle of the block
-    products : (R, 2), for each further row the two rows whose product it is, or a row and `CONJUGATE`
-    real, imaginary : (rows, BLOCK), filled with the factors
     """
     here = min(BLOCK, cosines.shape[1] - first)
     base = 1 + len(cosines)
@@ -51,12 +44,7 @@ def tabulate_factors(cosines, sines, first, products, real, imaginary):
 
 @inner_helper
 def sum_lanes(lanes):
-    """Return the sum of all lanes.
-
-    Parameters
-    ----------
-    lanes : (LANES,), overwritten
-    """
+    """Return the sum of all lanes."""
     for n in range(8):
         lanes[n] += lanes[n + 8]
     return ((lanes[0] + lanes[4]) + (lanes[1] + lanes[5])) + ((lanes[2] + lanes[6]) + (lanes[3] + lanes[7]))
@@ -64,14 +52,7 @@ def sum_lanes(lanes):
 
 @inner_helper
 def sum_products_of_two(real, imaginary, rows, lanes):
-    """Store the sums of products of two factors in two rows of lanes.
-
-    Parameters
-    ----------
-    real, imaginary : (rows, BLOCK), factors
-    rows : (2,), rows of the factors
-    lanes : (2, LANES), filled with the real and the imaginary parts
-    """
+    """Store the sums of products of two factors in two rows of lanes."""
     a, b, c, d = real[rows[0]], imaginary[rows[0]], real[rows[1]], imaginary[rows[1]]
     for n in range(LANES):
         u = v = 0.0
@@ -84,14 +65,7 @@ def sum_products_of_two(real, imaginary, rows, lanes):
 
 @inner_helper
 def sum_products_of_three(real, imaginary, rows, lanes):
-    """Store the sums of products of three factors in two rows of lanes.
-
-    Parameters
-    ----------
-    real, imaginary : (rows, BLOCK), factors
-    rows : (3,), rows of the factors
-    lanes : (2, LANES), filled with the real and the imaginary parts
-    """
+    """Store the sums of products of three factors in two rows of lanes."""
     a, b, c, d = real[rows[0]], imaginary[rows[0]], real[rows[1]], imaginary[rows[1]]
     e, f = real[rows[2]], imaginary[rows[2]]
     for n in range(LANES):
@@ -106,16 +80,7 @@ def sum_products_of_three(real, imaginary, rows, lanes):
 
 @allocating_kernel
 def sum_waves(cosines, sines, products, waves, sums):
-    """Add sum exp(i k.r) over N particles to the sums of real and imaginary parts.
-
-    Parameters
-    ----------
-    cosines, sines : (d, N), cosines and sines of 2 pi x / L along each axis
-    products : (R, 2), for each further row of factors the two rows whose product it is, or a row and
-        `CONJUGATE`
-    waves : (M, d), row of the factor along each axis, for each wave vector
-    sums : (2, M), real and imaginary parts
-    """
+    """Add sum exp(i k.r) over N particles to the sums of real and imaginary parts."""
     rows = 1 + len(cosines) + len(products)
     real, imaginary, lanes = np.empty((rows, BLOCK)), np.empty((rows, BLOCK)), np.empty((2, LANES))
     for first in range(0, cosines.shape[1], BLOCK):

@@ -228,15 +228,7 @@ def collide_loaded_pair(normal, context, law):
 
 
 class Stress(NamedTuple):
-    """Sums of the stress tensor and of the heat flux, by thread.
-
-    Attributes
-    ----------
-    sums : (threads, 2 d^2 + d, WIDTH), sums of S by rows, of its collisional part, and of Q
-    cell : (threads, 2 d^2 + d), contribution of the present cell
-    before : (threads, 2, d + 1), velocity and energy of two particles before their collision
-    drift : (d,), velocity of the centre of mass
-    """
+    """Sums of the stress tensor and of the heat flux, by thread."""
 
     sums: np.ndarray
     cell: np.ndarray

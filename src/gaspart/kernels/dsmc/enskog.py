@@ -55,28 +55,7 @@ _ROUNDED = 1.0 + 1e-12  # probability above 1 by more than rounding
 
 
 class Dense(NamedTuple):
-    """Local density, bounds and slabs of the cells of a dense gas.
-
-    Attributes
-    ----------
-    fields : (2, cells), sums of r^d and r^(d-1) of the particles of a cell per volume, times the volume of a
-        unit ball, smoothed in time
-    speed : (cells,), highest speed of the particles in a cell, relative to `drift`
-    near_speed : (cells,), highest speed in any cell within reach
-    near_count : (cells,), largest number of particles in any cell within reach
-    room : (cells,), workspace for the search of these maxima
-    reach : (d,), reach in cells along each axis
-    wraps : (d,), True if the first and the last cell along an axis are neighbours
-    axis : axis along which the cells are divided into slabs
-    slabs : (slabs + 1,), first cell of each slab along `axis`, and the total number of cells
-    drift : (d,), velocity of the centre of mass
-    ball : volume of a unit ball
-    weight : weight of a step in the smoothed fields; 0 if the fields are known
-    slope, bend : coefficients of the contact value, see `contact_value`
-    highest : (1,), highest contact value of any pair of particles
-    least_part : smallest part of a cell by which rates are divided, see `cells.accessible_part`; None unless
-        walls stop particles of several sizes
-    """
+    """Local density, bounds and slabs of the cells of a dense gas."""
 
     fields: np.ndarray
     speed: np.ndarray

@@ -24,16 +24,7 @@ PADDED = 8  # number of counters per thread, a cache line
 
 
 class Particles(NamedTuple):
-    """Particles by slot, and their periodic images by particle number.
-
-    Attributes
-    ----------
-    data : (2d + 1, N), rows of positions, of velocities, and one spare row, by slot
-    rows : (2d + 2,), row of `data` for each position, each velocity and the spare row, followed by the
-        present row of `numbers`
-    numbers : (2, N), numbers of the particles by slot, in one of the two rows
-    images : (d, N), periodic images by particle
-    """
+    """Particles by slot, and their periodic images by particle number."""
 
     data: np.ndarray
     rows: np.ndarray
@@ -42,21 +33,7 @@ class Particles(NamedTuple):
 
 
 class Grid(NamedTuple):
-    """Grid of cells, and arrays for sorting particles into them.
-
-    Attributes
-    ----------
-    per_side : (d,), number of cells along each axis
-    origin : (d,), lower end of the first cell
-    inverse : (d,), inverse widths of the cells
-    strides : (d,), index strides of the cells
-    volume : volume of a cell
-    cell : (N,), cell of the particle in each slot
-    order : (N,), workspace of the sort
-    counts : (threads, cells), number of each thread's slots in each cell. With open faces it is (threads,
-        cells + 1), and the last column counts empty slots
-    starts : (cells + 1,), first slot of each cell, and end of the last cell
-    """
+    """Grid of cells, and arrays for sorting particles into them."""
 
     per_side: np.ndarray
     origin: np.ndarray
@@ -70,32 +47,7 @@ class Grid(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """Constants, working arrays and counters of a step.
-
-    Attributes
-    ----------
-    margin : 1 if walls stop surfaces, 0 if they stop centres
-    dt : length of a step
-    clock : (1,), number of the step, counted from 0
-    kind : (N,), kind number of each particle, or (0,) if all particles are equal
-    radius, mass, inertia : (K,), by kind; `inertia` is the moment of inertia
-    largest : largest radius
-    key : (2,), words of 32 bits for the random numbers of collisions
-    wall_key : (2,), words of 64 bits for the random numbers of thermal faces
-    flights : (threads, 2), two particles in the form of the event-driven engine, see
-        `kernels.model.flight_dtype`
-    inverse_mass, inverse_inertia : (threads, 2), inverse masses and moments of inertia of these particles
-    pair_spins : (threads, 2, 3), spins of these particles
-    sums : (threads, 2, 2), sums of the collision law
-    counts : (threads, 8), see the names at the top of the module
-    virial, loss : (threads, WIDTH), exact sums, see `physics.exact_sum`
-    wall_hits : (threads, 2d), number of hits of each face
-    wall_impulse, wall_heat : (threads, 2d, WIDTH), exact sums of momentum and energy given to each face
-    inverse_area : (K, 2d), inverse accessible area of each face for each kind of particles; empty unless
-        these areas differ
-    per_area : (threads, 2d, d + 1, WIDTH), momentum along each axis and energy given to each face, divided by
-        the accessible area; empty unless these areas differ
-    """
+    """Constants, working arrays and counters of a step."""
 
     margin: float
     dt: float
@@ -123,17 +75,7 @@ class Workspace(NamedTuple):
 
 
 class Faces(NamedTuple):
-    """Thermal, sliding and open faces of the container.
-
-    Attributes
-    ----------
-    kind, level : (2d,), kinds of faces, and temperatures of the thermal faces, see `kernels.model`
-    velocity : (2d, d), velocities of the faces, or None if no face slides
-    shear : (threads, 2d, d, WIDTH), momentum given to each face along each axis, or None if no face slides
-    accommodation, ramp : see `kernels.model`
-    present : (N,), 1 for particles in the container, 0 for all others, which are at rest in the middle of the
-        container and in no cell; None if no face is open
-    """
+    """Thermal, sliding and open faces of the container."""
 
     kind: np.ndarray
     level: np.ndarray
@@ -145,14 +87,7 @@ class Faces(NamedTuple):
 
 
 class Law(NamedTuple):
-    """Collision law of particles with restitution and spins.
-
-    Attributes
-    ----------
-    normal, tangential : coefficients of restitution
-    spins : (N, 3), spins by particle
-    viscous : see `kernels.model.ContactLaw`
-    """
+    """Collision law of particles with restitution and spins."""
 
     normal: float
     tangential: float
@@ -304,16 +239,7 @@ def waiting_time(random_bits):
 
 
 class Pace(NamedTuple):
-    """Step lengths, and the speeds for which they are suitable.
-
-    Attributes
-    ----------
-    low, high : (levels,), limits of the mean speed of each level
-    level : present level
-    drifts : (d,), True if only the motion relative to the mean counts along an axis
-    fastest : (1,), highest mean speed found
-    present : see `Faces`
-    """
+    """Step lengths, and the speeds for which they are suitable."""
 
     low: np.ndarray
     high: np.ndarray

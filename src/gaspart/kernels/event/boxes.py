@@ -30,20 +30,7 @@ _EMPTY = np.uint32(0xFFFFFFFF)
 
 
 class BoxLists(NamedTuple):
-    """Grid of boxes (see `state.boxes.Boxes`) and the particles in each box.
-
-    Attributes
-    ----------
-    per_side, widths, strides : (3,), number, widths and index strides of the boxes along each axis
-    neighbour, shift : neighbours of a box along each axis, and their periodic images
-    filled : (boxes,), number of particles in each box
-    members : (boxes, PLACES), first particles of each box
-    head : (boxes,), start of the linked list with the other particles of each box
-    following : (N,), next particle in the linked list after each particle
-    candidates : (M,), workspace for the candidates of a search
-    resting : (N,), True for particles that gravity may not accelerate, see `flight.mark_resting`
-    lists : `NeighbourLists` that are searched instead, or None
-    """
+    """Grid of boxes (see `state.boxes.Boxes`) and the particles in each box."""
 
     per_side: np.ndarray
     widths: np.ndarray

@@ -26,15 +26,7 @@ from gaspart.kernels.simd import WIDTH, Lanes, fields
 
 
 class Impulses(NamedTuple):
-    """Tally of impulses along an axis by position.
-
-    Attributes
-    ----------
-    sums : (rows, bins + 1), as explained for planes in `physics.flight`, in the kernels' unit of mass
-    axis : axis
-    per_length : number of bins in a unit of length
-    row : (N,), row of each particle, or None if there is a single row
-    """
+    """Tally of impulses along an axis by position."""
 
     sums: np.ndarray
     axis: int
@@ -168,21 +160,7 @@ _SLACK = 1.0 + 1e-9  # extension of the search, so that rounding does not hide a
 
 
 class PairImpulses(NamedTuple):
-    """Tally of impulses by the distance of a pair.
-
-    Attributes
-    ----------
-    sums : (2, shells + 1), sums of the colliding pairs and of the other pairs, in units of 1 / `per_unit` of
-        the kernels' units
-    impulse : (d,), workspace for the impulse of a collision
-    furthest : largest distance
-    per_length : number of shells in a unit of length
-    per_volume : (shells,), volume of the first shell divided by the volume of each shell
-    per_unit : see `sums`
-    share : fraction of the collisions for which the other pairs count
-    listed : workspace for the numbers of all particles
-    separations : (2, 8), workspace for the results of `separate`
-    """
+    """Tally of impulses by the distance of a pair."""
 
     sums: np.ndarray
     impulse: np.ndarray

@@ -179,14 +179,7 @@ _OFTEN = 2.0**-3 * SHORTEST  # longest time between contacts of a squeezed parti
 
 
 class Line(NamedTuple):
-    """Particles sorted along a nonperiodic axis.
-
-    Attributes
-    ----------
-    order : (M,), their numbers in the order of the coordinate along the axis
-    positions : (N, d), positions
-    axis : axis
-    """
+    """Particles sorted along a nonperiodic axis."""
 
     order: np.ndarray
     positions: np.ndarray
@@ -194,15 +187,7 @@ class Line(NamedTuple):
 
 
 class Limits(NamedTuple):
-    """Disturbances that a stable particle withstands.
-
-    Attributes
-    ----------
-    pulls : (P, 3), accelerations
-    least : upper limit of the part of an acceleration that is not supported
-    reach : largest gap between particles that count as touching
-    support : workspace for the support of one particle
-    """
+    """Disturbances that a stable particle withstands."""
 
     pulls: np.ndarray
     least: float

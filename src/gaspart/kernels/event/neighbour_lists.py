@@ -46,26 +46,7 @@ def page_dtype(dimension: int) -> np.dtype:
 
 
 class NeighbourLists(NamedTuple):
-    """Neighbour lists, and the cells of the centres (see `state.boxes.Boxes`).
-
-    Attributes
-    ----------
-    listed : (N,), see `LISTED`
-    candidates : (N * room,), the lists. The first word of a row is its length; unused words contain the
-        number of the particle itself
-    room : length of a row in words
-    per_side, strides : (3,), number and index strides of the cells along each axis
-    per_length : (3,), inverse widths of the cells
-    neighbour, shift : neighbours of a cell along each axis, and their periodic images
-    filled : (cells,), number of particles in each cell
-    pages : (cells * per_cell,), see `page_dtype`
-    per_cell : number of pages per cell
-    margin : margin: distance that a particle may move before its list is renewed
-    reach : distance within which centres are listed
-    clearance : (3,), along each axis, distance between a centre and a face beyond which the particle cannot
-        reach the face before its list is renewed
-    full : (2,), True if a list or a cell had no space
-    """
+    """Neighbour lists, and the cells of the centres (see `state.boxes.Boxes`)."""
 
     listed: np.ndarray
     candidates: np.ndarray

@@ -225,16 +225,7 @@ def kick_all(flights, time, width, counter, model, injected_energy):
 
 
 class Record(NamedTuple):
-    """Record of events with space for M of them.
-
-    Attributes
-    ----------
-    filled : (1,), number of recorded events
-    time : (M,), times
-    particles : (M, 2), indices
-    positions, velocities : (M, 2, d)
-    spins : (M, 2, 3), only recorded with a `ContactLaw`
-    """
+    """Record of events with space for M of them."""
 
     filled: np.ndarray
     time: np.ndarray
@@ -245,15 +236,7 @@ class Record(NamedTuple):
 
 
 class CollapseWatch(NamedTuple):
-    """Numbers of contacts of each particle, which reveal a collapse.
-
-    Attributes
-    ----------
-    since : (N,), time of the first counted contact
-    contacts : (N,), number of contacts within `interval`
-    interval : length of the time interval in which contacts are counted
-    most : maximum number of contacts in the interval
-    """
+    """Numbers of contacts of each particle, which reveal a collapse."""
 
     since: np.ndarray
     contacts: np.ndarray

@@ -24,17 +24,7 @@ FIRST, LENGTH = range(2)  # rows of Queue.runs
 
 
 class Queue(NamedTuple):
-    """Calendar of the next events of all particles.
-
-    Attributes
-    ----------
-    head : (buckets + 1,), first particle of each bucket; the last bucket is the overflow
-    rate : (1,), buckets per unit of time
-    cursor : (4,), current bucket, number of particles in buckets other than the overflow, number of sorted
-        runs in the current bucket, and number of processed events
-    runs : (2, MOST_RUNS), first particle of each run, and the length of the run when it was made; the last
-        run of the list comes first
-    """
+    """Calendar of the next events of all particles."""
 
     head: np.ndarray
     rate: np.ndarray

@@ -27,15 +27,7 @@ from gaspart.kernels.physics.running_sum import add
 
 
 class Stress(NamedTuple):
-    """Sums of the stress tensor and of the heat flux.
-
-    Attributes
-    ----------
-    sums : (2 d^2 + d, 2), sums of S by rows, of its collisional part, and of Q, without K(t) t, see
-        `physics.running_sum.add`
-    before : (2, d + 1), velocity and energy of two particles before their collision
-    drift : (d,), velocity of the centre of mass
-    """
+    """Sums of the stress tensor and of the heat flux."""
 
     sums: np.ndarray
     before: np.ndarray

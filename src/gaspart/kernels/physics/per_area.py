@@ -14,16 +14,7 @@ from gaspart.kernels.physics.running_sum import add
 
 
 class PerArea(NamedTuple):
-    """Sums of the event-driven engine per accessible area.
-
-    Attributes
-    ----------
-    inverse : (sizes, 2d), inverse of the area of each face that centres of particles of a size can reach, 0
-        without such an area
-    size : (N,), size of each particle
-    sums : (2d (d + 1), 2), momentum of each face along each axis (normal component outwards), and energy, see
-        `physics.running_sum.add`
-    """
+    """Sums of the event-driven engine per accessible area."""
 
     inverse: np.ndarray
     size: np.ndarray

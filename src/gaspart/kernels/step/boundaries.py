@@ -108,17 +108,7 @@ _SHORT = 2.0**-12  # fraction of a step below which bounces on a floor are not d
 
 
 class Rules(NamedTuple):
-    """Data of the event-driven engine's kernels.
-
-    Attributes
-    ----------
-    flights : (N,), workspace for particles
-    model : the law and the faces
-    tally : workspace for the contribution of one event
-    free : (d, 2), coordinates between which a particle that is not stuck to a face hits no face and no edge
-    holds : True if any face can hold particles
-    heat : (2d, 2), heat given to each face, by `physics.running_sum.add_whole`
-    """
+    """Data of the event-driven engine's kernels."""
 
     flights: np.ndarray
     model: Model

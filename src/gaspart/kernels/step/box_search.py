@@ -32,18 +32,7 @@ from gaspart.kernels.step.threads import (
 
 
 class StepBoxes(NamedTuple):
-    """Grid of boxes (see `state.boxes.Boxes`) and the slots in each box.
-
-    Attributes
-    ----------
-    per_side, widths, strides : (3,), number, widths and index strides of the boxes along each axis
-    neighbour : neighbours of a box along each axis
-    at : (N, 3), coordinates of each slot's box
-    head : (boxes,), first slot of each box
-    following : (N,), next slot after each slot
-    near : True to skip neighbouring boxes that are farther from the centre of a particle than `reach`
-    reach : distance at contact
-    """
+    """Grid of boxes (see `state.boxes.Boxes`) and the slots in each box."""
 
     per_side: np.ndarray
     widths: np.ndarray

@@ -37,20 +37,7 @@ FASTEST, DISPLACEMENT = range(2)
 
 
 class StepParticles(NamedTuple):
-    """Particles by slot, and their periodic images and masses by particle number.
-
-    Attributes
-    ----------
-    positions, velocities : (d, N), by slot
-    images : (d, N), by particle
-    radii : (N,), by slot
-    index : (N,), number of the particle in each slot
-    masses : (N,), by particle
-    last_pass : (N,), number of the pass of the last contact, by slot
-    bounds : (2,), upper bounds of the speed of the FASTEST particle and of the largest DISPLACEMENT since the
-        neighbour list was made
-    ordinary : number of slots in boxes and cells; oversized particles come after these slots
-    """
+    """Particles by slot, and their periodic images and masses by particle number."""
 
     positions: np.ndarray
     velocities: np.ndarray
@@ -64,17 +51,7 @@ class StepParticles(NamedTuple):
 
 
 class StepModel(NamedTuple):
-    """Model of the simulated scene.
-
-    Attributes
-    ----------
-    normal : restitution of smooth contacts
-    impulse_share : impulse of such a contact divided by the elastic impulse, (1 + normal) / 2
-    inset : largest radius of an ordinary particle, as far as walls stop surfaces
-    gravity : (d,), or None
-    rules : see `boundaries.Rules`, or None
-    law : or None
-    """
+    """Model of the simulated scene."""
 
     space: Space
     normal: float
@@ -86,14 +63,7 @@ class StepModel(NamedTuple):
 
 
 class Search(NamedTuple):
-    """Search for contacts: boxes, or the cells and pairs of a neighbour list.
-
-    Attributes
-    ----------
-    boxes : see `box_search.StepBoxes`, or None
-    cells : or None
-    pairs : (threads, room)
-    """
+    """Search for contacts: boxes, or the cells and pairs of a neighbour list."""
 
     boxes: Any
     cells: Any
@@ -101,17 +71,7 @@ class Search(NamedTuple):
 
 
 class Step(NamedTuple):
-    """Pass of a step.
-
-    Attributes
-    ----------
-    dt : length of the step
-    rewind : True if pairs collide in the state of their contact
-    parting : True if overlaps count that began in this step and shrink
-    number : number of this pass, counted from 1 over all steps
-    first : number of the first pass of the step
-    before : number of the previous pass if only its contacts changed since the last search, otherwise 0
-    """
+    """Pass of a step."""
 
     dt: float
     rewind: bool
@@ -125,29 +85,6 @@ class StepTally(NamedTuple):
     """Counters and sums of a run with time steps.
 
     They are not in nested tuples, because numba does not pass nested tuples to threads.
-
-    Attributes
-    ----------
-    counts : see the names at the top of the module
-    sums : (..., 2), by `physics.running_sum.add`
-    extremes : see the names at the top of the module
-    wall_hits : (threads, 2d)
-    wall_impulse : (threads, 2d, 2), by `physics.running_sum.add_whole`
-    wall_loss : (threads, 2), an energy, by `physics.running_sum.add_whole`
-    momentum, energy : powers of two that few terms of these sums exceed
-    impulses : (threads, rows, bins + 1, 2), impulses along an axis, as in `kernels.physics.flight`, by
-        `add_whole`, or None
-    axis : axis of the impulses
-    pull : acceleration along this axis
-    per_length : number of bins in a unit of length
-    turns : inverse of the number of bins if the axis is periodic, otherwise 0
-    row : (N,), row of each particle, or None if there is one row
-    per_area : (threads, 2d, 2, 2), by `add_whole`, momentum along its normal and heat given to each face,
-        both multiplied by `share`; None unless accessible areas differ between sizes
-    share : (sizes, 2d), smallest accessible area of a face over all sizes, divided by the accessible area for
-        the particle's size
-    size : (N,), size number of each particle
-    fixed : True if there are fixed particles, whose collisions are counted separately, otherwise None
     """
 
     counts: np.ndarray
@@ -171,16 +108,7 @@ class StepTally(NamedTuple):
 
 
 class Overlaps(NamedTuple):
-    """Contacts to resolve, by thread.
-
-    Attributes
-    ----------
-    pairs : (threads, room, 2), slots
-    times : (threads, room)
-    number : (threads,), number of contacts, which may exceed the capacity
-    tests : (threads,), number of tested pairs
-    touching : (threads, n), workspace for the touching pairs of a block
-    """
+    """Contacts to resolve, by thread."""
 
     pairs: np.ndarray
     times: np.ndarray
@@ -209,22 +137,7 @@ ONE = np.uint32(1)  # unsigned indices need no test for negative values
 
 
 class Cells(NamedTuple):
-    """Cells of a neighbour list.
-
-    Attributes
-    ----------
-    per_side : (3,), number of cells along each axis, without the surrounding layer
-    inverse : (3,), inverse widths of the cells
-    strides : (3,), index strides including the layer, which is two cells deep where a row begins
-    wraps : (3,), True if the first and the last cell along an axis are neighbours
-    ends : (cells,), end of the slots of each cell
-    cell : (N,), cell of the particle in each slot when the list was made
-    order : (N,), workspace of the sort
-    skin : skin: distance beyond a contact up to which pairs are listed
-    origin : (d, N), position of the particle in each slot when the list was made
-    held : (N,), see `shared_contacts`
-    listed : (threads,), length of each thread's list
-    """
+    """Cells of a neighbour list."""
 
     per_side: np.ndarray
     inverse: np.ndarray

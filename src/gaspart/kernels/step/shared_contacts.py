@@ -25,17 +25,7 @@ from gaspart.kernels.step.resolve import fetch_ahead, resolve, resolve_all
 
 
 class Contacts(NamedTuple):
-    """Contacts of a pass.
-
-    Attributes
-    ----------
-    pairs : (n, 2), slots
-    order : (n,), order in which they are resolved
-    terms : (n, ..., 2), terms of the tally's sums
-    postponed : (n,), True if a contact is postponed
-    counts : (threads, 8), counts of each thread
-    extremes, bounds : (threads, 2), extremes and bounds of each thread
-    """
+    """Contacts of a pass."""
 
     pairs: np.ndarray
     order: np.ndarray
