@@ -80,7 +80,11 @@ def diffusion(
         displacement = mean_squared_displacement(run, ends, axes=True)
         if displacement is None:
             return None
-        return displacement._replace(value=0.5 * float(np.diff(displacement.value)[0] / np.diff(ends)[0]))
+        value, error = (
+            0.5 * float(np.diff(np.broadcast_to(part, np.shape(ends)))[0] / np.diff(ends)[0])
+            for part in (displacement.value, displacement.error)
+        )
+        return displacement._replace(value=value, error=abs(error))
     gas, sides = run.moving_fluid, run.scene.container.lengths
     if gas is None or np.ptp(sides) > 1e-6 * sides[0]:
         return None
