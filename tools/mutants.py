@@ -189,6 +189,8 @@ def test_files(mutant: Mutant) -> list[str]:
     words = [name for name in public if not name.startswith("_")] + [".".join(path.with_suffix("").parts[1:])]
     named = re.compile(r"\b(" + "|".join(map(re.escape, words)) + r")\b")
     mirror = Path("tests", *path.parts[2:-1])
+    while not any((PROJECT / mirror).glob("test_*.py")):
+        mirror = mirror.parent
     same = mirror / f"test_{path.stem}.py"
     found = []
     for file in sorted((PROJECT / "tests").rglob("test_*.py")):
