@@ -8,7 +8,6 @@ import hashlib
 import os
 import re
 import secrets
-import socket
 import stat
 import warnings
 from collections.abc import Callable, Iterator
@@ -204,7 +203,7 @@ def scratch_beside(path: Path) -> Iterator[Path]:
 
 def _beginning(path: Path) -> str:
     """Return the first part of the names of scratch files for `path` on this machine."""
-    of = hashlib.sha256(os.fsencode(path.name) + socket.gethostname().encode()).hexdigest()[:12]
+    of = hashlib.sha256(os.fsencode(path.name) + os.uname().nodename.encode()).hexdigest()[:12]
     return f".gaspart-{of}-"
 
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import argparse
 import errno
-import logging
 import os
 import sys
 import warnings
@@ -81,6 +80,7 @@ def main(arguments: Sequence[str] | None = None, without_output: bool = False) -
             writes_file = words[0] in _WRITE_FILES and not getattr(options, "list", False)
             if without_output and getattr(options, "output", None) is None and not writes_file:
                 raise OSError(errno.EBADF, os.strerror(errno.EBADF))
+            _silence_matplotlib()
             options.command(options)
         finally:
             sys.stdout.flush()  # flushed here, because a full disk can still be reported here
@@ -144,12 +144,15 @@ def _complain(text: str, code: int) -> int:
     return code
 
 
-def show_warnings_in_a_line() -> None:
-    """Print warnings of gaspart in one line, without Python's source line, until the process ends.
+def _silence_matplotlib() -> None:
+    """Print no remarks of matplotlib, such as one about a home folder that cannot be written."""
+    import logging  # here, because the list of commands does not need it
 
-    Remarks of matplotlib, such as one about a home folder that cannot be written, are not printed.
-    """
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
+
+
+def show_warnings_in_a_line() -> None:
+    """Print warnings of gaspart in one line, without Python's source line, until the process ends."""
     print_with_place = warnings.showwarning
 
     def show(message: Warning | str, *location: object, **more: object) -> None:
