@@ -198,6 +198,7 @@ def test_steps_that_are_longer_than_a_free_time_are_refused():
     assert cell_error(own, asked(found, "collision_rate")) > 0.0
 
 
+@pytest.mark.thorough
 def test_the_errors_of_points_under_gravity_are_those_of_their_runs():
     """In the rate and in the temperature: DSMC with narrow cells beside the exact engine, one start."""
     scene = gas(600, 0.004, SLIT, lengths=(14.0, 14.0, 400.0), gravity=(0.0, 0.0, -0.03))

@@ -66,6 +66,7 @@ def run(tmp_path_factory):
     return gp.run(WALLED, gp.EventDriven("direct"), 5, LONG * 512 * 2.0, 2.0, path)
 
 
+@pytest.mark.thorough
 def test_a_short_run_predicts_the_error_of_pressures_in_a_long_one(run):
     """The errors of sixteen short runs are their scatter, and predict that of all together; those of 16
     blocks of each predict too much."""

@@ -72,6 +72,7 @@ def test_runs_end_when_they_are_accurate(tmp_path, scene, observable, accuracy):
     assert reached.met and reached.accuracy <= accuracy
 
 
+@pytest.mark.thorough
 def test_the_heat_flux_to_one_face_is_advised():
     made = plan.plan(HEATED, "heat_flux:y low", 0.4, pilot_seconds=0.4)
     (asked,) = made.recipe.until.accuracies

@@ -42,6 +42,7 @@ def own_cache(tmp_path, monkeypatch):
     monkeypatch.setattr(pilot, "cache_directory", lambda: tmp_path / "cache")
 
 
+@pytest.mark.thorough
 def test_the_advised_run_reaches_the_accuracy(tmp_path):
     made = plan.plan_from_pilots(BOX, "pressure", 0.05, pilot_seconds=0.4)
     assert made.affordable and made.best.error <= 0.05 * (1.0 + 1e-9)
@@ -360,6 +361,7 @@ def column(count, height, pull, region=None, **more):
     return gp.Scene(box, [kind], gravity=(0.0, 0.0, -pull), **more)
 
 
+@pytest.mark.thorough
 def test_a_column_with_a_dense_floor():
     """Collision rate 0.7957(20) of this start or another, which differ by 0.0055 of it."""
     region = ((0.0, 0.0, 0.0), (14.0, 14.0, 8.0))
@@ -375,6 +377,7 @@ def test_a_column_with_a_dense_floor():
     assert made.scatter.placed and not made.scatter.drawn
 
 
+@pytest.mark.thorough
 def test_what_is_advised_has_a_pilot():
     for scene, observable in ((BOX, "pressure"), (DILUTE, "collision_rate"), (bed(0.3), "temperature")):
         made = plan.plan_from_pilots(scene, observable, 0.2, pilot_seconds=0.4)
@@ -441,6 +444,7 @@ def test_what_cannot_be_measured_is_not_advised():
         plan.plan_from_pilots(few, "D", 0.1, pilot_seconds=0.2)
 
 
+@pytest.mark.thorough
 def test_a_density_is_advised_with_the_impulses_that_an_engine_keeps(tmp_path):
     """Of which the run is shorter than by counts, which are what other engines have."""
     container = gp.Container((6.0, 6.0, 8.0), ("periodic", "periodic", "wall"))

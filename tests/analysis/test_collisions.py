@@ -173,6 +173,7 @@ def test_what_has_no_free_flights_is_refused():
 SPECIES = (gp.Species(12, 0.5, mass=1.0, temperature=1.0), gp.Species(6, 0.3, mass=4.0, temperature=1.0))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "container",
     [

@@ -148,6 +148,7 @@ def test_particles_spread_along_a_flow_as_across_it(driven):
     assert float(about_rest.sel(lag=late.lag).estimate) > 5.0 * float(across.estimate)
 
 
+@pytest.mark.thorough
 def test_half_the_slope_of_displacements_is_the_integral_of_velocities(driven):
     """The slope of msd is 2 d times the integral of vacf, both about the flow."""
     msd = gp.measure(driven, "msd").estimate

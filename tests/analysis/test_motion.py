@@ -144,6 +144,7 @@ def _run(scene, path, seed, collisions, engine=None):
     )
 
 
+@pytest.mark.thorough
 def test_species_alike_diffuse_as_single_particles(tmp_path):
     """Labels do not matter to the motion, so D_12 is D, exactly; both are of the same runs."""
     ratios = []

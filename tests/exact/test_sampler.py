@@ -9,6 +9,8 @@ from exact import closed, static
 from exact.bodies import Case
 from exact.sampler import block_mean, inserted, sample
 
+pytestmark = pytest.mark.thorough
+
 
 def case(text):
     return Case(yaml.safe_load(text))
