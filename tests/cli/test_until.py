@@ -87,8 +87,8 @@ def test_what_is_refused_in_one_line(folder, capsys, options, complaint):
 
 
 def test_the_line_of_progress_states_the_error_that_is_worst_beside_the_required_one():
-    z = AccuracyStatus(gp.Accuracy("Z", 1e-3), "", 2.0, 4e-3, 20.0, True)
-    rate = AccuracyStatus(gp.Accuracy("collision_rate", 1e-2), "", 3.0, 0.05, 20.0, True)
+    z = AccuracyStatus(gp.Accuracy("Z", 1e-3), "", 2.0, 2.0, 4e-3, 20.0, True)
+    rate = AccuracyStatus(gp.Accuracy("collision_rate", 1e-2), "", 3.0, 3.0, 0.05, 20.0, True)
     status = run._Status()
     assert status.remark() == ""
     status.update([AccuracyStatus(gp.Accuracy("D", 0.1), rule="frames: few")])
