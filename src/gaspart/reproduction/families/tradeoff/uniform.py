@@ -320,11 +320,11 @@ def choices(
             yield choice_of(gas, observable, Candidate(engine, error, steps + of_cells), each, own)
 
 
-def _error_of_steps(engine: Engine, gas: Gas) -> float:
+def _error_of_steps(engine: DSMC, gas: Gas) -> float:
     """Return the relative error of D due to time steps alone, as the engine estimates it."""
     species = Species(gas.count, 0.5 * gas.diameter, temperature=gas.temperature)
     scene = Scene(Container((_side(gas),) * 3, boundary="periodic"), species=(species,))
-    return engine.bias(scene, "paths") - engine.bias(scene, "rates")
+    return engine.errors(scene).path
 
 
 def each_of(timed: dict, rate: float) -> Estimate:
