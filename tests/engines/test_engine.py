@@ -1,7 +1,9 @@
 """What an engine owes its callers: a new one registers itself, and is known wherever engines are."""
 
+import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -9,6 +11,7 @@ import gaspart as gp
 from gaspart.engines import ENGINES
 from gaspart.scene.features import FEATURES
 
+TOOLS = str(Path(__file__).parents[2] / "tools")
 SKELETON = """
 from dataclasses import dataclass, field
 from typing import ClassVar
@@ -31,9 +34,9 @@ class Skeleton(Engine):
 """
 KNOWN = """
 from contextlib import suppress
+import reference
 import gaspart as gp
 from gaspart.cli import main
-from gaspart.reproduction import reference
 from gaspart.reproduction.config import schema
 config = schema()["properties"]["experiments"]["additionalProperties"]["properties"]
 assert "skeleton" in config["point"]["properties"]["engine"]["enum"]
@@ -81,7 +84,11 @@ def scene_with(parts):
 
 def test_a_new_engine_appears_in_the_command_line_the_schema_and_the_reference():
     code = SKELETON + KNOWN
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    path = os.pathsep.join(filter(None, [TOOLS, os.environ.get("PYTHONPATH")]))
+    environment = os.environ | {"PYTHONPATH": path}
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=False, env=environment
+    )
     assert done.returncode == 0, done.stderr
     assert "or skeleton" in done.stdout and "--stride" in done.stdout
 

@@ -67,8 +67,8 @@ def remove_null(config: dict) -> None:
             remove_null(value)
 
 
-def _check_removed(config: dict, contents: list[tuple[str, Any]]) -> None:
-    """Raise SceneError for an experiment, a figure or a film that is removed but is in no file."""
+def _error_of_removal(config: dict, contents: list[tuple[str, Any]]) -> SceneError | None:
+    """Return the error of an experiment, a figure or a film that is removed but is in no file."""
     for section in ("experiments", "figures", "animations"):
         named = config.get(section)
         for name, value in named.items() if isinstance(named, dict) else ():
@@ -77,9 +77,9 @@ def _check_removed(config: dict, contents: list[tuple[str, Any]]) -> None:
             ]
             known = {key for part in blocks for key, block in part[section].items() if block is not None}
             if value is None and contents and name not in known:
-                raise SceneError(
-                    f"{section}.{name}", None, unknown_word(name, sorted(known), "name to remove")
-                )
+                rule = unknown_word(name, sorted(known), "name to remove")
+                return SceneError(f"{section}.{name}", None, rule)
+    return None
 
 
 def read_numbers(config: dict, files: Sequence[str | Path]) -> None:
@@ -199,10 +199,12 @@ def check(config: dict, files: Sequence[str | Path] = ()) -> dict[str, dict[str,
     contents = [(str(file), read_yaml(file)) for file in files]
     try:
         check_values(config)
-        _check_removed(config, contents)
+        removal = _error_of_removal(config, contents)
         remove_null(config)
         _check_names(config)
         require(schema(_installed_kinds(config)), config, "")
+        if removal:
+            raise removal
         planned = {experiment: checked_points(config, experiment) for experiment in config["experiments"]}
         for figure, block in config["figures"].items():
             points = figure_points(config, figure, planned)

@@ -116,7 +116,7 @@ def is_full(record):
 
 
 def test_all_optional_arguments_of_the_kernels_are_features_or_choices_of_a_method():
-    methods = {"all_pairs", "lists", "queue", "threads", "cells", "boxes", "square", "dense"}
+    methods = {"all_pairs", "lists", "queue", "threads", "cells", "boxes", "square", "dense", "least_part"}
     optional = {
         test.left.id
         for path in (ROOT / "src/gaspart/kernels").rglob("*.py")
