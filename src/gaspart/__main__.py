@@ -27,6 +27,11 @@ def main() -> int:
 
 def _exit(signum: int, frame: object) -> None:
     """Handle a signal in the first milliseconds, before `gaspart.interruption` is imported."""
+    pipe = signal.set_wakeup_fd(-1)
+    if pipe != -1:  # `gaspart.interruption` has taken over at this moment, and prints the line
+        signal.set_wakeup_fd(pipe)
+        os.write(pipe, bytes([signum]))
+        return
     os.write(2, b"gaspart: interrupted\n" if signum == signal.SIGINT else b"gaspart: terminated\n")
     os._exit(128 + signum)
 
