@@ -23,7 +23,7 @@ from gaspart.cli import commands
 from gaspart.cli.arguments import WIDTH
 from gaspart.cli.new import templates
 from gaspart.public import read_stub
-from gaspart.reproduction.claims.table import fill_caption
+from gaspart.reproduction.claims.table import fill_caption, read
 from gaspart.reproduction.families.registry import families, titles
 from gaspart.yaml_text import read_yaml
 
@@ -249,21 +249,13 @@ def sources():
         for entry in document["statements"]:
             figure = entry.get("figure", "")
             link = f" :ref:`{figure} <figure-{figure}>`" if figure else ""
-            why = fill_caption(entry["why"], judged(figure), "(see the claims)")
+            claims = ROOT / f"results/claims/{figure}.csv"
+            why = fill_caption(entry["why"], read(claims) if claims.exists() else [], "(see the claims)")
             cells = {key: " ".join(entry[key].split()) for key in ("at", "says", "verdict")}
             rows.append({**cells, "why": " ".join(why.split()) + link})
         columns = {"place": "{at}", "statement": "{says}", "verdict": "{verdict}", "evidence": "{why}"}
         text += table(columns, rows)
     return {"sources.rst": text}
-
-
-def judged(figure):
-    """Return the judged claims of a figure; [] if the workflow has not run."""
-    path = ROOT / f"results/claims/{figure}.csv"
-    if not path.exists():
-        return []
-    with path.open(newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
 
 
 def paper():

@@ -31,17 +31,16 @@ def add_play(parser: Parser) -> None:
 
 
 def _play(options: argparse.Namespace) -> None:
-    import yaml
-
     from gaspart.rendering.play import play
     from gaspart.scene.scene import Scene
+    from gaspart.yaml_text import parse_yaml
 
     if options.scene and options.template:
         raise UsageError("give a scene or --template, not both")
     if options.scene:
         scene = Scene.from_file(options.scene)
     else:
-        scene = Scene.from_dict(yaml.safe_load(templates()[options.template or "gas"].text))
+        scene = Scene.from_dict(parse_yaml(templates()[options.template or "gas"].text))
     with waiting("making the page; new kernels take a minute"):
         path = play(scene, options.seed).save(options.output, options.force)
     print_line(path)

@@ -80,7 +80,7 @@ def contact_value(filled, surface, radius, dense):
     """Return the contact value of the pair distribution, 1/f + slope X/f^2 + bend X^2/f^3.
 
     Here f = 1 - filled and X = 2 surface `radius`; `radius` is the product of two radii divided by their sum.
-    See `engines.dsmc.defaults`.
+    See `theory.discretisation`.
     """
     free = 1.0 - min(filled, _FULLEST)
     ratio = 2.0 * surface * radius / free
