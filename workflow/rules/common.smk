@@ -168,7 +168,7 @@ def flagged(path, kind):
 # A digest of the modules of a stage, found from its imports, is a parameter of its rules.
 PARTS = {"measure": "measure", "judge": "claims", "draw": "figure"}
 # What families state about themselves, which the report reads by their names.
-FAMILIES = [f"gaspart.reproduction.families.{name}" for name in titles()]
+FAMILIES = [registry.home(name) for name in titles()]
 
 
 def sources(stage, family=None):

@@ -2,10 +2,11 @@
 
 import json
 
-from _job import function, job
+from _job import job
 
 with job(snakemake):
     from gaspart.files import whole_file
+    from gaspart.reproduction.families.registry import function
     from gaspart.reproduction.points.point import Point
     from gaspart.trajectory import provenance
 
@@ -17,7 +18,7 @@ with job(snakemake):
         for values, path in zip(snakemake.params.points, snakemake.input.points, strict=True)
     ]
     settings = {key: value for key, value in snakemake.params.settings.items() if key != "experiments"}
-    dataset = function(snakemake.params.module, snakemake.params.function)(points, settings)
+    dataset = function(snakemake.params.module, snakemake.params.function, "measure")(points, settings)
     dataset.attrs.update(
         figure=figure,
         config=snakemake.params.title,

@@ -6,7 +6,6 @@ import csv
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -228,7 +227,7 @@ def _made(results: Path, figure: str) -> float:
 def claims_of(figure: str, block: Mapping, dataset: xr.Dataset) -> list[Claim]:
     """Return the claims of a figure, judged as in the workflow."""
     family, name = registry.functions(figure, block)
-    state = getattr(import_module(registry.module(family, "claims")), name)
+    state = registry.function(registry.module(family, "claims"), name, "claims")
     return list(state(dataset, *registry.stated_claims(block)))
 
 

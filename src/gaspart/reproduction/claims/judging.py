@@ -33,7 +33,7 @@ UNVERIFIED = "the reference is quoted from memory and has not been verified"
 """Reason for a claim without a verdict; see `Claim.no_verdict`."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Claim:
     """Measured number and its expected value; the claim's text gives their unit.
 
@@ -91,25 +91,28 @@ class Claim:
             )
 
     @classmethod
-    def at_least(cls, *, claim: str, bound: Number, **others: Any) -> Claim:
+    def at_least(cls, claim: str, measured: Estimate, bound: Number, *rest: Any, **others: Any) -> Claim:
         """Return the claim that the measured number is `bound` or more.
 
-        `others` are the remaining fields of the claim.
+        `rest` and `others` are the remaining fields of the claim, from `required` on.
         """
         text = f"{claim} (at least {bound:g})"
-        return cls(claim=text, expected=bound, bounds=(bound, math.inf), **others)
+        return cls(text, measured, bound, *rest, bounds=(bound, math.inf), **others)
 
     @classmethod
-    def at_most(cls, *, claim: str, bound: Number, **others: Any) -> Claim:
+    def at_most(cls, claim: str, measured: Estimate, bound: Number, *rest: Any, **others: Any) -> Claim:
         """Return the claim that the measured number is `bound` or less.
 
-        `others` are the remaining fields of the claim.
+        `rest` and `others` are the remaining fields of the claim, from `required` on.
         """
         text = f"{claim} (at most {bound:g})"
-        return cls(claim=text, expected=bound, bounds=(-math.inf, bound), **others)
+        return cls(text, measured, bound, *rest, bounds=(-math.inf, bound), **others)
 
     @classmethod
-    def within(cls, *, claim: str, expected: Number, half_width: Number, **others: Any) -> Claim:
+    def within(
+        cls, claim: str, measured: Estimate, expected: Number, half_width: Number,
+        source: str, fails_if: str, **others: Any,
+    ) -> Claim:  # fmt: skip
         """Return the claim that the measured number lies within `half_width` of `expected`.
 
         `others` are the remaining fields. If they do not contain the required uncertainty, it is `half_width`
@@ -117,9 +120,8 @@ class Claim:
         """
         low, high = expected - half_width, expected + half_width
         text = f"{claim} (within {low:g} to {high:g})"
-        return cls(
-            claim=text, expected=expected, bounds=(low, high), **{"required": 0.5 * half_width} | others
-        )
+        required = others.pop("required", 0.5 * half_width)
+        return cls(text, measured, expected, required, source, fails_if, bounds=(low, high), **others)
 
     @classmethod
     def chi_square(
@@ -150,7 +152,7 @@ class Claim:
         )
 
     @classmethod
-    def joint(cls, *, claim: str, deviations: ArrayLike, **others: Any) -> Claim:
+    def joint(cls, claim: str, deviations: ArrayLike, source: str, fails_if: str, **others: Any) -> Claim:
         """Return the `chi_square` claim on independent deviations.
 
         Deviations are in standard deviations, and have any shape.
@@ -160,6 +162,7 @@ class Claim:
         deviations = np.asarray(deviations, dtype=float)
         text = f"{claim} (chi-square per degree of freedom)"
         total, freedom = float(np.sum(deviations**2)), deviations.size
+        others |= {"source": source, "fails_if": fails_if}
         return cls.chi_square(claim=text, chi_square=total, degrees_of_freedom=freedom, **others)
 
     @property

@@ -16,7 +16,7 @@ points)`. Other installed packages may define families of this form (`families.i
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, Any
 
 from gaspart.keys import Kind
 from gaspart.reproduction.families import installed
+from gaspart.reproduction.figure import Parts
 
 if TYPE_CHECKING:
     from gaspart.reproduction.points.point import Point
@@ -36,8 +37,10 @@ _OWN = "own"
 @cache
 def _packages() -> dict[str, ModuleType]:
     """Return the package of each family, in alphabetical order."""
-    names = sorted(path.parent.name for path in Path(__file__).parent.glob("*/figure.py"))
-    return {name: import_module(f"gaspart.reproduction.families.{name}") for name in names}
+    here = Path(__file__).parent
+    names = {path.parent.name: "families" for path in here.glob("*/figure.py")}
+    names |= {path.stem: "figures" for path in here.parent.glob("figures/[a-z]*.py")}
+    return {name: import_module(f"gaspart.reproduction.{names[name]}.{name}") for name in sorted(names)}
 
 
 def titles() -> dict[str, str]:
@@ -85,7 +88,21 @@ def functions(figure: str, entry: Mapping[str, Any]) -> tuple[str, str]:
 
 def module(family: str, part: str) -> str:
     """Return the name of a module of a family; `part` is `measure`, `claims` or `figure`."""
+    if family in _packages() and not hasattr(_packages()[family], "__path__"):
+        return _packages()[family].__name__
     return f"{_packages()[family].__name__ if family in _packages() else family}.{part}"
+
+
+def home(family: str) -> str:
+    """Return the name of the module, or package, that states what a family is."""
+    return _packages()[family].__name__
+
+
+def function(module: str, name: str, stage: str) -> Callable[..., Any]:
+    """Return the function `measure`, `claims` or `draw` of a figure in a module given by name."""
+    found = import_module(module)
+    parts = getattr(found, "FIGURES", {}).get(name)
+    return getattr(parts if isinstance(parts, Parts) else found, stage if parts else name)  # type: ignore[no-any-return]
 
 
 def files(family: str) -> tuple[Path, ...]:
@@ -142,7 +159,11 @@ def costs() -> list[str]:
 
 def settings() -> dict[str, dict[str, Kind]]:
     """Return the settings of each figure's measurement."""
-    return {figure: keys for package in _packages().values() for figure, keys in package.FIGURES.items()}
+    return {
+        figure: keys.settings if isinstance(keys, Parts) else keys
+        for package in _packages().values()
+        for figure, keys in package.FIGURES.items()
+    }
 
 
 def kinds() -> dict[str, dict[str, Kind]]:
