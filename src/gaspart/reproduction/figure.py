@@ -1,4 +1,4 @@
-"""What the module of a figure needs: the parts of a figure, blocks with errors, and names from the library."""
+"""What the module of a figure needs: the parts of a figure, and averages over blocks with errors."""
 
 from __future__ import annotations
 
@@ -36,5 +36,6 @@ class Blocks:
         self._series = [np.array(series) for series in zip(*blocks, strict=True)]
 
     def __call__(self, function: Callable[..., Any]) -> Estimate:
+        """Return a function of the means with its error."""
         value, error = jackknife(function, *self._series)
         return Estimate(value, error, len(self._series[0]) - 1)

@@ -97,7 +97,8 @@ class Claim:
         `rest` and `others` are the remaining fields of the claim, from `required` on.
         """
         text = f"{claim} (at least {bound:g})"
-        return cls(text, measured, bound, *rest, bounds=(bound, math.inf), **others)
+        others["bounds"] = (bound, math.inf)
+        return cls(text, measured, bound, *rest, **others)
 
     @classmethod
     def at_most(cls, claim: str, measured: Estimate, bound: Number, *rest: Any, **others: Any) -> Claim:
@@ -106,7 +107,8 @@ class Claim:
         `rest` and `others` are the remaining fields of the claim, from `required` on.
         """
         text = f"{claim} (at most {bound:g})"
-        return cls(text, measured, bound, *rest, bounds=(-math.inf, bound), **others)
+        others["bounds"] = (-math.inf, bound)
+        return cls(text, measured, bound, *rest, **others)
 
     @classmethod
     def within(

@@ -102,7 +102,7 @@ def function(module: str, name: str, stage: str) -> Callable[..., Any]:
     """Return the function `measure`, `claims` or `draw` of a figure in a module given by name."""
     found = import_module(module)
     parts = getattr(found, "FIGURES", {}).get(name)
-    return getattr(parts if isinstance(parts, Parts) else found, stage if parts else name)  # type: ignore[no-any-return]
+    return getattr(parts if isinstance(parts, Parts) else found, stage if parts else name)
 
 
 def files(family: str) -> tuple[Path, ...]:
