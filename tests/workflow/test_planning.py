@@ -116,15 +116,14 @@ def test_a_longer_run_reruns_its_experiment_only(smoke, tmp_path):
     assert plan["measure"] == made_of_them(smoke.config)
 
 
+OF_FIGURES = {"measure", "judge", "draw", "claims", "report", "all"}
+
+
 @pytest.mark.parametrize(
     ("paths", "expected"),
     [
-        (["src/gaspart/reproduction/families/equation_of_state/figure.py"], {"draw", "report", "all"}),
-        (
-            ["src/gaspart/reproduction/families/equation_of_state/claims.py"],
-            {"measure", "judge", "draw", "claims", "report", "all"},  # and the scatter of all claims
-        ),
-        (["src/gaspart/theory/virial.py"], {"measure", "judge", "draw", "claims", "report", "all"}),
+        (["src/gaspart/reproduction/figures/virial.py"], OF_FIGURES),
+        (["src/gaspart/theory/virial.py"], OF_FIGURES),
         (["src/gaspart/reproduction/families/registry.py"], {"report", "all"}),
         (["src/gaspart/reproduction/config.py", "config/README.md"], set()),
     ],

@@ -7,15 +7,15 @@ from reproduction.families.test_adsorption import walls
 from reproduction.families.test_buoyancy import measurement, with_source
 from reproduction.families.test_displacement import spheres
 from reproduction.families.test_vibrated import beds
-from reproduction.families.test_virial import ETA
+from reproduction.figures.test_virial import ETA
 
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import combine_estimates
 from gaspart.reproduction.families.adsorption import claims as adsorption
 from gaspart.reproduction.families.beds.claims import extrapolation
 from gaspart.reproduction.families.buoyancy import claims as buoyancy
-from gaspart.reproduction.families.equation_of_state.measure import fit_coefficients
 from gaspart.reproduction.families.motion.measure import size_series
+from gaspart.reproduction.figures.virial import fit_coefficients
 from gaspart.reproduction.table import Table
 from gaspart.theory.state import compressibility_factor
 
