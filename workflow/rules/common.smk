@@ -194,7 +194,9 @@ def measuring_of(wildcards):
     """A digest of what the numbers of a figure are made of."""
     measure, *others = registry.parts(family(wildcards))
     files = registry.files(family(wildcards))
-    return digest(measure, *files, others=files) if others else measuring_digest(measure, function_of(wildcards))
+    return (
+        digest(measure, *files, others=files) if others else measuring_digest(measure, function_of(wildcards))
+    )
 
 
 def package_of(wildcards):

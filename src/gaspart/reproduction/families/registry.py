@@ -71,7 +71,7 @@ def families() -> dict[str, str]:
 @cache
 def _kinds() -> dict[str, str]:
     """Return the family of each kind of figures."""
-    return {kind: name for name, package in _packages().items() for kind in getattr(package, "KINDS", {})}
+    return dict.fromkeys(_packages()[_OWN].KINDS, _OWN)
 
 
 def functions(figure: str, entry: Mapping[str, Any]) -> tuple[str, str]:
@@ -174,8 +174,7 @@ def kinds() -> dict[str, dict[str, Kind]]:
 
     Only kinds of this package are returned.
     """
-    parts = (getattr(package, "KINDS", {}) for package in _packages().values())
-    return {kind: keys for part in parts for kind, keys in part.items()}
+    return dict(_packages()[_OWN].KINDS)
 
 
 def known_kinds() -> list[str]:
