@@ -31,7 +31,7 @@ from gaspart.reproduction.table import Row, Table, table
 from gaspart.theory.boltzmann import relaxing_speeds, tagged_paths
 
 TITLE, CHAPTER = "A large particle in a gas", "Motion and its memory"
-# Largest mass ratio at which the linear Boltzmann equation is solved. Langevin is exact for large ratios; at
+# Largest mass ratio at which the linear Boltzmann equation is solved. Langevin's is exact in the limit; at
 # equal masses the velocity autocorrelation decays 0.6 % more slowly, up to half a friction time.
 HEAVY = 10.0
 # Groups of paths of that equation, with a path for each replica of the point, at most MOST: theory's error is
