@@ -10,7 +10,7 @@ import xarray as xr
 from gaspart import theory
 from gaspart.analysis.statistics import combine_estimates
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.transport.claims import ACCURATE, ENSKOG, FEW_PER_CENT
+from gaspart.reproduction.figures.transport import ACCURATE, ENSKOG, FEW_PER_CENT
 from gaspart.reproduction.table import Row, Table, each
 from gaspart.theory.shear import ELEMENTARY_SLIP, NORMAL_STRESSES, VELOCITY_SLIP
 

@@ -20,7 +20,7 @@ from gaspart.analysis.series import Blocks, face_pressures
 from gaspart.analysis.statistics import fit_linear, jackknife
 from gaspart.reproduction.families.heat.gap import Gap
 from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.families.transport.measure import coefficient
+from gaspart.reproduction.figures.transport import coefficient
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import table
 from gaspart.scene.faces import thermal_face
@@ -123,7 +123,7 @@ def _row(gas: tuple[str, Point], settings: dict) -> dict[str, Any]:
 
 def _equilibrium(point: Point) -> dict[str, Any]:
     """Measure the viscosity of an infinite gas in equilibrium, divided by Enskog theory."""
-    row = coefficient(point, "shear", theory.enskog_viscosity)
+    row = coefficient(point, "viscosity")
     return {"packing_fraction": row["packing_fraction"], "viscosity": row["value"] / row["finite"]}
 
 
