@@ -79,7 +79,7 @@ def test_every_figure_is_drawn_for_a_column_of_a_journal_and_is_legible(smoke):
     journal = results / "figures/journal"
     assert [path.name for path in journal.glob("*.pdf")] == ["virial_discs.pdf"]  # on request
     assert (journal / "virial_discs.pdf").read_bytes().startswith(b"%PDF")
-    logs = list((results / "logs/draw").iterdir())
+    logs = list((results / "logs/figure").iterdir())
     assert len(logs) == len(smoke.figures)
     assert not [line for log in logs for line in log.read_text().splitlines() if "not legible" in line]
 

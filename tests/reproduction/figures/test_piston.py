@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from reproduction.families.test_granular import made
+from reproduction.made import made
 
 import gaspart as gp
 from gaspart import theory

@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike
 
 from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
@@ -264,26 +263,3 @@ def extrapolate(naive: xr.Dataset, count: float) -> Estimate:
     fit = weights(gases.seconds, gases.count.astype(float), gases.pair_tests)
     work = np.array([count, 0.5 * count * (count - 1.0)])
     return Estimate(work @ fit.values, math.sqrt(work @ fit.covariance @ work))
-
-
-# Speed on several cores by Amdahl's law, with a constant time to start threads.
-
-
-SLABS = {"DSMC, Enskog": 8**3 * 64}
-"""Engines whose threads share collisions by slabs of cells, with the smallest number of particles for this.
-From this number on, each of two threads has a slab at any time (docs/dsmc.md). With fewer particles,
-collisions are not shared. More threads share them unevenly, which Amdahl's law does not describe."""
-
-
-def speed_up(cores: ArrayLike, count: ArrayLike, serial: float, overhead: float) -> np.ndarray:
-    """Compute the speed-up of p cores for N particles by Amdahl's law.
-
-    The speed-up is 1 / (s + (1 - s) / p + N_0 / N).
-
-    Source: AFIPS Conf. Proc. 30, 483 (1967).
-
-    serial : fraction s of the work that runs on one core.
-    overhead : number of particles N_0 whose work on one core takes as long as starting and joining threads.
-    """
-    shared, waited = (1.0 - serial) / np.asarray(cores), overhead / np.asarray(count)
-    return np.asarray(1.0 / (serial + shared + waited))
