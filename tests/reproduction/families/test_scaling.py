@@ -15,13 +15,13 @@ from reproduction.families.drawn import Points, draw, shows, varied
 
 from gaspart.reproduction import claims as core
 from gaspart.reproduction.claims import judge
+from gaspart.reproduction.config import merged_with_default
 from gaspart.reproduction.families.scaling import claims as claims_of_scaling
 from gaspart.reproduction.families.scaling import figure as draw_scaling
 from gaspart.reproduction.families.scaling import measure as measure_scaling
 from gaspart.reproduction.families.scaling.claims import ideal_boxes, remarks
 from gaspart.reproduction.points.points import all_points, figure_points
 from gaspart.theory import partition
-from gaspart.yaml_text import read_yaml
 
 ROOT = Path(__file__).parents[3]
 PARTICLE, TEST, BOX, LIST = (
@@ -31,7 +31,7 @@ PARTICLE, TEST, BOX, LIST = (
     2e-9,
 )  # s per particle and step (with a list), pair test, box
 NEAR, CONTACTS = 20e-9, 10  # s per particle and step to leave out boxes; contacts in a timing
-CONFIG = read_yaml(ROOT / "config/config.yaml")
+CONFIG, _ = merged_with_default(ROOT / "config/config.yaml")
 SCALING = ("naive_scaling", "box_count", "ideal_boxes", "linear_scaling", "event_scaling")
 
 

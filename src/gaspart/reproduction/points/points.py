@@ -198,6 +198,17 @@ def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
                 default=None,
             )
         ),
+        "families": describe(
+            {"anyOf": [{"const": "all"}, {"type": "array", "items": _NAME}]},
+            "files of the folder `figures` beside the config, over which it is merged: names without .yaml, "
+            "or `all`; each has `experiments`, `figures`, `animations` and blocks of `sizes`",
+            default=[],
+        ),
+        "sizes": describe(
+            {**TEXT, **_NAME},
+            "the block in the files of the families that is merged over the rest",
+            default="",
+        ),
         "experiments": describe(
             {**named, "minProperties": 1, "additionalProperties": record(EXPERIMENT)}, "what is simulated"
         ),
@@ -215,6 +226,9 @@ def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
             {**named, "additionalProperties": record(ANIMATION)},
             "films",
             default={},
+        ),
+        "opening": describe(
+            {**TEXT, **_NAME}, "the film that opens the report; by default the first", default=""
         ),
     }
 
