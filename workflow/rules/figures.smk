@@ -14,6 +14,8 @@ rule figure:
         svg=flagged("<results>/figures/{figure}.svg", "svg"),
         # The same for a column of a journal, which the report shows on narrow screens.
         journal_png="<results>/figures/journal/{figure}.png",
+        # One panel, for the gallery.
+        key="<results>/figures/key/{figure}.png",
     log:
         "<results>/logs/figure/{figure}.log",
     benchmark:

@@ -15,6 +15,7 @@ with job(snakemake):
 
     from gaspart.files import whole_file
     from gaspart.rendering import style
+    from gaspart.rendering.key import save_key_picture
     from gaspart.rendering.legibility import flaws
     from gaspart.reproduction import claims
     from gaspart.reproduction.figure import content_key, find_parts
@@ -78,3 +79,6 @@ with job(snakemake):
                 style.save(picture, path)
         for flaw in flaws(picture):
             print(f"not legible: {figure}, {layout}: {flaw}")
+        if layout == "page":
+            with style.use_style(layout):
+                save_key_picture(picture, parts.key, output["key"])

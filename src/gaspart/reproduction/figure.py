@@ -22,12 +22,14 @@ class Parts:
     """The parts of a figure: the settings of its config entry, and three functions.
 
     measure(points, settings) returns the data set, claims(dataset) its claims, draw(dataset) the picture.
+    `key` is the number of the panel that shows the finding; None if it is the whole picture.
     """
 
     settings: dict[str, Kind]
     measure: Callable[..., Any]
     claims: Callable[..., Iterable[Any]]
     draw: Callable[..., Any]
+    key: int | None = 0
 
 
 def find_parts(module: str, name: str) -> Parts:

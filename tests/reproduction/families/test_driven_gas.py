@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 from reproduction.families.drawn import Points, column, draw, shows
 from reproduction.families.judged import verdicts
-from reproduction.families.test_granular import made
+from reproduction.made import made
 from scenes import gas
 
 import gaspart as gp

@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 from reproduction.families.drawn import Points, column, draw, shows, varied
 from reproduction.families.judged import verdicts
+from reproduction.made import made
 
 import gaspart as gp
 from gaspart import theory
@@ -14,7 +15,6 @@ from gaspart.analysis.run import Run
 from gaspart.reproduction.families.granular import figure, measure
 from gaspart.reproduction.families.granular.claims import cooling, equipartition
 from gaspart.reproduction.families.granular.measure import read
-from gaspart.reproduction.points.point import Point
 
 
 def rough(noise=1.0, rate=1.0, ratio=1.0, steady=1.0, exchange=1.0, mixed=1.0, seed=1):
@@ -101,25 +101,6 @@ def inelastic(rate=1.0, exponent=-2.0, clustered=True, seed=1):
 
 
 # What is read of rough and inelastic runs: exactly, and what comes out of small ones.
-
-
-def made(tmp_path, name, scene, **settings):
-    """A point of a scene file, with its runs."""
-    scene.to_file(tmp_path / f"{name}.yaml")
-    settings = {"scene": str(tmp_path / f"{name}.yaml"), "replicas": 4} | settings
-    point = Point(name, "single", "simulate", settings, str(tmp_path), 1)
-    recipe = point.parameters
-    (tmp_path / name / "single").mkdir(parents=True)
-    for seed, path in zip(recipe["seeds"], point.replica_paths, strict=True):
-        gp.run(
-            point.scene,
-            point.engine,
-            seed=tuple(seed),
-            duration=recipe["duration"],
-            sample_interval=recipe["sample_interval"],
-            path=path,
-        )
-    return point
 
 
 def gas(count=256, dimension=2, packing_fraction=0.02, **scene):

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 from reproduction.families.drawn import Points, draw, shows
 from reproduction.families.judged import verdicts
-from reproduction.families.test_granular import made
+from reproduction.made import made
 
 import gaspart as gp
 from gaspart import theory

@@ -8,22 +8,29 @@ import pytest
 import xarray as xr
 from reproduction.families.test_buoyancy import measurement, with_source
 from reproduction.families.test_displacement import spheres
-from reproduction.families.test_vibrated import beds
 from reproduction.families.test_virial import ETA
 
 from gaspart.analysis.estimate import Estimate
-from gaspart.reproduction.families.beds.claims import extrapolation
 from gaspart.reproduction.families.buoyancy import claims as buoyancy
 from gaspart.reproduction.families.equation_of_state.measure import fit_coefficients
 from gaspart.reproduction.families.motion.measure import size_series
-from gaspart.reproduction.figures import adsorption
+from gaspart.reproduction.figures import adsorption, beds
 from gaspart.reproduction.table import Table
 from gaspart.theory.state import compressibility_factor
 
 pytestmark = pytest.mark.thorough
 
 REPEATED = 400
-BEDS = beds(restitutions=(0.995, 0.99, 0.98, 0.95, 0.9)).isel(bed=slice(5, None))
+BEDS = xr.Dataset({
+    "restitution": ("bed", [0.995, 0.99, 0.98, 0.95, 0.9]),
+    **{
+        name: ("bed", np.full(5, value))
+        for name, value in {"sine": 1, "layers": 2.0, "speed": 0.4, "packing_fraction": 0.008}.items()
+    },
+})  # fmt: skip
+X, UNIT = (of(Table(BEDS, "bed")) for of in (beds.small_parameter, beds.expected_temperature))
+BEDS["temperature"] = "bed", (1.0 - 0.5 * X + 0.2 * X**2) * UNIT
+BEDS["temperature_error"] = "bed", 0.003 * UNIT
 TEMPERATURES = np.array([0.4, 0.6, 1.0, 2.0])
 WELL = xr.Dataset({
     name: ("point", np.full(4, value) if np.isscalar(value) else value)
@@ -51,7 +58,7 @@ def scattered(rng, ds, freedom, names):
 
 def bed(rng):
     """The sine's limit of elastic discs."""
-    return [extrapolation(Table(scattered(rng, BEDS, 7, ["temperature"]), "bed")).estimate(0) - 1.0]
+    return [beds.extrapolation(Table(scattered(rng, BEDS, 7, ["temperature"]), "bed")).estimate(0) - 1.0]
 
 
 def well(rng):
