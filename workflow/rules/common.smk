@@ -243,7 +243,7 @@ def page_of(figures, claims, films):
         pictures=expand("<results>/figures/{figure}.png", figure=figures),
         vectors=expand("<results>/figures/{figure}.svg", figure=figures),
         columns=expand("<results>/figures/journal/{figure}.png", figure=figures),
-        keys=expand("<results>/figures/key/{figure}.png", figure=figures),
+        key_pictures=expand("<results>/figures/key/{figure}.png", figure=figures),
         datasets=expand("<results>/measurements/{figure}.nc", figure=figures),
         captions=[of_project(f"workflow/report/{figure}.rst") for figure in stated],
         claims=claims,
