@@ -57,10 +57,13 @@ def test_a_good_config_passes():
 def test_the_effort_multiplies_the_length_of_runs_and_keeps_names_and_seeds():
     config = with_value(("effort",), 0.5)
     config["experiments"]["gas"]["point"]["equilibration"] = 1.0
+    config["experiments"]["gas"]["point"]["samples"] = 200
     whole = check(config | {"effort": 1.0})["gas"]
     for name, point in check(config)["gas"].items():
-        assert point.settings["duration"] == 0.5 * whole[name].settings["duration"]
+        long, short = whole[name].schedule, point.schedule
         assert point.seeds == whole[name].seeds
+        assert short.sample_interval == long.sample_interval and short.equilibration == long.equilibration
+        assert short.samples == 100 and short.duration < long.duration
 
 
 POINT = ("experiments", "gas", "point")

@@ -1,4 +1,4 @@
-""""""
+"""Predicted counts beside those of runs."""
 
 from __future__ import annotations
 
@@ -6,18 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import xarray as xr
-from reproduction.families.drawn import Points, column, draw, shows, varied
 
 from gaspart import run, theory
-from gaspart.reproduction.claims import judge
-from gaspart.reproduction.families.equation_of_state.claims import radius_grid as claims
-from gaspart.reproduction.families.equation_of_state.figure import radius_grid as draw_radius_grid
-from gaspart.reproduction.families.equation_of_state.measure import (
-    crossings_per_collision,
-    expected_pair_tests,
-)
-from gaspart.reproduction.families.equation_of_state.measure import radius_grid as measure_radius_grid
+from gaspart.reproduction.figures.radius_grid import crossings_per_collision, expected_pair_tests, measure
 from gaspart.reproduction.points.point import Point
 
 
@@ -59,7 +50,7 @@ def dataset(tmp_path_factory):
             times = schedule.duration, schedule.sample_interval
             run(point.scene, point.engine, point.seed(), *times, point.replica_path(0))
             points.append(point)
-    return measure_radius_grid(points, {})
+    return measure(points, {})
 
 
 def test_series_are_recognised(dataset):
@@ -78,49 +69,3 @@ def test_counts_are_as_predicted(dataset):
 def test_z_is_that_of_the_packing_fraction(dataset):
     event = dataset.isel(point=slice(0, 6))
     assert np.all(np.abs(event["Z"] - event["reference"]) < 4.0 * event["Z_error"])
-
-
-def verdicts(dataset):
-    return dict(zip([claim.claim[:20] for claim in claims(dataset)], judge(claims(dataset)), strict=True))
-
-
-def test_claims_can_fail(dataset):
-    right = verdicts(dataset)
-    assert "disagrees" not in right.values()
-    wrong = dataset.copy(deep=True)
-    wrong["Z"] = wrong["Z"] * np.linspace(1.0, 1.4, wrong.sizes["point"])
-    wrong["crossings"] = wrong["crossings"] * 1.2
-    wrong["pair_tests"] = wrong["pair_tests"] * wrong["radius"] ** 2
-    changed = verdicts(wrong)
-    assert set(changed.values()) == {"disagrees"} or list(changed.values()).count("disagrees") >= 4
-
-
-def gases():
-    """What `measure.radius_grid` gives: two series of three gases by each engine."""
-    names = ["pair_tests", "pair_tests_expected", "crossings_counted", "crossings_expected"]
-    names += ["Z", "Z_error", "reference", "reference_error"]
-    ds = varied(xr.Dataset({name: ("point", np.ones(12)) for name in names}))
-    ds["radius"] = ("point", np.tile([0.4, 0.5, 0.6], 4))
-    ds["series"] = ("point", np.tile(np.repeat(["packing fraction", "count"], 3), 2))
-    ds["engine"] = ("point", np.repeat(["event", "step"], 6))
-    ds["packing_fraction"] = ("point", np.tile([0.1, 0.1, 0.1, 0.05, 0.1, 0.17], 2))
-    ds["count"] = ("point", np.tile([200, 100, 60, 125, 125, 125], 2))
-    return ds
-
-
-def test_z_its_deviation_and_the_counted_work_are_drawn_against_the_radius():
-    ds = gases()
-    z, deviation, work = draw(draw_radius_grid, ds).axes
-    event = [ds.isel(point=slice(0, 3)), ds.isel(point=slice(3, 6))]
-    step = [ds.isel(point=slice(6, 9)), ds.isel(point=slice(9, 12))]
-    shows(z, column(event[0], "radius", "Z"), column(event[1], "radius", "Z"))
-    sigmas = []
-    for one in event:
-        sigma = np.hypot(one["Z_error"], one["reference_error"])
-        sigmas.append(Points(one["radius"], (one["Z"] - one["reference"]) / sigma, np.ones(3)))
-    shows(deviation, *sigmas)
-    counted = []
-    for events, steps in zip(event, step, strict=True):
-        columns = events["pair_tests"], events["crossings_counted"], steps["pair_tests"]
-        counted += [Points(events["radius"], column) for column in columns]
-    shows(work, *counted)
