@@ -195,7 +195,8 @@ def measure(points: list[Point], settings: dict) -> xr.Dataset:
 
 def _measure_wall(point: Point, settings: dict) -> dict:
     wall = Wall(point)
-    number, radius = settings["layer_blocks" if wall.kind == "layer" else "blocks"], 0.5 * wall.sigma
+    number = settings["layer_blocks"] if wall.kind == "layer" else settings["blocks"]
+    radius = 0.5 * wall.sigma
     each = Blocks(
         counts(wall, height - radius, velocity, settings)
         for run in runs(point)
