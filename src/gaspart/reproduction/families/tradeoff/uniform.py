@@ -28,8 +28,8 @@ from gaspart.analysis.statistics import mean_of
 from gaspart.engines import DSMC, Engine, EventDriven, TimeStepped
 from gaspart.engines.engine import Candidate
 from gaspart.reproduction.families.shared.runs import runs, series_of
-from gaspart.reproduction.families.tradeoff import PARTS
 from gaspart.reproduction.families.shared.timings import median
+from gaspart.reproduction.families.tradeoff import PARTS
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.container import Container
 from gaspart.scene.gas import Gas
