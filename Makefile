@@ -1,4 +1,5 @@
-# make            set up, reproduce every figure, write results/report.html, print the verdicts
+# make            set up, reproduce every figure, write results/report.html, print the verdicts; EFFORT=0.25 takes a
+#                 third of the time, and a later run of more effort continues its files
 # make first      set up, three figures of the sources: results/first.html, in some two minutes
 # make test       set up, run the tests that catch most per second; OPTIONS=... are options of pytest
 # make test-all   all tests: the whole workflow, small, with its digests, all kernels, 2500 new random scenes each, Slurm
@@ -27,7 +28,7 @@ PYTHON ?= $(shell command -v python3.11 || command -v python3)
 CORES ?= all
 QUIETLY = -m pip --quiet --disable-pip-version-check
 PIP = .venv/bin/python $(QUIETLY)
-SNAKEMAKE = .venv/bin/python -m snakemake --cores $(CORES)
+SNAKEMAKE = .venv/bin/python -m snakemake --cores $(CORES) $(if $(EFFORT),--config effort=$(EFFORT))
 # Printed after Snakemake has ended, also if there was nothing to do.
 VERDICTS = @.venv/bin/python -c 'import sys; from gaspart.reproduction.claims import summary; print(summary(sys.argv[1]))'
 
