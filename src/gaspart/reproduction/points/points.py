@@ -161,6 +161,9 @@ EXPERIMENT: dict[str, Kind] = {
         "taken, or a list of such mappings, one after the other; a single value counts as a list of one",
         default=None,
     ),
+    "effort": positive(
+        "the effort of this experiment, instead of that of the config", maximum=100, default=None
+    ),
 }
 
 ANIMATION: dict[str, Kind] = {
@@ -202,6 +205,17 @@ def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
                 default=None,
             )
         ),
+        "families": describe(
+            {"anyOf": [{"const": "all"}, {"type": "array", "items": _NAME}]},
+            "files of the folder `figures` beside the config, over which it is merged: names without .yaml, "
+            "or `all`; each has `experiments`, `figures`, `animations` and blocks of `sizes`",
+            default=[],
+        ),
+        "sizes": describe(
+            {**TEXT, **_NAME},
+            "the block in the files of the families that is merged over the rest",
+            default="",
+        ),
         "experiments": describe(
             {**named, "minProperties": 1, "additionalProperties": record(EXPERIMENT)}, "what is simulated"
         ),
@@ -220,6 +234,9 @@ def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
             "films",
             default={},
         ),
+        "opening": describe(
+            {**TEXT, **_NAME}, "the film that opens the report; by default the first", default=""
+        ),
     }
 
 
@@ -233,7 +250,7 @@ def points(config: dict, experiment: str) -> list[Point]:
     """
     block = config["experiments"][experiment]
     where = f"experiments.{experiment}"
-    effort = config.get("effort", 1.0)
+    effort = block.get("effort", config.get("effort", 1.0))
     by_name: dict[str, Point] = {}
     varied = block.get("grid")
     for varying in _combinations({} if varied is None else varied, f"{where}.grid"):
