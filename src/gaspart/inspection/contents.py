@@ -125,7 +125,7 @@ def complete_frames(contents: Contents, overrides: Overrides, path: str) -> Fram
         part=contents.part,
         sampled=contents.sampled,
         engine=contents.engine,
-        counted=contents.counted,
+        counted=contents.counted if overrides.boundary is None else None,
         scene=contents.scene,
         resolution=min(contents.resolution, _LARGEST),
         masses=None if masses is None else masses[0],

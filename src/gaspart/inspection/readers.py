@@ -82,9 +82,12 @@ def read_contents(path: Path, overrides: Overrides) -> Contents:
 def _contents(path: Path, overrides: Overrides) -> Contents:
     reader = _READERS.get(path.suffix.lower())
     if reader is None:
-        rule = f"must end in {', '.join(SUFFIXES)}"
+        rule = f"must end in .yaml, {', '.join(SUFFIXES)}"
         if path.suffix.lower() in (".lammpstrj", ".dump", ".atom"):
-            rule += "; in LAMMPS `dump 1 all netcdf 100 dump.nc id x y z vx vy vz` writes a file that is read"
+            # https://docs.lammps.org/dump_netcdf.html and https://docs.lammps.org/rerun.html
+            rule += "; LAMMPS with its package NETCDF converts it, if the script of the run has "
+            rule += "`dump 1 all netcdf 1 dump.nc id x y z vx vy vz` and, in place of `run`, "
+            rule += f"`rerun {path.name} dump x y z vx vy vz`"
         raise SceneError("file", str(path), rule)
     _require_memory(path)
     return reader(path, overrides)
