@@ -277,9 +277,7 @@ def _above(run: Run, axis: int, cells: Cells) -> np.ndarray:
 
 def _mean_in(cells: Cells, of: Callable[[Run, np.ndarray], np.ndarray], default: np.ndarray) -> np.ndarray:
     """Average the values `of` a part of the run (T, n) in each bin; an empty bin has the value `default`."""
-    number, total = (
-        each.sum(axis=0) for each in cells.sums(lambda part, numbers: [None, of(part, numbers)])
-    )
+    number, total = (each.sum(axis=0) for each in cells.sums(lambda part, numbers: [None, of(part, numbers)]))
     return np.divide(total, number, out=default, where=number > 0)
 
 
