@@ -145,7 +145,7 @@ def read_state(path: str | Path, scene: Scene, seed: int | tuple[int, ...] = 0) 
     scene : Scene
         The scene, which defines the radii, the masses and the container.
     seed : int or tuple of int, default 0
-        If the last frame has no velocities, they are those of the scene with this seed, and a warning says so.
+        If the last frame has no velocities, those of the scene with this seed are drawn, with a warning.
 
     Returns
     -------
