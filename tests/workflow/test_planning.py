@@ -11,14 +11,14 @@ from workspace import ROOT, SMOKE, copy_of_project
 
 from gaspart.reproduction.config import merged_with_default
 from gaspart.reproduction.points.points import points
-from gaspart.yaml_text import dump_yaml, read_yaml
+from gaspart.yaml_text import dump_yaml
 
 pytestmark = pytest.mark.workflow
 
 SIMULATIONS = {"simulate", "compute"}
-PACKING_FRACTIONS = read_yaml(ROOT / "config/smoke.yaml")["experiments"]["virial_discs"]["grid"][
-    "packing_fraction"
-]
+FULL, _ = merged_with_default(ROOT / "config/config.yaml")
+SMALL, _ = merged_with_default(ROOT / "config/smoke.yaml")
+PACKING_FRACTIONS = SMALL["experiments"]["virial_discs"]["grid"]["packing_fraction"]
 
 
 def processor_time(work):
@@ -52,8 +52,7 @@ def test_ten_thousand_points_are_planned_in_less_than_thirty_seconds(fresh, tmp_
 def test_the_points_are_shared_among_few_cluster_jobs(fresh, monkeypatch):
     monkeypatch.setenv("GASPART_SHARE", "2/3")
     plan = fresh.plan(*SMOKE, "--", "points")
-    config, _ = merged_with_default(ROOT / "config/smoke.yaml")
-    number = sum(len(points(config, experiment)) for experiment in config["experiments"])
+    number = sum(len(points(SMALL, experiment)) for experiment in SMALL["experiments"])
     assert sum(plan[job] for job in SIMULATIONS & set(plan)) == len(range(1, number, 3))
 
 
@@ -119,6 +118,7 @@ def test_a_longer_run_reruns_its_experiment_only(smoke, tmp_path):
 @pytest.mark.parametrize(
     ("paths", "expected"),
     [
+        (["src/gaspart/reproduction/figures/virial.py"], {"figure", "claims", "report", "all"}),
         (["src/gaspart/theory/virial.py"], {"figure", "claims", "report", "all"}),
         (["src/gaspart/reproduction/families/registry.py"], {"report", "all"}),
         (["src/gaspart/reproduction/config.py", "config/README.md"], set()),
@@ -174,7 +174,7 @@ def test_one_figure_and_the_named_targets_can_be_requested(fresh):
 
 
 def test_the_full_reproduction_can_be_planned(fresh):
-    assert fresh.plan()["figure"] == len(read_yaml(ROOT / "config/config.yaml")["figures"])
+    assert fresh.plan()["figure"] == len(FULL["figures"])
 
 
 GAS = """
@@ -226,4 +226,4 @@ def test_the_first_figures_are_of_the_full_reproduction():
     first = re.search(r"FIRST = \[name for name in \(([^)]*)\)", text)
     assert first
     named = re.findall(r'"(\w+)"', first[1])
-    assert len(named) == 3 and set(named) <= set(read_yaml(ROOT / "config/config.yaml")["figures"])
+    assert len(named) == 3 and set(named) <= set(FULL["figures"])

@@ -13,12 +13,11 @@ from gaspart.reproduction.claims import CLAIM_KINDS, VERDICTS
 from gaspart.reproduction.config import merged_with_default
 from gaspart.reproduction.cost import budgets
 from gaspart.reproduction.families.registry import families
-from gaspart.yaml_text import read_yaml
 
 pytestmark = pytest.mark.workflow
 
 ROOT = Path(__file__).parents[2]
-ALL = read_yaml(ROOT / "config/config.yaml")
+ALL, _ = merged_with_default(ROOT / "config/config.yaml")
 
 
 def test_every_figure_of_the_table_is_in_the_config():

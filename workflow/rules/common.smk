@@ -22,7 +22,7 @@ if " " in sys.executable:
 from gaspart.reproduction import job_server
 from gaspart.reproduction.claims.table import fill_caption
 from gaspart.reproduction.claims.table import summary
-from gaspart.reproduction.config import check, explain_error
+from gaspart.reproduction.config import FAMILIES, add_families, check, explain_error
 from gaspart.reproduction.config import read_numbers, remove_null
 from gaspart.reproduction.families import registry
 from gaspart.reproduction.families.registry import caption, functions, of_claims, titles
@@ -36,8 +36,10 @@ from gaspart.errors import SceneError
 # A job on a cluster reads this file again, but need not validate ten thousand points again.
 files = ["config/config.yaml", *workflow.overwrite_configfiles]
 files = [str(name) for name in files if os.path.exists(name)]
+FOLDER_OF_FAMILIES = Path(*files[:1] or ["config/config.yaml"]).parent / FAMILIES
 if workflow.is_main_process:
     try:
+        files = [*add_families(config, FOLDER_OF_FAMILIES), *files]
         read_numbers(config, files)
         POINTS = check(config, files)
         for kept in (workflow.modifier.modify_path("results"), ".snakemake"):
@@ -51,6 +53,7 @@ if workflow.is_main_process:
         print(f"gaspart: {explain_error(error, config, used)}", file=sys.stderr)
         sys.exit(2)
 else:
+    files = [*add_families(config, FOLDER_OF_FAMILIES), *files]
     remove_null(config)
     read_numbers(config, files)
     POINTS = all_points(config)
@@ -166,7 +169,7 @@ def flagged(path, kind):
 
 
 # What families state about themselves, which the report reads by their names.
-FAMILIES = [registry.home(name) for name in titles()]
+STATED = [registry.home(name) for name in titles()]
 
 
 # A digest of the modules of a job, found from its imports, is a parameter of its rule.
@@ -240,7 +243,7 @@ def page_of(figures, claims, films):
         pictures=expand("<results>/figures/{figure}.png", figure=figures),
         vectors=expand("<results>/figures/{figure}.svg", figure=figures),
         columns=expand("<results>/figures/journal/{figure}.png", figure=figures),
-        keys=expand("<results>/figures/key/{figure}.png", figure=figures),
+        key_pictures=expand("<results>/figures/key/{figure}.png", figure=figures),
         datasets=expand("<results>/measurements/{figure}.nc", figure=figures),
         captions=[of_project(f"workflow/report/{figure}.rst") for figure in stated],
         claims=claims,

@@ -106,10 +106,11 @@ rule report:
         mem_mb=1000,
         runtime=10,
     params:
-        modules=digest(*sources("report"), *FAMILIES),
+        modules=digest(*sources("report"), *STATED),
         figures=FIGURES,
         own_captions=OWN_CAPTIONS,
         films=FILMS,
+        opening=config.get("opening"),
         title=lambda wildcards: config["title"],
         one_file=False,
     script:
@@ -125,10 +126,11 @@ use rule report as report_in_one_file with:
     benchmark:
         "<results>/benchmarks/report_in_one_file.tsv"
     params:
-        modules=digest(*sources("report"), *FAMILIES),
+        modules=digest(*sources("report"), *STATED),
         figures=FIGURES,
         own_captions=OWN_CAPTIONS,
         films=FILMS,
+        opening=config.get("opening"),
         title=lambda wildcards: config["title"],
         one_file=True,
 
@@ -144,9 +146,10 @@ use rule report as report_of_first with:
     benchmark:
         "<results>/benchmarks/report_of_first.tsv"
     params:
-        modules=digest(*sources("report"), *FAMILIES),
+        modules=digest(*sources("report"), *STATED),
         figures={figure: FIGURES[figure] for figure in FIRST},
         own_captions={},
         films={},
+        opening=None,
         title=lambda wildcards: f"{len(FIRST)} of {len(FIGURES)} figures",
         one_file=False,

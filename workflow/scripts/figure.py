@@ -20,6 +20,7 @@ with job(snakemake):
     from gaspart.reproduction import claims
     from gaspart.reproduction.figure import content_key, find_parts
     from gaspart.reproduction.points.point import Point
+    from gaspart.reproduction.points.trust import require_own
     from gaspart.trajectory import provenance
 
     figure, params = snakemake.wildcards.figure, snakemake.params
@@ -36,6 +37,8 @@ with job(snakemake):
         points = tables or [
             Point.from_dict(values, path) for values, path in zip(params.points, paths, strict=True)
         ]
+        for point in () if tables else points:
+            require_own(point)
         settings = {name: value for name, value in params.settings.items() if name != "experiments"}
         dataset = parts.measure(points, settings)
         stated = {"package": params.package} if params.package else {}

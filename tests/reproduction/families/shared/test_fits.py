@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 import xarray as xr
 from reproduction.families.test_displacement import spheres
-from reproduction.families.test_virial import ETA
+from reproduction.figures.test_virial import ETA
 
 from gaspart.analysis.estimate import Estimate
-from gaspart.reproduction.families.equation_of_state.measure import fit_coefficients
 from gaspart.reproduction.families.motion.measure import size_series
 from gaspart.reproduction.figures import adsorption, beds, buoyancy
+from gaspart.reproduction.figures.virial import fit_coefficients
 from gaspart.reproduction.table import Table, from_rows
 from gaspart.theory.brownian import displaced_area
 from gaspart.theory.state import compressibility_factor
