@@ -257,6 +257,10 @@ def claims(dataset: xr.Dataset) -> Iterator[Claim]:
             "correlated collisions, which this model does not have",
             alternative=theory.erpenbeck_wood_ratio(gas.packing_fraction),
         )  # fmt: skip
+    yield from _claims_on_plates(plates, event)
+
+
+def _claims_on_plates(plates: Table, event: Table) -> Iterator[Claim]:
     for gas in plates:
         beside = event[np.abs(event.knudsen / gas.knudsen - 1.0) < 0.02]
         if not beside or beside[0].packing_fraction > POINTLIKE:
