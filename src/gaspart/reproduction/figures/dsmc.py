@@ -27,9 +27,9 @@ from gaspart.analysis.transport import green_kubo
 from gaspart.keys import count, names, record
 from gaspart.rendering import style
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.heat.gap import Gap, averages
 from gaspart.reproduction.families.shared.runs import series_of
 from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figures._gap import Gap, averages
 from gaspart.reproduction.figures.msd_spheres import spheres
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, entries, table
