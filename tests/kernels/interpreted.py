@@ -20,6 +20,7 @@ from gaspart.analysis.structure_factors import factors, wave_vectors
 from gaspart.kernels import insertion, model
 from gaspart.kernels.event import boxes as candidates
 from gaspart.kernels.event import boxes as search
+from gaspart.kernels.event import neighbour_lists as event_list
 from gaspart.kernels.event import prediction, prefetch
 from gaspart.kernels.obstacles import distance
 from gaspart.kernels.physics import flight
@@ -179,9 +180,11 @@ def correlations(displacements):
 
 def read_fields():
     """Let Python read the fields of records as the compiled kernels do: flights[i].position."""
-    plain = model.flight_dtype
-    model.flight_dtype = lambda dimension: np.dtype((np.record, plain(dimension)))
-    for module, name in ((model, "PREDICTION"), (distance, "SEGMENT"), (distance, "PLATE")):
+    for module, name in ((model, "flight_dtype"), (event_list, "page_dtype")):
+        plain = getattr(module, name)
+        setattr(module, name, lambda dimension, plain=plain: np.dtype((np.record, plain(dimension))))
+    named = (model, "PREDICTION"), (event_list, "LISTED"), (distance, "SEGMENT"), (distance, "PLATE")
+    for module, name in named:
         setattr(module, name, np.dtype((np.record, getattr(module, name))))
 
 
@@ -216,6 +219,21 @@ def nearer(positions, radii, space, slot, skin, first):
     return np.uint64(marks)
 
 
+def nearer_in_page(pages, page, point, offset, square):
+    """`event.simd.nearer`, in single precision too."""
+    total = np.zeros(8, np.float32)
+    with np.errstate(over="ignore"):  # of entries that are not used
+        for k, there in enumerate(pages[int(page)]["centres"]):
+            total += ((there - np.float32(point[k])) + np.float32(offset[k])) ** 2
+    return np.uint64(sum(int(near) << n for n, near in enumerate(total < np.float32(square))))
+
+
+def equal(numbers, start, number, mask):
+    """`event.simd.equal`."""
+    near = numbers[int(start) : int(start) + 16] & np.uint32(mask)
+    return np.uint64(sum(int(there == number) << n for n, there in enumerate(near)))
+
+
 def equals(values, first, value):
     """`simd.equals`."""
     return np.uint64(sum(int(there == value) << n for n, there in enumerate(values[int(first) :][:8])))
@@ -231,11 +249,12 @@ def compact_eight(words, first, least, kept, number):
 def do_without_vectors():
     """Replace what is written in vector instructions by plain loops."""
     search.earliest, search.list_box = earliest, list_box
+    event_list.earliest, event_list.nearer, event_list.equal = earliest, nearer_in_page, equal
     prediction.fetch = prefetch.fetch = insertion.fetch = fetch
     step_contacts.fetch = step_list.fetch = fetch
     step_list.nearer, step_list.equals, step_list.compact_eight = nearer, equals, compact_eight
     step_list.bits = lambda word: np.uint64(int(word).bit_count())
-    step_list.lowest = lambda word: np.uint64((int(word) & -int(word)).bit_length() - 1)
+    step_list.lowest = event_list.lowest = lambda word: np.uint64((int(word) & -int(word)).bit_length() - 1)
 
 
 if __name__ == "__main__":
