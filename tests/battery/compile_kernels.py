@@ -2,7 +2,8 @@
 
     PYTHONPATH=tests python -m battery.compile_kernels
 
-Otherwise two processes that need a kernel at the same time would both compile it.
+Otherwise two processes that need a kernel at the same time would both compile it. `pytest --canonical`
+refuses unmarked tests that use other loops of the engines.
 """
 
 import os
@@ -10,6 +11,7 @@ from concurrent.futures import ProcessPoolExecutor
 
 from battery.disturbed import ROWS
 from battery.kinds_of_runs import CANONICAL, start_of
+from battery.loops import LIST, loops_in_use
 from battery.test_bits import CANONICAL as CANONICAL_ROWS
 
 from gaspart.reproduction.points.point import compiled_features
@@ -31,6 +33,7 @@ def compile_run(engine, name):
     start = start_of(engine, name)
     for form in start.forms:
         start.record(form, 2)
+    return loops_in_use()
 
 
 def compile_row(name):
@@ -39,6 +42,7 @@ def compile_row(name):
     for engine in row.engines:
         for record in {False, len(row.engines) > 1}:
             row.simulation(engine, record=record).advance(until=1e-3 * row.until)
+    return loops_in_use()
 
 
 def main():
@@ -46,8 +50,9 @@ def main():
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         done = [pool.submit(compile_run, *run) for run in different(CANONICAL)]
         done += [pool.submit(compile_row, name) for name in ROWS if name in CANONICAL_ROWS]
-        for future in done:
-            future.result()
+        loops = set().union(*(future.result() for future in done))
+    LIST.parent.mkdir(exist_ok=True)
+    LIST.write_text("\n".join(sorted(loops)))
 
 
 if __name__ == "__main__":
