@@ -10,11 +10,9 @@ import os
 from concurrent.futures import ProcessPoolExecutor
 
 from battery.disturbed import ROWS
-from battery.kinds_of_runs import CANONICAL, start_of
+from battery.kinds_of_runs import CANONICAL, kernels_of, start_of
 from battery.loops import LIST, loops_in_use
 from battery.test_bits import CANONICAL as CANONICAL_ROWS
-
-from gaspart.reproduction.points.point import compiled_features
 
 
 def different(chosen):
@@ -22,9 +20,7 @@ def different(chosen):
     found = {}
     for engine, name in chosen:
         start = start_of(engine, name)
-        features = sorted(compiled_features(start.scene))
-        variant = engine, start.engine.variant(start.scene), *features, *start.forms
-        found.setdefault(variant, (engine, name))
+        found.setdefault((*kernels_of(start.engine, start.scene), *start.forms), (engine, name))
     return list(found.values())
 
 
