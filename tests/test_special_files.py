@@ -101,9 +101,15 @@ def run(tmp_path_factory):
 
 def pairs():
     """Each command with each kind of file; `make test` has each command once and each kind twice or more."""
-    for (n, command), (m, kind) in product(enumerate(COMMANDS), enumerate(KINDS)):
-        marks = () if n % len(KINDS) == m else pytest.mark.thorough
-        yield pytest.param(command, kind, id=f"{' '.join(command)}-{kind}", marks=marks)
+    return [
+        pytest.param(
+            command,
+            kind,
+            id=f"{' '.join(command)}-{kind}",
+            marks=() if n % len(KINDS) == m else pytest.mark.thorough,
+        )
+        for (n, command), (m, kind) in product(enumerate(COMMANDS), enumerate(KINDS))
+    ]
 
 
 @pytest.mark.parametrize(("command", "kind"), pairs())

@@ -112,7 +112,9 @@ def test_time_steps_err_by_twice_the_contacts_that_they_miss(dimension, missed):
     assert stepped.discretisation == pytest.approx(stepped.engine.bias(scene, "rates"), rel=1e-9)
 
 
-@pytest.mark.parametrize(("fraction", "width"), [(0.01, 5), (0.001, 3)])
+@pytest.mark.parametrize(
+    ("fraction", "width"), [(0.01, 5), pytest.param(0.001, 3, marks=pytest.mark.thorough)]
+)
 def test_points_between_walls_collide_too_often(fraction, width):
     """A particle of a diameter has fewer neighbours at a wall: in a dilute gas by half a diameter over the
     width."""

@@ -188,7 +188,9 @@ def test_a_gas_is_run_until_it_is_accurate(whole):
     assert not all(one.met for one in earlier)
 
 
-@pytest.mark.parametrize("frames", [1, 63, 64, 65, 200])
+@pytest.mark.parametrize(
+    "frames", [64, 200, *(pytest.param(n, marks=pytest.mark.thorough) for n in (1, 63, 65))]
+)
 def test_a_run_that_was_cut_short_ends_at_the_same_frame(tmp_path, monkeypatch, whole, frames):
     """Just before an examination, at it and after it, and anywhere."""
     path, reach = tmp_path / "run.nc", recording.Recording._finish_frame

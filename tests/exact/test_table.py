@@ -3,9 +3,8 @@
 from pathlib import Path
 
 import pytest
-from battery.kinds_of_runs import canonical_kernels, kernels_of
 from exact import rules, table, values
-from exact.choice import sample
+from exact.choice import is_canonical, sample
 from exact.kinds import kinds
 from exact.known import RULES
 from exact.runs import SEED, engines
@@ -20,12 +19,6 @@ WRONG = Path(__file__).with_name("known_wrong.txt")
 """Cells that are known to be wrong, a line `scene engine observable` each: to be repaired."""
 SAMPLE, MORE = 10, 4
 """Number of runs in the usual tests, and of further ones of engines that a change touches."""
-CANONICAL = [
-    run
-    for run in table.names()
-    if kernels_of(engines(run[0])[run[1]], Scene.from_dict(kinds()[run[0]].scene)) in canonical_kernels()
-]
-"""Runs of kernels that `make test` compiles anyway."""
 FINER = 5
 """Parts of the interval between frames of a kind."""
 ELSEWHERE = {
@@ -64,7 +57,9 @@ RUNS = pytest.mark.parametrize(
 )
 
 
-@pytest.mark.parametrize(("name", "engine"), sample(CANONICAL, SAMPLE, MORE))
+@pytest.mark.parametrize(
+    ("name", "engine"), sample([run for run in table.names() if is_canonical(*run)], SAMPLE, MORE)
+)
 def test_a_sample_of_runs_has_the_exact_values(name, engine):
     check(name, engine)
 

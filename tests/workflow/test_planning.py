@@ -9,7 +9,6 @@ from collections import Counter
 import pytest
 from workspace import ROOT, SMOKE
 
-from gaspart.reproduction.config import merged_with_default
 from gaspart.reproduction.points.points import points
 from gaspart.yaml_text import dump_yaml, read_yaml
 
@@ -49,10 +48,10 @@ def test_ten_thousand_points_are_planned_in_less_than_thirty_seconds(fresh, tmp_
     assert processor_time(plan) < 30.0
 
 
-def test_the_points_are_shared_among_few_cluster_jobs(fresh, monkeypatch):
+def test_the_points_are_shared_among_few_cluster_jobs(few, monkeypatch):
     monkeypatch.setenv("GASPART_SHARE", "2/3")
-    plan = fresh.plan(*SMOKE, "--", "points")
-    config, _ = merged_with_default(ROOT / "config/smoke.yaml")
+    plan = few.plan(*SMOKE, "--", "points")
+    config = few.config
     number = sum(len(points(config, experiment)) for experiment in config["experiments"])
     assert sum(plan[job] for job in SIMULATIONS & set(plan)) == len(range(1, number, 3))
 
@@ -124,8 +123,14 @@ def test_a_longer_run_reruns_its_experiment_only(smoke, tmp_path):
             ["src/gaspart/reproduction/families/equation_of_state/claims.py"],
             {"measure", "judge", "draw", "claims", "report", "all"},  # and the scatter of all claims
         ),
-        (["src/gaspart/theory/virial.py"], {"measure", "judge", "draw", "claims", "report", "all"}),
-        (["src/gaspart/reproduction/families/registry.py"], {"report", "all"}),
+        pytest.param(
+            ["src/gaspart/theory/virial.py"],
+            {"measure", "judge", "draw", "claims", "report", "all"},
+            marks=pytest.mark.thorough,
+        ),
+        pytest.param(
+            ["src/gaspart/reproduction/families/registry.py"], {"report", "all"}, marks=pytest.mark.thorough
+        ),
         (["src/gaspart/reproduction/config.py", "config/README.md"], set()),
     ],
 )
@@ -168,15 +173,15 @@ def test_warming_again_reruns_nothing_else(smoke):
     assert set(smoke.plan(*SMOKE, "--forcerun", "warm")) == {"warm"}
 
 
-def test_one_figure_and_the_named_targets_can_be_requested(fresh):
-    plan_of_all = fresh.plan(*SMOKE)
+def test_one_figure_and_the_named_targets_can_be_requested(few):
+    plan_of_all = few.plan(*SMOKE)
     assert "draw_for_journal" not in plan_of_all
-    plan = fresh.plan(*SMOKE, "--", "results/smoke/figures/virial_discs.png")
+    plan = few.plan(*SMOKE, "--", "results/smoke/figures/virial_discs.png")
     assert plan["draw"] == plan["measure"] == 1
     assert "judge" not in plan
-    assert "draw" not in fresh.plan(*SMOKE, "--", "claims")
-    assert "report" in fresh.plan(*SMOKE, "--", "report")
-    assert fresh.plan(*SMOKE, "--", "journal")["draw_for_journal"] == plan_of_all["draw"]
+    assert "draw" not in few.plan(*SMOKE, "--", "claims")
+    assert "report" in few.plan(*SMOKE, "--", "report")
+    assert few.plan(*SMOKE, "--", "journal")["draw_for_journal"] == plan_of_all["draw"]
 
 
 def test_the_full_reproduction_can_be_planned(fresh):
