@@ -12,7 +12,7 @@ PLACES = {
     # a histogram: `analysis.flow.Grid`
     r"\bhistogram(dd|2d)?\(": set(),
     # Z and the collisions' virial; `mixtures` compares the virial with that of each pair
-    r'increments\("virial_sum"\)': {"analysis/series.py", "reproduction/families/mixtures/measure.py"},
+    r'increments\("virial_sum"\)': {"analysis/series.py", "reproduction/figures/mixtures.py"},
     # impulses over the area of the moment; forces that a balance of momentum needs, without an area
     r'"wall_impulse"': {
         "analysis/series.py",

@@ -106,10 +106,10 @@ def test_the_module_of_the_docs_beside_a_rule_all_of_its_own(tmp_path):
     (tmp_path / "Snakefile").write_text(text.replace("/path/to/gaspart/Snakefile", str(ROOT / "Snakefile")))
     config = {"title": "my gas", "seed": 1, "points": "results/points", **parse_yaml(OWN[1])}
     write_yaml(tmp_path / "settings.yaml", config)
-    assert Workspace(tmp_path).plan(source=ROOT)["draw"] == 1
+    assert Workspace(tmp_path).plan(source=ROOT)["figure"] == 1
 
 
-STAGES = {"warm": 1, "simulate": 3, "measure": 1, "judge": 1, "draw": 1}
+STAGES = {"warm": 1, "simulate": 3, "figure": 1}
 
 
 def test_a_module_may_have_figures_of_its_own_only(tmp_path):

@@ -37,6 +37,12 @@ def runs(point: Point, first: int | None = None) -> Iterator[Run]:
             yield Run(scene, trajectory["time"].values[kept], trajectory.isel(frame=kept), centred)
 
 
+def kurtosis(speeds: np.ndarray) -> np.ndarray:
+    """Compute <u^4> / <u^2>^2 over the last axis (exact definition); 1 for equal speeds."""
+    square = speeds**2
+    return (square**2).mean(axis=-1) / square.mean(axis=-1) ** 2
+
+
 # Time correlations that a point's runs have accumulated, in reduced units.
 
 

@@ -17,8 +17,7 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import mean_of
 from gaspart.engines.engine import AccuracyRequest, Candidate
 from gaspart.reproduction.families.heat.gap import Gap, averages
-from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.families.speeds.measure import kurtosis
+from gaspart.reproduction.families.shared.runs import kurtosis, runs
 from gaspart.reproduction.families.tradeoff import ENGINES, FREE_TIMES, PARTS, uniform
 from gaspart.reproduction.families.tradeoff.uniform import BOUND, QUANTILE, Choice, costs, solver_of
 from gaspart.reproduction.points.point import Point
