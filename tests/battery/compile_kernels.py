@@ -13,6 +13,9 @@ from battery.disturbed import ROWS
 from battery.kinds_of_runs import CANONICAL, kernels_of, start_of
 from battery.loops import LIST, loops_in_use
 from battery.test_bits import CANONICAL as CANONICAL_ROWS
+from scenes import gas
+
+import gaspart as gp
 
 
 def different(chosen):
@@ -41,11 +44,24 @@ def compile_row(name):
     return loops_in_use()
 
 
+DISCS = gp.EventDriven(), gp.TimeStepped(2.0**-6), gp.DSMC(2.0**-4), gp.DSMC(2.0**-4, model="enskog")
+"""Engines under which many tests have a plain gas of discs."""
+
+
+def compile_discs(engine):
+    """Begin a run of discs."""
+    simulation = gp.Simulation(gas(2, 100, 0.1), engine, 1)
+    simulation.record_events = engine.records_events
+    simulation.advance(until=0.25)
+    return loops_in_use()
+
+
 def main():
     """Compile all."""
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         done = [pool.submit(compile_run, *run) for run in different(CANONICAL)]
         done += [pool.submit(compile_row, name) for name in ROWS if name in CANONICAL_ROWS]
+        done += [pool.submit(compile_discs, engine) for engine in DISCS]
         loops = set().union(*(future.result() for future in done))
     LIST.parent.mkdir(exist_ok=True)
     LIST.write_text("\n".join(sorted(loops)))
