@@ -278,8 +278,8 @@ def average(estimates: Estimate | Sequence[Estimate]) -> Estimate:
 
 
 KNOWN_FREEDOM = 2.0
-"""Minimum number of degrees of freedom for which the error of a bin counts as known. With fewer, the run is too
-short compared with the correlation time, or the bin was occupied in too few blocks.
+"""Minimum number of degrees of freedom for which the error of a bin counts as known. With fewer, the run is
+too short compared with the correlation time, or the bin was occupied in too few blocks.
 """
 
 
