@@ -38,6 +38,8 @@ FREEDOM = 6.0
 """Degrees of freedom of an error, below which it is too uncertain to be compared with."""
 LEAST = 0.25
 """Part of the places with a value that must have an error."""
+FAINT = 1e-3
+"""Part of the largest force that a few hits give."""
 EQUAL = 1e-6
 """Relative difference of values without an error."""
 
@@ -103,7 +105,8 @@ def cell_of(observable, kind, engine="event", seed=runs.SEED, longer=1.0, finer=
             results[key] = results[key] if key in results else measured(observable, data, **selection)
         except SceneError as error:
             return Cell(*place, "wrong", f"{part}: refused: {error.rule}")
-        deviations[part] = deviation_of(observable, kind, results[key], part, right, bound)
+        if not is_hardly_hit(observable, results[key], part):
+            deviations[part] = deviation_of(observable, kind, results[key], part, right, bound)
     worst = max(deviations, key=lambda part: deviations[part][0])
     deviation, text = deviations[worst]
     if deviation <= LIMIT and (beside := _beside_theory(observable, kind, data)):
@@ -182,6 +185,14 @@ def selection_in(part):
     for key, _, value in (word.partition("=") for word in part.split(",") if "=" in word):
         found[key] = value if value.isalpha() else int(value) if value.isdigit() else float(value)
     return found
+
+
+def is_hardly_hit(observable, result, part):
+    """Return True for a face that is hit so rarely that a run states no error of its small force."""
+    if observable not in ("force", "pressure"):
+        return False
+    value, error = (float(_at(part.split(","), one)) for one in (result.estimate, result.error))
+    return math.isnan(error) and abs(value) < FAINT * float(abs(result.estimate).max())
 
 
 def stated_error(observable, kind, engine):
