@@ -25,7 +25,6 @@ report: "workflow/report/workflow.rst"
 include: "workflow/rules/common.smk"
 include: "workflow/rules/warm.smk"
 include: "workflow/rules/simulate.smk"
-include: "workflow/rules/measure.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/animate.smk"
 

@@ -13,9 +13,9 @@ from sphinx.pycode import ModuleAnalyzer
 
 from gaspart.cli import lines
 from gaspart.reproduction.claims.table import fill_caption, read
+from gaspart.reproduction.config import merged_with_default
 from gaspart.reproduction.families.registry import chapter, families
 from gaspart.reproduction.report.page import CHAPTERS
-from gaspart.yaml_text import read_yaml
 
 ROOT = Path(__file__).parents[1]
 SMALL = 420, 320
@@ -35,7 +35,7 @@ def figures(folder):
         + "Each picture leads to its figure, with theory, claims and the command that makes it.\n\n"
     )
     folder.mkdir(parents=True, exist_ok=True)
-    stated = read_yaml(ROOT / "config/config.yaml")["figures"]  # in the order of the report
+    stated = merged_with_default(ROOT / "config/config.yaml")[0]["figures"]  # in the order of the report
     for title in CHAPTERS:
         shown = [figure for figure in stated if chapter(families()[figure]) == title]
         if shown:

@@ -4,7 +4,7 @@
 #
 #   snakemake --cores all --until warm -- points                                             compile the kernels, once
 #   sbatch --array=1-20 --cpus-per-task=16 --mem=16G --time=4:00:00 profiles/slurm/share.sh  simulate, in 20 jobs
-#   snakemake --cores all                                                                    measure, judge, draw
+#   snakemake --cores all                                                                    measure, judge and draw
 #
 # A point that fails is named at the end of its job's output, and the rest is finished. After a kill, the same again.
 # (Snakemake's own groups, --group-components, start Snakemake anew for each point, and end at the first that fails.)

@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from matplotlib.image import imread
 
 from gaspart.rendering import style
+from gaspart.rendering.key import save_key_picture
 from gaspart.rendering.legibility import flaws
 
 
@@ -70,3 +72,22 @@ def test_text_on_a_point_and_outside_the_canvas_is_found(panel):
     axis.text(0.5, 0.5, "on it", ha="center", va="center")
     axis.text(2.0, 0.5, "far away").set_in_layout(False)
     assert saved() == ["'far away' leaves the canvas", "'on it' lies on data"]
+
+
+@pytest.mark.parametrize(("number", "title"), [(0, "first"), (1, "second"), (None, None)])
+def test_a_key_picture_is_one_panel_with_its_labels(tmp_path, number, title):
+    with style.use_style("page"):
+        figure, axes = style.new((2.0, 1.0))
+        for axis, name in zip(axes, ("first", "second"), strict=True):
+            axis.plot([0.0, 1.0], [0.0, 1.0], label=name)
+            style.letter(axis, f"(a) {name}")
+        style.label_axes(axes[1], "time", "height", "upper left")
+        style.save(figure, tmp_path / "whole.png")
+        save_key_picture(figure, number, tmp_path / "key.png")
+        assert not flaws(figure)
+    if number is None:
+        assert figure.axes == axes
+        return
+    assert figure.axes == [axes[number]]
+    assert figure.axes[0].get_title(loc="left") == title and figure.axes[0].get_xlabel() == "time"
+    assert imread(tmp_path / "key.png").shape[:2] == (321, 480)

@@ -18,7 +18,8 @@ from malformed import one_line
 from gaspart.errors import SceneError
 from gaspart.reproduction.config import check, explain_error, judge_config, merged_with_default, read_numbers
 from gaspart.reproduction.cost import predict
-from gaspart.yaml_text import dump_yaml, read_yaml
+from gaspart.reproduction.points.points import points
+from gaspart.yaml_text import dump_yaml
 
 ROOT = Path(__file__).parents[2]
 GOOD = {
@@ -57,10 +58,13 @@ def test_a_good_config_passes():
 def test_the_effort_multiplies_the_length_of_runs_and_keeps_names_and_seeds():
     config = with_value(("effort",), 0.5)
     config["experiments"]["gas"]["point"]["equilibration"] = 1.0
+    config["experiments"]["gas"]["point"]["samples"] = 200
     whole = check(config | {"effort": 1.0})["gas"]
     for name, point in check(config)["gas"].items():
-        assert point.settings["duration"] == 0.5 * whole[name].settings["duration"]
+        long, short = whole[name].schedule, point.schedule
         assert point.seeds == whole[name].seeds
+        assert short.sample_interval == long.sample_interval and short.equilibration == long.equilibration
+        assert short.samples == 100 and short.duration < long.duration
 
 
 POINT = ("experiments", "gas", "point")
@@ -146,6 +150,41 @@ def test_the_last_file_that_holds_the_key_is_named(tmp_path):
         assert refused.value.file == named
 
 
+def test_a_config_is_merged_over_the_files_of_its_families(tmp_path):
+    folder = tmp_path / "figures"
+    folder.mkdir()
+    sections = ("experiments", "figures", "animations")
+    gas = {key: GOOD[key] for key in sections if key in GOOD}
+    small = {"experiments": {"gas": {"point": {"mass": 2.0}}}}
+    (folder / "gases.yaml").write_text(dump_yaml(gas | {"small": small}))
+    (folder / "empty.yaml").write_text("figures: {}\n")
+    rest = {key: value for key, value in GOOD.items() if key not in sections} | {"families": "all"}
+    default, own = tmp_path / "config.yaml", tmp_path / "own.yaml"
+    default.write_text(dump_yaml(rest))
+    own.write_text("sizes: small\n")
+    merged, files = merged_with_default(default)
+    assert merged == GOOD and [file.name for file in files] == ["empty.yaml", "gases.yaml", "config.yaml"]
+    merged, files = merged_with_default(own)
+    assert merged == with_value((*POINT, "mass"), 2.0) | {"sizes": "small"}
+    own.write_text("sizes: small\nfamilies: [empty]\n")
+    assert merged_with_default(own)[0]["figures"] == {}
+    small["experiments"]["gas"]["point"]["mass"] = -2.0
+    (folder / "gases.yaml").write_text(dump_yaml(gas | {"small": small}))
+    own.write_text("sizes: small\n")
+    with pytest.raises(SceneError, match="mass = -2") as refused:
+        check(*merged_with_default(own))
+    assert refused.value.file == str(folder / "gases.yaml")
+    (folder / "empty.yaml").write_text("experiment: {gas: {}}\n")
+    for families, complaint in (
+        ("all", "empty.yaml: experiment = .*: must be animations, experiments, figures, or a block of sizes"),
+        ("[../config]", "families = .*: must be all, or a list of names of files in"),
+        ("[absent]", "absent.yaml"),
+    ):
+        own.write_text(f"families: {families}\n")
+        with pytest.raises((SceneError, OSError), match=complaint):
+            merged_with_default(own)
+
+
 @pytest.mark.parametrize(
     ("keys", "value", "key", "rule"),
     [
@@ -168,7 +207,8 @@ def test_the_last_file_that_holds_the_key_is_named(tmp_path):
         ((*POINT, "duration"), 1e60, None, None),
         ((*POINT, "equilibration"), 1e60, "experiments.gas.equilibration", "makes 1e+59 sample intervals"),
         ((*POINT, "scene.x"), 1, "experiments.gas.scene.x", "but there is no scene"),
-        ((*GRID, "mass"), list(range(1, 100_001)), "experiments.gas.grid", "may have 100000 points"),
+        ((*GRID, "mass"), list(range(1, 100_001)), "experiments.gas.grid", "may have 100000"),
+        (GRID, [{"mass": list(range(1, 60_001))}] * 2, "experiments.gas.grid", "may have 100000"),
         ((*GRID, "scene.x"), ["a" * 300], "experiments.gas.grid", "name of a point may have 200"),
         ((*GRID, "scene./x"), [1], "experiments.gas.grid", "may hold letters, digits"),
     ],
@@ -317,9 +357,11 @@ def test_all_that_gaspart_imports_and_reads_comes_with_it():
 
 
 def test_the_projects_configs_are_valid_and_smoke_has_no_experiment_of_its_own():
-    full, smoke = (read_yaml(ROOT / f"config/{name}.yaml") for name in ("config", "smoke"))
-    check(full)
-    assert set(smoke["experiments"]) <= set(full["experiments"])
+    (full, _), (smoke, _) = (
+        merged_with_default(ROOT / f"config/{name}.yaml") for name in ("config", "smoke")
+    )
+    check(copy.deepcopy(full))
+    assert set(smoke["experiments"]) == set(full["experiments"]) and smoke["figures"] != full["figures"]
     assert smoke["points"] != full["points"]
     assert smoke["run"] == "smoke" and "run" not in full
 
@@ -350,7 +392,7 @@ def test_values_of_the_command_line_are_not_blamed_on_a_file(tmp_path):
     missing = {key: value for key, value in merged.items() if key != "seed"}
     with pytest.raises(SceneError, match="seed = None: is required") as caught:
         check(missing, files)
-    assert caught.value.file == str(files[0])  # which holds it
+    assert caught.value.file == str(ROOT / "config/config.yaml")  # which holds it
 
 
 def test_numbers_with_an_exponent_are_read_as_the_documentation_says(tmp_path):
@@ -387,3 +429,10 @@ def test_null_removes_a_figure_and_a_partial_config_is_a_config(tmp_path, capsys
     (tmp_path / "own.yaml").write_text("seed: 11")
     assert main(["check", str(tmp_path / "own.yaml")]) == 2
     assert "has no config/config.yaml, over which others are laid" in capsys.readouterr().err
+
+
+def test_all_grids_of_a_config_together_have_a_bound():
+    grid = {"count": list(range(60_000))}
+    config = {"seed": 1, "experiments": {"a": {"grid": grid}, "b": {"grid": grid}}}
+    with pytest.raises(SceneError, match=r"experiments\.b\.grid = 120000: .*may have 100000"):
+        points(config, "b")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from measured import COLUMNS, reference_values
-from reproduction.families.test_virial import equation_of_state
+from reproduction.figures.test_virial import equation_of_state
 
 import gaspart
 from gaspart import theory

@@ -50,7 +50,8 @@ def test_every_key_has_a_meaning():
 
 @pytest.mark.parametrize("family", sorted(set(families().values())))
 def test_every_setting_of_a_figure_is_declared_and_used(family):
-    modules = (ROOT / f"src/gaspart/reproduction/families/{family}").glob("*.py")
+    package = ROOT / "src/gaspart/reproduction"
+    modules = [*package.glob(f"families/{family}/*.py"), *package.glob(f"figures/{family}.py")]
     text = "\n".join(path.read_text(encoding="utf-8") for path in modules)
     used = set(re.findall(r'(?<!\.)\bsettings(?:\[|\.get\()"(\w+)"', text))
     declared = {

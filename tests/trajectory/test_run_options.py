@@ -141,7 +141,7 @@ SOURCES = Path(gp.__file__).parent
 NAMED_IN = {
     "impulses": {
         "analysis/impulses.py", "engines/step/arrays.py", "engines/step/settings.py",
-        "reproduction/families/pressure/measure.py", "reproduction/jobs/count_instructions.py",
+        "reproduction/figures/estimators.py", "reproduction/jobs/count_instructions.py",
     },
     "pair_impulses": {"analysis/pairs.py"},
 }  # fmt: skip

@@ -8,9 +8,7 @@ from workspace import ROOT, SMOKE, copy_of_project
 
 pytestmark = [pytest.mark.workflow, pytest.mark.thorough]
 
-BLOCK = re.compile(
-    r'^```\w+ title="(?P<path>[^"]+)"(?: after="(?P<after>[^"]+)")?\n(?P<text>.*?)^```$', re.M | re.S
-)
+BLOCK = re.compile(r'^```\w+ title="(?P<path>[^"]+)"\n(?P<text>.*?)^```$', re.M | re.S)
 
 
 @pytest.fixture(scope="module")
@@ -19,20 +17,12 @@ def workspace(tmp_path_factory):
     copy = copy_of_project(tmp_path_factory.mktemp("a new figure"))
     page = (ROOT / "docs/adding-a-figure.md").read_text(encoding="utf-8")
     blocks = list(BLOCK.finditer(page[page.index("## As a part of the package\n") :]))
-    assert len(blocks) == 8
-    places = {re.sub("/collisions/.*", "/collisions", block["path"]) for block in blocks}
-    assert len(places) == 4  # the family's folder, two configs and a caption
+    assert len({re.sub("/collisions/.*", "/collisions", block["path"]) for block in blocks}) == 3
     for block in blocks:
         file = copy.path / block["path"]
-        if block["after"] is None:
-            assert not file.exists()
-            file.parent.mkdir(exist_ok=True)
-            file.write_text(block["text"], encoding="utf-8")
-            continue
-        line = block["after"].replace("\\n", "\n") + "\n"
-        before = file.read_text(encoding="utf-8")
-        assert before.count(f"\n{line}") == 1, line
-        file.write_text(before.replace(f"\n{line}", f"\n{line}{block['text']}"), encoding="utf-8")
+        assert not file.exists()
+        file.parent.mkdir(exist_ok=True)
+        file.write_text(block["text"], encoding="utf-8")
     return copy
 
 

@@ -7,18 +7,18 @@ import sys
 from collections import Counter
 
 import pytest
-from workspace import ROOT, SMOKE
+from workspace import ROOT, SMOKE, copy_of_project
 
 from gaspart.reproduction.config import merged_with_default
 from gaspart.reproduction.points.points import points
-from gaspart.yaml_text import dump_yaml, read_yaml
+from gaspart.yaml_text import dump_yaml
 
 pytestmark = pytest.mark.workflow
 
 SIMULATIONS = {"simulate", "compute"}
-PACKING_FRACTIONS = read_yaml(ROOT / "config/smoke.yaml")["experiments"]["virial_discs"]["grid"][
-    "packing_fraction"
-]
+FULL, _ = merged_with_default(ROOT / "config/config.yaml")
+SMALL, _ = merged_with_default(ROOT / "config/smoke.yaml")
+PACKING_FRACTIONS = SMALL["experiments"]["virial_discs"]["grid"]["packing_fraction"]
 
 
 def processor_time(work):
@@ -52,8 +52,7 @@ def test_ten_thousand_points_are_planned_in_less_than_thirty_seconds(fresh, tmp_
 def test_the_points_are_shared_among_few_cluster_jobs(fresh, monkeypatch):
     monkeypatch.setenv("GASPART_SHARE", "2/3")
     plan = fresh.plan(*SMOKE, "--", "points")
-    config, _ = merged_with_default(ROOT / "config/smoke.yaml")
-    number = sum(len(points(config, experiment)) for experiment in config["experiments"])
+    number = sum(len(points(SMALL, experiment)) for experiment in SMALL["experiments"])
     assert sum(plan[job] for job in SIMULATIONS & set(plan)) == len(range(1, number, 3))
 
 
@@ -104,7 +103,7 @@ def test_adding_a_point_simulates_that_point_only(smoke, tmp_path):
     assert SIMULATIONS & set(plan) == {"simulate"}
     assert plan["simulate"] == 1
     assert "warm" not in plan
-    assert plan["measure"] == plan["draw"] == plan["judge"] == made_of_them(smoke.config)
+    assert plan["figure"] == made_of_them(smoke.config)
 
 
 def test_a_longer_run_reruns_its_experiment_only(smoke, tmp_path):
@@ -113,18 +112,14 @@ def test_a_longer_run_reruns_its_experiment_only(smoke, tmp_path):
     plan = smoke.plan(*SMOKE, str(longer))
     assert SIMULATIONS & set(plan) == {"simulate"}
     assert plan["simulate"] == len(PACKING_FRACTIONS)
-    assert plan["measure"] == made_of_them(smoke.config)
+    assert plan["figure"] == made_of_them(smoke.config)
 
 
 @pytest.mark.parametrize(
     ("paths", "expected"),
     [
-        (["src/gaspart/reproduction/families/equation_of_state/figure.py"], {"draw", "report", "all"}),
-        (
-            ["src/gaspart/reproduction/families/equation_of_state/claims.py"],
-            {"measure", "judge", "draw", "claims", "report", "all"},  # and the scatter of all claims
-        ),
-        (["src/gaspart/theory/virial.py"], {"measure", "judge", "draw", "claims", "report", "all"}),
+        (["src/gaspart/reproduction/figures/virial.py"], {"figure", "claims", "report", "all"}),
+        (["src/gaspart/theory/virial.py"], {"figure", "claims", "report", "all"}),
         (["src/gaspart/reproduction/families/registry.py"], {"report", "all"}),
         (["src/gaspart/reproduction/config.py", "config/README.md"], set()),
     ],
@@ -156,7 +151,7 @@ def test_editing_the_physics_of_a_contact_simulates_everything_again(smoke):
         plan = smoke.plan(*SMOKE)
     finally:
         undo()
-    assert set(plan) >= {"warm", "simulate", "compute", "measure", "judge", "draw"}
+    assert set(plan) >= {"warm", "simulate", "compute", "figure"}
     config = smoke.config
     shown = {name for block in config["figures"].values() for name in block["experiments"]}
     jobs = Counter(point.job for name in shown for point in points(config, name))
@@ -170,18 +165,59 @@ def test_warming_again_reruns_nothing_else(smoke):
 
 def test_one_figure_and_the_named_targets_can_be_requested(fresh):
     plan_of_all = fresh.plan(*SMOKE)
-    assert "draw_for_journal" not in plan_of_all
+    assert "figure_for_journal" not in plan_of_all
     plan = fresh.plan(*SMOKE, "--", "results/smoke/figures/virial_discs.png")
-    assert plan["draw"] == plan["measure"] == 1
-    assert "judge" not in plan
-    assert "draw" not in fresh.plan(*SMOKE, "--", "claims")
+    assert plan["figure"] == 1 and "claims" not in plan
+    assert "report" not in fresh.plan(*SMOKE, "--", "claims")
     assert "report" in fresh.plan(*SMOKE, "--", "report")
-    assert fresh.plan(*SMOKE, "--", "journal")["draw_for_journal"] == plan_of_all["draw"]
+    assert fresh.plan(*SMOKE, "--", "journal")["figure_for_journal"] == plan_of_all["figure"]
 
 
 def test_the_full_reproduction_can_be_planned(fresh):
-    plan = fresh.plan()
-    assert plan["draw"] == plan["measure"] == plan["judge"]
+    assert fresh.plan()["figure"] == len(FULL["figures"])
+
+
+GAS = """
+title: a gas
+seed: 1
+points: results/points
+experiments:
+  gas:
+    point: {dimension: 2, count: 16, radius: 0.5, packing_fraction: 0.1, boundary: periodic, temperature: 1.0,
+      arrangement: lattice, duration: 200, samples: 40}
+figures:
+  gas:
+    kind: observable
+    observable: Z
+    against: packing_fraction
+    experiments: [gas]
+    claims: [{that: at_least, value: 1.0, required: 1.0, source: repulsion, fails_if: it attracts}]
+"""
+
+
+@pytest.mark.thorough
+def test_a_figure_that_is_judged_or_drawn_otherwise_is_not_measured_again(tmp_path):
+    copy = copy_of_project(tmp_path)
+    names = ("measurements/gas.nc", "claims/gas.csv", "figures/gas.png")
+
+    def make(text):
+        """What is in the results, and the log says about the measurement."""
+        (tmp_path / "config/config.yaml").write_text(text)
+        done = copy.snakemake("--cores", "1", "--", "results/figures/gas.png")
+        assert done.returncode == 0, done.stdout
+        log = (tmp_path / "results/logs/figure/gas.log").read_text()
+        assert copy.plan("--", "results/figures/gas.png") == {}
+        return [(tmp_path / "results" / name).read_bytes() for name in names], "not measured again" in log
+
+    (numbers, claims, picture), kept = make(GAS)
+    assert not kept
+    found, kept = make(GAS.replace("required: 1.0", "required: 2.0"))
+    assert kept and found[0] == numbers and found[1] != claims and found[2] == picture
+    copy.edit("src/gaspart/rendering/style.py", '"lines.markersize": 3.5', '"lines.markersize": 9.0')
+    found, kept = make(GAS)
+    assert kept and found[0] == numbers and found[1] == claims and found[2] != picture
+    found, kept = make(GAS.replace("samples: 40", "samples: 50"))
+    assert not kept and found[0] != numbers
 
 
 def test_the_first_figures_are_of_the_full_reproduction():
@@ -190,4 +226,4 @@ def test_the_first_figures_are_of_the_full_reproduction():
     first = re.search(r"FIRST = \[name for name in \(([^)]*)\)", text)
     assert first
     named = re.findall(r'"(\w+)"', first[1])
-    assert len(named) == 3 and set(named) <= set(read_yaml(ROOT / "config/config.yaml")["figures"])
+    assert len(named) == 3 and set(named) <= set(FULL["figures"])

@@ -13,12 +13,11 @@ from gaspart.reproduction.claims import CLAIM_KINDS, VERDICTS
 from gaspart.reproduction.config import merged_with_default
 from gaspart.reproduction.cost import budgets
 from gaspart.reproduction.families.registry import families
-from gaspart.yaml_text import read_yaml
 
 pytestmark = pytest.mark.workflow
 
 ROOT = Path(__file__).parents[2]
-ALL = read_yaml(ROOT / "config/config.yaml")
+ALL, _ = merged_with_default(ROOT / "config/config.yaml")
 
 
 def test_every_figure_of_the_table_is_in_the_config():
@@ -79,7 +78,7 @@ def test_every_figure_is_drawn_for_a_column_of_a_journal_and_is_legible(smoke):
     journal = results / "figures/journal"
     assert [path.name for path in journal.glob("*.pdf")] == ["virial_discs.pdf"]  # on request
     assert (journal / "virial_discs.pdf").read_bytes().startswith(b"%PDF")
-    logs = list((results / "logs/draw").iterdir())
+    logs = list((results / "logs/figure").iterdir())
     assert len(logs) == len(smoke.figures)
     assert not [line for log in logs for line in log.read_text().splitlines() if "not legible" in line]
 

@@ -94,8 +94,9 @@ def keep_figures(folder, figures):
     config, _ = merged_with_default(folder / "config/smoke.yaml")
     experiments = {name for figure in figures for name in config["figures"][figure]["experiments"]}
     experiments |= {film["experiment"] for film in config["animations"].values() if film}
-    for path in (folder / "config/config.yaml", folder / "config/smoke.yaml"):
-        own = read_yaml(path)
-        for kind, kept in (("figures", figures), ("experiments", experiments)):
-            own[kind] = {name: block for name, block in own.get(kind, {}).items() if name in kept}
-        write_yaml(path, own)
+    for path in (folder / "config/figures").iterdir():
+        content = read_yaml(path)
+        for own in (content, content.get("smoke", {})):
+            for kind, kept in (("figures", figures), ("experiments", experiments)):
+                own[kind] = {name: block for name, block in own.get(kind, {}).items() if name in kept}
+        write_yaml(path, content)

@@ -54,3 +54,33 @@ const wide = matchMedia("(min-width: 70rem)");
 const unfold = () => document.querySelectorAll("nav details").forEach(fold => { fold.open = wide.matches; });
 wide.addEventListener("change", unfold);
 unfold();
+
+// The name of a claim on its dot: under the pointer, with the keyboard (arrows move along a strip), and at the first tap.
+const name = document.createElement("div");
+name.id = "name";
+name.hidden = true;
+document.body.append(name);
+const show = dot => {
+  const box = dot.getBoundingClientRect();
+  name.textContent = dot.ariaLabel;
+  name.hidden = false;
+  name.style.left = `${Math.max(0, Math.min(box.left, document.documentElement.clientWidth - name.offsetWidth - 8)) + scrollX}px`;
+  name.style.top = `${box.bottom + 6 + scrollY}px`;
+};
+document.querySelectorAll(".strip").forEach(strip => {
+  const listen = (type, act) => strip.addEventListener(type, event => event.target.matches(".dot") && act(event));
+  listen("pointerover", event => show(event.target));
+  listen("focusin", event => show(event.target));
+  for (const type of ["pointerout", "focusout"]) listen(type, () => { name.hidden = true; });
+  let named = null; // by the last tap
+  listen("click", event => {
+    if (event.pointerType !== "touch" || named === event.target) return;
+    event.preventDefault();
+    show(named = event.target);
+  });
+  listen("keydown", event => {
+    const next = { ArrowLeft: "previousElementSibling", ArrowRight: "nextElementSibling" }[event.key];
+    if (next && event.target[next]) event.target[next].focus();
+    if (event.key === "Escape") name.hidden = true;
+  });
+});

@@ -22,11 +22,11 @@ if " " in sys.executable:
 from gaspart.reproduction import job_server
 from gaspart.reproduction.claims.table import fill_caption
 from gaspart.reproduction.claims.table import summary
-from gaspart.reproduction.config import check, explain_error
+from gaspart.reproduction.config import FAMILIES, add_families, check, explain_error
 from gaspart.reproduction.config import read_numbers, remove_null
 from gaspart.reproduction.families import registry
 from gaspart.reproduction.families.registry import caption, functions, of_claims, titles
-from gaspart.reproduction.points.modules import digest, kernel_digest
+from gaspart.reproduction.points.modules import digest, kernel_digest, measuring_digest
 from gaspart.reproduction.points.point import TRAJECTORIES
 from gaspart.reproduction.points.points import all_points
 from gaspart.reproduction.points.points import figure_points as points_of_figure
@@ -36,8 +36,10 @@ from gaspart.errors import SceneError
 # A job on a cluster reads this file again, but need not validate ten thousand points again.
 files = ["config/config.yaml", *workflow.overwrite_configfiles]
 files = [str(name) for name in files if os.path.exists(name)]
+FOLDER_OF_FAMILIES = Path(*files[:1] or ["config/config.yaml"]).parent / FAMILIES
 if workflow.is_main_process:
     try:
+        files = [*add_families(config, FOLDER_OF_FAMILIES), *files]
         read_numbers(config, files)
         POINTS = check(config, files)
         for kept in (workflow.modifier.modify_path("results"), ".snakemake"):
@@ -51,6 +53,7 @@ if workflow.is_main_process:
         print(f"gaspart: {explain_error(error, config, used)}", file=sys.stderr)
         sys.exit(2)
 else:
+    files = [*add_families(config, FOLDER_OF_FAMILIES), *files]
     remove_null(config)
     read_numbers(config, files)
     POINTS = all_points(config)
@@ -146,6 +149,12 @@ def memory_of(wildcards):
     return 800 + count // 1000 + count * len(lengths) * vectors * 8 // 10**6
 
 
+def runtime_of(wildcards, attempt):
+    """Minutes for one point on a cluster: five times the predicted time, more at each attempt."""
+    seconds = None if workflow.local_exec else predicted_seconds(point_of(wildcards))
+    return attempt * (120 if seconds is None else max(10, round(5.0 * seconds / 60.0)))
+
+
 def caption_of(wildcards):
     """The caption as it is known before anything is measured."""
     text = OWN_CAPTIONS.get(wildcards.figure)
@@ -165,16 +174,13 @@ def flagged(path, kind):
     )
 
 
-# A digest of the modules of a stage, found from its imports, is a parameter of its rules.
-PARTS = {"measure": "measure", "judge": "claims", "draw": "figure"}
 # What families state about themselves, which the report reads by their names.
-FAMILIES = [registry.home(name) for name in titles()]
+STATED = [registry.home(name) for name in titles()]
 
 
-def sources(stage, family=None):
-    """The script of a stage, and the part of a family that it imports by name."""
-    named = [registry.module(family, PARTS[stage])] if family else []
-    return [SCRIPTS / "_job.py", SCRIPTS / f"{stage}.py", *named]
+# A digest of the modules of a job, found from its imports, is a parameter of its rule.
+def sources(stage):
+    return [SCRIPTS / "_job.py", SCRIPTS / f"{stage}.py"]
 
 
 def sources_of(point):
@@ -183,20 +189,23 @@ def sources_of(point):
     return [*sources(stage), *point.modules]
 
 
-def module_of(stage):
-    """The module of a figure's family for a stage, as a parameter of its rule."""
-    return lambda wildcards: registry.module(family(wildcards), PARTS[stage])
+def module_of(wildcards):
+    return registry.module(family(wildcards))
 
 
-def modules_of(stage):
-    """A digest of what the stage of a figure is made of, as a parameter of its rule: the files of another installed
-    package too, where that brings the family."""
+def modules_of_figure(wildcards):
+    """A digest of what a figure is made of: the files of another installed package too, where that brings the family."""
+    files = registry.files(family(wildcards))
+    return digest(*sources("figure"), *registry.parts(family(wildcards)), *files, others=files)
 
-    def found(wildcards):
-        files = registry.files(family(wildcards))
-        return digest(*sources(stage, family(wildcards)), *files, others=files)
 
-    return found
+def measuring_of(wildcards):
+    """A digest of what the numbers of a figure are made of."""
+    measure, *others = registry.parts(family(wildcards))
+    files = registry.files(family(wildcards))
+    return (
+        digest(measure, *files, others=files) if others else measuring_digest(measure, function_of(wildcards))
+    )
 
 
 def package_of(wildcards):
@@ -240,6 +249,7 @@ def page_of(figures, claims, films):
         pictures=expand("<results>/figures/{figure}.png", figure=figures),
         vectors=expand("<results>/figures/{figure}.svg", figure=figures),
         columns=expand("<results>/figures/journal/{figure}.png", figure=figures),
+        key_pictures=expand("<results>/figures/key/{figure}.png", figure=figures),
         datasets=expand("<results>/measurements/{figure}.nc", figure=figures),
         captions=[of_project(f"workflow/report/{figure}.rst") for figure in stated],
         claims=claims,

@@ -1,40 +1,85 @@
-# From numbers and curves to pictures, and from everything to one page.
+# From points to the numbers, claims and pictures of a figure, and from all figures to one table and one page.
 
 
-rule draw:
+# One job makes a figure. What it was measured from is stated in the data set, which stays until the job replaces it:
+# if only claims or drawing have changed, nothing is measured again.
+rule figure:
     input:
-        dataset="<results>/measurements/{figure}.nc",
+        points=lambda wildcards: [point.path for point in figure_points(wildcards)],
+        tables=other_claims,
     output:
+        dataset=update("<results>/measurements/{figure}.nc"),
+        claims="<results>/claims/{figure}.csv",
         png=flagged("<results>/figures/{figure}.png", "png"),
         svg=flagged("<results>/figures/{figure}.svg", "svg"),
         # The same for a column of a journal, which the report shows on narrow screens.
         journal_png="<results>/figures/journal/{figure}.png",
+        # One panel, for the gallery.
+        key="<results>/figures/key/{figure}.png",
     log:
-        "<results>/logs/draw/{figure}.log",
-    benchmark:
-        "<results>/benchmarks/draw/{figure}.tsv"
+        "<results>/logs/figure/{figure}.log",
+    priority: 1  # as points have: the longest takes half a minute, beside which timings would have to wait
     conda:
         "../envs/gaspart.yaml"
     threads: 1
     resources:
-        mem_mb=1500,
-        runtime=10,
+        mem_mb=4000,
+        runtime=30,
     params:
-        modules=modules_of("draw"),
-        module=module_of("draw"),
+        modules=modules_of_figure,
+        measuring=measuring_of,
+        module=module_of,
         function=function_of,
+        points=lambda wildcards: [point.to_dict() for point in figure_points(wildcards)],
+        settings=settings_of,
+        stated=stated_of,
+        package=package_of,
         caption=caption_of,
+        title=lambda wildcards: config["title"],
     script:
-        "../scripts/draw.py"
+        "../scripts/figure.py"
 
 
-use rule draw as draw_for_journal with:
+use rule figure as figure_for_journal with:
+    input:
+        dataset="<results>/measurements/{figure}.nc",
     output:
         journal_pdf="<results>/figures/journal/{figure}.pdf",
     log:
-        "<results>/logs/draw_for_journal/{figure}.log",
-    benchmark:
-        "<results>/benchmarks/draw_for_journal/{figure}.tsv"
+        "<results>/logs/figure_for_journal/{figure}.log",
+
+
+rule claims:
+    input:
+        tables=expand("<results>/claims/{figure}.csv", figure=FIGURES),
+    output:
+        report(
+            "<results>/tables/claims.csv",
+            caption="../report/claims.rst",
+            category="Claims",
+            labels={"figure": "all", "type": "table"},
+        ),
+    log:
+        "<results>/logs/claims.log",
+    conda:
+        "../envs/gaspart.yaml"
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    params:
+        modules=digest(*sources("claims")),
+    script:
+        "../scripts/claims.py"
+
+
+use rule claims as claims_of_first with:
+    input:
+        tables=expand("<results>/claims/{figure}.csv", figure=FIRST),
+    output:
+        "<results>/tables/first.csv",
+    log:
+        "<results>/logs/claims_of_first.log",
 
 
 rule report:
@@ -44,8 +89,6 @@ rule report:
         "<results>/report.html",
     log:
         "<results>/logs/report.log",
-    benchmark:
-        "<results>/benchmarks/report.tsv"
     conda:
         "../envs/gaspart.yaml"
     threads: 1
@@ -53,10 +96,11 @@ rule report:
         mem_mb=1000,
         runtime=10,
     params:
-        modules=digest(*sources("report"), *FAMILIES),
+        modules=digest(*sources("report"), *STATED),
         figures=FIGURES,
         own_captions=OWN_CAPTIONS,
         films=FILMS,
+        opening=config.get("opening"),
         title=lambda wildcards: config["title"],
         one_file=False,
     script:
@@ -69,13 +113,12 @@ use rule report as report_in_one_file with:
         "<results>/report-in-one-file.html",
     log:
         "<results>/logs/report_in_one_file.log",
-    benchmark:
-        "<results>/benchmarks/report_in_one_file.tsv"
     params:
-        modules=digest(*sources("report"), *FAMILIES),
+        modules=digest(*sources("report"), *STATED),
         figures=FIGURES,
         own_captions=OWN_CAPTIONS,
         films=FILMS,
+        opening=config.get("opening"),
         title=lambda wildcards: config["title"],
         one_file=True,
 
@@ -88,12 +131,11 @@ use rule report as report_of_first with:
         "<results>/first.html",
     log:
         "<results>/logs/report_of_first.log",
-    benchmark:
-        "<results>/benchmarks/report_of_first.tsv"
     params:
-        modules=digest(*sources("report"), *FAMILIES),
+        modules=digest(*sources("report"), *STATED),
         figures={figure: FIGURES[figure] for figure in FIRST},
         own_captions={},
         films={},
+        opening=None,
         title=lambda wildcards: f"{len(FIRST)} of {len(FIGURES)} figures",
         one_file=False,

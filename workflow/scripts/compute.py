@@ -7,10 +7,13 @@ with job(snakemake):
 
     load_numba(ours=True)
     from gaspart.files import whole_file
+    from gaspart.reproduction.points.trust import MADE_BY, digest_of
 
     # By its name: a job depends on what its arguments are, not on how they are written down.
     from_plain = function("gaspart.reproduction.jobs.arguments", "from_plain")
     compute = function(f"gaspart.reproduction.jobs.{snakemake.params.job}", snakemake.params.job)
-    data = compute(**from_plain(snakemake.params.parameters))
+    parameters = snakemake.params.parameters
+    data = compute(**from_plain(parameters))
+    data = data._replace(attributes={**data.attributes, MADE_BY: digest_of(parameters)})
     with whole_file(snakemake.output[0]) as partial:
         data.write(partial)

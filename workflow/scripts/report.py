@@ -79,6 +79,7 @@ with job(snakemake):
         undefined=jinja2.StrictUndefined,
     )
     environment.filters["number"] = "{:.5g}".format
+    environment.filters["longer"] = page.longer
     statements = page.statements(read_yaml(given.statements), claims)
     if not any(one["figure"] in of_figure for one in statements):  # a report of other figures
         statements = []
@@ -98,7 +99,7 @@ with job(snakemake):
         pictures=pictures,
         films=films,
         posters=posters,
-        opening=next(iter(films), None),
+        opening=params.opening if params.opening in films else next(iter(films), None),
         other_films=[film for film, beside in params.films.items() if beside not in of_figure],
         claims=claims,
         findings=page.findings(read_yaml(given.findings), claims),

@@ -5,6 +5,7 @@ Errors are single lines with file, key, value and rule.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import chdir, contextmanager, suppress
 from functools import cache
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 
 
 def merged_with_default(path: Path, base: Path | None = None) -> tuple[dict[str, Any], list[Path]]:
-    """Merge a config over its base, as the workflow does; return it with its files.
+    """Merge a config over its base and its families, as the workflow does; return it with its files.
 
     By default `base` is the `config.yaml` in the same folder. If that does not exist, it is
     `config/config.yaml` below this folder, which the workflow in this folder uses. Raises SceneError for a
@@ -44,11 +45,61 @@ def merged_with_default(path: Path, base: Path | None = None) -> tuple[dict[str,
     files = [*(file for file in bases[:1] if file.exists() and file != path), path]
     merged: dict[str, Any] = {}
     for file in files:
+        merged = _merge(merged, _read_mapping(file))
+    return merged, [*add_families(merged, files[0].parent / FAMILIES), *files]
+
+
+FAMILIES = "figures"
+"""Folder beside a config, with a file for each family of figures."""
+_SECTIONS = {"experiments", "figures", "animations"}
+
+
+def add_families(config: dict[str, Any], folder: Path) -> list[Path]:
+    """Merge a config, in place, over the files of its families, and return these files.
+
+    The key `families` names files of the folder, or is `all`. The key `sizes` names a block in these files,
+    which is merged over the rest. Raises SceneError.
+    """
+    named, sizes = config.pop("families", None), config.get("sizes")
+    if named is None:
+        return []
+    if named == "all":
+        named = sorted(path.stem for path in folder.glob("*.yaml"))
+    if not isinstance(named, list) or not all(re.fullmatch(r"[a-z][a-z0-9_]*", str(name)) for name in named):
+        raise SceneError("families", named, f"must be all, or a list of names of files in {folder}")
+    files = [folder / f"{name}.yaml" for name in named]
+    below: dict[str, Any] = {}
+    for file in files:
+        content = _read_mapping(file)
+        for key in content.keys() - _SECTIONS:
+            if not isinstance(content[key], dict) or content[key].keys() - _SECTIONS:
+                rule = f"must be {', '.join(sorted(_SECTIONS))}, or a block of sizes with such keys"
+                raise SceneError(key, content[key], rule, str(file))
+        for part in ({key: content[key] for key in content.keys() & _SECTIONS}, content.get(sizes, {})):
+            below = _merge(below, part)
+    merged = _merge(below, config)
+    config.clear()
+    config.update(merged)
+    return files
+
+
+def _read_mapping(file: Path) -> dict[str, Any]:
+    content = read_yaml(file)
+    if not isinstance(content, dict):
+        raise SceneError("config", content, "must be a mapping of keys to values", str(file))
+    return content
+
+
+def _contents(config: Any, files: Sequence[str | Path]) -> list[tuple[str, Any]]:
+    """Return the contents of the files of a config, in the order of merging, with their blocks of `sizes`."""
+    sizes = config.get("sizes") if isinstance(config, dict) else None
+    contents: list[tuple[str, Any]] = []
+    for file in files:
         content = read_yaml(file)
-        if not isinstance(content, dict):
-            raise SceneError("config", content, "must be a mapping of keys to values", str(file))
-        merged = _merge(merged, content)
-    return merged, files
+        contents.append((str(file), content))
+        if isinstance(content, dict) and isinstance(sizes, str) and sizes in content:
+            contents.append((str(file), content[sizes]))
+    return contents
 
 
 def _merge(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
@@ -88,7 +139,7 @@ def read_numbers(config: dict, files: Sequence[str | Path]) -> None:
     `files` are the merged files, in the order of merging. Text in quotes stays text. Raises SceneError for a
     file that cannot be read.
     """
-    _read_numbers(config, [read_yaml(file) for file in files])
+    _read_numbers(config, [content for _, content in _contents(config, files)])
 
 
 def _read_numbers(block: Any, held: list[Any]) -> None:
@@ -196,7 +247,7 @@ def check(config: dict, files: Sequence[str | Path] = ()) -> dict[str, dict[str,
     `files` are the merged YAML files, in the order of merging. An error names the last file that contains the
     key. Returns all points, by experiment and name. Raises SceneError.
     """
-    contents = [(str(file), read_yaml(file)) for file in files]
+    contents = _contents(config, files)
     try:
         check_values(config)
         removal = _error_of_removal(config, contents)

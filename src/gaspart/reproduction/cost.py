@@ -17,6 +17,7 @@ from gaspart.reproduction import job_time
 from gaspart.reproduction.claims.judging import Claim, judge, sufficient
 from gaspart.reproduction.config import open_config
 from gaspart.reproduction.families import registry
+from gaspart.reproduction.figure import find_parts
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.gas import Gas
 
@@ -33,7 +34,7 @@ def predict(path: str) -> list[str]:
     lines, total, unknown = [], 0.0, []
     with open_config(path) as (_, planned):
         for experiment, points in planned.items():
-            costs = [_seconds(point) for point in points.values()]
+            costs = [predicted_seconds(point) for point in points.values()]
             predicted = [seconds for seconds in costs if seconds is not None]
             if len(predicted) < len(costs):
                 unknown.append(experiment)
@@ -47,7 +48,7 @@ def predict(path: str) -> list[str]:
     return lines
 
 
-def _seconds(point: Point) -> float | None:
+def predicted_seconds(point: Point) -> float | None:
     """Predict the CPU time of a point's simulations from the theoretical number of collisions.
 
     None if this number is unknown.
@@ -219,16 +220,15 @@ def point_seconds(results: Path, point: tuple[str, str]) -> float:
 
 
 def _made(results: Path, figure: str) -> float:
-    """Return the CPU time of the jobs for numbers, verdicts and picture of a figure."""
-    jobs = (job_time.read_used(results, rule, figure) for rule in ("measure", "judge", "draw"))
-    return sum(used.seconds for used in jobs if used)
+    """Return the CPU time of the job for numbers, verdicts and pictures of a figure."""
+    used = job_time.read_used(results, "figure", figure)
+    return used.seconds if used else 0.0
 
 
 def claims_of(figure: str, block: Mapping, dataset: xr.Dataset) -> list[Claim]:
     """Return the claims of a figure, judged as in the workflow."""
     family, name = registry.functions(figure, block)
-    state = registry.function(registry.module(family, "claims"), name, "claims")
-    return list(state(dataset, *registry.stated_claims(block)))
+    return list(find_parts(registry.module(family), name).claims(dataset, *registry.stated_claims(block)))
 
 
 def is_decided_by_runs(claim: Claim) -> bool:

@@ -1,9 +1,13 @@
-"""What the module of a figure needs: the parts of a figure, and averages over blocks with errors."""
+"""Parts of a figure, averages over blocks with errors, and the key of what was measured."""
 
 from __future__ import annotations
 
+import hashlib
+import json
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,12 +22,36 @@ class Parts:
     """The parts of a figure: the settings of its config entry, and three functions.
 
     measure(points, settings) returns the data set, claims(dataset) its claims, draw(dataset) the picture.
+    `key` is the number of the panel that shows the finding; None if it is the whole picture.
     """
 
     settings: dict[str, Kind]
     measure: Callable[..., Any]
     claims: Callable[..., Iterable[Any]]
     draw: Callable[..., Any]
+    key: int | None = 0
+
+
+def find_parts(module: str, name: str) -> Parts:
+    """Return the parts of a figure in a module, or in the folder of a family, given by its import name."""
+    parts = getattr(import_module(module), "FIGURES", {}).get(name)
+    if isinstance(parts, Parts):
+        return parts
+    folder = (import_module(f"{module}.{part}") for part in ("measure", "claims", "figure"))
+    return Parts(parts or {}, *(getattr(part, name) for part in folder))
+
+
+def content_key(paths: Iterable[str | Path], *stated: Any) -> str:
+    """Return a digest of files, of those in folders too, and of plain values.
+
+    A data set with this key was made from the same content: it need not be measured again.
+    """
+    key = hashlib.sha256(json.dumps(stated).encode())
+    for path in map(Path, paths):
+        for file in sorted(path.rglob("*.nc")) if path.is_dir() else [path]:
+            with file.open("rb") as content:
+                key.update(hashlib.file_digest(content, "sha256").digest())
+    return key.hexdigest()
 
 
 class Blocks:

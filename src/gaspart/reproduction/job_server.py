@@ -51,7 +51,6 @@ _PRELOADED = (
     *("gaspart.reproduction.points.point", "gaspart.reproduction.points.jobs"),
     *("gaspart.reproduction.jobs.arguments", "gaspart.state.initial"),
 )
-_PARTS = ("measure", "claims", "figure")
 _WITH_PARENT = 1
 """Constant PR_SET_PDEATHSIG of Linux's prctl."""
 _MOST = 1 << 16
@@ -214,13 +213,12 @@ def _preload() -> None:
     A module that cannot be loaded is reported by the job that needs it.
     """
     from gaspart.kernels.compile.cache import load_numba
-    from gaspart.reproduction.families.registry import module, titles
+    from gaspart.reproduction.families.registry import modules
 
     os.environ |= dict.fromkeys(_THREADS, "1")  # a process with threads cannot be forked safely
     gc.set_threshold(1_000_000)
     load_numba(ours=True)
-    families = (module(family, part) for family in titles() for part in _PARTS)
-    for name in (*_PRELOADED, *families):
+    for name in (*_PRELOADED, *modules()):
         with suppress(Exception):
             import_module(name)
     gc.freeze()  # otherwise garbage collection in forks would write to all objects

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,9 +23,11 @@ from gaspart.reproduction.jobs.fill import fill
 from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.jobs import JOBS
 from gaspart.reproduction.points.modules import PACKAGE, closure, find_imports
+from gaspart.reproduction.points.trust import MADE_BY, digest_of, require_own
 from gaspart.scene.container import Container
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
+from gaspart.trajectory.recording import Recording
 
 
 def test_what_is_written_is_what_xarray_makes_of_it(tmp_path):
@@ -193,3 +197,52 @@ def test_failures_are_counted_until_the_attempts_are_spent(boundary):
         assert (failures[:placed] >= 0).all()
         assert (failures[placed:] == -1).all()
         assert failures[:placed].sum() + placed <= int(found["attempts"][replica]) == 300 * 60
+
+
+# A run of more effort continues the files of one of less, which Snakemake has deleted.
+
+
+def of_effort(folder, effort, **settings):
+    point = {**POINT, "duration": 40.0, "samples": 80, "equilibration": 4.0, "replicas": 2, **settings}
+    config = {"experiments": {"gas": {"point": point}}, "points": str(folder), "seed": 1, "effort": effort}
+    (point,) = checked_points(config, "gas").values()
+    simulate(folder / "gas/single", **from_plain(point.parameters))
+    return point
+
+
+@pytest.mark.parametrize("settings", [{}, {"lags": 10, "frames": 8}])
+def test_more_effort_continues_what_less_has_made(tmp_path, monkeypatch, settings):
+    of_effort(tmp_path / "at once", 1.0, **settings)
+    of_effort(tmp_path / "later", 0.5, **settings)
+    shutil.rmtree(tmp_path / "later/gas")
+    continued = []
+    restore = Recording.restore
+    monkeypatch.setattr(
+        Recording, "restore", lambda self, arrays: (continued.append(self), restore(self, arrays))
+    )
+    point = of_effort(tmp_path / "later", 1.0, **settings)
+    assert len(continued) == point.replicas == 2
+    for path in point.replica_paths:
+        other = path.replace("later", "at once")
+        assert Path(path).read_bytes() == Path(other).read_bytes()
+
+
+def test_a_file_of_another_point_is_not_measured(tmp_path):
+    point = of_effort(tmp_path / "own", 1.0)
+    require_own(point)
+    other = of_effort(tmp_path / "other", 1.0, count=50)
+    shutil.copy(other.replica_path(1), point.replica_path(1))
+    with pytest.raises(gp.SceneError, match="replica-1.nc.*was not made by the point gas/single"):
+        require_own(point)
+
+
+def test_a_data_set_of_another_point_is_not_measured(tmp_path):
+    block = {"job": "fill", "point": {"count": 10, "side": 8, "radius": 0.5, "attempts": 100, "dimension": 3}}
+    config = {"experiments": {"full": block}, "points": str(tmp_path), "seed": 1}
+    (point,) = checked_points(config, "full").values()
+    Path(point.path).parent.mkdir()
+    PointData({"n": ("x", [1.0])}, {}, {MADE_BY: digest_of(point.parameters)}).write(point.path)
+    require_own(point)
+    (other,) = checked_points({**config, "seed": 2}, "full").values()
+    with pytest.raises(gp.SceneError, match="was not made by the point full/single"):
+        require_own(other)

@@ -13,8 +13,7 @@ import xarray as xr
 from PIL import Image
 
 from gaspart.reproduction.families.registry import chapter, families, titles
-from gaspart.reproduction.families.tradeoff import ENGINES, PARTS
-from gaspart.reproduction.families.tradeoff.figure import NAMES
+from gaspart.reproduction.figures._tradeoff import ENGINES, NAMES, PARTS
 from gaspart.reproduction.report.explore import engines, series
 from gaspart.reproduction.report.page import (
     CHAPTERS,
@@ -65,20 +64,16 @@ def test_the_first_screen_counts_kinds_apart_and_names_what_disagrees():
     assert found["disagree"] == rows[1:]
 
 
-def test_the_template_identifies_sources_before_it_cites_them():
-    text = (Path(__file__).parents[3] / "workflow/report/report.html.j2").read_text(encoding="utf-8")
-    assert 'selectattr("is_source")' in text
-    assert text.index('id="sources"') < text.index('id="findings"') < text.index("| cite }}")
-
-
 def test_pictures_lie_beside_the_page_or_are_in_it(tmp_path):
     path = tmp_path / "figures" / "one.png"
     (path.parent / "journal").mkdir(parents=True)
+    (path.parent / "key").mkdir()
     Image.fromarray(np.zeros((60, 100, 3), dtype=np.uint8)).save(path, dpi=(144, 144))
     column = Image.fromarray(np.zeros((300, 150, 3), dtype=np.uint8))
     column.save(path.parent / "journal/one.png", dpi=(288, 288))
+    column.save(path.parent / "key/one.png")
     beside, within = picture(path, False), picture(path, True)
-    assert (beside.large, beside.small) == ("figures/one.svg", "figures/one.png")
+    assert (beside.large, beside.small) == ("figures/one.svg", "figures/key/one.png")
     assert beside.narrow == "figures/journal/one.png"
     assert beside.size == within.size == (100, 60)
     assert beside.narrow_size == within.narrow_size == (75, 150)

@@ -101,7 +101,9 @@ class Finished:
         folder = self.results
         yield f"{folder}/tables/claims.csv"
         for figure in self.figures:
-            yield from (f"{folder}/figures/{figure}.{kind}" for kind in ("png", "svg"))
+            yield from (
+                f"{folder}/figures/{name}" for name in (f"{figure}.png", f"{figure}.svg", f"key/{figure}.png")
+            )
             yield from (f"{folder}/claims/{figure}.csv", f"{folder}/measurements/{figure}.nc")
         for film, block in self.config.get("animations", {}).items():
             if block:

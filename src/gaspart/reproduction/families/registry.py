@@ -16,7 +16,7 @@ points)`. Other installed packages may define families of this form (`families.i
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -71,7 +71,7 @@ def families() -> dict[str, str]:
 @cache
 def _kinds() -> dict[str, str]:
     """Return the family of each kind of figures."""
-    return {kind: name for name, package in _packages().items() for kind in getattr(package, "KINDS", {})}
+    return dict.fromkeys(_packages()[_OWN].KINDS, _OWN)
 
 
 def functions(figure: str, entry: Mapping[str, Any]) -> tuple[str, str]:
@@ -86,23 +86,26 @@ def functions(figure: str, entry: Mapping[str, Any]) -> tuple[str, str]:
     return (_kinds()[kind] if kind in _kinds() else installed.family(kind)), kind
 
 
-def module(family: str, part: str) -> str:
-    """Return the name of a module of a family; `part` is `measure`, `claims` or `figure`."""
+def module(family: str) -> str:
+    """Return the name of the module, or of the package, of a family."""
+    return _packages()[family].__name__ if family in _packages() else family
+
+
+def parts(family: str) -> list[str]:
+    """Return the modules of a family's functions: one, or `measure`, `claims` and `figure` of its folder."""
     if family in _packages() and not hasattr(_packages()[family], "__path__"):
-        return _packages()[family].__name__
-    return f"{_packages()[family].__name__ if family in _packages() else family}.{part}"
+        return [module(family)]
+    return [f"{module(family)}.{part}" for part in ("measure", "claims", "figure")]
+
+
+def modules() -> list[str]:
+    """Return the modules of the functions of all families of this package."""
+    return [name for family in _packages() for name in parts(family)]
 
 
 def home(family: str) -> str:
     """Return the name of the module, or package, that states what a family is."""
     return _packages()[family].__name__
-
-
-def function(module: str, name: str, stage: str) -> Callable[..., Any]:
-    """Return the function `measure`, `claims` or `draw` of a figure in a module given by name."""
-    found = import_module(module)
-    parts = getattr(found, "FIGURES", {}).get(name)
-    return getattr(parts if isinstance(parts, Parts) else found, stage if parts else name)
 
 
 def files(family: str) -> tuple[Path, ...]:
@@ -171,8 +174,7 @@ def kinds() -> dict[str, dict[str, Kind]]:
 
     Only kinds of this package are returned.
     """
-    parts = (getattr(package, "KINDS", {}) for package in _packages().values())
-    return {kind: keys for part in parts for kind, keys in part.items()}
+    return dict(_packages()[_OWN].KINDS)
 
 
 def known_kinds() -> list[str]:

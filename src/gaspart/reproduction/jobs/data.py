@@ -57,6 +57,8 @@ class PointData(NamedTuple):
 
 SLACK = 1e-6
 """Fraction of a time step by which a run is longer, so that rounding of its duration loses no step."""
+DIVIDED = "samples at effort 1"
+"""Setting of a point of another effort: the number of intervals into which its length is divided."""
 EQUILIBRATION_KEY = describe(
     NOT_NEGATIVE,
     "time before the length, in the same unit; rounded up to whole samples, which are not measured",

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import errno
+import os
+import shutil
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -23,6 +26,7 @@ def write_replicas(
     folder: Path,
     report: Callable[[str], None] | None = None,
     overwrite: bool = True,
+    kept: Path | None = None,
 ) -> None:
     """Write the trajectory of each recipe, and call report(line) for each.
 
@@ -30,21 +34,38 @@ def write_replicas(
     all are complete, and an interrupted run resumes there. If `overwrite` is True, they replace files of an
     unfinished run with another recipe. Raises SceneError if that folder has other files: only files that
     gaspart wrote are removed.
+
+    Links to the trajectories, and their final states, are in the folder `kept`, if it is given. From there a
+    longer run is continued, after Snakemake has deleted the shorter one.
     """
     partial = Path(f"{folder}.partial")
     _make(partial)
+    if kept is not None:
+        _link(kept, partial)
     paths = replica_paths(partial, len(recipes))
     _remainders(partial, paths)  # before the work: raises an error if the folder is not ours
     for path, recipe in zip(paths, recipes, strict=True):
         if report:
             report(f"{path}: seed {recipe.seed}")
         record(recipe, path, overwrite)
+    if kept is not None:
+        shutil.rmtree(kept, ignore_errors=True)
+        _link(partial, kept)
     for leftover in _remainders(partial, paths):
         leftover.unlink()
     try:
         place_folder(partial, folder)
     except OSError as error:
         raise SceneError("path", str(folder), f"cannot be written: {error.strerror}") from None
+
+
+def _link(source: Path, target: Path) -> None:
+    """Link the files of a folder into another one, where they are missing; nothing without hard links."""
+    with suppress(OSError):
+        target.mkdir(parents=True, exist_ok=True)
+        for file in sorted(source.iterdir()):
+            if not (target / file.name).exists():
+                os.link(file, target / file.name)
 
 
 def _make(folder: Path) -> None:

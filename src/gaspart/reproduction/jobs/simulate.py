@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from gaspart.errors import SceneError
 from gaspart.keys import Kind, count, describe, flag, positive
-from gaspart.reproduction.jobs.data import EQUILIBRATION_KEY
+from gaspart.reproduction.jobs.data import DIVIDED, EQUILIBRATION_KEY
 from gaspart.reproduction.jobs.replicas import write_replicas
 from gaspart.trajectory.run_options import OPTIONS, contents_of, recipe_fields
 
@@ -94,7 +94,8 @@ def arguments(point: Point) -> dict:
         return {**common, **options, **point.ending}
     correlations = None
     if "lags" in settings:
-        lags = min(settings["lags"], (times.samples + 1) // 2)
+        whole = settings.get(DIVIDED, times.samples)
+        lags = min(settings["lags"], (whole + 1) // 2)
         correlations = {"interval": times.sample_interval, "lags": lags, "start": times.equilibration}
         correlations |= {"stress": True} if settings.get("stress") else {}
     return {
@@ -127,18 +128,21 @@ def simulate(folder: Path, **arguments: Any) -> None:
 
     The other arguments are passed to `recipes`.
     """
-    write_replicas(record, recipes(**arguments), folder, print)
+    kept = folder.parents[1] / ".kept" / folder.parent.name / folder.name
+    write_replicas(record, recipes(**arguments), folder, print, kept=kept)
 
 
 def record(recipe: Recipe, path: Path, overwrite: bool, progress: Progress | None = None) -> None:
     """Make, continue, or verify a trajectory.
 
-    A complete trajectory is left unchanged.
+    A complete trajectory is left unchanged. The final state is stored, from which a longer run continues.
     """
     from gaspart.trajectory import run as trajectory
 
     examiner = import_module(EXAMINER).Examiner() if recipe.until else None
-    options = trajectory.WriteOptions(progress=progress, overwrite=overwrite, examiner=examiner)
+    options = trajectory.WriteOptions(
+        progress=progress, overwrite=overwrite, examiner=examiner, keep_checkpoint=True
+    )
     trajectory.record(recipe, path, options)
 
 

@@ -10,6 +10,7 @@ from gaspart import engines
 from gaspart.engines.engine import required_settings
 from gaspart.errors import SceneError
 from gaspart.keys.values import LARGEST, SMALLEST
+from gaspart.reproduction.jobs.data import DIVIDED
 from gaspart.reproduction.points import point_keys
 from gaspart.reproduction.points.point_keys import ENGINE_KEYS, LENGTHS, SCANS
 
@@ -174,7 +175,7 @@ def schedule(point: Point) -> Schedule:
     (unit,) = lengths
     scale = _unit_of_time(point, unit)
     samples = settings.get("samples", 1)
-    interval = settings[unit] * scale / samples
+    interval = settings[unit] * scale / settings.get(DIVIDED, samples)
     if not SMALLEST <= interval <= LARGEST:
         rule = f"makes a sample interval of {interval:g}, which must be from {SMALLEST:g} to {LARGEST:g}"
         raise point.make_error(unit, rule)

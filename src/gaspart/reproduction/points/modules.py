@@ -10,12 +10,13 @@ whole, it represents all of these modules.
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import re
 from functools import cache
 from pathlib import Path
 
-from gaspart.kernels.compile.sources import file_digests
+from gaspart.kernels.compile.sources import file_digests, tree_digest
 from gaspart.public import read_stub
 
 PACKAGE = Path(__file__).parents[2]
@@ -52,7 +53,11 @@ def _tables(path: Path) -> frozenset[Path]:
 @cache
 def find_imports(path: Path) -> frozenset[Path]:
     """Return the files that a file of the package imports directly, with their packages."""
-    text = _TYPES.sub("", path.read_text(encoding="utf-8"))
+    return frozenset(_imports_in(_TYPES.sub("", path.read_text(encoding="utf-8"))))
+
+
+def _imports_in(text: str) -> set[Path]:
+    """Return the files that a piece of code imports, with their packages."""
     names = set(_PLAIN.findall(text))
     for base, items in _FROM.findall(text):
         names.add(base)
@@ -61,7 +66,7 @@ def find_imports(path: Path) -> frozenset[Path]:
             names |= {f"{base}.{name}", *_homes(f"{base}.{name}").values()}
             names |= {_homes(base)[name]} if name in _homes(base) else set()
     parents = {name.rsplit(".", depth)[0] for name in names for depth in range(1, name.count(".") + 1)}
-    return frozenset(file for name in names | parents if (file := _file(name)) is not None)
+    return {file for name in names | parents if (file := _file(name)) is not None}
 
 
 @cache
@@ -91,6 +96,57 @@ def digest(*roots: str | Path, others: tuple[Path, ...] = ()) -> str:
     The other files belong to another installed package. Docstrings and comments do not change the digest.
     """
     return _digest_of([*_in_order(closure(*roots)), *others])
+
+
+@cache
+def measuring_digest(module: str | Path, figure: str) -> str:
+    """Return a short digest of the code with which the module of a figure measures.
+
+    This code is what its function `measure` needs: definitions in the module, and files that these import.
+    Claims and drawing are no part of it.
+    """
+    path = module if isinstance(module, Path) else _file(module)
+    assert path is not None, module
+    tree = ast.parse(_TYPES.sub("", path.read_text(encoding="utf-8")))
+    definitions: dict[str, list[ast.stmt]] = {}
+    for node in tree.body:
+        for name in _names_bound(node):
+            definitions.setdefault(name, []).append(node)
+    measure = _measure_of(definitions["FIGURES"], figure)
+    needed, queue = {measure}, [measure]
+    while queue:
+        used = {part.id for part in ast.walk(queue.pop()) if isinstance(part, ast.Name)}
+        new = {node for name in used for node in definitions.get(name, ())} - needed
+        needed |= new
+        queue += new
+    text = "\n".join(ast.unparse(node) for node in (measure, *tree.body) if node in needed)
+    files = closure(*sorted(_imports_in(text)))
+    both = tree_digest(text.encode()) + _digest_of(_in_order(files))
+    return hashlib.sha256(both.encode()).hexdigest()[:12]
+
+
+def _names_bound(node: ast.stmt) -> list[str]:
+    """Return the names that a statement of a module defines."""
+    if isinstance(node, ast.FunctionDef | ast.ClassDef):
+        return [node.name]
+    if isinstance(node, ast.Import | ast.ImportFrom):
+        return [(alias.asname or alias.name).split(".")[0] for alias in node.names]
+    return [
+        part.id for part in ast.walk(node) if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store)
+    ]
+
+
+def _measure_of(statements: list[ast.stmt], figure: str) -> ast.AST:
+    """Return `measure` in the `Parts` of a figure; all of `FIGURES` if the figure is not stated there."""
+    for node in ast.walk(ast.Module(statements, [])):
+        if not isinstance(node, ast.Dict):
+            continue
+        for key, value in zip(node.keys, node.values, strict=True):
+            if isinstance(key, ast.Constant) and key.value == figure and isinstance(value, ast.Call):
+                named = [keyword.value for keyword in value.keywords if keyword.arg == "measure"]
+                if len(value.args) > 1 or named:
+                    return value.args[1] if len(value.args) > 1 else named[0]
+    return ast.Module(statements, [])
 
 
 @cache

@@ -18,6 +18,7 @@ from typing import Any
 
 from gaspart.errors import SceneError
 from gaspart.keys import TEXT, Kind, choice, count, describe, flag, list_of, nullable, positive, record
+from gaspart.reproduction.jobs.data import DIVIDED
 from gaspart.reproduction.points import point_keys
 from gaspart.reproduction.points.jobs import JOBS
 from gaspart.reproduction.points.point import Point, name_of
@@ -42,11 +43,14 @@ _OF_SEEDS = ("echo", "fill", "pack")
 """Jobs whose work is the same for each replica, for any length."""
 
 
-def scale_length(job: str, settings: Mapping[str, Any], multiple: float) -> dict[str, Any]:
+def scale_length(
+    job: str, settings: Mapping[str, Any], multiple: float, least: int = _LEAST_SAMPLES
+) -> dict[str, Any]:
     """Return the settings with `multiple` times as many replicas, and then longer runs.
 
-    The interval between samples is kept as long as there are enough samples. If a run does not begin with an
-    equilibration, its length is not changed, because such a run describes a process in time.
+    The intervals between samples are kept, so that a run of less effort is the beginning of one of more. It
+    has at least `least` samples, and twice as many as lags, unless there are fewer at effort 1. If a run does
+    not begin with an equilibration, its length is not changed, because it describes a process in time.
     """
     result = dict(settings)
     replicas = result.get("replicas", 1)
@@ -55,32 +59,32 @@ def scale_length(job: str, settings: Mapping[str, Any], multiple: float) -> dict
         multiple *= replicas / result["replicas"]
     if job in _OF_SEEDS or (job == "simulate" and not result.get("equilibration")) or "until" in result:
         return result
-    if job == "simulate" and "lags" not in result:
-        return result | _resample(result, multiple, _LEAST_SAMPLES, even=False)
-    return result | _resample(result, multiple, 1 if job == "simulate" else _LEAST_TIMINGS, even=True)
-
-
-def _resample(settings: Mapping[str, Any], multiple: float, least: int, even: bool) -> dict[str, Any]:
-    """Return the length and the samples of a run that is `multiple` times as long.
-
-    If `even` is True, all intervals between samples are kept, for example between lags and in timings.
-    """
-    changes: dict[str, Any] = {}
-    samples = settings.get("samples", 1)
-    each = samples // settings["frames"] if "frames" in settings else 1  # samples per frame
+    samples = result.get("samples", 1)
+    each = samples // result["frames"] if "frames" in result else 1  # samples per frame
+    least = max(least, 2 * result.get("lags", 0)) if job == "simulate" else _LEAST_TIMINGS
     frames = math.ceil(samples / each * multiple - 1e-9)
-    frames = max(frames, min(samples // each, least))
-    if "samples" in settings:
+    frames = max(frames, min(samples // each, math.ceil(least / each)))
+    changes: dict[str, Any] = {"frames": frames} if "frames" in result else {}
+    if job == "simulate":
+        return result | changes | {"samples": frames * each, DIVIDED: samples}
+    if "samples" in result:
         changes["samples"] = frames * each
-    if "frames" in settings:
-        changes["frames"] = frames
-    if even:
-        multiple = frames * each / samples
-    for unit in LENGTHS.keys() & settings.keys():
-        changes[unit] = settings[unit] * multiple
+    for unit in LENGTHS.keys() & result.keys():
+        changes[unit] = result[unit] * (frames * each / samples)
     if "steps" in changes:
         changes["steps"] = max(1, round(changes["steps"]))
-    return changes
+    return result | changes
+
+
+def _least_samples(config: Mapping[str, Any], experiment: str) -> int:
+    """Return the least number of samples of a run: those of its figures' blocks."""
+    blocks = [
+        figure.get(key, 0)
+        for figure in (config.get("figures") or {}).values()
+        if experiment in figure.get("experiments", ())
+        for key in ("blocks", "layer_blocks")
+    ]
+    return max(_LEAST_SAMPLES, *blocks, 0)
 
 
 # Keys of a config, of an experiment and of its points, with kind, default and meaning. Validation, the JSON
@@ -157,6 +161,9 @@ EXPERIMENT: dict[str, Kind] = {
         "taken, or a list of such mappings, one after the other; a single value counts as a list of one",
         default=None,
     ),
+    "effort": positive(
+        "the effort of this experiment, instead of that of the config", maximum=100, default=None
+    ),
 }
 
 ANIMATION: dict[str, Kind] = {
@@ -198,6 +205,17 @@ def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
                 default=None,
             )
         ),
+        "families": describe(
+            {"anyOf": [{"const": "all"}, {"type": "array", "items": _NAME}]},
+            "files of the folder `figures` beside the config, over which it is merged: names without .yaml, "
+            "or `all`; each has `experiments`, `figures`, `animations` and blocks of `sizes`",
+            default=[],
+        ),
+        "sizes": describe(
+            {**TEXT, **_NAME},
+            "the block in the files of the families that is merged over the rest",
+            default="",
+        ),
         "experiments": describe(
             {**named, "minProperties": 1, "additionalProperties": record(EXPERIMENT)}, "what is simulated"
         ),
@@ -216,10 +234,14 @@ def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
             "films",
             default={},
         ),
+        "opening": describe(
+            {**TEXT, **_NAME}, "the film that opens the report; by default the first", default=""
+        ),
     }
 
 
 MOST_POINTS = 100_000
+"""Maximum number of points of a config. Planning takes half a millisecond a point."""
 
 
 def points(config: dict, experiment: str) -> list[Point]:
@@ -229,7 +251,8 @@ def points(config: dict, experiment: str) -> list[Point]:
     """
     block = config["experiments"][experiment]
     where = f"experiments.{experiment}"
-    effort = config.get("effort", 1.0)
+    _check_size(config, experiment)
+    effort = block.get("effort", config.get("effort", 1.0))
     by_name: dict[str, Point] = {}
     varied = block.get("grid")
     for varying in _combinations({} if varied is None else varied, f"{where}.grid"):
@@ -237,7 +260,7 @@ def points(config: dict, experiment: str) -> list[Point]:
         name, job = name_of(varying, f"{where}.grid"), block.get("job", "simulate")
         settings = {key: _plain(key, value) for key, value in combined.items() if value is not None}
         if effort != 1.0:
-            settings = scale_length(job, settings, effort)
+            settings = scale_length(job, settings, effort, _least_samples(config, experiment))
         point = _chosen(
             Point(
                 experiment=experiment,
@@ -299,6 +322,21 @@ def figure_points(config: dict, figure: str, planned: Mapping[str, Mapping[str, 
     return chosen
 
 
+def _check_size(config: dict, experiment: str) -> None:
+    """Raise SceneError if the grids of an experiment and of those before it have too many points."""
+    total = 0
+    for name, block in config["experiments"].items():
+        grid = block.get("grid") if isinstance(block, dict) else None
+        for axes in grid if isinstance(grid, list) else [grid]:
+            values = axes.values() if isinstance(axes, dict) else ()
+            total += math.prod(len(each) if isinstance(each, list) else 1 for each in values)
+        if total > MOST_POINTS:
+            rule = f"are the points up to this grid: a config may have {MOST_POINTS}"
+            raise SceneError(f"experiments.{name}.grid", total, rule)
+        if name == experiment:
+            return
+
+
 def _combinations(grid: Any, where: str) -> list[dict]:
     """Return all combinations of the values in a mapping of lists.
 
@@ -312,7 +350,4 @@ def _combinations(grid: Any, where: str) -> list[dict]:
     for key, values in axes.items():
         if not values:
             raise SceneError(f"{where}.{key}", values, "must not be empty")
-    count = math.prod(map(len, axes.values()))
-    if count > MOST_POINTS:
-        raise SceneError(where, count, f"a grid may have {MOST_POINTS} points")
     return [dict(zip(axes, chosen, strict=True)) for chosen in itertools.product(*axes.values())]

@@ -187,8 +187,8 @@ CHAPTERS = (
     "Own figures",
 )
 """Chapters in the order of the page."""
-_THUMBNAIL, _SHARPNESS = 360, 1.6
-"""Width of a thumbnail in pixels, and resolution of pictures inside the page, in pixels per pixel of the
+_KEY, _SHARPNESS = 360, 1.6
+"""Width of a key picture in pixels, and resolution of pictures inside the page, in pixels per pixel of the
 page."""
 
 
@@ -287,6 +287,13 @@ def headline(rows: list[dict[str, Any]]) -> dict[str, Any]:
     }
 
 
+def longer(row: Mapping[str, Any]) -> float:
+    """Return the factor of the effort with which an inconclusive claim would be decided; 0 if none would."""
+    required, error = row["required_uncertainty"], row["uncertainty"]
+    undecided = row["verdict"] == "inconclusive" and required > 0.0 and math.isfinite(error)
+    return max((error / required) ** 2, 1.0) if undecided and error > required else 0.0
+
+
 def verdicts(rows: Iterable[dict[str, Any]]) -> dict[str, int]:
     """Count the claims with each verdict."""
     return dict(Counter(row["verdict"] for row in rows))
@@ -294,7 +301,7 @@ def verdicts(rows: Iterable[dict[str, Any]]) -> dict[str, int]:
 
 @dataclass(frozen=True)
 class Picture:
-    """Addresses of a figure's picture: full size, in one column for narrow screens, and thumbnail.
+    """Addresses of a figure's picture: full size, in one column for narrow screens, and key picture.
 
     The first two have sizes in pixels of the page, so that the page does not move while they are loaded.
     """
@@ -309,16 +316,20 @@ class Picture:
 def picture(path: Path, one_file: bool) -> Picture:
     """Return the picture of a figure whose PNG is `path`.
 
-    The SVG is in the same folder. The picture in one column is in the subfolder journal/. If `one_file`,
-    pictures are stored in the page as WebP, with a third of the size.
+    The SVG is in the same folder. The picture in one column is in the subfolder journal/, the key picture in
+    key/. If `one_file`, pictures are stored in the page as WebP, with a third of the size.
     """
-    column = path.parent / "journal" / path.name
+    column, key = path.parent / "journal" / path.name, path.parent / "key" / path.name
     size, narrow = _size(path), _size(column)
     if one_file:
         sharp = round(_SHARPNESS * size[0]), round(_SHARPNESS * narrow[0])
-        addresses = _webp(path, sharp[0]), _webp(column, sharp[1]), _webp(path, _THUMBNAIL)
+        addresses = _webp(path, sharp[0]), _webp(column, sharp[1]), _webp(key, _KEY)
     else:
-        addresses = address(path.with_suffix(".svg")), f"figures/journal/{path.name}", address(path)
+        addresses = (
+            address(path.with_suffix(".svg")),
+            f"figures/journal/{path.name}",
+            f"figures/key/{path.name}",
+        )
     return Picture(*addresses, size, narrow)
 
 

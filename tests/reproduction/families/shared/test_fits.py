@@ -1,31 +1,70 @@
 """Fits of the figures, made from data whose uncertainties come from a few replicas: their deviations scatter
 as those of a standard Gaussian number."""
 
+from itertools import islice
+
 import numpy as np
 import pytest
-from reproduction.families.test_adsorption import walls
-from reproduction.families.test_buoyancy import measurement, with_source
-from reproduction.families.test_displacement import spheres
-from reproduction.families.test_vibrated import beds
-from reproduction.families.test_virial import ETA
+import xarray as xr
+from reproduction.figures.test_virial import ETA
 
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.statistics import combine_estimates
-from gaspart.reproduction.families.adsorption import claims as adsorption
-from gaspart.reproduction.families.beds.claims import extrapolation
-from gaspart.reproduction.families.buoyancy import claims as buoyancy
-from gaspart.reproduction.families.equation_of_state.measure import fit_coefficients
-from gaspart.reproduction.families.motion.measure import size_series
-from gaspart.reproduction.table import Table
+from gaspart.reproduction.figures import adsorption, beds, buoyancy
+from gaspart.reproduction.figures.msd_spheres import size_series
+from gaspart.reproduction.figures.virial import fit_coefficients
+from gaspart.reproduction.table import Table, from_rows
+from gaspart.theory import enskog_viscosity, erpenbeck_wood_diffusion, number_density, yeh_hummer
+from gaspart.theory.brownian import displaced_area
 from gaspart.theory.state import compressibility_factor
 
 pytestmark = pytest.mark.thorough
 
 REPEATED = 400
-BEDS = beds(restitutions=(0.995, 0.99, 0.98, 0.95, 0.9)).isel(bed=slice(5, None))
-WELL = walls().isel(point=slice(4))
-DISCS = with_source(measurement())
-SIZES = spheres().isel(point=slice(2, 5))
+BEDS = xr.Dataset({
+    "restitution": ("bed", [0.995, 0.99, 0.98, 0.95, 0.9]),
+    **{
+        name: ("bed", np.full(5, value))
+        for name, value in {"sine": 1, "layers": 2.0, "speed": 0.4, "packing_fraction": 0.008}.items()
+    },
+})  # fmt: skip
+X, UNIT = (of(Table(BEDS, "bed")) for of in (beds.small_parameter, beds.expected_temperature))
+BEDS["temperature"] = "bed", (1.0 - 0.5 * X + 0.2 * X**2) * UNIT
+BEDS["temperature_error"] = "bed", 0.003 * UNIT
+TEMPERATURES = np.array([0.4, 0.6, 1.0, 2.0])
+WELL = xr.Dataset({
+    name: ("point", np.full(4, value) if np.isscalar(value) else value)
+    for name, value in {
+        "kind": "ideal", "mass": 1.0, "temperature": TEMPERATURES, "depth": 1.0, "width": 0.2,
+        "log_ratio": np.log(adsorption.well_ratio(1.0 / TEMPERATURES, 0.2, 2.0)), "log_ratio_error": 0.002,
+        "length": 0.2, "length_error": 0.0004,
+    }.items()
+})  # fmt: skip
+PACKING, EXPECTED = np.array([0.4, 0.3, 0.2, 0.1]), np.linspace(71.0, -1.0, 10)
+DISPLACED, BEYOND = displaced_area(PACKING, 6.0) * PACKING, np.sqrt(displaced_area(PACKING, 6.0)) - 6.0
+FIXED = from_rows("fixed", [
+    {
+        "height": n, "radius_expected": radius, "count_radius": radius, "count_radius_error": 0.03,
+        "force": mass, "force_error": 0.02 * mass, "missing": mass, "missing_error": 0.01 * mass,
+        "force_radius": radius, "force_radius_error": 0.06,
+    }
+    for n, (radius, mass) in enumerate(zip(BEYOND, DISPLACED, strict=True))
+])  # fmt: skip
+SOURCE = from_rows("source", [
+    {
+        "mass": 60.0, "density": 0.2 + 0.005 * (31.5 - height) / 8.0, "height": height, "height_error": 0.3,
+        "expected": height, "lowest": 2.5, "highest": 60.5,
+    }
+    for height in EXPECTED
+]).assign_attrs(source_density=0.2)  # fmt: skip
+SIDES = (np.array([256, 864, 2048]) / float(number_density(0.3, 3))) ** (1 / 3)
+SIZES = xr.Dataset({
+    name: ("point", np.broadcast_to(values, 3))
+    for name, values in {
+        "side": SIDES, "in_series": True, "correction": yeh_hummer(SIDES, enskog_viscosity(0.3, 3)),
+    }.items()
+})  # fmt: skip
+D = float(erpenbeck_wood_diffusion(0.3))
+SIZES = SIZES.assign(diffusion=D - SIZES.correction, diffusion_error=("point", np.full(3, 0.002 * D)))
 
 
 def scattered(rng, ds, freedom, names):
@@ -42,21 +81,21 @@ def scattered(rng, ds, freedom, names):
 
 def bed(rng):
     """The sine's limit of elastic discs."""
-    return [extrapolation(Table(scattered(rng, BEDS, 7, ["temperature"]), "bed")).estimate(0) - 1.0]
+    return [beds.extrapolation(Table(scattered(rng, BEDS, 7, ["temperature"]), "bed")).estimate(0) - 1.0]
 
 
 def well(rng):
-    """The slope in the temperature, the power of it, and the length in place of the thermal wavelength."""
-    wells = Table(scattered(rng, WELL, 11, ["log_ratio", "length"]), "point")
-    slope, power = (claim.measured - claim.expected for claim in adsorption._slopes(wells, 1.0))
-    return [slope, power, combine_estimates(wells.length) / 0.2 - 1.0]
+    """The length in place of the thermal wavelength, the slope in the temperature, the power of it."""
+    ds = scattered(rng, WELL, 11, ["log_ratio", "length"])
+    return [claim.measured - claim.expected for claim in islice(adsorption.claims(ds), 3)]
 
 
 def large_disc(rng):
     """The force and the radius, means of all heights, and the density that floats in the middle."""
-    ds = scattered(rng, DISCS, 15, ["fixed_force", "fixed_missing", "fixed_force_radius", "source_height"])
-    *_, force, radius = buoyancy._claims_on_fixed(Table.from_prefixed(ds, "fixed"))
-    neutral = buoyancy._neutral(Table.from_prefixed(ds, "source")[2:8], 31.5)
+    fixed = Table(scattered(rng, FIXED, 15, ["force", "missing", "force_radius"]), "fixed")
+    *_, force, radius = buoyancy._claim_fixed(fixed)
+    source = Table(scattered(rng, SOURCE, 15, ["height"]), "source")
+    *_, neutral = buoyancy._claim_source(source[2:8])
     return [claim.measured - claim.expected for claim in (force, radius, neutral)]
 
 

@@ -1,0 +1,39 @@
+"""Comparison of the file of a point with the point: a name alone says nothing about the content."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from gaspart.errors import SceneError
+from gaspart.reproduction.points.point import TRAJECTORIES, Point
+
+MADE_BY = "made_by"
+"""Attribute of a data set of a point: the digest of the arguments of its job."""
+
+
+def digest_of(parameters: dict[str, Any]) -> str:
+    """Return the digest of the arguments of a job, as plain values."""
+    return hashlib.sha256(json.dumps(parameters, sort_keys=True).encode()).hexdigest()[:16]
+
+
+def require_own(point: Point) -> None:
+    """Raise SceneError if a file of a point was made with other arguments than the point has."""
+    if point.job == TRAJECTORIES:
+        # by name, as in `Point.kind_of_job`: measurements do not depend on what makes trajectories
+        recipes = point.kind_of_job.recipes(**point.arguments)  # type: ignore[attr-defined]
+        read = import_module("gaspart.trajectory.recipe").read_recipe
+        other = [path for path, one in zip(point.replica_paths, recipes, strict=True) if read(path) != one]
+    else:
+        import netCDF4
+
+        with netCDF4.Dataset(point.path) as file:
+            made_by = getattr(file, MADE_BY, "")
+        other = [point.path] if made_by != digest_of(point.parameters) else []
+    for path in other:
+        folder = Path(point.path)
+        rule = f"was not made by the point {point.experiment}/{point.name} of this config: delete {folder}"
+        raise SceneError("points", path, rule)
