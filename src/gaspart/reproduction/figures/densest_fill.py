@@ -7,14 +7,13 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
-from scipy.spatial import cKDTree
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate, concise
 from gaspart.rendering import style
 from gaspart.rendering.particles import DrawnParticles, colours_of
 from gaspart.rendering.pictures import picture
+from gaspart.rendering.style import Figure
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import Parts
 from gaspart.reproduction.points.point import Point
@@ -70,6 +69,8 @@ def contacts(positions: np.ndarray, radius: float, lengths: np.ndarray) -> float
     Each of these spheres has at least four contacts with other such spheres. An isostatic packing has 6 - 6/N
     contacts per sphere.
     """
+    from scipy.spatial import cKDTree
+
     tree = cKDTree(positions % lengths, boxsize=lengths)
     pairs = tree.query_pairs(2.0 * radius * (1.0 + TOUCH), output_type="ndarray")
     held = np.ones(len(positions), dtype=bool)

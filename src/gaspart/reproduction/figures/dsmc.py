@@ -14,8 +14,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
@@ -26,6 +24,7 @@ from gaspart.analysis.statistics import combine_estimates, fit_linear, mean_of
 from gaspart.analysis.transport import green_kubo
 from gaspart.keys import count, names, record
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.families.shared.runs import series_of
 from gaspart.reproduction.figure import Parts

@@ -16,14 +16,13 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import fit_polynomial, jackknife, mean_of
 from gaspart.keys import count, list_of, names, positive
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.families.shared import PARTICLES
 from gaspart.reproduction.figure import Parts

@@ -8,12 +8,11 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.analysis.motion import Curves, line, mask_between
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.families.shared import MODE_COUPLING
 from gaspart.reproduction.figure import Parts
@@ -105,4 +104,4 @@ def _slopes(axis: Axes, long: Table) -> None:
     style.label_axes(axis, r"packing fraction $\eta$", slope, "lower left")
 
 
-FIGURES = {"msd_discs": Parts({}, measure, claims, draw)}
+FIGURES = {"msd_discs": Parts({}, measure, claims, draw, key=1)}
