@@ -385,6 +385,6 @@ def _draw_percent(axis: Axes, x: np.ndarray, ratio: Estimate, kind: int) -> None
 
 
 FIGURES = {
-    "barometric": Parts(ONE_KIND, measure_one_kind, claim_one_kind, draw_one_kind),
+    "barometric": Parts(ONE_KIND, measure_one_kind, claim_one_kind, draw_one_kind, key=3),
     "separation": Parts(TWO_KINDS, measure_two_kinds, claim_two_kinds, draw_two_kinds),
 }
