@@ -136,7 +136,8 @@ class Engine:
     def bias(self, scene: Scene, kind: str) -> float:
         """Return an upper bound of the relative error of a quantity due to the settings.
 
-        kind : kind of quantity: "rates" of collisions, "paths" of particles, or "fluxes" of momentum and heat
+        kind : kind of quantity: "rates" of collisions, "paths" of particles, "fluxes" of momentum and heat,
+            or pressures on "walls"
         """
         return 0.0
 

@@ -333,7 +333,7 @@ class DSMC(Engine):
         ----------
         scene : Scene
             The scene.
-        kind : {"rates", "paths", "fluxes"}
+        kind : {"rates", "paths", "fluxes", "walls"}
             Quantities on which the observable depends: rates of collisions, paths of particles, or fluxes of
             momentum and heat.
 
