@@ -158,7 +158,7 @@ def _content(scene: Scene, seed: int) -> dict:
         "fastest": FASTEST * math.sqrt(2.0) * (speed or math.sqrt(2.0 * _fall(scene))),
         "pushed": _SPEED * speed,
         "interval": scales(scene).crossing_time / _PICTURES,
-        "colours": [matplotlib.colors.to_hex(colour) for colour in colours],
+        "colours": np.rint(255.0 * colours).astype(int).dot([1, 1 << 8, 1 << 16]).tolist(),
         "maxwell": _maxwell(),
         "barometric": np.exp(-np.linspace(0.0, _HIGHEST, _TABLE)).tolist(),
         "ends": [_FASTEST, _HIGHEST],
