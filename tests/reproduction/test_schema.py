@@ -53,11 +53,15 @@ def test_every_setting_of_a_figure_is_declared_and_used(family):
     package = ROOT / "src/gaspart/reproduction"
     modules = [*package.glob(f"families/{family}/*.py"), *package.glob(f"figures/{family}.py")]
     text = "\n".join(path.read_text(encoding="utf-8") for path in modules)
-    used = set(re.findall(r'(?<!\.)\bsettings(?:\[|\.get\()"(\w+)"', text))
+    shared = set(re.findall(r"figures\.(_\w+) import", text))
+    used, helped = (
+        set(re.findall(r'(?<!\.)\bsettings(?:\[|\.get\()"(\w+)"', words))
+        for words in (text, "".join((package / f"figures/{name}.py").read_text() for name in shared))
+    )
     declared = {
         key for figure in families() if families()[figure] == family for key in settings()[figure]
     } - {"experiments"}
-    assert declared <= used
+    assert declared <= used | helped
     assert used - declared <= set(config_keys.POINT)  # of a point
 
 

@@ -81,6 +81,12 @@ def test_a_simulation_depends_on_no_theory_but_that_of_its_engine():
     assert theories == {f"theory/{name}.py" for name in modules}
 
 
+def test_particles_that_are_only_placed_depend_on_no_collision():
+    needed = closure(ROOT / "workflow/scripts/compute.py", "gaspart.reproduction.jobs.fill")
+    assert PACKAGE / "kernels/insertion.py" in needed
+    assert PACKAGE / "kernels/physics/contact.py" not in needed
+
+
 def test_a_figure_imports_no_large_package_that_it_does_not_need():
     """Each is 0.1 to 1 s of every job."""
     code = f"import sys, {', '.join(modules())}; print(*sys.modules)"
@@ -137,7 +143,7 @@ def test_every_rule_states_what_it_needs():
         for rule in re.split(r"^(?:rule|checkpoint) ", file.read_text(), flags=re.MULTILINE)[1:]:
             name = rule.split(":")[0]
             stated = set(re.findall(r"^    (\w+):", rule, re.MULTILINE))
-            wanted = {"output", "log", "benchmark", "threads", "resources"}
+            wanted = {"output", "log", "threads", "resources"}
             if name != "warm":  # which may have none: see there
                 wanted |= {"input"}
             assert wanted <= stated, (file.name, name)

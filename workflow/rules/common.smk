@@ -149,6 +149,12 @@ def memory_of(wildcards):
     return 800 + count // 1000 + count * len(lengths) * vectors * 8 // 10**6
 
 
+def runtime_of(wildcards, attempt):
+    """Minutes for one point on a cluster: five times the predicted time, more at each attempt."""
+    seconds = None if workflow.local_exec else predicted_seconds(point_of(wildcards))
+    return attempt * (120 if seconds is None else max(10, round(5.0 * seconds / 60.0)))
+
+
 def caption_of(wildcards):
     """The caption as it is known before anything is measured."""
     text = OWN_CAPTIONS.get(wildcards.figure)

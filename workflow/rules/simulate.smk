@@ -10,17 +10,16 @@ rule simulate:
         directory(f"{config['points']}/{{experiment}}/{{point}}"),
     log:
         "<results>/logs/simulate/{experiment}/{point}.log",
-    benchmark:
-        "<results>/benchmarks/simulate/{experiment}/{point}.tsv"
     wildcard_constraints:
         experiment=pattern(trajectories=True),
+    cache: True
     priority: 1
     conda:
         "../envs/gaspart.yaml"
     threads: 1
     resources:
         mem_mb=memory_of,
-        runtime=120,
+        runtime=runtime_of,
     params:
         modules=lambda wildcards: digest(*sources_of(point_of(wildcards))),
         job=lambda wildcards: point_of(wildcards).job,
@@ -37,17 +36,16 @@ rule compute:
         f"{config['points']}/{{experiment}}/{{point}}.nc",
     log:
         "<results>/logs/compute/{experiment}/{point}.log",
-    benchmark:
-        "<results>/benchmarks/compute/{experiment}/{point}.tsv"
     wildcard_constraints:
         experiment=pattern(trajectories=False),
+    cache: True
     priority: 1
     conda:
         "../envs/gaspart.yaml"
     threads: cores_of
     resources:
         mem_mb=memory_of,
-        runtime=120,
+        runtime=runtime_of,
     params:
         modules=lambda wildcards: digest(*sources_of(point_of(wildcards))),
         job=lambda wildcards: point_of(wildcards).job,

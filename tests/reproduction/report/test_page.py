@@ -13,8 +13,7 @@ import xarray as xr
 from PIL import Image
 
 from gaspart.reproduction.families.registry import chapter, families, titles
-from gaspart.reproduction.families.tradeoff import ENGINES, PARTS
-from gaspart.reproduction.families.tradeoff.figure import NAMES
+from gaspart.reproduction.figures._tradeoff import ENGINES, NAMES, PARTS
 from gaspart.reproduction.report.explore import engines, series
 from gaspart.reproduction.report.page import (
     CHAPTERS,

@@ -7,7 +7,7 @@ holds a "layer" (it is narrower than a particle). Replicas are cut into blocks; 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -17,6 +17,7 @@ from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import combine_estimates, fit_polynomial, fit_power_law
 from gaspart.keys import count, positive
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.figure import Blocks, Parts
@@ -28,15 +29,14 @@ from gaspart.theory.geometry import Numbers, Values, checked_packing_fraction, p
 from gaspart.theory.state import compressibility_factor
 from gaspart.theory.tables import excess_chemical_potential, packing_fraction_at
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
 TITLE, CHAPTER = "Walls that hold particles", "Gravity, heat and walls"
 SETTINGS = {
     "blocks": count("stretches of each replica"),
     "layer_blocks": count("the same of layers, in whose deep wells particles stay long"),
-    "near": positive("distance from the wall's edge within which velocities of leaving particles are read"),
+    "near": positive(
+        "distance from the edge of the well, or from where particles stick, within which the velocities of "
+        "leaving particles are read"
+    ),
     "bins": count("bins of their speeds"),
 }
 KINDS = ("ideal", "layer", "sticky")
@@ -388,4 +388,4 @@ def _log_ticks(axis: Axes, *values: float) -> None:
     axis.minorticks_off()
 
 
-FIGURES = {"adsorption": Parts(SETTINGS, measure, claims, draw)}
+FIGURES = {"adsorption": Parts(SETTINGS, measure, claims, draw, key=5)}

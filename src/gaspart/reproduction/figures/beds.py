@@ -11,8 +11,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.analysis.flow import Grid
@@ -20,6 +18,7 @@ from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import Fit, combine, fit_curve, fit_polynomial, mean_of, means_of
 from gaspart.keys import count, positive
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.families.shared.runs import runs
 from gaspart.reproduction.figure import Parts
@@ -434,6 +433,6 @@ def draw_beds(dataset: xr.Dataset) -> Figure:
 
 
 FIGURES = {
-    "settling": Parts(SETTLING, measure_settling, claim_settling, draw_settling),
-    "vibrated_bed": Parts(BED, measure_beds, claim_beds, draw_beds),
+    "settling": Parts(SETTLING, measure_settling, claim_settling, draw_settling, key=3),
+    "vibrated_bed": Parts(BED, measure_beds, claim_beds, draw_beds, key=1),
 }

@@ -8,12 +8,11 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from gaspart.analysis.statistics import mean_of
 from gaspart.keys import COUNT, count, list_of, positive, record
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.figure import Parts
 from gaspart.reproduction.figures._timings import OTHER_MACHINE, SOURCE_A, ideal, penalty, per_particle, trend
@@ -223,4 +222,4 @@ def _ideal(axis: Axes, gases: Table, kind: int, label: str) -> None:
     style.points(axis, number[rest], best[rest], 0.6 * best[rest], kind=kind, hollow=True, lolims=True)
 
 
-FIGURES = {"ideal_boxes": Parts(SETTINGS, measure, claims, draw)}
+FIGURES = {"ideal_boxes": Parts(SETTINGS, measure, claims, draw, key=1)}

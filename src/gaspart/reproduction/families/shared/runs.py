@@ -10,10 +10,8 @@ import numpy as np
 
 from gaspart.analysis import series
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.motion import Curves, average_correlations
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import autocorrelation_time, average, correlated_mean
-from gaspart.errors import SceneError
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.gas import plain_gas
 from gaspart.trajectory.reading import open_trajectory
@@ -41,32 +39,6 @@ def kurtosis(speeds: np.ndarray) -> np.ndarray:
     """Compute <u^4> / <u^2>^2 over the last axis (exact definition); 1 for equal speeds."""
     square = speeds**2
     return (square**2).mean(axis=-1) / square.mean(axis=-1) ** 2
-
-
-# Time correlations that a point's runs have accumulated, in reduced units.
-
-
-def reduced_curves(point: Point, path: str, longest: float) -> Curves:
-    """Return the curves of one replica, up to the lag `longest`, or to its last lag.
-
-    `longest` is in reduced time. The units are the particles' diameter, mass and temperature. The temperature
-    2 E' / (d (N - 1)) is computed for each replica, where E' is the energy relative to the centre of mass.
-    The scene has one species. Raises SceneError for a point without `lags`.
-    """
-    if "lags" not in point.settings:
-        raise SceneError(f"experiments.{point.experiment}.lags", None, "is required")
-    gas = plain_gas(point.scene)
-    with open_trajectory(path) as trajectory:
-        curves = average_correlations(trajectory)
-    thermal_speed = math.sqrt(curves.correlation[0] * gas.count / (gas.count - 1))
-    interval = curves.time[1] * thermal_speed / gas.diameter
-    lags = min(len(curves.time), math.ceil(longest / interval) + 1)
-    return Curves(
-        interval * np.arange(lags),
-        curves.msd[:lags] / gas.diameter**2,
-        curves.correlation[:lags] / thermal_speed**2,
-        curves.running[:lags] / (gas.diameter * thermal_speed),
-    )
 
 
 # Z and the collision rate of all replicas of a periodic point; see `gaspart.analysis.series`.

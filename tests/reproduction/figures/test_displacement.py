@@ -1,0 +1,230 @@
+"""Displacements and velocity autocorrelations of made-up trajectories, and of real gases."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+from reproduction.made import simulated
+from scenes import centred
+
+from gaspart import theory
+from gaspart.analysis.motion import Curves, correlate, line, mask_between
+from gaspart.errors import SceneError
+from gaspart.reproduction.figures import _displacement, msd_discs, msd_spheres, velocity_autocorrelation
+from gaspart.reproduction.points.point import Point
+from gaspart.trajectory.correlator import SUMS
+
+
+def point(dimension=3, count=100, packing_fraction=0.02, experiment="msd", name="single", **more):
+    """One point of a grid at temperature 1; nothing of it is run."""
+    settings = {
+        "dimension": dimension,
+        "count": count,
+        "radius": 0.5,
+        "packing_fraction": packing_fraction,
+        "boundary": "periodic",
+        "arrangement": "lattice",
+        "temperature": 1.0,
+        "engine": "event",
+        "collisions_per_particle": 120,
+        "samples": 120,
+        "displacements": True,
+        "lags": 120,
+        "replicas": 4,
+    }
+    return Point(experiment, name, "simulate", settings | more, "results/points", 1)
+
+
+def langevin(rng, one, drift=0.0, length=1.0, speed=1.0):
+    """What a run of `one` accumulates of independent particles with <v(0).v(t)> / d = exp(-rate t), at
+    Enskog's D: exact steps of the Ornstein-Uhlenbeck process.
+
+    Their D is speed^2 / rate. drift: a velocity that all share; length: unit of the displacements.
+    """
+    times, asked = one.schedule, one.parameters["correlations"]
+    frames, interval = times.samples + 1, times.sample_interval
+    count, dimension = one.settings["count"], one.settings["dimension"]
+    rate = enskog_rate(one.settings["packing_fraction"], dimension)
+    decay = math.exp(-rate * interval)
+    velocity_variance = 1.0 - decay**2
+    place_variance = (2.0 * rate * interval - 3.0 + 4.0 * decay - decay**2) / rate**2
+    covariance = (1.0 - decay) ** 2 / rate
+    noise = np.linalg.cholesky([[velocity_variance, covariance], [covariance, place_variance]])
+    place = np.zeros((count, dimension))
+    velocity = rng.standard_normal((count, dimension))
+    places, velocities = [], []
+    for _ in range(frames):
+        places.append(place)
+        velocities.append(velocity)
+        kicks = np.einsum("ij,jnd->ind", noise, rng.standard_normal((2, count, dimension)))
+        place = place + velocity * (1.0 - decay) / rate + kicks[1]
+        velocity = velocity * decay + kicks[0]
+    shared = drift * interval * np.arange(frames)[:, None, None]
+    moved, velocities = length * (np.array(places) + shared), speed * (np.array(velocities) + drift)
+    lags = asked["lags"] + 1
+    curves = correlate(centred(moved), centred(velocities), interval * length / speed, lags)
+    pairs = frames - np.arange(lags)
+    sums = (dimension * curves.correlation, curves.msd, 2 * dimension * curves.running)
+    return xr.Dataset(
+        {name: (("frame", "lag"), (values * pairs)[None]) for name, values in zip(SUMS, sums, strict=True)}
+        | {"correlated_samples": ("frame", [float(frames)])},
+        coords={"lag": curves.time, "spatial": list("xyz"[:dimension])},
+    )
+
+
+def enskog_rate(packing_fraction, dimension=3):
+    """Decay rate of the velocity in a Langevin gas with Enskog's D."""
+    return 1.0 / float(theory.enskog_diffusion(packing_fraction, dimension))
+
+
+@pytest.fixture
+def stored(monkeypatch):
+    """Stands in for the files: `stored[path] = dataset`."""
+    files = {}
+    monkeypatch.setattr(_displacement, "open_trajectory", files.__getitem__)
+    return files
+
+
+def fill(stored, one, seed, **unit):
+    """Langevin particles with Enskog's D, sampled as the point says, in the place of its trajectories."""
+    rng = np.random.default_rng(seed)
+    for path in one.replica_paths:
+        stored[path] = langevin(rng, one, **unit)
+
+
+def test_a_line_needs_four_points():
+    x = np.arange(10.0)
+    assert line(x, 3.0 * x + 1.0) == pytest.approx(3.0)
+    assert np.isnan(line(x[:3], x[:3]))
+    assert mask_between(x, 2.0, 4.0).sum() == 3
+
+
+@pytest.mark.parametrize("unit", [{}, {"drift": 7.0}, {"length": 2.0, "speed": 3.0}], ids=str)
+def test_diffusion_of_langevin_particles_in_any_unit(stored, unit):
+    one = point(collisions_per_particle=240, samples=240, radius=0.5 * unit.get("length", 1.0))
+    fill(stored, replace(one, settings={**one.settings, "radius": 0.5}), seed=4, **unit)
+    ds = msd_spheres.measure([one], {}).isel(point=0)
+    expected, error = float(theory.enskog_diffusion(0.02, 3)), float(ds["diffusion_error"])
+    assert error < 0.03 * expected
+    assert abs(float(ds["diffusion"]) - expected) < 4 * error
+    theoretical = theory.enskog_mean_squared_displacement(ds["time"].values, 0.02, 3)
+    assert ds["msd"].values[1:] == pytest.approx(theoretical[1:], rel=0.06)
+    assert ds["running"].values[-1] == pytest.approx(expected, rel=0.08)
+    assert bool(ds["largest"]) and not bool(ds["in_series"])
+
+
+def test_short_runs_compare_green_and_kubo_with_einstein(stored):
+    one = point(experiment="short", collisions_per_particle=60, samples=240)
+    fill(stored, one, seed=5)
+    ds = msd_spheres.measure([one], {}).isel(point=0)
+    assert np.isnan(ds["diffusion"])
+    assert float(ds["interval"]) == pytest.approx(0.25, rel=0.02)
+    assert abs(float(ds["integral_difference"])) < max(4 * float(ds["integral_difference_error"]), 0.01)
+    late = ds["time"] * ds["collision_rate"] > 12.0
+    integral = ds["integral"].where(late).mean()
+    assert float(integral) == pytest.approx(float(theory.enskog_diffusion(0.02, 3)), rel=0.1)
+
+
+def test_sizes_at_one_packing_fraction_make_a_series(stored):
+    chosen = [point(count=count, name=f"count={count}", packing_fraction=0.3) for count in (32, 48, 64)]
+    chosen.append(point(count=32, packing_fraction=0.05))
+    for seed, one in enumerate(chosen):
+        fill(stored, one, seed=seed)
+    ds = msd_spheres.measure(chosen, {})
+    assert ds["in_series"].values.tolist() == [True, True, True, False]
+    assert ds["largest"].values.tolist() == [False, False, True, True]
+    # Langevin particles do not feel each other: no slope, and Enskog's D in every container.
+    assert abs(float(ds["size_slope"])) < 4 * float(ds["size_slope_error"])
+    enskog = float(theory.enskog_diffusion(0.3, 3))
+    assert abs(float(ds["size_intercept"]) - enskog) < 4 * float(ds["size_intercept_error"])
+    side = ds["side"].values
+    carried = float(theory.number_density(0.3, 3)) * float(ds["diffusion"][0])
+    expected = theory.yeh_hummer(side[0], float(theory.enskog_viscosity(0.3, 3)) + carried)
+    assert float(ds["correction"][0]) == pytest.approx(float(expected))
+
+
+def test_the_slope_against_the_logarithm_is_found(monkeypatch):
+    """D(t) = a + b ln t, less what zero total momentum takes away."""
+    one = point(dimension=2, count=4096, packing_fraction=0.3)
+    time = np.linspace(0.0, 60.0, 200)
+    ramps = np.array([0.055, 0.06, 0.065])
+
+    def ramp(*_):
+        logarithm = np.log(np.maximum(time, 0.1))
+        return [Curves(time, time, time, 0.4 + b * logarithm - time / 4096) for b in ramps]
+
+    monkeypatch.setattr(_displacement, "replicas", ramp)
+    ds = msd_discs.measure([one], {}).isel(point=0)
+    assert float(ds["logarithmic_slope"]) == pytest.approx(0.06, rel=1e-9)
+    assert float(ds["logarithmic_slope_error"]) == pytest.approx(0.005 / np.sqrt(3))
+    assert "diffusion" not in ds
+    assert float(ds["fit_from"] * ds["collision_rate"]) == pytest.approx(30.0)
+    assert float(ds["slope_expected"]) == pytest.approx(float(theory.logarithmic_slope(0.3)), rel=0.4)
+    assert float(ds["fit_to"]) == pytest.approx(float(ds["sound_time"]))
+
+
+def test_a_point_without_lags_is_refused():
+    one = point()
+    del one.settings["lags"]
+    with pytest.raises(SceneError, match="experiments.msd.lags.*is required"):
+        msd_spheres.measure([one], {})
+
+
+@pytest.mark.parametrize(
+    ("change", "key"),
+    [
+        ({"displacements": False}, "displacements"),
+        ({"replicas": 1}, "replicas"),
+        ({"collisions_per_particle": 30, "samples": 30}, "collisions per particle"),
+        ({"lags": 10}, "collisions per particle.*`lags` reach half of it"),
+    ],
+)
+def test_runs_that_cannot_tell_are_refused(stored, change, key):
+    one = point(**change)
+    fill(stored, one, seed=6)
+    with pytest.raises(SceneError, match=key):
+        msd_spheres.measure([one], {})
+
+
+def test_a_real_gas_diffuses_as_enskog_says(tmp_path):
+    one = point(count=108, packing_fraction=0.03, equilibration=10, replicas=3)
+    one = simulated(replace(one, root=str(tmp_path)))
+    ds = msd_spheres.measure([one], {}).isel(point=0)
+    assert float(ds["diffusion"]) == pytest.approx(float(theory.enskog_diffusion(0.03, 3)), rel=0.15)
+    theoretical = theory.enskog_mean_squared_displacement(ds["time"].values, 0.03, 3)
+    assert ds["msd"].values[1] == pytest.approx(theoretical[1], rel=0.03)
+
+
+def test_the_start_of_a_gas_is_enskogs_and_momentum_is_restored(tmp_path):
+    settings = {
+        "dimension": 3, "count": 256, "radius": 0.5, "boundary": "periodic", "packing_fraction": 0.2,
+        "temperature": 2.0, "arrangement": "lattice", "collisions_per_particle": 12, "equilibration": 20,
+        "samples": 240, "lags": 120, "replicas": 3,
+    }  # fmt: skip
+    point = simulated(Point("memory", "single", "simulate", settings, str(tmp_path), 3))
+    fitted = {"start_to": 0.4, "tail": [2.0, 4.0]}
+    ds = velocity_autocorrelation.measure([point], fitted).isel(point=0)
+    assert abs(ds["start_rate"].item() - 2.0 / 3.0) < 4.0 * ds["start_rate_error"].item() < 0.1
+    assert ds["correlation"][0].item() == pytest.approx(1.0, rel=1e-12)  # (1 - 1/N) + 1/N
+    assert ds["collisions"][1].item() == pytest.approx(0.05, rel=0.1)
+    assert np.isnan(ds["tail_ratio"].item())
+    ds = velocity_autocorrelation.measure([point], fitted | {"start_to": 0.1}).isel(point=0)
+    assert np.isnan(ds["start_rate"].item()) and np.isfinite(ds["tail_ratio"].item())
+
+
+def test_the_initial_rate_is_that_of_the_logarithm():
+    s = np.linspace(0.05, 0.3, 6)
+    assert velocity_autocorrelation.initial_rate(s, np.exp(-0.7 * s + 0.1 * s**2)) == pytest.approx(
+        0.7, rel=1e-10
+    )
+
+
+def test_the_tail_is_extrapolated_over_the_modes():
+    s = np.linspace(16.0, 60.0, 45)
+    modes = s**-1.5
+    fitted = velocity_autocorrelation.fit_tail(s, modes * (1.1 + 5.0 / s), modes)
+    np.testing.assert_allclose(fitted, [1.1, 5.0], rtol=1e-9)
