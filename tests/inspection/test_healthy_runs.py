@@ -149,7 +149,7 @@ def test_one_speed_that_is_one_per_cent_off(good, isolated):
 
 
 def test_all_speeds_one_per_cent_off(good):
-    assert outcome(replace(good, velocities=1.01 * good.velocities))["flights"] is False
+    assert outcome(replace(good, velocities=1.01 * np.array(good.velocities)))["flights"] is False
     assert outcome(replace(good, time=1.01 * good.time))["flights"] is False
 
 
@@ -161,7 +161,7 @@ def test_a_missing_momentum(good):
 
 
 def test_an_overlap_of_a_millionth(good):
-    exact = replace(good, positions=good.positions[:1] + 0.0, velocities=None, time=None, resolution=0.0)
+    exact = replace(good, positions=np.array(good.positions[:1]), velocities=None, time=None, resolution=0.0)
     pair = np.array(exact.positions)
     pair[0, 0] = pair[0, 1] + [1.0 - 1e-6, 0.0, 0.0]
     keep = np.ones(good.count, dtype=bool)

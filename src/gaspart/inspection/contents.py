@@ -107,7 +107,8 @@ def complete_frames(contents: Contents, overrides: Overrides, path: str) -> Fram
         _require_finite("velocities", contents.velocities, path)
     sort_by_id(contents, path)
     if contents.lengths is None and overrides.lengths is None:
-        raise SceneError("lengths", None, "is not stated: give --lengths X,Y[,Z]", path)
+        line = ", or write the sides as the second line" if path.endswith(".xyz") else ""
+        raise SceneError("lengths", None, f"is not stated: give --lengths X,Y[,Z]{line}", path)
     radii = _per_frame(_radii(contents, overrides, path))
     d = _dimension(contents, overrides, 2.0 * float(radii.max()))
     sides, container = _container(contents, overrides, d, path)
