@@ -227,8 +227,8 @@ def _made(results: Path, figure: str) -> float:
 
 def claims_of(figure: str, block: Mapping, dataset: xr.Dataset) -> list[Claim]:
     """Return the claims of a figure, judged as in the workflow."""
-    family, name = registry.functions(figure, block)
-    return list(find_parts(registry.module(family), name).claims(dataset, *registry.stated_claims(block)))
+    family, name = registry.find(figure, block)
+    return list(find_parts(registry.home(family), name).claims(dataset, *registry.stated_claims(block)))
 
 
 def is_decided_by_runs(claim: Claim) -> bool:

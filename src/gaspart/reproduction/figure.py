@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import json
+import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import cache
 from importlib import import_module
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -32,9 +36,22 @@ class Parts:
     key: int | None = 0
 
 
+@cache
+def load_module(module: str) -> ModuleType:
+    """Return a module by its import name, or by its path, which ends in .py."""
+    if not module.endswith(".py"):
+        return import_module(module)
+    spec = spec_from_file_location(module, module)
+    assert spec is not None and spec.loader is not None
+    sys.modules[module] = loaded = module_from_spec(spec)  # where dataclasses look for it
+    spec.loader.exec_module(loaded)
+    return loaded
+
+
 def find_parts(module: str, name: str) -> Parts:
-    """Return the parts of a figure in a module, or in the folder of a family, given by its import name."""
-    parts = getattr(import_module(module), "FIGURES", {}).get(name)
+    """Return the parts of a figure, or of a kind of figures, in a module."""
+    loaded = load_module(module)
+    parts = {**getattr(loaded, "KINDS", {}), **getattr(loaded, "FIGURES", {})}.get(name)
     if isinstance(parts, Parts):
         return parts
     folder = (import_module(f"{module}.{part}") for part in ("measure", "claims", "figure"))

@@ -1,17 +1,11 @@
-"""Registry of the families of figures, found in the folders of this package.
+"""Registry of figures: the modules of `reproduction.figures`, and a user's own by their paths.
 
-Each family is a folder. Its `__init__.py` states the `TITLE`, the `CHAPTER` of the report, and the `FIGURES`.
-It imports nothing that takes long. The modules `measure.py`, `claims.py` and `figure.py` each have a function
-with the name of each figure. `FIGURES` declares the settings of each figure: the kind of each key, with its
-meaning.
+A module states a `TITLE`, a `CHAPTER` of the report, and in `FIGURES` the `Parts` of each figure. `OF_CLAIMS`
+means that its figures are made from the claims of all other figures, instead of points. `SERIES` and `COSTS`
+define choices of the reader on the page of the report (`report.explore`): figures of an equation of state,
+with dimension and largest packing fraction, and figures of the cost of an accuracy.
 
-A family may also state `OF_CLAIMS`: its figures are then made from the claims of all other figures, instead
-of points. Two more constants define choices of the reader on the page of the report (`report.explore`).
-`SERIES` are figures of an equation of state, with dimension and largest packing fraction. `COSTS` are figures
-of the cost of an accuracy. `KINDS` are kinds of figures, with their settings; a config chooses the names of
-such figures. The config entry of such a figure has `kind`, the name of the functions. Such a family also has
-the function `caption(settings)`. If its settings have rules of their own, it has `validate(figure, settings,
-points)`. Other installed packages may define families of this form (`families.installed`).
+A figure of the user's has the `kind` of a figure of `figures.own`, or a `module` beside the config.
 """
 
 from __future__ import annotations
@@ -23,178 +17,130 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+from gaspart.errors import SceneError
 from gaspart.keys import Kind
-from gaspart.reproduction.families import installed
-from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figure import Parts, find_parts, load_module
+from gaspart.reproduction.figures import own
 
 if TYPE_CHECKING:
     from gaspart.reproduction.points.point import Point
 
-_OWN = "own"
-"""Family, and chapter, of figures whose names a config chooses."""
-
 
 @cache
-def _packages() -> dict[str, ModuleType]:
-    """Return the package of each family, in alphabetical order."""
+def _modules() -> dict[str, ModuleType]:
+    """Return the module of each family, in alphabetical order."""
     here = Path(__file__).parent
     names = {path.parent.name: "families" for path in here.glob("*/figure.py")}
     names |= {path.stem: "figures" for path in here.parent.glob("figures/[a-z]*.py")}
     return {name: import_module(f"gaspart.reproduction.{names[name]}.{name}") for name in sorted(names)}
 
 
+def _module(family: str) -> ModuleType:
+    return _modules()[family] if family in _modules() else load_module(family)
+
+
 def titles() -> dict[str, str]:
     """Return the title of each family, in alphabetical order of the families."""
-    return {name: package.TITLE for name, package in _packages().items()}
+    return {name: module.TITLE for name, module in _modules().items()}
 
 
-def title(figure: str, entry: Mapping[str, Any]) -> str:
-    """Return the title of the family of a figure from the figure's config entry.
-
-    Raises SceneError.
-    """
-    family, _ = functions(figure, entry)
-    return titles()[family] if family in _packages() else str(installed.package(entry["kind"]).TITLE)
+def title(family: str) -> str:
+    """Return the title of a family."""
+    return str(getattr(_module(family), "TITLE", own.TITLE))
 
 
 def chapter(family: str) -> str:
     """Return the chapter of the report that contains a family."""
-    return str(_packages().get(family, _packages()[_OWN]).CHAPTER)
+    return str(_modules().get(family, own).CHAPTER)
 
 
 @cache
 def families() -> dict[str, str]:
     """Return the family of each figure."""
-    return {figure: name for name, package in _packages().items() for figure in package.FIGURES}
+    return {figure: name for name, module in _modules().items() for figure in module.FIGURES}
 
 
-@cache
-def _kinds() -> dict[str, str]:
-    """Return the family of each kind of figures."""
-    return dict.fromkeys(_packages()[_OWN].KINDS, _OWN)
+def find(figure: str, entry: Mapping[str, Any]) -> tuple[str, str]:
+    """Return the family of a figure of a config, and the name of its parts.
 
-
-def functions(figure: str, entry: Mapping[str, Any]) -> tuple[str, str]:
-    """Return the family of a figure of a config, and the name of its functions.
-
-    `entry` is the config entry of the figure. A family of another installed package is named by its import
-    name. Raises SceneError.
+    `entry` is the config entry of the figure. The family of a user's module is its path.
     """
-    kind = entry.get("kind")
-    if kind is None:
-        return families()[figure], figure
-    return (_kinds()[kind] if kind in _kinds() else installed.family(kind)), kind
+    if "module" in entry:
+        return entry["module"], figure
+    return ("own", entry["kind"]) if "kind" in entry else (families()[figure], figure)
 
 
-def module(family: str) -> str:
-    """Return the name of the module, or of the package, of a family."""
-    return _packages()[family].__name__ if family in _packages() else family
+def home(family: str) -> str:
+    """Return the import name, or the path, of the module of a family."""
+    return _modules()[family].__name__ if family in _modules() else family
 
 
 def parts(family: str) -> list[str]:
     """Return the modules of a family's functions: one, or `measure`, `claims` and `figure` of its folder."""
-    if family in _packages() and not hasattr(_packages()[family], "__path__"):
-        return [module(family)]
-    return [f"{module(family)}.{part}" for part in ("measure", "claims", "figure")]
+    if not hasattr(_module(family), "__path__"):
+        return [home(family)]
+    return [f"{home(family)}.{part}" for part in ("measure", "claims", "figure")]
 
 
 def modules() -> list[str]:
     """Return the modules of the functions of all families of this package."""
-    return [name for family in _packages() for name in parts(family)]
+    return [name for family in _modules() for name in parts(family)]
 
 
-def home(family: str) -> str:
-    """Return the name of the module, or package, that states what a family is."""
-    return _packages()[family].__name__
+def caption(entry: Mapping[str, Any]) -> str:
+    """Return the caption of a user's figure, from its config entry."""
+    return own.caption(entry)
 
 
-def files(family: str) -> tuple[Path, ...]:
-    """Return the files of the other installed package that defines a family.
-
-    The list is empty for a family of this package.
-    """
-    return () if family in _packages() else tuple(installed.files(family))
-
-
-def package_of(entry: Mapping[str, Any]) -> str:
-    """Return name and version of the other package that defines a kind; "" for this package."""
-    kind = entry.get("kind")
-    return "" if kind is None or kind in _kinds() else installed.source(kind)
-
-
-def caption(settings: Mapping[str, Any]) -> str:
-    """Return the caption of a figure whose name a config chooses, from its settings.
-
-    Raises SceneError.
-    """
-    if settings["kind"] in _kinds():
-        return str(_packages()[_kinds()[settings["kind"]]].caption(settings))
-    return installed.caption(settings)
-
-
-def validate(figure: str, settings: Mapping[str, Any], points: Sequence[Point]) -> None:
-    """Apply the rules of a figure that go beyond the kinds of its settings.
+def validate(figure: str, entry: Mapping[str, Any], points: Sequence[Point]) -> None:
+    """Apply the rules of a figure with a `kind` that go beyond the kinds of its settings.
 
     `points` are the points of the figure. Raises SceneError.
     """
-    if settings["kind"] in _kinds():
-        _packages()[_kinds()[settings["kind"]]].validate(figure, settings, points)
-    else:
-        installed.validate(figure, settings, points)
+    if "kind" in entry:
+        own.validate(figure, entry, points)
 
 
 def of_claims() -> frozenset[str]:
     """Return the figures that are made from the claims of all other figures."""
-    stated = (package for package in _packages().values() if getattr(package, "OF_CLAIMS", False))
-    return frozenset(figure for package in stated for figure in package.FIGURES)
+    stated = (module for module in _modules().values() if getattr(module, "OF_CLAIMS", False))
+    return frozenset(figure for module in stated for figure in module.FIGURES)
 
 
 def series() -> dict[str, tuple[int, float]]:
     """Return dimension and largest packing fraction for each figure of an equation of state."""
-    parts = (getattr(package, "SERIES", {}) for package in _packages().values())
-    return {figure: stated for part in parts for figure, stated in part.items()}
+    stated = (getattr(module, "SERIES", {}) for module in _modules().values())
+    return {figure: limits for part in stated for figure, limits in part.items()}
 
 
 def costs() -> list[str]:
     """Return the figures of the cost of an accuracy."""
-    return [figure for package in _packages().values() for figure in getattr(package, "COSTS", [])]
+    return [figure for module in _modules().values() for figure in getattr(module, "COSTS", [])]
 
 
 def settings() -> dict[str, dict[str, Kind]]:
     """Return the settings of each figure's measurement."""
     return {
         figure: keys.settings if isinstance(keys, Parts) else keys
-        for package in _packages().values()
-        for figure, keys in package.FIGURES.items()
+        for module in _modules().values()
+        for figure, keys in module.FIGURES.items()
     }
 
 
 def kinds() -> dict[str, dict[str, Kind]]:
-    """Return the settings of each kind of figures whose name a config chooses.
-
-    Only kinds of this package are returned.
-    """
-    return dict(_packages()[_OWN].KINDS)
+    """Return the settings of each kind of figures whose name a config chooses."""
+    return {kind: parts.settings for kind, parts in own.KINDS.items()}
 
 
-def known_kinds() -> list[str]:
-    """Return the kinds of this package, then of other installed packages, without import."""
-    return [*_kinds(), *(kind for kind in installed.kinds() if kind not in _kinds())]
-
-
-def settings_of_kind(kind: str) -> dict[str, Kind]:
-    """Return the settings of a kind of figures, of this or another package.
-
-    Raises SceneError.
-    """
-    settings: dict[str, Kind] = kinds()[kind] if kind in _kinds() else installed.package(kind).KINDS[kind]
-    return settings
+def settings_in(module: str, figure: str) -> dict[str, Kind]:
+    """Return the settings of a figure in a user's module. Raises SceneError if the module cannot be used."""
+    try:
+        return {**find_parts(module, figure).settings, "caption": own.CAPTION}
+    except (Exception, SystemExit) as error:  # the code of a user may raise any exception
+        rule = f"must have the figure in its FIGURES: {type(error).__name__}: {error}"
+        raise SceneError(f"figures.{figure}.module", module, rule) from error
 
 
 def stated_claims(entry: Mapping[str, Any]) -> list[Any]:
-    """Return [claims of the config] if a figure's kind has such a setting, else [].
-
-    The claims function of the figure takes them as a further argument.
-    """
-    takes = "kind" in entry and "claims" in settings_of_kind(entry["kind"])
-    return [entry.get("claims", [])] if takes else []
+    """Return [claims of the config] for a figure with a `kind`, whose claims function takes them; else []."""
+    return [entry.get("claims", [])] if "kind" in entry else []
