@@ -1,5 +1,6 @@
 # make            set up, reproduce every figure, write results/report.html, print the verdicts; EFFORT=0.25 takes a
 #                 third of the time, and a later run of more effort continues its files
+# make decide     continue exactly the runs behind claims that are open; says first which and how long
 # make first      set up, three figures of the sources: results/first.html, in some two minutes
 # make test       set up, run the tests that catch most per second; OPTIONS=... are options of pytest
 # make test-all   all tests: the whole workflow, small, with its digests, all kernels, 2500 new random scenes each, Slurm
@@ -22,13 +23,15 @@
 SHELL := /bin/bash
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := all
-.PHONY: all first setup develop test test-all digests precise smoke wheel archive benchmark referees coverage lint report docs clean distclean
+.PHONY: all decide first setup develop test test-all digests precise smoke wheel archive benchmark referees coverage lint report docs clean distclean
 
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 CORES ?= all
 QUIETLY = -m pip --quiet --disable-pip-version-check
 PIP = .venv/bin/python $(QUIETLY)
 SNAKEMAKE = .venv/bin/python -m snakemake --cores $(CORES) $(if $(EFFORT),--config effort=$(EFFORT))
+# What `make decide` has made longer stays so.
+EFFORTS = $$(test ! -e results/efforts.yaml || echo --configfile=results/efforts.yaml)
 # Printed after Snakemake has ended, also if there was nothing to do.
 VERDICTS = @.venv/bin/python -c 'import sys; from gaspart.reproduction.claims import summary; print(summary(sys.argv[1]))'
 
@@ -37,9 +40,15 @@ own = @test ! -e $(1) -o -e $(1)/made_by_make -o -e $(1)/environment.stamp || { 
 	"make: $(1) exists and was not made by make, which would replace it; move it away" >&2; exit 2; }
 
 all: setup
-	$(SNAKEMAKE) --quiet rules
+	$(SNAKEMAKE) --quiet rules $(EFFORTS)
 	$(VERDICTS) results/tables/claims.csv
 	@echo "report: results/report.html"
+
+# Doubles the effort of what open claims depend on until each is decided, or has an effort of 4.
+decide: setup
+	@while .venv/bin/python -m gaspart budget config/config.yaml --next results/efforts.yaml $(if $(EFFORT),--effort $(EFFORT)); \
+		do .venv/bin/python -m snakemake --cores $(CORES) --quiet rules $(EFFORTS) || exit; done
+	$(VERDICTS) results/tables/claims.csv
 
 first: setup
 	@echo "three figures of the sources, some two minutes on two cores; make and make test take longer"

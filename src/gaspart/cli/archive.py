@@ -95,7 +95,9 @@ def _verify(options: argparse.Namespace) -> None:
 
 _EXAMPLES_OF_BUDGET = """examples:
   gaspart budget config/config.yaml
-  gaspart budget config/precise.yaml -o budget.csv    # a line for each claim"""
+  gaspart budget config/precise.yaml -o budget.csv    # a line for each claim
+  gaspart budget config/config.yaml --next results/efforts.yaml
+  snakemake --cores all --configfile=results/efforts.yaml"""
 
 
 def add_budget(parser: Parser) -> None:
@@ -109,6 +111,18 @@ def add_budget(parser: Parser) -> None:
     set_command(parser, _budget, text, _EXAMPLES_OF_BUDGET)
     parser.add_argument("config", metavar="FILE", help="config of the workflow (YAML)")
     parser.add_argument("-o", "--output", metavar="FILE", help="write a line for each claim (CSV) instead")
+    parser.add_argument(
+        "--next",
+        metavar="FILE",
+        help="write twice the effort of the experiments whose claims are open, at most 4, as a config "
+        "(YAML); exit code 1 if no effort decides more",
+    )
+    parser.add_argument(
+        "--effort",
+        type=float,
+        metavar="E",
+        help="with --next: the effort of the run, if it is not the config's",
+    )
 
 
 def _budget(options: argparse.Namespace) -> None:
@@ -119,4 +133,10 @@ def _budget(options: argparse.Namespace) -> None:
     if isinstance(content, dict) and "container" in content:
         rule = "is a scene, and must be a config of the workflow; gaspart advise predicts the cost of a scene"
         raise SceneError("config", options.config, rule)
+    if options.next:
+        lines = config_command("decide")(options.config, options.next, options.effort)
+        print_lines(lines or ["no effort of at most 4 decides another claim"])
+        if not lines:
+            raise CheckFailed
+        return
     print_lines(config_command("budget")(options.config, options.output))

@@ -11,8 +11,8 @@ from numba import config
 
 from gaspart.analysis.estimate import Estimate
 from gaspart.errors import SceneError
-from gaspart.reproduction.families.shared.timings import SYSTEMATIC
 from gaspart.reproduction.figures import cost
+from gaspart.reproduction.figures._timings import SYSTEMATIC
 from gaspart.reproduction.jobs.measure_cost import measure_cost
 from gaspart.reproduction.points import jobs
 from gaspart.reproduction.points.point import Point

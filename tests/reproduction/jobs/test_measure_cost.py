@@ -6,13 +6,13 @@ from numba import config
 
 from gaspart.engines import DSMC, EventDriven, TimeStepped
 from gaspart.errors import SceneError, SimulationError
+from gaspart.reproduction.figures.box_count import expected_box_visits, expected_pair_tests
 from gaspart.reproduction.jobs import measure_cost as cost
 from gaspart.reproduction.jobs.measure_cost import measure_cost
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.container import Container
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
-from gaspart.theory.partition import expected_box_visits, expected_pair_tests
 
 GAS = Scene(Container((20.0,) * 3), species=(Species(400, 0.1, speed=1.0),))
 DISCS = Scene(Container((30.0,) * 2), species=(Species(40, 0.5, speed=1.0),))

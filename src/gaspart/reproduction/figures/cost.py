@@ -19,7 +19,8 @@ from numpy.typing import ArrayLike
 from gaspart.analysis.estimate import Estimate
 from gaspart.rendering import style
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared.timings import (
+from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figures._timings import (
     SYSTEMATIC,
     log_ratios,
     median,
@@ -27,7 +28,6 @@ from gaspart.reproduction.families.shared.timings import (
     ratio_of_jobs,
     weights,
 )
-from gaspart.reproduction.figure import Parts
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, merge_with_prefixes, table
 from gaspart.scene.scene import Scene

@@ -161,6 +161,9 @@ EXPERIMENT: dict[str, Kind] = {
         "taken, or a list of such mappings, one after the other; a single value counts as a list of one",
         default=None,
     ),
+    "effort": positive(
+        "the effort of this experiment, instead of that of the config", maximum=100, default=None
+    ),
 }
 
 ANIMATION: dict[str, Kind] = {
@@ -247,7 +250,7 @@ def points(config: dict, experiment: str) -> list[Point]:
     """
     block = config["experiments"][experiment]
     where = f"experiments.{experiment}"
-    effort = config.get("effort", 1.0)
+    effort = block.get("effort", config.get("effort", 1.0))
     by_name: dict[str, Point] = {}
     varied = block.get("grid")
     for varying in _combinations({} if varied is None else varied, f"{where}.grid"):

@@ -6,16 +6,15 @@ from itertools import islice
 import numpy as np
 import pytest
 import xarray as xr
-from reproduction.families.test_buoyancy import measurement, with_source
 from reproduction.families.test_displacement import spheres
 from reproduction.figures.test_virial import ETA
 
 from gaspart.analysis.estimate import Estimate
-from gaspart.reproduction.families.buoyancy import claims as buoyancy
 from gaspart.reproduction.families.motion.measure import size_series
-from gaspart.reproduction.figures import adsorption, beds
+from gaspart.reproduction.figures import adsorption, beds, buoyancy
 from gaspart.reproduction.figures.virial import fit_coefficients
-from gaspart.reproduction.table import Table
+from gaspart.reproduction.table import Table, from_rows
+from gaspart.theory.brownian import displaced_area
 from gaspart.theory.state import compressibility_factor
 
 pytestmark = pytest.mark.thorough
@@ -40,7 +39,23 @@ WELL = xr.Dataset({
         "length": 0.2, "length_error": 0.0004,
     }.items()
 })  # fmt: skip
-DISCS = with_source(measurement())
+PACKING, EXPECTED = np.array([0.4, 0.3, 0.2, 0.1]), np.linspace(71.0, -1.0, 10)
+DISPLACED, BEYOND = displaced_area(PACKING, 6.0) * PACKING, np.sqrt(displaced_area(PACKING, 6.0)) - 6.0
+FIXED = from_rows("fixed", [
+    {
+        "height": n, "radius_expected": radius, "count_radius": radius, "count_radius_error": 0.03,
+        "force": mass, "force_error": 0.02 * mass, "missing": mass, "missing_error": 0.01 * mass,
+        "force_radius": radius, "force_radius_error": 0.06,
+    }
+    for n, (radius, mass) in enumerate(zip(BEYOND, DISPLACED, strict=True))
+])  # fmt: skip
+SOURCE = from_rows("source", [
+    {
+        "mass": 60.0, "density": 0.2 + 0.005 * (31.5 - height) / 8.0, "height": height, "height_error": 0.3,
+        "expected": height, "lowest": 2.5, "highest": 60.5,
+    }
+    for height in EXPECTED
+]).assign_attrs(source_density=0.2)  # fmt: skip
 SIZES = spheres().isel(point=slice(2, 5))
 
 
@@ -69,9 +84,10 @@ def well(rng):
 
 def large_disc(rng):
     """The force and the radius, means of all heights, and the density that floats in the middle."""
-    ds = scattered(rng, DISCS, 15, ["fixed_force", "fixed_missing", "fixed_force_radius", "source_height"])
-    *_, force, radius = buoyancy._claims_on_fixed(Table.from_prefixed(ds, "fixed"))
-    neutral = buoyancy._neutral(Table.from_prefixed(ds, "source")[2:8], 31.5)
+    fixed = Table(scattered(rng, FIXED, 15, ["force", "missing", "force_radius"]), "fixed")
+    *_, force, radius = buoyancy._claim_fixed(fixed)
+    source = Table(scattered(rng, SOURCE, 15, ["height"]), "source")
+    *_, neutral = buoyancy._claim_source(source[2:8])
     return [claim.measured - claim.expected for claim in (force, radius, neutral)]
 
 

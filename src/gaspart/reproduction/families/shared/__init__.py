@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-SOURCE_A, SOURCE_C = "[source A]", "[source C]"
-OTHER_MACHINE = "on this machine, and by this program, tests and boxes have other relative costs"
-"""Reason why an optimum that source A reports may differ from ours."""
+SOURCE_C = "[source C]"
 PARTICLES = {2: "discs", 3: "spheres"}
 """Names of the particles in each dimension."""
 ENSKOG_LIMIT = 0.02

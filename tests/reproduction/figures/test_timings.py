@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from gaspart.analysis.estimate import Estimate
-from gaspart.reproduction.families.shared import timings
+from gaspart.reproduction.figures import _timings as timings
 
 PARTICLE, TEST, BOX = 30e-9, 12e-9, 0.3e-9
 IDEAL = math.sqrt(13.5 * TEST / BOX)
@@ -81,9 +80,3 @@ def test_times_in_turn_are_compared_repeat_by_repeat():
     run = xr.Dataset({"seconds": (("partition", "repeat"), seconds)})
     logs = timings.log_ratios(run, np.array([1.0, 2.0, 1.0, 1.0]))
     assert np.exp(logs) == pytest.approx([2.0, 3.0])
-
-
-def test_weights():
-    tests, particles = np.array([10.0, 100.0, 1000.0]), np.array([5.0, 15.0, 45.0])
-    fit = timings.weights(Estimate(2.0 * particles + 3.0 * tests, 1e-3 * tests), particles, tests)
-    assert fit.values == pytest.approx([2.0, 3.0])

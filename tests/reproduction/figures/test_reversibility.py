@@ -7,12 +7,8 @@ import math
 import numpy as np
 import pytest
 import xarray as xr
-from reproduction.claims.data import judged
-from reproduction.families.drawn import Points, column, draw, follows, lines, shows, varied
 
-from gaspart.reproduction.families.stability import claims, measure
-from gaspart.reproduction.families.stability.claims import ROUNDINGS
-from gaspart.reproduction.families.stability.figure import reversibility as draw_reversibility
+from gaspart.reproduction.figures.reversibility import ROUNDINGS, measure
 from gaspart.reproduction.points.point import Point
 
 SIDE = 8.7
@@ -39,13 +35,13 @@ def echoes(growth, engine="event", first=None, jump_after=None, seeds=6, samples
 
 
 def measurement(folder, growth=1.47, jump_after=8.0):
-    """What `measure.reversibility` makes of one gas by both engines; steps forget all at once."""
+    """What `measure` makes of one gas by both engines; steps forget all at once."""
     points = []
     (folder / "gas").mkdir()
     for name, run in (("event", echoes(growth)), ("step", echoes(growth, "step", jump_after=jump_after))):
         points.append(Point("gas", name, "echo", {}, str(folder), 1))
         run.to_netcdf(points[-1].path)
-    return measure.reversibility(points, {})
+    return measure(points, {})
 
 
 def test_growth_memory_and_jumps(tmp_path):
@@ -58,46 +54,3 @@ def test_growth_memory_and_jumps(tmp_path):
     assert (float(event.jumps), float(step.jumps)) == (0.0, 1.0)
     assert float(step.memory) == pytest.approx(8.5, abs=0.6)
     assert float(event.side) == SIDE
-
-
-def verdicts(dataset):
-    return judged(claims.reversibility(dataset))
-
-
-def test_echoes_that_grow_as_they_should_agree(tmp_path):
-    found = verdicts(measurement(tmp_path))
-    assert len(found) == 3
-    assert set(found.values()) == {"agrees"}
-
-
-def test_another_growth_is_noticed(tmp_path):
-    dataset = measurement(tmp_path)
-    dataset["growth"] = 1.5 * dataset.growth
-    found = verdicts(dataset)
-    for other in ("that of two neighbouring runs", "the largest Lyapunov exponent"):
-        claim = f"growth of the echo over {other}, spheres, packing fraction 0.1"
-        assert found[claim] == "disagrees"
-
-
-def test_an_engine_that_replays_is_noticed(tmp_path):
-    dataset = measurement(tmp_path)
-    dataset["memory"] = 3.0 * dataset.memory
-    assert any(verdict == "disagrees" for claim, verdict in verdicts(dataset).items() if "memory" in claim)
-
-
-def test_echoes_growth_and_memory(tmp_path):
-    ds = varied(measurement(tmp_path), "packing_fraction")
-    echoes, growth, memory = draw(draw_reversibility, ds).axes
-    for n, one in enumerate(lines(echoes)[:2]):
-        follows(one, ds["collisions"][n], ds["echo"][n])
-    exact, steps = ds.isel(row=[0]), ds.isel(row=[1])
-    shifted = exact.assign(place=1.12 * exact["packing_fraction"])
-    shows(
-        growth,
-        column(exact, "packing_fraction", "growth"),
-        column(shifted, "place", "divergence"),
-        column(exact, "packing_fraction", "exponent"),
-    )
-    nothing = Points([], [], [])
-    both = (column(one, "packing_fraction", "memory") for one in (exact, steps))
-    shows(memory, nothing, next(both), nothing, next(both), nothing, nothing)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gaspart.theory import partition
+from gaspart.reproduction.figures import box_count as partition
 
 
 def neighbours(positions, per_side, side):
@@ -75,17 +75,3 @@ def test_touched_boxes_do_not_suffice():
     for centre, sign in ((one, 1.0), (other, -1.0)):
         into = np.maximum(-sign * centre, 0.0)  # from the centre to the nearest point of the other's quadrant
         assert np.linalg.norm(into) > radius
-
-
-def test_the_ideal_number_is_the_minimum():
-    tests, boxes = 3.0, 0.2
-    ideal = partition.ideal_boxes_per_particle(tests, boxes, 3)
-    density = ideal * np.array([0.9, 1.0, 1.1])
-    cost = tests * 13.5 / density + boxes * density
-    assert cost.argmin() == 1
-
-
-@pytest.mark.parametrize("call", [(10, 0, 3, 1.0, 0.1), (10, 2, 4, 1.0, 0.1), (10, 2, 3, 1.0, 0.6)])
-def test_invalid_arguments_are_refused(call):
-    with pytest.raises(ValueError):
-        partition.expected_pair_tests(*call)
