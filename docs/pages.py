@@ -24,7 +24,7 @@ from gaspart.cli.arguments import WIDTH
 from gaspart.cli.new import templates
 from gaspart.public import read_stub
 from gaspart.reproduction.claims.table import fill_caption, read
-from gaspart.reproduction.families.registry import families, parts, titles
+from gaspart.reproduction.registry import families, parts, titles
 from gaspart.yaml_text import read_yaml
 
 ROOT = Path(__file__).parents[1]

@@ -11,8 +11,8 @@ from types import ModuleType
 
 import pytest
 
-from gaspart.reproduction.families.registry import modules, parts, titles
 from gaspart.reproduction.points.modules import PACKAGE, closure, find_imports, measuring_digest
+from gaspart.reproduction.registry import modules
 
 ROOT = Path(__file__).parents[2]
 
@@ -56,16 +56,6 @@ def parsed(path):
 def test_the_imports_that_are_searched_for_are_those_that_a_parser_finds():
     for path in [*PACKAGE.rglob("*.py"), *(ROOT / "workflow/scripts").glob("*.py")]:
         assert find_imports(path) == parsed(path), path
-
-
-@pytest.mark.parametrize("family", [name for name in titles() if len(parts(name)) > 1])
-def test_a_stage_is_made_of_what_it_uses_and_of_no_engine_where_it_simulates_nothing(family):
-    folder = PACKAGE / "reproduction/families" / family
-    part = {stage: closure(folder / f"{stage}.py") for stage in ("claims", "figure")}
-    for files in part.values():
-        names = {path.relative_to(PACKAGE).parts[0] for path in files}
-        assert names.isdisjoint({"engines", "simulation.py", "trajectory"}), family
-    assert folder / "measure.py" not in part["claims"] | part["figure"]
 
 
 def test_tables_are_part_of_what_reads_them():

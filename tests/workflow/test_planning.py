@@ -120,7 +120,7 @@ def test_a_longer_run_reruns_its_experiment_only(smoke, tmp_path):
     [
         (["src/gaspart/reproduction/figures/virial.py"], {"figure", "claims", "report", "all"}),
         (["src/gaspart/theory/virial.py"], {"figure", "claims", "report", "all"}),
-        (["src/gaspart/reproduction/families/registry.py"], {"report", "all"}),
+        (["src/gaspart/reproduction/registry.py"], {"report", "all"}),
         (["src/gaspart/reproduction/config.py", "config/README.md"], set()),
     ],
 )

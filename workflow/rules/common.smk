@@ -24,8 +24,8 @@ from gaspart.reproduction.claims.table import fill_caption
 from gaspart.reproduction.claims.table import summary
 from gaspart.reproduction.config import FAMILIES, add_families, check, explain_error, is_own
 from gaspart.reproduction.config import read_numbers, remove_null
-from gaspart.reproduction.families import registry
-from gaspart.reproduction.families.registry import caption, find, of_claims, titles
+from gaspart.reproduction import registry
+from gaspart.reproduction.registry import caption, find, of_claims, titles
 from gaspart.reproduction.points.modules import digest, kernel_digest, measuring_digest
 from gaspart.reproduction.points.point import TRAJECTORIES
 from gaspart.reproduction.points.points import all_points

@@ -17,8 +17,8 @@ from gaspart.errors import SceneError, unknown_word
 from gaspart.files import resolve_path
 from gaspart.keys import TEXT, Kind, choice, describe, names, record, require
 from gaspart.keys.values import finite, size
+from gaspart.reproduction import registry
 from gaspart.reproduction.claims.table import fill_caption, place_fault
-from gaspart.reproduction.families import registry
 from gaspart.reproduction.points import jobs, point_keys
 from gaspart.reproduction.points import points as config_keys
 from gaspart.reproduction.points.point import TRAJECTORIES, Point

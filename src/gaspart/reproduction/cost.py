@@ -13,10 +13,9 @@ from gaspart import theory
 from gaspart.accuracy import speed, table
 from gaspart.errors import SceneError
 from gaspart.files import whole_file
-from gaspart.reproduction import job_time
+from gaspart.reproduction import job_time, registry
 from gaspart.reproduction.claims.judging import Claim, judge, sufficient
 from gaspart.reproduction.config import open_config
-from gaspart.reproduction.families import registry
 from gaspart.reproduction.figure import find_parts
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.gas import Gas

@@ -14,7 +14,7 @@ import gaspart as gp
 from gaspart import theory
 from gaspart.analysis.statistics import histogram_chi_square
 from gaspart.errors import SceneError
-from gaspart.reproduction.families.shared.runs import kurtosis
+from gaspart.reproduction.figure import kurtosis
 from gaspart.reproduction.figures import speeds
 from gaspart.reproduction.figures.speeds import measure_distribution, measure_relaxation
 from gaspart.reproduction.points.point import Point

@@ -12,9 +12,9 @@ import pytest
 import xarray as xr
 from PIL import Image
 
-from gaspart.reproduction.families.registry import chapter, families, titles
 from gaspart.reproduction.families.tradeoff import ENGINES, PARTS
 from gaspart.reproduction.families.tradeoff.figure import NAMES
+from gaspart.reproduction.registry import chapter, families, titles
 from gaspart.reproduction.report.explore import engines, series
 from gaspart.reproduction.report.page import (
     CHAPTERS,

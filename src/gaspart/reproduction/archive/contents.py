@@ -17,10 +17,10 @@ from gaspart.reproduction.archive.limits import name_fault
 from gaspart.reproduction.claims import table
 from gaspart.reproduction.claims.table import fill_caption
 from gaspart.reproduction.config import check, is_own, merged_with_default
-from gaspart.reproduction.families.registry import caption
 from gaspart.reproduction.jobs.simulate import recipes
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
 from gaspart.reproduction.points.points import figure_points
+from gaspart.reproduction.registry import caption
 from gaspart.trajectory.recipe import read_recipe
 from gaspart.yaml_text import read_yaml
 

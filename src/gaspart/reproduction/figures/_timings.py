@@ -16,7 +16,7 @@ import xarray as xr
 
 from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
-from gaspart.reproduction.families.shared.timings import median as median
+from gaspart.reproduction.figure import median as median
 from gaspart.reproduction.table import Table, entries
 
 SOURCE_A, SOURCE_C = "[source A]", "[source C]"

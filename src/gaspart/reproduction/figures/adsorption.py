@@ -18,8 +18,7 @@ from gaspart.analysis.statistics import combine_estimates, fit_polynomial, fit_p
 from gaspart.keys import count, positive
 from gaspart.rendering import style
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.figure import Blocks, Parts
+from gaspart.reproduction.figure import Blocks, Parts, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
 from gaspart.scene.faces import Well, thermal_face

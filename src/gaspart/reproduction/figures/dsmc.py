@@ -29,8 +29,7 @@ from gaspart.rendering import style
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.families.heat.gap import Gap, averages
 from gaspart.reproduction.families.motion.measure import spheres
-from gaspart.reproduction.families.shared.runs import series_of
-from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figure import Parts, series_of
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, entries, table
 from gaspart.scene.gas import plain_gas

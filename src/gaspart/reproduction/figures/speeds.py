@@ -23,8 +23,7 @@ from gaspart.errors import SceneError
 from gaspart.keys import POSITIVE, count, list_of, positive
 from gaspart.rendering import style
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.runs import kurtosis, runs
-from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figure import Parts, kurtosis, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, table
 from gaspart.scene.gas import plain_gas

@@ -28,9 +28,7 @@ from gaspart.analysis.structure_factors import factors, in_shells, shells_of, wa
 from gaspart.keys import count, positive
 from gaspart.rendering import style
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared import PARTICLES
-from gaspart.reproduction.families.shared.runs import runs, series_of
-from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figure import PARTICLES, Parts, runs, series_of
 from gaspart.reproduction.figures.chemical_potential import (
     MEASURED,
     MeasuredState,

@@ -1,10 +1,7 @@
-"""Measurements, texts and limits that several families share."""
+"""Moved to `reproduction.figure`."""
 
-from __future__ import annotations
+from gaspart.reproduction.figure import ENSKOG_LIMIT as ENSKOG_LIMIT
+from gaspart.reproduction.figure import PARTICLES as PARTICLES
+from gaspart.reproduction.figure import SOURCE_C as SOURCE_C
 
-SOURCE_C = "[source C]"
-PARTICLES = {2: "discs", 3: "spheres"}
-"""Names of the particles in each dimension."""
-ENSKOG_LIMIT = 0.02
-"""Largest packing fraction of a gas that counts as dilute."""
 MODE_COUPLING = "hydrodynamic modes of the container, transport coefficients Enskog's (gaspart.theory.modes)"

@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 def _modules() -> dict[str, ModuleType]:
     """Return the module of each family, in alphabetical order."""
     here = Path(__file__).parent
-    names = {path.parent.name: "families" for path in here.glob("*/figure.py")}
-    names |= {path.stem: "figures" for path in here.parent.glob("figures/[a-z]*.py")}
+    names = {path.parent.name: "families" for path in here.glob("families/*/figure.py")}
+    names |= {path.stem: "figures" for path in here.glob("figures/[a-z]*.py")}
     return {name: import_module(f"gaspart.reproduction.{names[name]}.{name}") for name in sorted(names)}
 
 
