@@ -76,7 +76,7 @@ WORDS = {
         "faces.bottom = 'thermal': unknown face; did you mean y_low?",
     ),
     "open without centres": (
-        lambda: gp.Scene(gp.Container((9.0, 9.0)), GAS, faces={"x_low": gp.Open()}),
+        lambda: gp.Scene(gp.Container((9.0, 9.0)), GAS, faces={"x_low": gp.Open(0.1, 1.0)}),
         "needs centres_to_walls: true",
     ),
     "engine as a class": (lambda: gp.Simulation(SCENE, gp.EventDriven), "must be an engine: EventDriven()"),
@@ -121,7 +121,6 @@ NAMES = {
     "contact_valu": (gp, "contact_value"),
     "Box": (gp, "Container"),
     "Sphere": (gp, "Particle"),
-    "plot": (gp, "render"),
     "simulate": (gp, "run"),
     "presure": (gp.analysis, "pressure"),
     "mean_square": (gp.analysis, "mean_squared_displacement"),
@@ -130,6 +129,8 @@ NAMES = {
 SUGGESTIONS = {
     "advise": (["run", "view", "film"], ""),
     "--dt": (["--adapt", "--duration"], ""),
+    "pressure x low": (["Z", "pressure"], "pressure"),
+    "maxwell": (["maxwell_pdf", "maxwell_cdf"], ""),
     "--dt ": (["--time-step", "--duration"], "--time-step"),
     "pressure": (["restore", "measure"], ""),
     "temprature": (["temperature", "radius"], "temperature"),
@@ -207,7 +208,7 @@ def test_speeds_of_an_open_gas_are_not_defined():
     scene = gp.Scene(gp.Container((9.0, 9.0)), GAS, faces=faces, centres_to_walls=True)
     simulation = gp.Simulation(scene, seed=1)
     simulation.advance(duration=1.0)
-    remedy = "defined here are number, flux, density, velocity, temperature, pressure and force"
+    remedy = "defined here are number, flux, density, velocity, temperature, pressure, force and heat_flux"
     assert remedy in line(lambda: gp.analysis.speed_distribution(simulation), gp.SceneError)
 
 

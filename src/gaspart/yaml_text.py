@@ -187,7 +187,11 @@ class _Document:
                 raise _error(mark, "a list or mapping", "a key must be text")
             key = self._value(event, depth)
             if not isinstance(key, str):
-                raise _error(mark, key, "a key must be text: write it in quotes")
+                number = isinstance(key, int | float) and not isinstance(key, bool)
+                remedy = "a decimal has a point, not a comma" if number else "write it in quotes"
+                raise _error(mark, key, f"a key must be text: {remedy}")
+            if key.endswith(")") and "(" not in key:
+                raise _error(mark, key, "ends a list, which is written in square brackets: [1.0, 2.0]")
             if key in lines:
                 raise _error(mark, key, f"is a duplicate key, first in line {lines[key]}")
             lines[key] = mark.line + 1

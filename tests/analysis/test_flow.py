@@ -206,3 +206,29 @@ def test_a_flow_that_changes_has_no_displacements_about_it(tmp_path):
 def test_motion_is_about_the_flow_or_about_rest(driven):
     with pytest.raises(gp.SceneError, match="about = 'walls': must be one of"):
         gp.measure(driven, "msd", about="walls")
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_between_sheared_images_it_is_about_the_flow(tmp_path, dimension):
+    """Points in the flow u_x = rate y: their c_x = v_x - u_x falls by rate c_y t, as they never collide."""
+    rate, count, box = 0.6, 64, gp.Container((20.0,) * dimension, "periodic")
+    faces = {"y_high": gp.LeesEdwards(rate)}
+    scene = gp.Scene(box, [gp.Species(count, 1e-7, temperature=1.0)], faces=faces)
+    start = gp.Simulation(scene, seed=1).initial_state
+    path = gp.run(scene, gp.EventDriven(), 1, 4.0, 0.05, tmp_path / "run.nc")
+    c = start.velocities.copy()
+    c[:, 0] -= rate * (start.positions[:, 1] - 10.0)
+    c -= c.mean(axis=0)
+    later = c[:, 0] - rate * c[:, 1] * 0.05 * np.arange(81)[:, None]
+    square = (later**2).mean() + (c[:, 1:] ** 2).sum() / count  # of the velocity about the flow
+    for axis in "xyz"[:dimension]:
+        found = {of: A.profile(path, of, axis, bins=4, start=0.0) for of in ("density", "temperature")}
+        density, temperature = (found[of].estimate.values for of in found)
+        assert density.mean() == pytest.approx(scene.number_density, rel=1e-12)
+        mean = (density * temperature).sum() / density.sum()
+        assert mean == pytest.approx(square / dimension * count / (count - 1.0), rel=1e-5)
+        assert found["temperature"].theory is None
+    speeds = A.speed_distribution(path, bins=400, start=0.0, fastest=20.0)
+    middle, width = speeds["speed"].values, 0.05
+    second = (speeds.estimate.values * middle**2).sum() * width
+    assert second == pytest.approx(square * count / (count - 1.0), rel=2e-3) and speeds.theory is None

@@ -132,3 +132,18 @@ def test_refusals():
     slow = replace(slow, species=[replace(slow.species[0], temperature=1e-9)])
     with pytest.raises(SceneError, match="nothing hit"):
         A.heat_flux(made(slow, 2.0))
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_heat_of_free_flight_beside_an_open_face(dimension):
+    """Points come from a reservoir at 2 and go back at the wall's 1: each leaves (d + 1) / 2 of heat."""
+    density, radius = 300.0 / 10.0**dimension, 1e-4
+    reservoir = gp.Open(density * {2: math.pi, 3: 4.0 / 3.0 * math.pi}[dimension] * radius**dimension, 2.0)
+    container = gp.Container((10.0,) * dimension, ("wall", *["periodic"] * (dimension - 1)))
+    species = [gp.Species(300, radius, temperature=1.0)]
+    faces = {"x_low": reservoir, "x_high": gp.Thermal(1.0)}
+    scene = gp.Scene(container, species, faces=faces, centres_to_walls=True)
+    found = A.heat_flux(made(scene, 200.0, "event"))
+    expected = 0.5 * (dimension + 1.0) * density * math.sqrt(2.0 / (2.0 * math.pi))
+    assert found.estimate["face"].values.tolist() == ["x high"] and found.theory is None
+    assert abs(float(found.estimate[0]) - expected) < 3.0 * float(found.error[0]) < 0.3 * expected

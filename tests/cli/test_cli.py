@@ -273,10 +273,12 @@ def test_check_reports_failed_checks_by_its_exit_code(folder, capsys):
     assert "WRONG overlaps: the deepest is 0." in capsys.readouterr().out
     assert main(["check", "run.nc", "--lengths", "8,12"]) == 1
     assert "WRONG container" in capsys.readouterr().out
+    assert main(["check", "run.nc", "--boundary", "periodic"]) == 1
+    assert "WRONG momentum" in capsys.readouterr().out
     for wrong, complaint in (
         (["scene.yaml", "--radius", "1"], "radius = 1.0: has a meaning for trajectories only"),
         (["nowhere.gsd"], "cannot be read: No such file"),
-        (["run.pdb"], "must end in .nc, .gsd, .xyz"),
+        (["run.pdb"], "must end in .yaml, .nc, .gsd, .xyz"),
     ):
         assert main(["check", *wrong]) == 2
         output = capsys.readouterr().err

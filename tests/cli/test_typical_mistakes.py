@@ -153,7 +153,13 @@ MISTAKES = {
         added("faces: {left: {kind: thermal, temperature: 1.0}}"),
         "faces.left = 'thermal': unknown face; did you mean x_low?",
     ),
-    "open face passed by surfaces": (added("faces: {x_low: {kind: open}}"), "needs centres_to_walls: true"),
+    "reservoir passed by surfaces": (
+        added("faces: {x_low: {kind: open, activity: 0.1, temperature: 1.0}}"),
+        "needs centres_to_walls: true",
+    ),
+    "decimal comma": (scene("0.5", "0,5"), "a key must be text: a decimal has a point, not a comma"),
+    "round brackets": (scene("[12.0, 12.0]", "(12.0, 12.0)"), "square brackets: [1.0, 2.0]"),
+    "list for a number": (scene("1.0", "[1.0, 2.0]"), "temperature = [1.0, 2.0]: must be a single number"),
     "reservoir without a temperature": (
         added("centres_to_walls: true\nfaces: {x_low: {kind: open, activity: 0.1}}"),
         "faces.x_low.temperature = None: must be given together with activity",

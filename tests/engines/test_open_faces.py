@@ -12,7 +12,7 @@ from scenes import opened
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.errors import SimulationError
+from gaspart.errors import SceneError, SimulationError
 
 LENGTHS = (8.0, 4.0, 4.0)
 POINT = 1e-3
@@ -424,3 +424,53 @@ def test_what_is_not_defined_of_changing_particles():
             gp.Simulation(DISCS, engine)
     with pytest.raises(gp.SceneError, match="neighbour lists do not support open faces"):
         gp.Simulation(DISCS, gp.EventDriven("lists"))
+
+
+def times_of_leaving(positions, velocities):
+    """When points leave a chamber of 10 x 10 through a slit from y = 4 to 6, and the vacuum face at x = 20;
+    a point is at the slit's plane after every flight to the far wall and back."""
+    times = []
+    for (x, y), (v, w) in zip(positions, velocities, strict=True):
+        time, period = (10.0 - x) / v if v > 0.0 else (10.0 + x) / -v, 20.0 / abs(v)
+        arrivals = time + period * np.arange(1 + int(100.0 / period))
+        heights = np.abs((y + w * arrivals + 10.0) % 20.0 - 10.0)  # mirrors at 0 and 10
+        through = arrivals[(heights > 4.0) & (heights < 6.0)]
+        times.append(through[0] + 10.0 / abs(v) if len(through) else np.inf)
+    return np.array(times)
+
+
+@pytest.mark.thorough
+def test_interior_walls_stand_before_a_vacuum():
+    """Points leave a chamber through a slit, each at its own time."""
+    walls = [gp.Wall((10.0, 0.0), (10.0, 4.0)), gp.Wall((10.0, 6.0), (10.0, 10.0))]
+    species = [gp.Species(200, 1e-9, temperature=1.0, region=((0.0, 0.0), (10.0, 10.0)))]
+    scene = gp.Scene(gp.Container((20.0, 10.0)), species, walls=walls, faces={"x_high": gp.Open()})
+    simulation = gp.Simulation(scene, seed=1)
+    start = simulation.initial_state
+    leaves = times_of_leaving(start.positions, start.velocities)
+    for time in (5.0, 20.0, 50.0, 100.0):
+        simulation.advance(until=time)
+        assert simulation.state.count == (leaves > time).sum()
+    assert simulation.state.count < 120
+
+
+def test_a_reservoir_excludes_what_a_vacuum_allows():
+    wall, container = gp.Wall((4.0, 0.0), (4.0, 4.0)), gp.Container((8.0, 8.0))
+    species, face = [gp.Species(5, 0.1, temperature=1.0)], {"x_low": gp.Open(0.01, 1.0)}
+    gp.Scene(container, species, walls=[wall], faces={"x_low": gp.Open()})
+    with pytest.raises(SceneError, match=r"faces\.x_low\.activity = .*or no activity \(a vacuum\)"):
+        gp.Scene(container, species, walls=[wall], faces=face)
+    with pytest.raises(SceneError, match="excludes interior walls"):
+        gp.Scene(container, species, walls=[wall], faces=face, centres_to_walls=True)
+
+
+@pytest.mark.parametrize("engine", [gp.EventDriven(), gp.DSMC(time_step=0.1)], ids=["event", "dsmc"])
+def test_a_disc_leaves_when_its_surface_reaches_a_vacuum(engine):
+    scene = gp.Scene(gp.Container((20.0, 10.0)), [gp.Species(1, 0.5, speed=1.0)], faces={"x_high": gp.Open()})
+    simulation = gp.Simulation(scene, engine, seed=3)
+    (x, _), (v, _) = simulation.initial_state.positions[0], simulation.initial_state.velocities[0]
+    leaves = (19.5 - x) / v if v > 0.0 else (x - 0.5 + 19.0) / -v
+    simulation.advance(until=leaves - 1e-6)
+    assert simulation.state.count == 1
+    simulation.advance(until=leaves + 0.2)
+    assert simulation.state.count == 0

@@ -132,3 +132,27 @@ def test_unreadable_files_are_reported_in_one_line(tmp_path, name, make, complai
     with pytest.raises(gp.SceneError, match=complaint) as said:
         read_frames(path)
     assert "\n" not in str(said.value)
+
+
+def test_a_plain_file_states_radii_in_a_fifth_column_and_sides_in_its_second_line(tmp_path, capsys):
+    """Spheres of .5 and .1 at a distance of .65: they would overlap if all had .5."""
+    path = tmp_path / "a.xyz"
+    path.write_text("3\n6.0 7 8.5\nA 1 1 1 0.5\nB 1.65 1 1 0.1\nA 5 5 5 0.5\n")
+    frames = read_frames(path)
+    assert frames.radii.tolist() == [0.5, 0.1, 0.5] and frames.lengths.tolist() == [6.0, 7.0, 8.5]
+    assert main(["check", str(path)]) == 0
+    note = "3 spheres in 1 frames; sides from the second line and radii from the fifth column\n"
+    assert note in capsys.readouterr().out
+    assert main(["check", str(path), "--radius", "0.5"]) == 1
+    path.write_text("2\n6.0 7.0\nA 1 1 0 0.5\nB 2.5 1 0 0.5\n")
+    assert read_frames(path).lengths.tolist() == [6.0, 7.0]
+
+
+@pytest.mark.parametrize(
+    ("comment", "fifth"), [("6 7 8 9", "0.5"), ("6 -7 8", "0.5"), ("6 7 8", "-0.5"), ("6 7 8", "0.5 1.0")]
+)
+def test_other_numbers_of_a_plain_file_are_not_sizes(tmp_path, comment, fifth):
+    path = tmp_path / "a.xyz"
+    path.write_text(f"1\n{comment}\nA 1 1 1 {fifth}\n")
+    with pytest.raises(gp.SceneError, match="lengths|radius"):
+        read_frames(path)

@@ -133,7 +133,6 @@ def refused(path, scene):
 
 def test_what_does_not_fit_is_refused_in_one_line(tmp_path, state):
     path, walled = tmp_path / "gas.xyz", replace(PLAIN, container=gp.Container((SIDE,) * 3, "wall"))
-    assert "has no velocities in its last frame" in refused(write_xyz(path, state, "charge:R:3"), PLAIN)
     write_xyz(path, state, radius=True)
     assert "has 40 particles, and the scene 41" in refused(path, gas(3, 41, 0.2))
     assert "must be the container of the scene, (" in refused(path, gas(3, 40, 0.1))
@@ -153,7 +152,9 @@ def test_what_does_not_fit_is_refused_in_one_line(tmp_path, state):
 
 def test_velocities_that_the_last_frame_lacks_are_not_those_of_the_first(tmp_path, state):
     path = write_gsd(tmp_path / "gas.gsd", state, moving=(True, False))
-    assert "has no velocities in its last frame" in refused(path, PLAIN)
+    with pytest.warns(UserWarning, match="has no velocities in its last frame: they are drawn"):
+        drawn = gp.read_state(path, PLAIN, 5).velocities
+    assert np.array_equal(drawn, gp.Simulation(PLAIN, EVENT, 5).initial_state.velocities)
     assert gp.read_state(write_gsd(path, state, moving=(True,)), PLAIN).velocities.any()
     heavy = write_gsd(tmp_path / "heavy.gsd", state, mass=2.0 * state.masses)
     assert "mass = 2.0: no particle of the file has the mass of particle 0 of the scene, 1" in refused(
@@ -182,4 +183,21 @@ def test_the_command_starts_from_a_file(tmp_path, state, capsys):
     capsys.readouterr()
     path.write_text("1\n\nA 0 0 0\n", encoding="ascii")
     assert main([*command, "-o", str(tmp_path / "other.nc"), "--from", str(path)]) == 2
-    assert "has no velocities in its last frame" in capsys.readouterr().err
+    assert "has 1 particles, and the scene 40" in capsys.readouterr().err
+
+
+def test_positions_and_radii_alone_are_a_start(tmp_path):
+    """A plain file, in another order than the scene; velocities are those of the scene with this seed."""
+    MIXED.to_file(tmp_path / "gas.yaml")
+    first = gp.Simulation(MIXED, EVENT, 1).initial_state
+    order = np.arange(first.count)[::-1]
+    rows = [f"A {' '.join(map(repr, first.positions[n].tolist()))} {float(first.radii[n])!r}" for n in order]
+    path = tmp_path / "gas.xyz"
+    path.write_text("\n".join([str(first.count), f"{SIDE!r} {SIDE!r} {SIDE!r}", *rows, ""]))
+    command = ["run", str(tmp_path / "gas.yaml"), "--duration", "1", "--sample-interval", "0.5", "--quiet"]
+    with pytest.warns(UserWarning, match=r"gas\.xyz has no velocities in its last frame: they are drawn"):
+        assert main([*command, "--seed", "7", "-o", str(tmp_path / "run.nc"), "--from", str(path)]) == 0
+    start = read_recipe(tmp_path / "run.nc").initial
+    assert np.array_equal(start.velocities, gp.Simulation(MIXED, EVENT, 7).initial_state.velocities)
+    assert np.array_equal(np.sort(start.positions, axis=0), np.sort(first.positions, axis=0))
+    assert np.array_equal(start.radii, first.radii)

@@ -18,6 +18,7 @@ from malformed import one_line
 from gaspart.errors import SceneError
 from gaspart.reproduction.config import check, explain_error, judge_config, merged_with_default, read_numbers
 from gaspart.reproduction.cost import predict
+from gaspart.reproduction.points.points import points
 from gaspart.yaml_text import dump_yaml
 
 ROOT = Path(__file__).parents[2]
@@ -206,7 +207,8 @@ def test_a_config_is_merged_over_the_files_of_its_families(tmp_path):
         ((*POINT, "duration"), 1e60, None, None),
         ((*POINT, "equilibration"), 1e60, "experiments.gas.equilibration", "makes 1e+59 sample intervals"),
         ((*POINT, "scene.x"), 1, "experiments.gas.scene.x", "but there is no scene"),
-        ((*GRID, "mass"), list(range(1, 100_001)), "experiments.gas.grid", "may have 100000 points"),
+        ((*GRID, "mass"), list(range(1, 100_001)), "experiments.gas.grid", "may have 100000"),
+        (GRID, [{"mass": list(range(1, 60_001))}] * 2, "experiments.gas.grid", "may have 100000"),
         ((*GRID, "scene.x"), ["a" * 300], "experiments.gas.grid", "name of a point may have 200"),
         ((*GRID, "scene./x"), [1], "experiments.gas.grid", "may hold letters, digits"),
     ],
@@ -427,3 +429,10 @@ def test_null_removes_a_figure_and_a_partial_config_is_a_config(tmp_path, capsys
     (tmp_path / "own.yaml").write_text("seed: 11")
     assert main(["check", str(tmp_path / "own.yaml")]) == 2
     assert "has no config/config.yaml, over which others are laid" in capsys.readouterr().err
+
+
+def test_all_grids_of_a_config_together_have_a_bound():
+    grid = {"count": list(range(60_000))}
+    config = {"seed": 1, "experiments": {"a": {"grid": grid}, "b": {"grid": grid}}}
+    with pytest.raises(SceneError, match=r"experiments\.b\.grid = 120000: .*may have 100000"):
+        points(config, "b")

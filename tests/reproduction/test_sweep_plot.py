@@ -27,15 +27,18 @@ def drawn(axis):
     """The values of the bars by their label, and of the lines of theory."""
     points = {bars.get_label(): bars.lines[0].get_ydata().tolist() for bars in axis.containers}
     markers = {id(bars.lines[0]) for bars in axis.containers}
-    lines = [np.asarray(line.get_ydata()) for line in axis.lines if id(line) not in markers]
-    return points, [values.tolist() for values in lines if values.size == 3]
+    lines = [line for line in axis.lines if id(line) not in markers and line.get_linewidth() == 1.0]
+    return points, [line for line in lines if len(line.get_xdata()) > 100]
 
 
 def test_the_first_observable_is_drawn_along_the_first_key_with_theory():
     axis = TABLE.plot()
     points, theory = drawn(axis)
     assert points == {"count = 50": [1.2, 1.6, 2.4], "count = 100": [1.3, 1.7, 2.5]}
-    assert [1.25, 1.65, 2.45] in theory and [1.35, 1.75, 2.55] in theory
+    assert {line.get_color() for line in theory} == {"black"} and len(theory) == 2
+    for line, values in zip(theory, ([1.25, 1.65, 2.45], [1.35, 1.75, 2.55]), strict=True):
+        x, y = np.asarray(line.get_xdata()), np.asarray(line.get_ydata())
+        assert y[np.isin(x, ETA)] == pytest.approx(values) and (np.diff(y) > 0.0).all()
     assert axis.get_xlabel() == "packing_fraction" and axis.get_ylabel() == "Z"
     assert "theory" in [text.get_text() for text in axis.get_legend().get_texts()]
     bars = axis.containers[0].lines[2][0].get_segments()

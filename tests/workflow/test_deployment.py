@@ -8,7 +8,7 @@ import zipfile
 import pytest
 from crates import faults
 from digests import digests, known
-from workspace import ROOT, Workspace, copy_of_project
+from workspace import ROOT, Workspace, copy_of_project, leave_one_figure
 
 from gaspart.cli import main
 from gaspart.reproduction.archive.metadata import METADATA
@@ -165,3 +165,16 @@ def test_a_figure_of_ones_own_is_laid_over_the_config_in_a_run_with_a_name(fresh
     own.write_text("run: mine\n" + OWN[1])
     targets = ["results/mine/figures/my_gas.png", "results/mine/claims/my_gas.csv"]
     assert fresh.plan(*targets, "--configfile", str(own)) == STAGES
+
+
+def test_a_point_that_another_clone_has_simulated_comes_from_the_shared_cache(tmp_path, monkeypatch):
+    (tmp_path / "shared").mkdir()
+    monkeypatch.setenv("SNAKEMAKE_OUTPUT_CACHE", str(tmp_path / "shared"))
+    for name in ("first", "second"):
+        here = copy_of_project(tmp_path / name)
+        leave_one_figure(here.path, "virial_discs")
+        done = here.snakemake("--cores", "1", "--cache", "--", "results/figures/virial_discs.png")
+        assert done.returncode == 0, done.stdout[-3000:]
+        assert len(list((tmp_path / "shared").iterdir())) == 4
+    replicas = list(here.path.glob("results/smoke/points/virial_discs/*/replica-0.nc"))
+    assert len(replicas) == 4 and all(path.is_symlink() for path in replicas)

@@ -9,8 +9,6 @@ rule animate:
         poster="<results>/animations/{animation}.jpg",
     log:
         "<results>/logs/animate/{animation}.log",
-    benchmark:
-        "<results>/benchmarks/animate/{animation}.tsv"
     conda:
         "../envs/gaspart.yaml"
     threads: 1

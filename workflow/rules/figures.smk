@@ -18,8 +18,6 @@ rule figure:
         key="<results>/figures/key/{figure}.png",
     log:
         "<results>/logs/figure/{figure}.log",
-    benchmark:
-        "<results>/benchmarks/figure/{figure}.tsv"
     priority: 1  # as points have: the longest takes half a minute, beside which timings would have to wait
     conda:
         "../envs/gaspart.yaml"
@@ -48,8 +46,6 @@ use rule figure as figure_for_journal with:
         journal_pdf="<results>/figures/journal/{figure}.pdf",
     log:
         "<results>/logs/figure_for_journal/{figure}.log",
-    benchmark:
-        "<results>/benchmarks/figure_for_journal/{figure}.tsv"
 
 
 rule claims:
@@ -64,8 +60,6 @@ rule claims:
         ),
     log:
         "<results>/logs/claims.log",
-    benchmark:
-        "<results>/benchmarks/claims.tsv"
     conda:
         "../envs/gaspart.yaml"
     threads: 1
@@ -85,8 +79,6 @@ use rule claims as claims_of_first with:
         "<results>/tables/first.csv",
     log:
         "<results>/logs/claims_of_first.log",
-    benchmark:
-        "<results>/benchmarks/claims_of_first.tsv"
 
 
 rule report:
@@ -96,8 +88,6 @@ rule report:
         "<results>/report.html",
     log:
         "<results>/logs/report.log",
-    benchmark:
-        "<results>/benchmarks/report.tsv"
     conda:
         "../envs/gaspart.yaml"
     threads: 1
@@ -122,8 +112,6 @@ use rule report as report_in_one_file with:
         "<results>/report-in-one-file.html",
     log:
         "<results>/logs/report_in_one_file.log",
-    benchmark:
-        "<results>/benchmarks/report_in_one_file.tsv"
     params:
         modules=digest(*sources("report"), *STATED),
         figures=FIGURES,
@@ -142,8 +130,6 @@ use rule report as report_of_first with:
         "<results>/first.html",
     log:
         "<results>/logs/report_of_first.log",
-    benchmark:
-        "<results>/benchmarks/report_of_first.tsv"
     params:
         modules=digest(*sources("report"), *STATED),
         figures={figure: FIGURES[figure] for figure in FIRST},

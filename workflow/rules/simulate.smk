@@ -10,10 +10,9 @@ rule simulate:
         directory(f"{config['points']}/{{experiment}}/{{point}}"),
     log:
         "<results>/logs/simulate/{experiment}/{point}.log",
-    benchmark:
-        "<results>/benchmarks/simulate/{experiment}/{point}.tsv"
     wildcard_constraints:
         experiment=pattern(trajectories=True),
+    cache: True
     priority: 1
     conda:
         "../envs/gaspart.yaml"
@@ -37,10 +36,9 @@ rule compute:
         f"{config['points']}/{{experiment}}/{{point}}.nc",
     log:
         "<results>/logs/compute/{experiment}/{point}.log",
-    benchmark:
-        "<results>/benchmarks/compute/{experiment}/{point}.tsv"
     wildcard_constraints:
         experiment=pattern(trajectories=False),
+    cache: True
     priority: 1
     conda:
         "../envs/gaspart.yaml"

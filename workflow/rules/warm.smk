@@ -6,13 +6,15 @@
 # may have changed. Parameters that are made with `threads` count as derived, and make nothing run.
 
 
+# Paths are no parameters: they would enter the hashes of what is shared by `--cache`.
+PYTHON, WARM = sys.executable, str(FOLDER / "workflow/scripts/warm.py")
+
+
 rule warm:
     output:
         touch("results/kernels/{digest}/{variant}.stamp"),
     log:
         "<results>/logs/warm/{digest}/{variant}.log",
-    benchmark:
-        "<results>/benchmarks/warm/{digest}/{variant}.tsv"
     priority: 2
     conda:
         "../envs/gaspart.yaml"
@@ -21,8 +23,6 @@ rule warm:
         mem_mb=1500,
         runtime=10,
     params:
-        python=lambda wildcards, threads: sys.executable,
-        script=lambda wildcards, threads: str(FOLDER / "workflow/scripts/warm.py"),
         task=lambda wildcards, threads: task_of(wildcards),
     shell:
-        "{params.python} {params.script:q} {params.task:q} > {log} 2>&1"
+        "{PYTHON} {WARM:q} {params.task:q} > {log} 2>&1"

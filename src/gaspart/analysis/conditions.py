@@ -25,7 +25,7 @@ GROUPS = 16
 SLIDING = "this observable is not defined where images of the particles slide"
 VARYING = (
     "lets particles enter and leave, and this observable follows particles that stay; defined here are "
-    "number, flux, density, velocity, temperature, pressure and force"
+    "number, flux, density, velocity, temperature, pressure, force and heat_flux"
 )
 DISCS = "discs have no diffusion coefficient: their squared displacement grows like t ln t"
 _NEIGHBOURHOOD = {2: 7, 3: 13}  # a particle and its nearest neighbours in a crystal

@@ -186,7 +186,7 @@ def _lags_about(run: Run, lag: float, stride: int, parts: int) -> tuple[int, ...
     interval = run.interval * stride
     frames = len(run.time[::stride]) // parts
     longest = (frames // 2 - 1) * interval
-    rule = f"must be between {interval:.4g}, the time between frames, and {longest:.4g}"
+    rule = f"must be between {interval:.4g}, the time between frames, and {longest:.4g}: run longer"
     middle = round(lag / interval)
     if not 1 <= middle < frames // 2:
         raise SceneError("lag", lag, rule)

@@ -68,7 +68,7 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
     >>> gp.analysis.heat_flux(simulation).face.values.tolist()
     ['x low', 'x high']
     """
-    with open_run(source, start) as run:
+    with open_run(source, start, varying=True) as run:
         require_defined("heat_flux", run.scene)
         faces = np.array(run.scene.thermal_numbers)
         heat = _amounts_per_area(run, "wall_energy", "heat_per_area")
@@ -241,8 +241,9 @@ def _with_moments(run: Run, carried: Callable[[Run], np.ndarray]) -> list[np.nda
     across = sorted({number // 2 for number in run.scene.thermal_numbers})
     sums = []
     for _, part in run.parts():
-        amounts = carried(part)
+        amounts = np.nan_to_num(carried(part))  # of absent particles
         places = part.positions[:, run.moving] - 0.5 * np.array(run.scene.container.lengths)
+        places = np.nan_to_num(places)
         sums.append([amounts.sum(axis=1), *((amounts * places[..., axis]).sum(axis=1) for axis in across)])
     return list(np.concatenate(sums, axis=1))
 

@@ -12,7 +12,7 @@ multiply.
 from __future__ import annotations
 
 import json
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -220,7 +220,8 @@ def _momentum_flux(run: Run, axis: int, bins: int, row: int) -> MomentumFlux | N
     flux = np.diff(run.data["momentum_flux_sum"].values[:, row], axis=0)
     spread, above = np.ones(bins), np.full(bins, 0.5)
     if not run.is_subset:
-        spread, above = _spread(run, axis, bins, members), _above(run, axis, bins, members)
+        cells = Cells(run, np.flatnonzero(members), (axis,), (bins,))
+        spread, above = _spread(run, axis, bins, members, cells), _above(run, axis, cells)
     width, force = float(run.scene.container.lengths[axis]) / bins, float(masses[0] * pull)
     time, count = np.diff(run.time), int(members.sum())
     low, high = (side[axis] for side in run.scene.reach(float(run.radii[members].min())))
@@ -239,7 +240,7 @@ def _has_potential(run: Run) -> bool:
     return run.has_gravity or any(face.kind == "well" for face in run.scene.faces.values())
 
 
-def _spread(run: Run, axis: int, bins: int, members: np.ndarray) -> np.ndarray:
+def _spread(run: Run, axis: int, bins: int, members: np.ndarray, cells: Cells) -> np.ndarray:
     """Compute <m v^2> along an axis for a particle in each bin, shape (bins,).
 
     All particles in the mask `members` (N,) have the same mass. If faces have a temperature, this temperature
@@ -251,8 +252,9 @@ def _spread(run: Run, axis: int, bins: int, members: np.ndarray) -> np.ndarray:
     hot = run.scene.face_temperatures
     spread = np.full(bins, min(hot) if hot else run.temperature)
     if _has_potential(run) and not hot:
-        _, cells = _places(run, axis, bins, members)
-        spread = _mean_in(cells, np.broadcast_to(run.temperatures[:, None], cells.shape), spread)
+        spread = _mean_in(
+            cells, lambda part, _: run.temperatures[np.searchsorted(run.time, part.time), None], spread
+        )
     if not run.conserved[axis]:
         return spread
     total_mass, mass = run.masses.sum(), run.masses[members][0]
@@ -260,25 +262,22 @@ def _spread(run: Run, axis: int, bins: int, members: np.ndarray) -> np.ndarray:
     return spread * (1.0 - mass / total_mass) + mass * drift**2
 
 
-def _above(run: Run, axis: int, bins: int, members: np.ndarray) -> np.ndarray:
+def _above(run: Run, axis: int, cells: Cells) -> np.ndarray:
     """Compute the mean distance from a particle to the upper end of its bin, shape (bins,).
 
     The distance is divided by the bin width. It is set to one half if no particle was in the bin.
     """
-    positions, cells = _places(run, axis, bins, members)
-    return _mean_in(cells, cells + 1.0 - positions, np.full(bins, 0.5))
+    scale = cells.numbers[0] / run.scene.container.lengths[axis]
+    return _mean_in(
+        cells,
+        lambda part, numbers: numbers + 1.0 - part.positions[:, cells.members, axis] * scale,
+        np.full(cells.numbers, 0.5),
+    )
 
 
-def _places(run: Run, axis: int, bins: int, members: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the positions (T, n) divided by the bin width, and the bin numbers."""
-    positions = run.positions[:, members, axis] * (bins / run.scene.container.lengths[axis])
-    return positions, np.clip(positions.astype(np.int64), 0, bins - 1)
-
-
-def _mean_in(cells: np.ndarray, values: np.ndarray, default: np.ndarray) -> np.ndarray:
-    """Average values (T, n) in each bin, shape (bins,); an empty bin has the value `default`."""
-    number = np.bincount(cells.ravel(), minlength=len(default))
-    total = np.bincount(cells.ravel(), values.ravel(), minlength=len(default))
+def _mean_in(cells: Cells, of: Callable[[Run, np.ndarray], np.ndarray], default: np.ndarray) -> np.ndarray:
+    """Average the values `of` a part of the run (T, n) in each bin; an empty bin has the value `default`."""
+    number, total = (each.sum(axis=0) for each in cells.sums(lambda part, numbers: [None, of(part, numbers)]))
     return np.divide(total, number, out=default, where=number > 0)
 
 
@@ -338,8 +337,12 @@ def mixed_density(run: Run, axis: int, bins: int, species: int | None) -> Means 
     volume = cells.grid.volume * np.delete(run.scene.container.lengths, axis).prod()
     impulses = np.add.reduceat(numbers, starts) / (time * volume)
     impulses[np.abs(impulses) < _ROUNDING * impulses.max()] = 0.0
-    counts = cells.grid.sums(cells.cells_of(run)[1:], None, blocks) * (len(members) / len(stored))
-    counted = counts / (np.bincount(blocks)[:, None] * volume)
+    counts = np.zeros((blocks[-1] + 1, bins), dtype=int)
+    for part_frames, part in run.parts():
+        first = int(part_frames.start == 0)  # an interval belongs to the frame at its end
+        within = blocks[part_frames.start - 1 + first : part_frames.stop - 1]
+        counts = cells.grid.sums(cells.cells_of(part)[first:], None, within, counts)
+    counted = counts * (len(members) / len(stored)) / (np.bincount(blocks)[:, None] * volume)
     weights = mixture(counted, impulses, run.periodic[axis])
     mixed = counted + weights * (impulses - counted)
     shares = mixed.mean(axis=0) / mixed.mean(axis=0).sum()

@@ -16,7 +16,7 @@ from gaspart.analysis import conditions as where
 from gaspart.analysis.declaration import Named, units_in
 from gaspart.errors import SceneError, unknown_word
 from gaspart.scene.face_checks import refuse_open
-from gaspart.scene.faces import Open
+from gaspart.scene.faces import FACES, Open
 from gaspart.scene.scene import Scene
 from gaspart.state.tally import StressTally, WallShearTally
 
@@ -106,6 +106,7 @@ OBSERVABLES: dict[str, Named] = {
         definition="heat given to each face at a temperature, per area, in a steady state",
         units="energy / (length^(d-1) time)",
         function="heat_flux",
+        varying=True,
         needs_all_particles="never",
         along=("face",),
         conditions=(where.refuse_shear, where.thermal_walls),
@@ -266,7 +267,7 @@ OBSERVABLES: dict[str, Named] = {
         along=("speed",),
         selections=("about",),
         ends="fastest",
-        conditions=(where.refuse_shear, where.require_particles),
+        conditions=(where.require_particles,),
         theory="equilibrium.speeds",
         scatter="particles",
         power=0.5,
@@ -330,7 +331,7 @@ OBSERVABLES: dict[str, Named] = {
         varying=True,
         along=("position",),
         selections=("axis", "species"),
-        conditions=(where.refuse_shear, where.has_axis, where.has_species),
+        conditions=(where.has_axis, where.has_species),
         theory="places.density",
         by_impulses=True,
         ends_runs=True,
@@ -387,7 +388,7 @@ OBSERVABLES: dict[str, Named] = {
         varying=True,
         along=("position",),
         selections=("axis", "species", "about"),
-        conditions=(where.refuse_shear, where.has_axis, where.has_species, where.thermal),
+        conditions=(where.has_axis, where.has_species, where.thermal),
         theory="places.temperature",
         power=1.0,
     ),
@@ -597,7 +598,7 @@ def walls_of(name: str, scene: Scene) -> tuple[str, ...]:
         return ()
     if OBSERVABLES[name].of_impulses:
         return scene.container.walls
-    return tuple(key.replace("_", " ") for key, face in scene.faces.items() if face.temperatures)
+    return tuple(FACES[number].replace("_", " ") for number in scene.thermal_numbers)
 
 
 def require_steady_value(name: str, scene: Scene) -> None:

@@ -78,7 +78,7 @@ def speed_distribution(
     10
     """
     bins = count_of("bins", bins, least=2)
-    with open_run(source, start, about=about) as run:
+    with open_run(source, start, sheared=True, about=about) as run:
         require_defined("speeds", run.scene, about=about)
         masses, temperature = run.masses[run.moving], run.temperature
         if not temperature > 0.0:
@@ -196,7 +196,7 @@ def profile(
     4
     """
     one_of("of", of, observables_with(function="profile"))
-    with open_run(source, start, varying=True, about=about) as run:
+    with open_run(source, start, sheared=True, varying=True, about=about) as run:
         require_defined(of, run.scene, axis=axis, species=species)
         names = "xyz"[: run.dimension]
         k = names.index(names[-1] if axis is None else axis)

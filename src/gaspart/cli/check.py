@@ -118,7 +118,8 @@ def _check_frames(file: str, options: argparse.Namespace) -> tuple[str, list]:
         return judge_open(Path(file), options.tolerance)
     frames = read_frames(file, **stated)
     kind = "discs" if frames.dimension == 2 else "spheres"
-    title = f"{file}: {frames.count} {kind} in {len(frames.positions)} frames"
+    note = f"; {frames.note}" if frames.note else ""
+    title = f"{file}: {frames.count} {kind} in {len(frames.positions)} frames{note}"
     return title, judge(frames, options.tolerance, bool(options.driven))
 
 

@@ -67,7 +67,7 @@ def add_run(parser: Parser) -> None:
     add("--seed", type=several(int), default=(0,), metavar="N[,N...]", help="default: 0")
     text = (
         "start from the last state of this run, from a .json file of `gaspart play`, or from the last frame "
-        "of a .gsd or .xyz file with velocities, of the same particles in a container of the same size: "
+        "of a .gsd or .xyz file, of the same particles in a container of the same size: "
         "other contacts, gravity, faces or engine, such as images that slide or a piston"
     )
     add("--from", dest="initial", metavar="FILE", help=text)

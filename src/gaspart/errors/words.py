@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from difflib import get_close_matches
+from difflib import SequenceMatcher, get_close_matches
 
 from gaspart.errors import OneLine
 
@@ -38,7 +38,6 @@ _WORDS = {
     "Sphere": ("Particle", "Species"),
     "simulate": ("run",),
     "animate": ("film",),
-    "plot": ("render", "view"),
 }
 """Names by word. The first name that is known in a place is meant there; a remark is in parentheses."""
 
@@ -47,15 +46,18 @@ def meant(word: str, candidates: Sequence[str]) -> str:
     """Return the candidate that a word means, or ""."""
     plain = {name: name.rpartition(".")[2].lstrip("-").replace("-", "_") for name in candidates}
     renamed = word.lstrip("-").replace("-", "_").replace("bodies", "particles").replace("body", "particle")
-    for meaning in (renamed, *(_WORDS.get(renamed) or _WORDS.get(renamed.lower(), ()))):
+    same = next((name for name in candidates if plain[name] == renamed), "")
+    for meaning in _WORDS.get(renamed) or _WORDS.get(renamed.lower(), ()):
         for name in candidates:
-            if plain[name] == meaning.split(" ")[0]:
+            if not same and plain[name] == meaning.split(" ")[0]:
                 return meaning.replace(plain[name], name, 1)
     swapped = [name for name in plain.values() if sorted(name) == sorted(renamed)]
-    near = swapped or get_close_matches(renamed, list(plain.values()), 1, _LIKE)
+    near = swapped or get_close_matches(renamed, list(dict.fromkeys(plain.values())), 2, _LIKE)
+    if len(near) > 1 and len({SequenceMatcher(None, name, renamed).ratio() for name in near}) == 1:
+        near = []  # as maxwell, of maxwell_pdf and maxwell_cdf
     longer = [name for name in plain.values() if len(renamed) > 3 and name.startswith(renamed)]
     longer = longer if len(longer) == 1 else []
-    return next((name for name in candidates if plain[name] in (near or longer)), "")
+    return same or next((name for name in candidates if plain[name] in (near[:1] or longer)), "")
 
 
 class MissingName(OneLine, AttributeError):

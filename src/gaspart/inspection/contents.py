@@ -49,6 +49,7 @@ class Contents:
     velocities_from_first : reason to doubt velocities that are the same in all frames as in frame
     0.
     no_velocities : reason why velocities are missing.
+    note : where sizes were found, if the format does not define it.
     """
 
     positions: np.ndarray
@@ -75,6 +76,7 @@ class Contents:
     time_resolution: float = 0.0
     velocities_from_first: str | None = None
     no_velocities: str | None = None
+    note: str = ""
 
 
 @dataclass(frozen=True)
@@ -125,13 +127,14 @@ def complete_frames(contents: Contents, overrides: Overrides, path: str) -> Fram
         part=contents.part,
         sampled=contents.sampled,
         engine=contents.engine,
-        counted=contents.counted,
+        counted=contents.counted if overrides.boundary is None else None,
         scene=contents.scene,
         resolution=min(contents.resolution, _LARGEST),
         masses=None if masses is None else masses[0],
         lengths_by_frame=sides if len(sides) > 1 else None,
         radii_by_frame=radii if len(radii) > 1 else None,
         no_velocities=contents.no_velocities or Frames.no_velocities,
+        note=contents.note,
     )
     if contents.scene is not None:
         return frames
@@ -273,7 +276,8 @@ def _radii(contents: Contents, overrides: Overrides, path: str) -> np.ndarray:
     if overrides.radius is not None:
         return np.full(contents.positions.shape[1], overrides.radius)
     if contents.radii is None:
-        raise SceneError("radius", None, "is not stated: give --radius", path)
+        column = ", or write radii as a fifth column" if path.endswith(".xyz") else ""
+        raise SceneError("radius", None, f"is not stated: give --radius{column}", path)
     if not (np.asarray(contents.radii) > 0.0).all() or not (np.asarray(contents.radii) <= _LARGEST).all():
         least = float(np.nan_to_num(contents.radii, nan=-np.inf).min())
         raise SceneError("radius", least, "must be positive and finite: give --radius", path)

@@ -39,6 +39,7 @@ class Frames:
     no_velocities : reason why velocities are missing.
     reordered : first frame that lists its particles in another order than the preceding frame, if ids do not
         restore the order; otherwise None.
+    note : where sizes were found, if the format does not define it.
     """
 
     positions: np.ndarray
@@ -60,6 +61,7 @@ class Frames:
     counted: Path | None = None
     no_velocities: str = "the file has no velocities"
     reordered: int | None = None
+    note: str = ""
 
     @property
     def count(self) -> int:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import os
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -23,7 +24,7 @@ from gaspart.inspection.netcdf_contents import is_own, read_netcdf
 from gaspart.inspection.xyz_contents import read_xyz
 from gaspart.scene.scene import Scene
 from gaspart.state.given import state_at_time_zero, state_from_arrays
-from gaspart.state.initial import assemble_state
+from gaspart.state.initial import assemble_state, drawn_velocities
 from gaspart.state.insertion import per_particle
 from gaspart.state.state import State
 from gaspart.system import memory
@@ -82,9 +83,12 @@ def read_contents(path: Path, overrides: Overrides) -> Contents:
 def _contents(path: Path, overrides: Overrides) -> Contents:
     reader = _READERS.get(path.suffix.lower())
     if reader is None:
-        rule = f"must end in {', '.join(SUFFIXES)}"
+        rule = f"must end in .yaml, {', '.join(SUFFIXES)}"
         if path.suffix.lower() in (".lammpstrj", ".dump", ".atom"):
-            rule += "; in LAMMPS `dump 1 all netcdf 100 dump.nc id x y z vx vy vz` writes a file that is read"
+            # https://docs.lammps.org/dump_netcdf.html and https://docs.lammps.org/rerun.html
+            rule += "; LAMMPS with its package NETCDF converts it, if the script of the run has "
+            rule += "`dump 1 all netcdf 1 dump.nc id x y z vx vy vz` and, in place of `run`, "
+            rule += f"`rerun {path.name} dump x y z vx vy vz`"
         raise SceneError("file", str(path), rule)
     _require_memory(path)
     return reader(path, overrides)
@@ -129,7 +133,7 @@ _SAME = 1e-6
 """Relative deviation of a size or a mass that is attributed to rounding, as in `contents`."""
 
 
-def read_state(path: str | Path, scene: Scene) -> State:
+def read_state(path: str | Path, scene: Scene, seed: int | tuple[int, ...] = 0) -> State:
     r"""Return the initial state of a scene from a GSD or XYZ file, or from a file of `gaspart play`.
 
     The state is the last frame of the file.
@@ -137,9 +141,11 @@ def read_state(path: str | Path, scene: Scene) -> State:
     Parameters
     ----------
     path : str or Path
-        GSD file, XYZ file (extended, with velocities), or .json file that a page of `gaspart play` has saved.
+        GSD file, XYZ file, or .json file that a page of `gaspart play` has saved.
     scene : Scene
         The scene, which defines the radii, the masses and the container.
+    seed : int or tuple of int, default 0
+        If the last frame has no velocities, those of the scene with this seed are drawn, with a warning.
 
     Returns
     -------
@@ -150,8 +156,8 @@ def read_state(path: str | Path, scene: Scene) -> State:
     Raises
     ------
     SceneError
-        If the file has no velocities; if it has another number of particles, other sizes or masses, or
-        another container; if `gaspart check` cannot read it; or if `Simulation` rejects the state.
+        If the file has another number of particles, other sizes or masses, or another container; if
+        `gaspart check` cannot read it; or if `Simulation` rejects the state.
 
     Notes
     -----
@@ -176,18 +182,19 @@ def read_state(path: str | Path, scene: Scene) -> State:
     if path.suffix == ".json":
         return _state_of_page(path, scene)
     contents = read_contents(path, Overrides(last=True))
-    if contents.velocities is None:
-        raise SceneError("file", str(path), "has no velocities in its last frame, which a run starts from")
     count = contents.positions.shape[1]
     if count != scene.count:
         raise SceneError("file", str(path), f"has {count} particles, and the scene {scene.count}")
     sort_by_id(contents, str(path))
     _check_container(contents, scene, path)
     order = _order(contents, scene, path)
-    positions, velocities = (
-        _in_dimensions(name, values[-1], scene, path)[order]
-        for name, values in (("positions", contents.positions), ("velocities", contents.velocities))
-    )
+    positions = _in_dimensions("positions", contents.positions[-1], scene, path)[order]
+    if contents.velocities is None:
+        rule = "has no velocities in its last frame: they are drawn as the scene states them"
+        warnings.warn(f"gaspart: {path} {rule}", stacklevel=2)
+        velocities = drawn_velocities(scene, seed)
+    else:
+        velocities = _in_dimensions("velocities", contents.velocities[-1], scene, path)[order]
     turning = (scene.count,) if scene.dimension == 2 else (scene.count, 3)
     state = assemble_state(scene, positions - _origin(contents, scene), velocities, np.zeros(turning))
     plain = replace(state, piston=None, piston_face=None, displaced=None, shear_rate=None)

@@ -81,7 +81,14 @@ def read_xyz(path: Path, overrides: Overrides) -> Contents:
         resolution=_resolution(columns["pos"], int(columns["digits"].max())),
         time_resolution=float(columns["time_digit"].max()) if "time" in columns else 0.0,
         no_velocities=reason,
+        note=_note(columns) if columns["plain"].all() else "",
     )
+
+
+def _note(columns: dict[str, np.ndarray]) -> str:
+    """Return where a plain file states sizes, which its format does not define."""
+    places = {"lattice": "sides from the second line", "radius": "radii from the fifth column"}
+    return " and ".join(text for name, text in places.items() if name in columns)
 
 
 def _drop_velocities(parts: list[dict]) -> str | None:
@@ -157,14 +164,16 @@ def _read_frame(
     added to it.
     """
     pairs = {key.lower(): value.strip("\"'") for key, value in _PAIR.findall(comment)}
-    named = _columns(pairs["properties"], path) if "properties" in pairs else _PLAIN
+    named = _columns(pairs["properties"], path) if "properties" in pairs else _plain_columns(rows)
+    if "properties" not in pairs and (sides := _plain_sides(comment)):
+        pairs["lattice"] = sides
     width = max(first + count for first, count in named.values())
     extended = "properties" in pairs
     for row in rows:
         if len(row) < width or (extended and len(row) != named[""][0]):
             rule = f"has a line of {len(row)} columns in frame {n}, where {width} are stated"
             raise SceneError("file", str(path), rule)
-    fields: dict = {}
+    fields: dict = {"plain": not extended}
     for name, (first, count) in named.items():
         if not name or (name in ("radius", "diameter") and overrides.radius is not None):
             continue
@@ -185,6 +194,23 @@ def _read_frame(
             rule = f"{name} must have {count} columns"
             raise SceneError("Properties", pairs["properties"], rule, str(path))
     return fields | _of_comment(pairs, count, overrides, path)
+
+
+def _plain_columns(rows: list[list[str]]) -> dict[str, tuple[int, int]]:
+    """Return the columns of a plain file; positive numbers in a fifth and last column are radii."""
+    fifth = [row[4] for row in rows if len(row) == 5]
+    radii = len(fifth) == len(rows) and all(_NUMBER.fullmatch(text) for text in fifth)
+    if radii and (_numbers([fifth]) > 0.0).all():
+        return {**_PLAIN, "radius": (4, 1)}
+    return _PLAIN
+
+
+def _plain_sides(comment: str) -> str:
+    """Return two or three positive numbers, the whole comment of a plain file, as sides of the container."""
+    tokens = _words(comment)
+    if len(tokens) not in (2, 3) or not all(_NUMBER.fullmatch(token) for token in tokens):
+        return ""
+    return " ".join([*tokens, "0"][:3]) if (_numbers([tokens]) > 0.0).all() else ""
 
 
 def _columns(properties: str, path: Path) -> dict[str, tuple[int, int]]:

@@ -62,15 +62,17 @@ def size(key: str, value: float | tuple[float, ...]) -> None:
         raise SceneError(key, value, rule)
 
 
-def _refuse_text(key: str, value: Any) -> None:
-    """Raise SceneError for text, such as `1.0 K`."""
+def _refuse_others(key: str, value: Any) -> None:
+    """Raise SceneError for text, such as `1.0 K`, and for lists."""
     if isinstance(value, str | bytes):
         raise SceneError(key, value, "must be a number, without a unit")
+    if isinstance(value, list | tuple | dict):
+        raise SceneError(key, value, "must be a single number")
 
 
 def positive_number(key: str, value: Any) -> float:
     """Return `value` as a float above 0 of an acceptable `size`."""
-    _refuse_text(key, value)
+    _refuse_others(key, value)
     result = number(key, value, "must be positive", above=0.0)
     if not SMALLEST <= result <= LARGEST:
         raise SceneError(key, value, f"must be from {SMALLEST:g} to {LARGEST:g}: choose other units")
@@ -79,7 +81,7 @@ def positive_number(key: str, value: Any) -> float:
 
 def not_negative_number(key: str, value: Any) -> float:
     """Return `value` as a float of at least 0 of an acceptable `size`."""
-    _refuse_text(key, value)
+    _refuse_others(key, value)
     result = number(key, value, "must not be negative", least=0.0)
     size(key, result)
     return result

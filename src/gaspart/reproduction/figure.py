@@ -19,10 +19,8 @@ import numpy as np
 
 from gaspart.analysis import series
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.motion import Curves, average_correlations
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import autocorrelation_time, average, correlated_mean, jackknife
-from gaspart.errors import SceneError
 from gaspart.keys import Kind
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.gas import plain_gas
@@ -127,32 +125,6 @@ def kurtosis(speeds: np.ndarray) -> np.ndarray:
     return (square**2).mean(axis=-1) / square.mean(axis=-1) ** 2
 
 
-# Time correlations that a point's runs have accumulated, in reduced units.
-
-
-def reduced_curves(point: Point, path: str, longest: float) -> Curves:
-    """Return the curves of one replica, up to the lag `longest`, or to its last lag.
-
-    `longest` is in reduced time. The units are the particles' diameter, mass and temperature. The temperature
-    2 E' / (d (N - 1)) is computed for each replica, where E' is the energy relative to the centre of mass.
-    The scene has one species. Raises SceneError for a point without `lags`.
-    """
-    if "lags" not in point.settings:
-        raise SceneError(f"experiments.{point.experiment}.lags", None, "is required")
-    gas = plain_gas(point.scene)
-    with open_trajectory(path) as trajectory:
-        curves = average_correlations(trajectory)
-    thermal_speed = math.sqrt(curves.correlation[0] * gas.count / (gas.count - 1))
-    interval = curves.time[1] * thermal_speed / gas.diameter
-    lags = min(len(curves.time), math.ceil(longest / interval) + 1)
-    return Curves(
-        interval * np.arange(lags),
-        curves.msd[:lags] / gas.diameter**2,
-        curves.correlation[:lags] / thermal_speed**2,
-        curves.running[:lags] / (gas.diameter * thermal_speed),
-    )
-
-
 # Z and the collision rate of all replicas of a periodic point; see `gaspart.analysis.series`.
 
 
@@ -242,15 +214,3 @@ def totals(replicas: list[Series]) -> dict[str, float]:
     return {
         name: float(sum(series.counters[name].sum() for series in replicas)) for name in replicas[0].counters
     }
-
-
-def median(seconds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the median over the last axis, and its standard error.
-
-    The standard error is sqrt(pi/2) times the standard error of a mean. The standard deviation is estimated
-    as 1.4826 times the median deviation. Therefore a disturbance in one of five repeats changes neither
-    result.
-    """
-    middle = np.median(seconds, axis=-1)
-    spread = 1.4826 * np.median(np.abs(seconds - middle[..., None]), axis=-1)
-    return middle, math.sqrt(0.5 * math.pi / seconds.shape[-1]) * spread

@@ -33,9 +33,10 @@ class SweepTable(ByFace):
     def plot(  # type: ignore[override]
         self, observable: str | None = None, along: str | None = None, axis: Axes | None = None
     ) -> Axes:
-        """Draw an observable with bars of one standard deviation, and theory as lines.
+        """Draw an observable with bars of one standard deviation, and theory as black lines.
 
-        There is one curve for each value of the other dimensions.
+        There is one curve for each value of the other dimensions. The theory is known at the points of the
+        sweep; the line between them is a monotone cubic.
         """
         import matplotlib.pyplot as plt
 
@@ -78,19 +79,30 @@ def _check_name(key: str, name: str | None, names: list[str]) -> str:
 
 
 def _draw_curve(axis: Axes, curve: xr.Dataset, name: str, along: str, label: str) -> None:
-    """Draw a curve, with theory as a line of the same colour; a single curve, without label, in black.
-
-    If positions are words, theory is drawn as crosses.
-    """
+    """Draw a curve, with theory as a line; if positions are words, theory is drawn as crosses."""
     x = curve.get(f"{along}_places", curve[name][along]).values
     value, error = np.broadcast_arrays(curve[name].values, curve[f"{name}_error"].values)
-    bars = axis.errorbar(x, value, error, fmt="o", markersize=3, capsize=2, label=label or None)
+    axis.errorbar(x, value, error, fmt="o", markersize=3, capsize=2, label=label or None)
     if f"{name}_theory" in curve:
-        form: dict[str, Any] = {} if x.dtype.kind in "fiu" else {"marker": "x", "linestyle": ""}
         order = np.argsort(x)
-        theory = curve[f"{name}_theory"].values
-        colour = bars.lines[0].get_color() if label else "black"
-        axis.plot(x[order], theory[order], color=colour, **form)
+        x, theory = x[order], curve[f"{name}_theory"].values[order]
+        if x.dtype.kind not in "fiu":
+            axis.plot(x, theory, "x", color="black")
+        else:
+            axis.plot(*_refined(x, theory), color="black", linewidth=1.0)
+
+
+_FINE = 200
+
+
+def _refined(x: np.ndarray, theory: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return further points of a theory between its known ones, unless some are unknown."""
+    if len(x) < 3 or not np.isfinite(theory).all() or not (np.diff(x) > 0.0).all():
+        return x, theory
+    from scipy.interpolate import PchipInterpolator
+
+    fine = np.union1d(x, np.linspace(x[0], x[-1], _FINE))
+    return fine, PchipInterpolator(x, theory)(fine)
 
 
 def columns(name: str, replicas: list[Observable]) -> Iterable[tuple[str, xr.DataArray]]:

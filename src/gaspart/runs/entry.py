@@ -170,7 +170,7 @@ def run(
         sample_interval = default_sample_interval(scene, engine, correlations)
     recipe = Recipe(
         scene, engine, seed, duration, sample_interval, until=request,
-        initial=_start(initial, scene, path, replicas), **field_values(contents),
+        initial=_start(initial, scene, path, replicas, seed), **field_values(contents),
     )  # fmt: skip
     options = WriteOptions(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
     return _record(_in_replicas(recipe, replicas), _require_path(path), options, examined)
@@ -225,7 +225,11 @@ def _with_useful_tally(contents: Contents, request: Until, scene: Scene, engine:
 
 
 def _start(
-    initial: State | str | Path | None, scene: Scene, path: str | Path | None, replicas: int
+    initial: State | str | Path | None,
+    scene: Scene,
+    path: str | Path | None,
+    replicas: int,
+    seed: int | tuple[int, ...],
 ) -> State | None:
     """Return the initial state of a run; for a file, its last state.
 
@@ -242,7 +246,7 @@ def _start(
             if is_same_file(initial, target):
                 rule = f"is the file that is to be written, {output}: choose another name for the new run"
                 raise SceneError("initial", str(initial), rule)
-    return read_state(initial, scene) if Path(initial).suffix in STARTS else last_state(initial)
+    return read_state(initial, scene, seed) if Path(initial).suffix in STARTS else last_state(initial)
 
 
 def _require_path(path: str | Path | None) -> str | Path:

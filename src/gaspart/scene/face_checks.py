@@ -197,8 +197,9 @@ def check_open_faces(scene: Scene) -> None:
     """
     for number, reservoir in scene.faces_of(Open):
         face = f"faces.{FACES[number]}"
-        if not scene.centres_to_walls:
-            raise SceneError(face, "open", "is passed by centres of particles: needs centres_to_walls: true")
+        if reservoir.activity is not None and not scene.centres_to_walls:
+            rule = "lets centres of particles enter: needs centres_to_walls: true, or no activity (a vacuum)"
+            raise SceneError(f"{face}.activity", reservoir.activity, rule)
         if len(scene.species) != 1 or scene.particles or not scene.count:
             raise SceneError(face, "open", "needs particles of one species, and no single ones")
         _check_attempts(scene, number, reservoir)

@@ -580,9 +580,9 @@ class Piston(Surface):
 class Open(Surface):
     """An opening as wide as the face, through which particles leave, and enter from a reservoir.
 
-    A particle whose centre reaches the face leaves for good. With an `activity` and a `temperature`,
-    particles from a reservoir enter through the face. Otherwise there is a vacuum outside. The scene must
-    have one species and `centres_to_walls`.
+    A particle that reaches the face leaves for good. With an `activity` and a `temperature`, particles from a
+    reservoir enter through the face, and the scene must have `centres_to_walls`. Otherwise there is a vacuum
+    outside, and the container may have interior walls. The scene must have one species.
 
     Parameters
     ----------

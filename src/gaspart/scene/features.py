@@ -129,7 +129,7 @@ _CLOSED = {
     ),
     "nothing acts on the gas of a reservoir": ("gravity", "thermostat"),
     "a reservoir has particles of one size, which move": ("polydispersity", "fixed"),
-    "an interior wall could stand in the way of what enters": ("walls", "thermal_walls", "moving_wall"),
+    "an interior wall that moves needs a closed container": ("moving_wall",),
     "beside open faces, the others are hard or thermal": (
         "well", "sticky", "vibrating", "piston", "lees_edwards",
     ),

@@ -67,7 +67,7 @@ def initial_state(scene: Scene, seed: int | tuple[int, ...]) -> State:
         except SceneError as error:
             rule = f"{error.rule}; {_instead_of_random(scene, seed)}"
             raise SceneError(error.key, error.value, rule) from None
-    velocities = _velocities(scene, stream(seed, _VELOCITIES))
+    velocities = drawn_velocities(scene, seed)
     _add_flow(scene, positions, velocities)
     return replace(
         assemble_state(
@@ -181,6 +181,11 @@ def _vibrations(scene: Scene, rng: np.random.Generator) -> np.ndarray:
         else:
             parts.append(np.full(kind.count, kind.vibration or 0.0))
     return np.concatenate(parts)
+
+
+def drawn_velocities(scene: Scene, seed: int | tuple[int, ...]) -> np.ndarray:
+    """Return the velocities (N, d) of a run with this seed; those of a sheared gas are about its flow."""
+    return _velocities(scene, stream(seed, _VELOCITIES))
 
 
 def _velocities(scene: Scene, rng: np.random.Generator) -> np.ndarray:

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.reproduction.families.shared.columns import Stretch
 from gaspart.reproduction.figures import buoyancy
+from gaspart.reproduction.figures._columns import Stretch
 from gaspart.reproduction.points.point import Point
 
 WIDTH, HEIGHT, STRENGTH, RADIUS, SMALL = 24.0, 60.0, 0.05, 3.0, 0.5

@@ -12,8 +12,7 @@ import pytest
 import xarray as xr
 from PIL import Image
 
-from gaspart.reproduction.families.tradeoff import ENGINES, PARTS
-from gaspart.reproduction.families.tradeoff.figure import NAMES
+from gaspart.reproduction.figures._tradeoff import ENGINES, NAMES, PARTS
 from gaspart.reproduction.registry import chapter, families, titles
 from gaspart.reproduction.report.explore import engines, series
 from gaspart.reproduction.report.page import (

@@ -19,8 +19,8 @@ from gaspart.analysis.statistics import combine_estimates, fit_polynomial, mean_
 from gaspart.keys import count, names, positive
 from gaspart.rendering import style
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.columns import Field, Stretch, field, stretches
 from gaspart.reproduction.figure import Blocks, Parts
+from gaspart.reproduction.figures._columns import Field, Stretch, field, stretches
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, merge_with_prefixes, table
 from gaspart.theory.brownian import displaced_area

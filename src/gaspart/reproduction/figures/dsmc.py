@@ -28,8 +28,8 @@ from gaspart.keys import count, names, record
 from gaspart.rendering import style
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.families.heat.gap import Gap, averages
-from gaspart.reproduction.families.motion.measure import spheres
 from gaspart.reproduction.figure import Parts, series_of
+from gaspart.reproduction.figures.msd_spheres import spheres
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, entries, table
 from gaspart.scene.gas import plain_gas

@@ -23,8 +23,8 @@ from gaspart.analysis.transport import green_kubo
 from gaspart.keys import names
 from gaspart.rendering import style
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.motion.measure import spheres
 from gaspart.reproduction.figure import PARTICLES, Parts, pressure
+from gaspart.reproduction.figures.msd_spheres import spheres
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, table
 from gaspart.scene.gas import Gas, plain_gas

@@ -241,6 +241,7 @@ def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
 
 
 MOST_POINTS = 100_000
+"""Maximum number of points of a config. Planning takes half a millisecond a point."""
 
 
 def points(config: dict, experiment: str) -> list[Point]:
@@ -250,6 +251,7 @@ def points(config: dict, experiment: str) -> list[Point]:
     """
     block = config["experiments"][experiment]
     where = f"experiments.{experiment}"
+    _check_size(config, experiment)
     effort = block.get("effort", config.get("effort", 1.0))
     by_name: dict[str, Point] = {}
     varied = block.get("grid")
@@ -320,6 +322,21 @@ def figure_points(config: dict, figure: str, planned: Mapping[str, Mapping[str, 
     return chosen
 
 
+def _check_size(config: dict, experiment: str) -> None:
+    """Raise SceneError if the grids of an experiment and of those before it have too many points."""
+    total = 0
+    for name, block in config["experiments"].items():
+        grid = block.get("grid") if isinstance(block, dict) else None
+        for axes in grid if isinstance(grid, list) else [grid]:
+            values = axes.values() if isinstance(axes, dict) else ()
+            total += math.prod(len(each) if isinstance(each, list) else 1 for each in values)
+        if total > MOST_POINTS:
+            rule = f"are the points up to this grid: a config may have {MOST_POINTS}"
+            raise SceneError(f"experiments.{name}.grid", total, rule)
+        if name == experiment:
+            return
+
+
 def _combinations(grid: Any, where: str) -> list[dict]:
     """Return all combinations of the values in a mapping of lists.
 
@@ -333,7 +350,4 @@ def _combinations(grid: Any, where: str) -> list[dict]:
     for key, values in axes.items():
         if not values:
             raise SceneError(f"{where}.{key}", values, "must not be empty")
-    count = math.prod(map(len, axes.values()))
-    if count > MOST_POINTS:
-        raise SceneError(where, count, f"a grid may have {MOST_POINTS} points")
     return [dict(zip(axes, chosen, strict=True)) for chosen in itertools.product(*axes.values())]

@@ -77,7 +77,7 @@ def series(
 
 
 def engines(dataset: xr.Dataset) -> dict[str, Any]:
-    """Return the costs and errors of all engines, from a dataset of `families.tradeoff.maps`.
+    """Return the costs and errors of all engines, from the data set of `time_to_accuracy`.
 
     `count` is the number of particles. `engines` has name and colour of each engine. `parts` are the causes
     of errors. `observables` has for each observable its name, its packing fractions and two arrays. The array
@@ -87,7 +87,7 @@ def engines(dataset: xr.Dataset) -> dict[str, Any]:
     """
     from matplotlib.colors import to_hex
 
-    from gaspart.reproduction.families.tradeoff import figure as panels
+    from gaspart.reproduction.figures import time_to_accuracy as panels
 
     observables = []
     for quantity in dataset["quantity"].values:

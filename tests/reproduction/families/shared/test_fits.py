@@ -6,14 +6,14 @@ from itertools import islice
 import numpy as np
 import pytest
 import xarray as xr
-from reproduction.families.test_displacement import spheres
 from reproduction.figures.test_virial import ETA
 
 from gaspart.analysis.estimate import Estimate
-from gaspart.reproduction.families.motion.measure import size_series
 from gaspart.reproduction.figures import adsorption, beds, buoyancy
+from gaspart.reproduction.figures.msd_spheres import size_series
 from gaspart.reproduction.figures.virial import fit_coefficients
 from gaspart.reproduction.table import Table, from_rows
+from gaspart.theory import enskog_viscosity, erpenbeck_wood_diffusion, number_density, yeh_hummer
 from gaspart.theory.brownian import displaced_area
 from gaspart.theory.state import compressibility_factor
 
@@ -56,7 +56,15 @@ SOURCE = from_rows("source", [
     }
     for height in EXPECTED
 ]).assign_attrs(source_density=0.2)  # fmt: skip
-SIZES = spheres().isel(point=slice(2, 5))
+SIDES = (np.array([256, 864, 2048]) / float(number_density(0.3, 3))) ** (1 / 3)
+SIZES = xr.Dataset({
+    name: ("point", np.broadcast_to(values, 3))
+    for name, values in {
+        "side": SIDES, "in_series": True, "correction": yeh_hummer(SIDES, enskog_viscosity(0.3, 3)),
+    }.items()
+})  # fmt: skip
+D = float(erpenbeck_wood_diffusion(0.3))
+SIZES = SIZES.assign(diffusion=D - SIZES.correction, diffusion_error=("point", np.full(3, 0.002 * D)))
 
 
 def scattered(rng, ds, freedom, names):

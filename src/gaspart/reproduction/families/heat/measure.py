@@ -15,7 +15,7 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.series import Blocks
 from gaspart.analysis.statistics import fit_polynomial, jackknife
 from gaspart.reproduction.families.heat.gap import NO_APPROACH, Averages, Gap, approach, averages
-from gaspart.reproduction.families.shared.runs import runs
+from gaspart.reproduction.figure import runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, table
 from gaspart.scene.faces import thermal_face

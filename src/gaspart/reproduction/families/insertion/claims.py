@@ -7,7 +7,7 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared import PARTICLES
+from gaspart.reproduction.figure import PARTICLES
 from gaspart.reproduction.table import Row, Table
 from gaspart.theory.packing import insertion_saturation_uncertainty
 

@@ -1,4 +1,4 @@
-"""Made-up trajectories and measurements of displacements, with known answers."""
+"""Displacements and velocity autocorrelations of made-up trajectories, and of real gases."""
 
 from __future__ import annotations
 
@@ -9,18 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from reproduction.claims.data import about, judged
-from reproduction.families.drawn import Points, column, draw, shows, varied
 from scenes import centred
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.analysis.motion import Curves, correlate, line, mask_between
+from gaspart.analysis.motion import Curves, autocorrelation, correlate, line, mask_between
 from gaspart.errors import SceneError
-from gaspart.reproduction.families.motion import claims, figure, measure
-from gaspart.reproduction.families.shared import runs
+from gaspart.reproduction.figures import _displacement, msd_discs, msd_spheres, velocity_autocorrelation
 from gaspart.reproduction.points.point import Point
-from gaspart.reproduction.table import Table, from_rows
 from gaspart.trajectory.correlator import SUMS
 
 
@@ -86,89 +82,11 @@ def enskog_rate(packing_fraction, dimension=3):
     return 1.0 / float(theory.enskog_diffusion(packing_fraction, dimension))
 
 
-def _curves(eta, dimension, interval, lags):
-    """Columns of a point's curves by Enskog's theory."""
-    rate = float(theory.collision_rate(eta, dimension))
-    time = interval / rate * np.arange(lags)
-    diffusion = float(theory.enskog_diffusion(eta, dimension))
-    running = -diffusion * np.expm1(-time / diffusion)
-    return {
-        "packing_fraction": eta,
-        "collision_rate": rate,
-        "interval": interval,
-        "viscosity": float(theory.enskog_viscosity(eta, dimension)),
-        "time": time,
-        "msd": theory.enskog_mean_squared_displacement(time, eta, dimension),
-        "msd_error": 4e-4 * theory.enskog_mean_squared_displacement(time, eta, dimension),
-        "running": running,
-        "running_error": np.full(lags, 1e-4),
-    }
-
-
-def _table(rows, dimension, **more):
-    return from_rows("point", rows, ("lag",)).assign(more).assign_attrs(dimension=dimension)
-
-
-def _short(eta, dimension, **more):
-    curves = _curves(eta, dimension, 0.25, 100)
-    integral = {"integral": curves["running"], "integral_error": np.full(100, 1e-4)}
-    difference = {"integral_difference": 0.001, "integral_difference_error": 0.002}
-    return {**curves, **integral, **difference, **more}
-
-
-def spheres():
-    """What `measure.msd_spheres` gives where Erpenbeck & Wood and Yeh & Hummer hold."""
-    rows = []
-    for eta, count in ((0.01, 864), (0.1, 864), (0.3, 256), (0.3, 864), (0.3, 2048)):
-        side = (count / float(theory.number_density(eta, 3))) ** (1 / 3)
-        correction = float(theory.yeh_hummer(side, float(theory.enskog_viscosity(eta, 3))))
-        diffusion = float(theory.erpenbeck_wood_diffusion(eta))
-        rows.append(
-            {
-                **_curves(eta, 3, 2.0, 40),
-                "count": count,
-                "side": side,
-                "diffusion": diffusion - correction,
-                "diffusion_error": 0.002 * diffusion,
-                "correction": correction,
-                "correction_uncertainty": 0.05 * correction,
-                "largest": (eta, count) != (0.3, 256) and (eta, count) != (0.3, 864),
-                "in_series": eta == 0.3,
-            }
-        )
-    slope = -rows[-1]["correction"] * rows[-1]["side"]
-    rows.append(_short(0.3, 3, count=864, side=1.0, largest=False, in_series=False))
-    intercept = float(theory.erpenbeck_wood_diffusion(0.3))
-    fitted = {
-        "size_slope": slope,
-        "size_slope_error": 0.02,
-        "size_intercept": intercept,
-        "size_limit": intercept,
-    }
-    return _table(rows, 3, **fitted, size_intercept_error=0.001)
-
-
-def discs():
-    """What `measure.msd_discs` gives where mode coupling holds."""
-    rows = []
-    for eta in (0.1, 0.3):
-        expected = float(theory.logarithmic_slope(eta))
-        curves = _curves(eta, 2, 3.0, 30)
-        late = curves["time"] > curves["time"][5]
-        curves["running"][late] += expected * np.log(curves["time"][late] / curves["time"][5])
-        fit = {"fit_from": curves["time"][5], "fit_to": curves["time"][25]}
-        slope = {"logarithmic_slope": expected, "logarithmic_slope_error": 0.05 * expected}
-        slope["slope_expected"] = expected
-        rows.append({**curves, **fit, **slope, "count": 4096, "side": 100.0})
-    rows.append(_short(0.3, 2, count=1024, side=50.0))
-    return _table(rows, 2)
-
-
 @pytest.fixture
 def stored(monkeypatch):
     """Stands in for the files: `stored[path] = dataset`."""
     files = {}
-    monkeypatch.setattr(runs, "open_trajectory", files.__getitem__)
+    monkeypatch.setattr(_displacement, "open_trajectory", files.__getitem__)
     return files
 
 
@@ -216,7 +134,7 @@ def test_a_line_needs_four_points():
 def test_diffusion_of_langevin_particles_in_any_unit(stored, unit):
     one = point(collisions_per_particle=240, samples=240, radius=0.5 * unit.get("length", 1.0))
     fill(stored, replace(one, settings={**one.settings, "radius": 0.5}), seed=4, **unit)
-    ds = measure.msd_spheres([one], {}).isel(point=0)
+    ds = msd_spheres.measure([one], {}).isel(point=0)
     expected, error = float(theory.enskog_diffusion(0.02, 3)), float(ds["diffusion_error"])
     assert error < 0.03 * expected
     assert abs(float(ds["diffusion"]) - expected) < 4 * error
@@ -229,7 +147,7 @@ def test_diffusion_of_langevin_particles_in_any_unit(stored, unit):
 def test_short_runs_compare_green_and_kubo_with_einstein(stored):
     one = point(experiment="short", collisions_per_particle=60, samples=240)
     fill(stored, one, seed=5)
-    ds = measure.msd_spheres([one], {}).isel(point=0)
+    ds = msd_spheres.measure([one], {}).isel(point=0)
     assert np.isnan(ds["diffusion"])
     assert float(ds["interval"]) == pytest.approx(0.25, rel=0.02)
     assert abs(float(ds["integral_difference"])) < max(4 * float(ds["integral_difference_error"]), 0.01)
@@ -243,7 +161,7 @@ def test_sizes_at_one_packing_fraction_make_a_series(stored):
     chosen.append(point(count=32, packing_fraction=0.05))
     for seed, one in enumerate(chosen):
         fill(stored, one, seed=seed)
-    ds = measure.msd_spheres(chosen, {})
+    ds = msd_spheres.measure(chosen, {})
     assert ds["in_series"].values.tolist() == [True, True, True, False]
     assert ds["largest"].values.tolist() == [False, False, True, True]
     # Langevin particles do not feel each other: no slope, and Enskog's D in every container.
@@ -266,8 +184,8 @@ def test_the_slope_against_the_logarithm_is_found(monkeypatch):
         logarithm = np.log(np.maximum(time, 0.1))
         return [Curves(time, time, time, 0.4 + b * logarithm - time / 4096) for b in ramps]
 
-    monkeypatch.setattr(measure, "replicas", ramp)
-    ds = measure.msd_discs([one], {}).isel(point=0)
+    monkeypatch.setattr(_displacement, "replicas", ramp)
+    ds = msd_discs.measure([one], {}).isel(point=0)
     assert float(ds["logarithmic_slope"]) == pytest.approx(0.06, rel=1e-9)
     assert float(ds["logarithmic_slope_error"]) == pytest.approx(0.005 / np.sqrt(3))
     assert "diffusion" not in ds
@@ -280,7 +198,7 @@ def test_a_point_without_lags_is_refused():
     one = point()
     del one.settings["lags"]
     with pytest.raises(SceneError, match="experiments.msd.lags.*is required"):
-        measure.msd_spheres([one], {})
+        msd_spheres.measure([one], {})
 
 
 @pytest.mark.parametrize(
@@ -296,7 +214,7 @@ def test_runs_that_cannot_tell_are_refused(stored, change, key):
     one = point(**change)
     fill(stored, one, seed=6)
     with pytest.raises(SceneError, match=key):
-        measure.msd_spheres([one], {})
+        msd_spheres.measure([one], {})
 
 
 def test_a_real_gas_diffuses_as_enskog_says(tmp_path):
@@ -307,121 +225,56 @@ def test_a_real_gas_diffuses_as_enskog_says(tmp_path):
     for k, path in enumerate(one.replica_paths):
         Path(path).parent.mkdir(parents=True, exist_ok=True)
         gp.run(one.scene, one.engine, one.seed(k), **given, path=path)
-    ds = measure.msd_spheres([one], {}).isel(point=0)
+    ds = msd_spheres.measure([one], {}).isel(point=0)
     assert float(ds["diffusion"]) == pytest.approx(float(theory.enskog_diffusion(0.03, 3)), rel=0.15)
     theoretical = theory.enskog_mean_squared_displacement(ds["time"].values, 0.03, 3)
     assert ds["msd"].values[1] == pytest.approx(theoretical[1], rel=0.03)
 
 
-def test_spheres_as_theory_says_agree():
-    found = judged(claims.msd_spheres(spheres()))
-    assert len(found) == 6
-    assert sum("Erpenbeck and Wood" in text for text in found) == 2
-    assert set(found.values()) == {"agrees"}
+def test_autocorrelation_is_the_mean_over_all_pairs_of_frames():
+    values = np.random.default_rng(2).standard_normal((7, 5, 2))
+    for lag, found in enumerate(autocorrelation(values, 4)):
+        assert found == pytest.approx(np.mean(values[: 7 - lag] * values[lag:]), rel=1e-12)
 
 
-def test_discs_as_mode_coupling_says_agree():
-    found = judged(claims.msd_discs(discs()))
-    assert len(found) == 4
-    assert set(found.values()) == {"agrees"}
+def test_the_start_of_a_gas_is_enskogs_and_momentum_is_restored(tmp_path):
+    settings = {
+        "dimension": 3, "count": 256, "radius": 0.5, "boundary": "periodic", "packing_fraction": 0.2,
+        "temperature": 2.0, "arrangement": "lattice", "collisions_per_particle": 12, "equilibration": 20,
+        "samples": 240, "lags": 120, "replicas": 3,
+    }  # fmt: skip
+    point = Point("memory", "single", "simulate", settings, str(tmp_path), 3)
+    recipe = point.parameters
+    (tmp_path / "memory/single").mkdir(parents=True)
+    for seed, path in zip(recipe["seeds"], point.replica_paths, strict=True):
+        gp.run(
+            point.scene,
+            point.engine,
+            tuple(seed),
+            recipe["duration"],
+            recipe["sample_interval"],
+            path,
+            correlations=gp.Correlations(**recipe["correlations"]),
+        )
+    fitted = {"start_to": 0.4, "tail": [2.0, 4.0]}
+    ds = velocity_autocorrelation.measure([point], fitted).isel(point=0)
+    assert abs(ds["start_rate"].item() - 2.0 / 3.0) < 4.0 * ds["start_rate_error"].item() < 0.1
+    assert ds["correlation"][0].item() == pytest.approx(1.0, rel=1e-12)  # (1 - 1/N) + 1/N
+    assert ds["collisions"][1].item() == pytest.approx(0.05, rel=0.1)
+    assert np.isnan(ds["tail_ratio"].item())
+    ds = velocity_autocorrelation.measure([point], fitted | {"start_to": 0.1}).isel(point=0)
+    assert np.isnan(ds["start_rate"].item()) and np.isfinite(ds["tail_ratio"].item())
 
 
-def scaled(ds, name, factor, where):
-    """A copy in which a column is multiplied at some points."""
-    column = ds[name].values.copy()
-    column[where] *= factor
-    return ds.assign({name: (ds[name].dims, column)})
-
-
-@pytest.mark.parametrize(
-    ("name", "factor", "where", "text"),
-    [
-        ("diffusion", 0.97, [0], "dilute limit"),
-        ("msd", 1.02, [5], "msd over Enskog's"),
-    ],
-)
-def test_each_claim_about_spheres_can_fail(name, factor, where, text):
-    assert about(claims.msd_spheres(scaled(spheres(), name, factor, where)), text) == {"disagrees"}
-
-
-def test_a_limit_that_does_not_exclude_the_first_approximation_is_inconclusive():
-    ds = spheres()
-    ds["diffusion_error"] = 6.0 * ds["diffusion_error"]
-    assert about(claims.msd_spheres(ds), "dilute") == {"inconclusive"}
-
-
-def test_no_size_dependence_disagrees_and_a_noisy_one_is_inconclusive():
-    text = "slope of D against 1/L at packing fraction 0.3"
-    ds = spheres()
-    assert judged(claims.msd_spheres(ds.assign(size_slope=0.0)))[text] == "disagrees"
-    assert judged(claims.msd_spheres(ds.assign(size_slope_error=0.1)))[text] == "inconclusive"
-
-
-def test_without_dilute_points_the_limit_is_inconclusive():
-    ds = spheres().isel(point=slice(1, None))
-    assert about(claims.msd_spheres(ds), "dilute") == {"inconclusive"}
-
-
-def test_a_plateau_of_discs_disagrees_and_a_noisy_slope_is_inconclusive():
-    flat = scaled(discs(), "logarithmic_slope", 0.0, [0, 1])
-    assert about(claims.msd_discs(flat), "ln t") == {"disagrees"}
-    noisy = scaled(discs(), "logarithmic_slope_error", 10.0, [0, 1])
-    assert about(claims.msd_discs(noisy), "ln t") == {"inconclusive"}
-
-
-def test_velocities_that_are_not_the_displacements_disagree():
-    ds = discs()
-    assert about(claims.msd_discs(scaled(ds, "integral_difference", 30.0, [2])), "Green-Kubo") == {
-        "disagrees"
-    }
-
-
-KEPT = ("packing_fraction", "time", "interval")
-
-
-def running(row, eta, dimension):
-    """D(t) of a row over Enskog's, against collisions per particle."""
-    enskog = float(theory.enskog_diffusion(eta, dimension))
-    time = float(theory.collision_rate(eta, dimension)) * row["time"]
-    return Points(time, row["running"] / enskog, row["running_error"] / enskog, some=True)
-
-
-def test_spheres():
-    ds = varied(spheres(), *KEPT)
-    msd, slope, density, size = draw(figure.msd_spheres, ds).axes
-    long, fine = ds.isel(point=4), ds.isel(point=5)
-    shows(msd, column(fine, "time", "msd", some=True), column(long, "time", "msd", some=True))
-    shows(slope, running(fine, 0.3, 3), running(long, 0.3, 3))
-    row = ds.isel(point=[0, 1, 4])
-    enskog = theory.enskog_diffusion(row["packing_fraction"].values, 3)
-    both = np.hypot(row["diffusion_error"], row["correction_uncertainty"])
-    shows(
-        density,
-        Points(row["packing_fraction"], row["diffusion"] / enskog, row["diffusion_error"] / enskog),
-        Points(row["packing_fraction"], (row["diffusion"] + row["correction"]) / enskog, both / enskog),
+def test_the_initial_rate_is_that_of_the_logarithm():
+    s = np.linspace(0.05, 0.3, 6)
+    assert velocity_autocorrelation.initial_rate(s, np.exp(-0.7 * s + 0.1 * s**2)) == pytest.approx(
+        0.7, rel=1e-10
     )
-    row = ds.isel(point=[2, 3, 4])
-    known = float(theory.erpenbeck_wood_diffusion(0.3))
-    shows(
-        size,
-        Points([0.0], [known], [theory.ERPENBECK_WOOD_UNCERTAINTY * known]),
-        Points(1.0 / row["side"], row["diffusion"], row["diffusion_error"]),
-    )
-    ds["in_series"] = ("point", np.zeros(ds.sizes["point"], dtype=bool))
-    assert not draw(figure.msd_spheres, ds).axes[3].axison  # no series of sizes
 
 
-def test_discs():
-    ds = varied(discs(), *KEPT)
-    msd, slope, logarithm = draw(figure.msd_discs, ds).axes
-    dilute, long, fine = (ds.isel(point=k) for k in range(3))
-    shows(msd, column(fine, "time", "msd", some=True), column(long, "time", "msd", some=True))
-    shows(slope, running(dilute, 0.1, 2), running(fine, 0.3, 2), running(long, 0.3, 2))
-    shows(logarithm, column(ds.isel(point=[0, 1]), "packing_fraction", "logarithmic_slope"))
-
-
-@pytest.mark.parametrize("data", [discs, spheres])
-def test_no_lag_is_drawn_twice(data):
-    pieces = list(figure._pieces(Table(data(), "point"), 0.3))
-    drawn = [time for run, lags in pieces for time in run.time[lags]]
-    assert len(pieces) >= 2 and np.all(np.diff(drawn) > 0.0)
+def test_the_tail_is_extrapolated_over_the_modes():
+    s = np.linspace(16.0, 60.0, 45)
+    modes = s**-1.5
+    fitted = velocity_autocorrelation.fit_tail(s, modes * (1.1 + 5.0 / s), modes)
+    np.testing.assert_allclose(fitted, [1.1, 5.0], rtol=1e-9)

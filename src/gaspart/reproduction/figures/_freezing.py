@@ -1,0 +1,139 @@
+"""Pressure and order of runs that start as crystal and as fluid, and their distance from equilibrium.
+
+A run that is not in equilibrium is no evidence. Its drift is part of its uncertainty, so that its claims are
+inconclusive, not confirmed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+
+from gaspart import theory
+from gaspart.analysis.estimate import Estimate
+from gaspart.analysis.statistics import average, correlated_mean
+from gaspart.rendering import style
+from gaspart.reproduction.figure import runs, series_of
+from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import Table, table
+
+STARTS = {"lattice": "crystal", "compressed": "fluid"}
+"""Start of a run by its arrangement: a perfect lattice is a crystal, a compressed gas is a fluid."""
+LOOKS = {"crystal": 1, "fluid": 0}
+"""Index of the colour and marker of each start."""
+EQUILIBRIUM_LIMIT = 3.0
+"""Largest deviation between starts or halves, in standard errors, of a run in equilibrium."""
+TOLERANCE = 0.02
+"""Relative half-width of the interval around a coexistence pressure."""
+Order = Callable[[np.ndarray, Sequence[float]], float]
+"""Function that computes an order parameter of a frame, from positions and the container's lengths."""
+
+
+def measure_state(point: Point, order: Order) -> dict[str, Any]:
+    """Measure pressure and order of a point, and the difference between its halves."""
+    scene = point.scene
+    density = scene.number_density * (2.0 * scene.largest_radius) ** scene.dimension
+    pressures, orders = [], []
+    for run in runs(point):
+        frames = run.data["coordinates"].values[1:]
+        pressures.append(density * series_of(run).z)
+        orders.append(np.array([order(frame, scene.container.lengths) for frame in frames]))
+    row: dict[str, Any] = {
+        "start": STARTS[point.settings["arrangement"]],
+        "packing_fraction": round(scene.packing_fraction, 9),
+        "count": scene.count,
+        "density": density,
+    }
+    for name, replicas in (("pressure", pressures), ("order", orders)):
+        mean, drift = mean_and_drift(replicas)
+        row |= {name: (mean.value, mean.error), f"{name}_drift": (drift.value, drift.error)}
+    return row
+
+
+def mean_and_drift(replicas: list[np.ndarray]) -> tuple[Estimate, Estimate]:
+    """Return the mean of series, and second half minus first half: zero on average in equilibrium."""
+    means = [correlated_mean(series).estimate for series in replicas]
+    drifts = []
+    for series, mean in zip(replicas, means, strict=True):
+        first, second = series[: len(series) // 2], series[len(series) // 2 :]
+        drifts.append(Estimate(second.mean() - first.mean(), 2.0 * mean.error))
+    return average(means), average(drifts)
+
+
+def of_start(points: list[Point], start: str) -> dict[float, Point]:
+    """Return the points of one start by packing fraction, ascending."""
+    own = [point for point in points if STARTS[point.settings["arrangement"]] == start]
+    return dict(sorted({round(point.scene.packing_fraction, 9): point for point in own}.items()))
+
+
+def measure_states(points: list[Point], row: Callable[[Point], dict[str, Any]]) -> xr.Dataset:
+    """Return the columns of each start and packing fraction, NaN without a run.
+
+    `disagreement` is the largest deviation of pressure or order between starts, or between halves of a run.
+    """
+    chosen = [point for start in STARTS.values() for point in of_start(points, start).values()]
+    dataset = table("point", chosen, row).set_index(point=["start", "packing_fraction"]).unstack("point")
+    dataset["count"] = dataset["count"].max("start").astype(int)
+    dataset["density"] = dataset["density"].max("start")
+    dataset["pressure"].attrs["units"] = "k_B T / sigma^d"
+    return dataset.assign(disagreement=disagreement(dataset))
+
+
+def disagreement(dataset: xr.Dataset) -> xr.DataArray:
+    """Return the largest deviation of each packing fraction, in standard errors."""
+    worst = []
+    for quantity in ("pressure", "order"):
+        value, error = dataset[quantity], dataset[f"{quantity}_error"]
+        worst.append((abs(dataset[f"{quantity}_drift"]) / dataset[f"{quantity}_drift_error"]).max("start"))
+        if dataset.sizes["start"] == 2:
+            worst.append(abs(value.diff("start")).isel(start=0) / np.sqrt((error**2).sum("start")))
+    return xr.concat(worst, "what", join="outer", compat="equals").max("what")
+
+
+def starts(dataset: xr.Dataset, finite: str = "pressure") -> dict[str, Table]:
+    """Return the packing fractions of the runs of each start."""
+    found = {}
+    for side in Table(dataset, "start"):
+        own = Table(side.dataset, "packing_fraction")
+        found[side.start] = own[np.isfinite(getattr(own, finite).value)]
+    return found
+
+
+def extreme(order: Estimate, melted: bool) -> Estimate:
+    """Return the order that is furthest from equilibrium: the largest if all should be melted."""
+    return order[int((np.argmax if melted else np.argmin)(order.value))]
+
+
+def with_drift(measured: Estimate, drift: Estimate) -> Estimate:
+    """Add half the drift between the halves of a run to its uncertainty, if significant."""
+    significant = abs(drift.value) > EQUILIBRIUM_LIMIT * drift.error
+    return Estimate(measured.value, math.hypot(measured.error, 0.5 * drift.value if significant else 0.0))
+
+
+def draw_points(axis: Axes, states: Table, y: Estimate, kind: int, label: str | None = None) -> None:
+    """Draw filled symbols in equilibrium, and hollow symbols out of equilibrium."""
+    settled = states.disagreement <= EQUILIBRIUM_LIMIT
+    for chosen, hollow in ((settled, False), (~settled, True)):
+        if chosen.any():
+            look: dict[str, Any] = {"kind": kind, "hollow": hollow}
+            look["label"] = None if hollow and settled.any() else label
+            style.points(axis, states.packing_fraction[chosen], y[chosen], **look)
+
+
+def draw_order(axis: Axes, sides: dict[str, Table], dimension: int) -> None:
+    """Draw the order of each start, and the ends of coexistence."""
+    draw_ends(axis, dimension)
+    for start, side in sides.items():
+        draw_points(axis, side, side.order, LOOKS[start])
+    axis.set_xlabel("packing fraction $\\eta$")
+
+
+def draw_ends(axis: Axes, dimension: int) -> None:
+    """Draw the packing fractions at the ends of coexistence."""
+    for edge in theory.coexistence_packing_fractions(dimension):
+        axis.axvline(edge, color=style.GREY, linewidth=0.6, linestyle=":")
