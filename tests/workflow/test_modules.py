@@ -126,7 +126,7 @@ def test_every_rule_states_what_it_needs():
         for rule in re.split(r"^(?:rule|checkpoint) ", file.read_text(), flags=re.MULTILINE)[1:]:
             name = rule.split(":")[0]
             stated = set(re.findall(r"^    (\w+):", rule, re.MULTILINE))
-            wanted = {"output", "log", "benchmark", "threads", "resources"}
+            wanted = {"output", "log", "threads", "resources"}
             if name != "warm":  # which may have none: see there
                 wanted |= {"input"}
             assert wanted <= stated, (file.name, name)

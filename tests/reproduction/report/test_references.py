@@ -19,7 +19,7 @@ ROOT = Path(__file__).parents[3]
 REFERENCES = read_references(ROOT / "workflow/report/references.yaml")
 YEAR = re.compile(r"\b(?:18|19|20)\d\d\b")
 CAPTIONS = [*sorted((ROOT / "workflow/report").glob("*.rst")), ROOT / "workflow/report/sources.yaml"]
-CLAIMS = sorted((ROOT / "src/gaspart/reproduction/families").glob("*/*claims.py"))
+CLAIMS = sorted((ROOT / "src/gaspart/reproduction/figures").glob("*.py"))
 NO_CITATION = "Kolafa's shorter\nequation of 1986"
 EXAMPLES = (
     Reference(1, "Yeh 2004", ("Yeh", "Hummer"), 2004, "J. Phys. Chem. B 108, 15873", "10.1021/jp0477147"),
@@ -38,7 +38,7 @@ def strings(path):
 
 
 TEXTS = {path.name: [path.read_text(encoding="utf-8")] for path in CAPTIONS}
-TEXTS |= {f"{path.parent.name}/{path.stem}": list(strings(path)) for path in CLAIMS}
+TEXTS |= {path.stem: list(strings(path)) for path in CLAIMS}
 
 
 @pytest.mark.parametrize(
