@@ -178,3 +178,10 @@ def test_a_point_that_another_clone_has_simulated_comes_from_the_shared_cache(tm
         assert len(list((tmp_path / "shared").iterdir())) == 4
     replicas = list(here.path.glob("results/smoke/points/virial_discs/*/replica-0.nc"))
     assert len(replicas) == 4 and all(path.is_symlink() for path in replicas)
+
+
+def test_the_catalog_finds_the_same_workflow(fresh):
+    smoke = ["--configfile", "config/smoke.yaml"]
+    found = fresh.plan("-s", "workflow/Snakefile", *smoke)
+    assert found.pop("everything") == 1
+    assert found | {"all": 1} == fresh.plan(*smoke)

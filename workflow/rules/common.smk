@@ -25,7 +25,7 @@ from gaspart.reproduction.claims.table import summary
 from gaspart.reproduction.config import FAMILIES, add_families, check, explain_error, is_own
 from gaspart.reproduction.config import read_numbers, remove_null
 from gaspart.reproduction import registry
-from gaspart.reproduction.registry import caption, find, of_claims, titles
+from gaspart.reproduction.registry import caption, find, of_claims
 from gaspart.reproduction.points.modules import digest, kernel_digest, measuring_digest
 from gaspart.reproduction.points.point import TRAJECTORIES
 from gaspart.reproduction.points.points import all_points
@@ -149,6 +149,12 @@ def memory_of(wildcards):
     return 800 + count // 1000 + count * len(lengths) * vectors * 8 // 10**6
 
 
+def runtime_of(wildcards, attempt):
+    """Minutes for one point on a cluster: five times the predicted time, more at each attempt."""
+    seconds = None if workflow.local_exec else predicted_seconds(point_of(wildcards))
+    return attempt * (120 if seconds is None else max(10, round(5.0 * seconds / 60.0)))
+
+
 def caption_of(wildcards):
     """The caption as it is known before anything is measured."""
     text = OWN_CAPTIONS.get(wildcards.figure)
@@ -169,7 +175,7 @@ def flagged(path, kind):
 
 
 # What families state about themselves, which the report reads by their names.
-STATED = [registry.home(name) for name in titles()]
+STATED = registry.modules()
 
 
 # A digest of the modules of a job, found from its imports, is a parameter of its rule.
@@ -187,20 +193,14 @@ def module_of(wildcards):
     return registry.home(family(wildcards))
 
 
-def parts_of(wildcards):
-    """The modules of a figure's functions: names, or a user's path."""
-    return [Path(name) if name.endswith(".py") else name for name in registry.parts(family(wildcards))]
-
-
 def modules_of_figure(wildcards):
     """A digest of what a figure is made of."""
-    return digest(*sources("figure"), *parts_of(wildcards))
+    return digest(*sources("figure"), module_of(wildcards))
 
 
 def measuring_of(wildcards):
     """A digest of what the numbers of a figure are made of."""
-    measure, *others = parts_of(wildcards)
-    return digest(measure) if others else measuring_digest(measure, function_of(wildcards))
+    return measuring_digest(module_of(wildcards), function_of(wildcards))
 
 
 @cache

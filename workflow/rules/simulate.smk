@@ -19,7 +19,7 @@ rule simulate:
     threads: 1
     resources:
         mem_mb=memory_of,
-        runtime=120,
+        runtime=runtime_of,
     params:
         modules=lambda wildcards: digest(*sources_of(point_of(wildcards))),
         job=lambda wildcards: point_of(wildcards).job,
@@ -45,7 +45,7 @@ rule compute:
     threads: cores_of
     resources:
         mem_mb=memory_of,
-        runtime=120,
+        runtime=runtime_of,
     params:
         modules=lambda wildcards: digest(*sources_of(point_of(wildcards))),
         job=lambda wildcards: point_of(wildcards).job,

@@ -13,14 +13,16 @@ from numpy.typing import ArrayLike
 
 from gaspart.analysis.estimate import Estimate
 
-if TYPE_CHECKING:  # colours can be used without matplotlib
-    from matplotlib.axes import Axes
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes as Axes
     from matplotlib.axis import Axis
     from matplotlib.container import ErrorbarContainer
-    from matplotlib.figure import Figure
+    from matplotlib.figure import Figure as Figure
     from matplotlib.lines import Line2D
     from matplotlib.patches import Rectangle
     from matplotlib.text import Text
+else:  # colours, and annotations of the figures' modules, do not need matplotlib
+    Axes = Figure = Any
 
 COLUMN = 3.4
 """Width of one column of a journal, in inches."""

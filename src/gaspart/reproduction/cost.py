@@ -33,7 +33,7 @@ def predict(path: str) -> list[str]:
     lines, total, unknown = [], 0.0, []
     with open_config(path) as (_, planned):
         for experiment, points in planned.items():
-            costs = [_seconds(point) for point in points.values()]
+            costs = [predicted_seconds(point) for point in points.values()]
             predicted = [seconds for seconds in costs if seconds is not None]
             if len(predicted) < len(costs):
                 unknown.append(experiment)
@@ -47,7 +47,7 @@ def predict(path: str) -> list[str]:
     return lines
 
 
-def _seconds(point: Point) -> float | None:
+def predicted_seconds(point: Point) -> float | None:
     """Predict the CPU time of a point's simulations from the theoretical number of collisions.
 
     None if this number is unknown.

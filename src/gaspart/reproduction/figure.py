@@ -63,11 +63,8 @@ def load_module(module: str) -> ModuleType:
 def find_parts(module: str, name: str) -> Parts:
     """Return the parts of a figure, or of a kind of figures, in a module."""
     loaded = load_module(module)
-    parts = {**getattr(loaded, "KINDS", {}), **getattr(loaded, "FIGURES", {})}.get(name)
-    if isinstance(parts, Parts):
-        return parts
-    folder = (import_module(f"{module}.{part}") for part in ("measure", "claims", "figure"))
-    return Parts(parts or {}, *(getattr(part, name) for part in folder))
+    parts: Parts = {**getattr(loaded, "KINDS", {}), **loaded.FIGURES}[name]
+    return parts
 
 
 def content_key(paths: Iterable[str | Path], *stated: Any) -> str:

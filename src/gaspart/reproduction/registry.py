@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from gaspart.errors import SceneError
 from gaspart.keys import Kind
-from gaspart.reproduction.figure import Parts, find_parts, load_module
+from gaspart.reproduction.figure import find_parts, load_module
 from gaspart.reproduction.figures import own
 
 if TYPE_CHECKING:
@@ -29,10 +29,8 @@ if TYPE_CHECKING:
 @cache
 def _modules() -> dict[str, ModuleType]:
     """Return the module of each family, in alphabetical order."""
-    here = Path(__file__).parent
-    names = {path.parent.name: "families" for path in here.glob("families/*/figure.py")}
-    names |= {path.stem: "figures" for path in here.glob("figures/[a-z]*.py")}
-    return {name: import_module(f"gaspart.reproduction.{names[name]}.{name}") for name in sorted(names)}
+    names = sorted(path.stem for path in Path(__file__).parent.glob("figures/[a-z]*.py"))
+    return {name: import_module(f"gaspart.reproduction.figures.{name}") for name in names}
 
 
 def _module(family: str) -> ModuleType:
@@ -75,16 +73,9 @@ def home(family: str) -> str:
     return _modules()[family].__name__ if family in _modules() else family
 
 
-def parts(family: str) -> list[str]:
-    """Return the modules of a family's functions: one, or `measure`, `claims` and `figure` of its folder."""
-    if not hasattr(_module(family), "__path__"):
-        return [home(family)]
-    return [f"{home(family)}.{part}" for part in ("measure", "claims", "figure")]
-
-
 def modules() -> list[str]:
-    """Return the modules of the functions of all families of this package."""
-    return [name for family in _modules() for name in parts(family)]
+    """Return the import names of the modules of all families."""
+    return [module.__name__ for module in _modules().values()]
 
 
 def caption(entry: Mapping[str, Any]) -> str:
@@ -120,11 +111,8 @@ def costs() -> list[str]:
 
 def settings() -> dict[str, dict[str, Kind]]:
     """Return the settings of each figure's measurement."""
-    return {
-        figure: keys.settings if isinstance(keys, Parts) else keys
-        for module in _modules().values()
-        for figure, keys in module.FIGURES.items()
-    }
+    stated = (module.FIGURES.items() for module in _modules().values())
+    return {figure: parts.settings for own in stated for figure, parts in own}
 
 
 def kinds() -> dict[str, dict[str, Kind]]:

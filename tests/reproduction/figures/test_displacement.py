@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+from reproduction.made import simulated
 from scenes import centred
 
-import gaspart as gp
 from gaspart import theory
-from gaspart.analysis.motion import Curves, autocorrelation, correlate, line, mask_between
+from gaspart.analysis.motion import Curves, correlate, line, mask_between
 from gaspart.errors import SceneError
 from gaspart.reproduction.figures import _displacement, msd_discs, msd_spheres, velocity_autocorrelation
 from gaspart.reproduction.points.point import Point
@@ -95,32 +94,6 @@ def fill(stored, one, seed, **unit):
     rng = np.random.default_rng(seed)
     for path in one.replica_paths:
         stored[path] = langevin(rng, one, **unit)
-
-
-def test_correlations_are_the_averages_they_are_said_to_be():
-    rng = np.random.default_rng(1)
-    r, v = rng.normal(size=(30, 5, 3)).cumsum(axis=0), rng.normal(size=(30, 5, 3))
-    found = correlate(r, v, 0.5, 9)
-    assert found.time == pytest.approx(0.5 * np.arange(9))
-    for lag in range(9):
-        moved, late, early = r[lag:] - r[: 30 - lag], v[lag:], v[: 30 - lag]
-        assert found.msd[lag] == pytest.approx((moved**2).sum(axis=-1).mean(), abs=1e-10)
-        assert found.correlation[lag] == pytest.approx((late * early).sum(axis=-1).mean() / 3)
-        assert found.running[lag] == pytest.approx(
-            (moved * (late + early)).sum(axis=-1).mean() / 6, abs=1e-10
-        )
-    with pytest.raises(ValueError):
-        correlate(r, v, 0.5, 31)
-
-
-def test_free_flight_is_ballistic_at_any_distance():
-    """Displacements 1e6 times the msd's root at the shortest lag lose no digit that matters."""
-    v = np.random.default_rng(2).normal(size=(1, 50, 3))
-    r = np.arange(1000.0)[:, None, None] * v
-    found = correlate(r, np.repeat(v, 1000, axis=0), 1.0, 4)
-    square = (v**2).sum() / 50
-    assert found.msd[1:] == pytest.approx(square * np.arange(1, 4) ** 2, rel=1e-8)
-    assert found.running == pytest.approx(square / 3 * np.arange(4), rel=1e-8, abs=1e-9)
 
 
 def test_a_line_needs_four_points():
@@ -218,23 +191,12 @@ def test_runs_that_cannot_tell_are_refused(stored, change, key):
 
 
 def test_a_real_gas_diffuses_as_enskog_says(tmp_path):
-    one = replace(point(count=108, packing_fraction=0.03, equilibration=10, replicas=3), root=str(tmp_path))
-    recipe = one.parameters
-    given = {key: recipe[key] for key in ("duration", "sample_interval", "displacements")}
-    given["correlations"] = gp.Correlations(**recipe["correlations"])
-    for k, path in enumerate(one.replica_paths):
-        Path(path).parent.mkdir(parents=True, exist_ok=True)
-        gp.run(one.scene, one.engine, one.seed(k), **given, path=path)
+    one = point(count=108, packing_fraction=0.03, equilibration=10, replicas=3)
+    one = simulated(replace(one, root=str(tmp_path)))
     ds = msd_spheres.measure([one], {}).isel(point=0)
     assert float(ds["diffusion"]) == pytest.approx(float(theory.enskog_diffusion(0.03, 3)), rel=0.15)
     theoretical = theory.enskog_mean_squared_displacement(ds["time"].values, 0.03, 3)
     assert ds["msd"].values[1] == pytest.approx(theoretical[1], rel=0.03)
-
-
-def test_autocorrelation_is_the_mean_over_all_pairs_of_frames():
-    values = np.random.default_rng(2).standard_normal((7, 5, 2))
-    for lag, found in enumerate(autocorrelation(values, 4)):
-        assert found == pytest.approx(np.mean(values[: 7 - lag] * values[lag:]), rel=1e-12)
 
 
 def test_the_start_of_a_gas_is_enskogs_and_momentum_is_restored(tmp_path):
@@ -243,19 +205,7 @@ def test_the_start_of_a_gas_is_enskogs_and_momentum_is_restored(tmp_path):
         "temperature": 2.0, "arrangement": "lattice", "collisions_per_particle": 12, "equilibration": 20,
         "samples": 240, "lags": 120, "replicas": 3,
     }  # fmt: skip
-    point = Point("memory", "single", "simulate", settings, str(tmp_path), 3)
-    recipe = point.parameters
-    (tmp_path / "memory/single").mkdir(parents=True)
-    for seed, path in zip(recipe["seeds"], point.replica_paths, strict=True):
-        gp.run(
-            point.scene,
-            point.engine,
-            tuple(seed),
-            recipe["duration"],
-            recipe["sample_interval"],
-            path,
-            correlations=gp.Correlations(**recipe["correlations"]),
-        )
+    point = simulated(Point("memory", "single", "simulate", settings, str(tmp_path), 3))
     fitted = {"start_to": 0.4, "tail": [2.0, 4.0]}
     ds = velocity_autocorrelation.measure([point], fitted).isel(point=0)
     assert abs(ds["start_rate"].item() - 2.0 / 3.0) < 4.0 * ds["start_rate_error"].item() < 0.1

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from reproduction.families.drawn import Points, draw, lines, shows
+from reproduction.figures.drawn import Points, draw, lines, shows
 
 import gaspart as gp
 from gaspart.analysis import measuring

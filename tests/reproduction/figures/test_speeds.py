@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
-from reproduction.families.stored import runs_of
+from reproduction.figures.stored import runs_of
+from reproduction.made import simulated
 
-import gaspart as gp
 from gaspart import theory
 from gaspart.analysis.statistics import histogram_chi_square
 from gaspart.errors import SceneError
@@ -176,11 +175,7 @@ def test_the_conserved_energy_takes_a_degree_of_freedom(stored):
 
 def test_a_real_gas_relaxes(tmp_path):
     one = point(count=500, packing_fraction=0.05, duration=8.0, samples=8, replicas=2, boundary="wall")
-    one = replace(one, root=str(tmp_path))
-    times = one.schedule
-    for k, path in enumerate(one.replica_paths):
-        Path(path).parent.mkdir(parents=True, exist_ok=True)
-        gp.run(one.scene, one.engine, one.seed(k), times.duration, times.sample_interval, path)
+    one = simulated(replace(one, root=str(tmp_path)))
     ds = measure_relaxation([one], {"times": [2.0, 8.0], "bins": 10, "highest": 2.5}).isel(engine=0)
     s = ds["collisions"].values
     assert s[-1] > 4.0

@@ -11,13 +11,13 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from gaspart import theory
 from gaspart.analysis.motion import Curves, average_correlations, line, mask_between
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table

@@ -21,8 +21,8 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import mean_of
 from gaspart.engines.engine import AccuracyRequest, Candidate
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.heat.gap import Gap, averages
 from gaspart.reproduction.figure import kurtosis, runs
+from gaspart.reproduction.figures._gap import Gap, averages
 from gaspart.reproduction.figures._tradeoff import (
     BOUND,
     ENGINES,

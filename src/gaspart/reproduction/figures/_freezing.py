@@ -12,12 +12,12 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import average, correlated_mean
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes
 from gaspart.reproduction.figure import runs, series_of
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, table

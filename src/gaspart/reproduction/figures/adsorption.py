@@ -7,7 +7,7 @@ holds a "layer" (it is narrower than a particle). Replicas are cut into blocks; 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -17,6 +17,7 @@ from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import combine_estimates, fit_polynomial, fit_power_law
 from gaspart.keys import count, positive
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import Blocks, Parts, runs
 from gaspart.reproduction.points.point import Point
@@ -26,10 +27,6 @@ from gaspart.theory.equations import STABLE_DISCS
 from gaspart.theory.geometry import Numbers, Values, checked_packing_fraction, particle_volume
 from gaspart.theory.state import compressibility_factor
 from gaspart.theory.tables import excess_chemical_potential, packing_fraction_at
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 TITLE, CHAPTER = "Walls that hold particles", "Gravity, heat and walls"
 SETTINGS = {

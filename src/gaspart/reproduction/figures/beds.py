@@ -11,8 +11,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.analysis.flow import Grid
@@ -20,6 +18,7 @@ from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import Fit, combine, fit_curve, fit_polynomial, mean_of, means_of
 from gaspart.keys import count, positive
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.figure import Parts, runs
 from gaspart.reproduction.points.point import Point

@@ -12,14 +12,13 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import means_of
 from gaspart.keys import COUNT, list_of, positive
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import Parts
 from gaspart.reproduction.figures._timings import (

@@ -13,8 +13,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
@@ -23,6 +21,7 @@ from gaspart.analysis.statistics import bootstrap, means_of
 from gaspart.errors import SceneError
 from gaspart.keys import count
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import Parts, runs
 from gaspart.reproduction.points.point import Point

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -18,6 +18,7 @@ from gaspart.analysis.flow import Grid
 from gaspart.analysis.statistics import combine_estimates, fit_polynomial, mean_of
 from gaspart.keys import count, names, positive
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.figure import Blocks, Parts
 from gaspart.reproduction.figures._columns import Field, Stretch, field, stretches
@@ -27,10 +28,6 @@ from gaspart.theory.brownian import displaced_area
 from gaspart.theory.geometry import particle_volume
 from gaspart.theory.gravity import hydrostatic_profiles
 from gaspart.theory.tables import excess_chemical_potential, packing_fraction_at
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 TITLE, CHAPTER = "Under gravity", "Gravity, heat and walls"
 SETTINGS = {

@@ -21,8 +21,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
@@ -31,6 +29,7 @@ from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import Fit, average, correlated_mean, fit_polynomial
 from gaspart.keys import count, names
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import PARTICLES, SOURCE_C, Parts, pressure, runs
 from gaspart.reproduction.points.point import Point

@@ -10,8 +10,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.analysis.flow import Grid
@@ -19,6 +17,7 @@ from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import mean_of, means_of
 from gaspart.keys import count, names
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.figure import PARTICLES, Parts, runs
 from gaspart.reproduction.figures.equipartition import law, read

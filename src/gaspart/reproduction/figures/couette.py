@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -22,19 +22,16 @@ from gaspart.analysis.series import Blocks, face_pressures
 from gaspart.analysis.statistics import combine_estimates, fit_linear, jackknife
 from gaspart.keys import count, names, positive, record
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.heat.gap import Gap
 from gaspart.reproduction.figure import Parts, runs
+from gaspart.reproduction.figures._gap import Gap
 from gaspart.reproduction.figures.transport import ACCURATE, ENSKOG, FEW_PER_CENT, coefficient
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
 from gaspart.scene.faces import thermal_face
 from gaspart.theory.discretisation import cell_factor, step_factor
 from gaspart.theory.shear import ELEMENTARY_SLIP, NORMAL_STRESSES, VELOCITY_SLIP
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 TITLE, CHAPTER = "Shear between sliding walls", "Motion and its memory"
 SETTINGS = {

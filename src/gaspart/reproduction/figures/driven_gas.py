@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import mean_of
 from gaspart.rendering import style
+from gaspart.rendering.style import Figure
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.figure import PARTICLES, Parts, runs
 from gaspart.reproduction.points.point import Point

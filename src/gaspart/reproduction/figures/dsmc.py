@@ -14,8 +14,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
@@ -26,9 +24,10 @@ from gaspart.analysis.statistics import combine_estimates, fit_linear, mean_of
 from gaspart.analysis.transport import green_kubo
 from gaspart.keys import count, names, record
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.heat.gap import Gap, averages
 from gaspart.reproduction.figure import Parts, series_of
+from gaspart.reproduction.figures._gap import Gap, averages
 from gaspart.reproduction.figures.msd_spheres import spheres
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, entries, table
@@ -256,6 +255,10 @@ def claims(dataset: xr.Dataset) -> Iterator[Claim]:
             "correlated collisions, which this model does not have",
             alternative=theory.erpenbeck_wood_ratio(gas.packing_fraction),
         )  # fmt: skip
+    yield from _claims_on_plates(plates, event)
+
+
+def _claims_on_plates(plates: Table, event: Table) -> Iterator[Claim]:
     for gas in plates:
         beside = event[np.abs(event.knudsen / gas.knudsen - 1.0) < 0.02]
         if not beside or beside[0].packing_fraction > POINTLIKE:

@@ -11,8 +11,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.analysis.run import Run
@@ -20,6 +18,7 @@ from gaspart.analysis.statistics import average, bootstrap, correlated_mean, fit
 from gaspart.errors import SceneError
 from gaspart.keys import positive
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.figure import PARTICLES, SOURCE_C, Parts, runs
 from gaspart.reproduction.points.point import Point

@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
 
 from gaspart.accuracy.estimates import components
 from gaspart.analysis.flow import Grid
@@ -21,6 +20,7 @@ from gaspart.analysis.statistics import mean_of
 from gaspart.errors import SceneError
 from gaspart.keys import list_of, positive
 from gaspart.rendering import style
+from gaspart.rendering.style import Figure
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import Parts, runs
 from gaspart.reproduction.points.point import Point

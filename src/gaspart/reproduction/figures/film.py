@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -20,16 +20,13 @@ from gaspart.analysis.series import face_pressures
 from gaspart.analysis.statistics import average, correlated_mean, fit_curve, fit_polynomial, mean_of, means_of
 from gaspart.keys import POSITIVE, count, list_of, positive
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import Parts, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, entries, table
 from gaspart.scene.gas import plain_gas
 from gaspart.state.random import stream
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 TITLE, CHAPTER = "Thin films", "Equation of state and structure"
 SETTINGS = {

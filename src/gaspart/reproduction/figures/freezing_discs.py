@@ -8,9 +8,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from scipy.special import bdtrc, ndtri
 
 from gaspart import theory
 from gaspart.analysis import bond_order
@@ -20,6 +17,7 @@ from gaspart.analysis.series import plateau
 from gaspart.analysis.statistics import average
 from gaspart.keys import POSITIVE, count, list_of, positive
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import Parts, runs
 from gaspart.reproduction.figures._freezing import (
@@ -215,6 +213,8 @@ def _equilibrium(states: Table) -> Claim:
     The probability is an exact binomial one. A fluid that is compressed beyond the melting point of the
     ordered phase freezes with defects. They do not heal in any such run.
     """
+    from scipy.special import bdtrc, ndtri
+
     melting = theory.coexistence_packing_fractions(2)[1]
     differences = states[states.packing_fraction <= melting].disagreement
     number = differences.size

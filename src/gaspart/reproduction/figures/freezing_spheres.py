@@ -8,8 +8,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.analysis import bond_order
@@ -18,6 +16,7 @@ from gaspart.analysis.flow import Grid
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import correlated_mean, mean_of
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import Parts, runs, series_of
 from gaspart.reproduction.figures._freezing import (

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
-from scipy.optimize import curve_fit
 
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.flow import Grid
 from gaspart.keys import POSITIVE, list_of, positive
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import Parts
 from gaspart.reproduction.figures._columns import column_settings, field, measure_columns, stretches
@@ -21,10 +20,6 @@ from gaspart.reproduction.table import Row, Table
 from gaspart.theory.gravity import ideal_profile
 from gaspart.theory.state import compressibility_factor
 from gaspart.trajectory.reading import open_trajectory
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 TITLE, CHAPTER = "Under gravity", "Gravity, heat and walls"
 ONE_KIND = column_settings(
@@ -55,6 +50,8 @@ def ringing(point: Point) -> dict[str, Estimate]:
     The fit is mean + e^{-t / decay} (a cos w t + b sin w t) to all frames after the fall; the error follows
     from their scatter.
     """
+    from scipy.optimize import curve_fit
+
     begin = point.schedule.equilibration
     with open_trajectory(point.replica_path(0)) as trajectory:
         time, kinetic = trajectory["time"].values, trajectory["kinetic_energy"].values

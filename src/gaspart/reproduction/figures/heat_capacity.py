@@ -7,7 +7,7 @@ one scene at two energies. Expected values are exact for an ideal gas with the s
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -15,6 +15,7 @@ import xarray as xr
 from gaspart.analysis.estimate import Estimate
 from gaspart.keys import count
 from gaspart.rendering import style
+from gaspart.rendering.style import Figure
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import Blocks, Parts, runs
 from gaspart.reproduction.figures._columns import field
@@ -22,9 +23,6 @@ from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, table
 from gaspart.state.initial import initial_state
 from gaspart.theory.gravity import ideal_energy_moments, ideal_heat_capacity, lebowitz_percus_verlet
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 TITLE, CHAPTER = "Under gravity", "Gravity, heat and walls"
 SETTINGS = {"blocks": count("stretches of each replica")}

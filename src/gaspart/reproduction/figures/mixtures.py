@@ -11,8 +11,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
@@ -22,6 +20,7 @@ from gaspart.analysis.series import compressibility
 from gaspart.analysis.statistics import average, correlated_mean
 from gaspart.errors import SceneError
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import PARTICLES, Parts, runs
 from gaspart.reproduction.points.point import Point

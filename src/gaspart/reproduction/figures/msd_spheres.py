@@ -8,8 +8,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.analysis.diffusion import LINEAR_FROM
@@ -17,6 +15,7 @@ from gaspart.analysis.motion import Curves, line, mask_between
 from gaspart.analysis.statistics import combine_estimates, fit_polynomial
 from gaspart.errors import SceneError
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.figure import ENSKOG_LIMIT, Parts
 from gaspart.reproduction.figures import _displacement as shared

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
 
 from gaspart.rendering import style
+from gaspart.rendering.style import Figure
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.figure import Parts
 from gaspart.reproduction.figures._timings import SOURCE_A, median, trend, weights

@@ -8,14 +8,13 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.analysis.statistics import means_of
 from gaspart.rendering import style
 from gaspart.rendering.particles import FASTEST, DrawnParticles, colours_of
 from gaspart.rendering.pictures import picture
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.figure import Parts, runs
 from gaspart.reproduction.points.point import Point

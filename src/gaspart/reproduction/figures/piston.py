@@ -10,15 +10,13 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from scipy.integrate import cumulative_trapezoid
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import mean_of, means_of
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import PARTICLES, Parts, runs
 from gaspart.reproduction.points.point import Point
@@ -79,6 +77,8 @@ def _heating(run: Run, length: np.ndarray, energy: np.ndarray) -> np.ndarray:
     is the longitudinal viscosity (Enskog) times the square of the rate of strain. Along an adiabat the ratio
     of two temperatures is constant, so that the increments add up.
     """
+    from scipy.integrate import cumulative_trapezoid
+
     scene, rate = run.scene, run.data["piston_velocity"].values / length
     dimension, diameter = scene.dimension, 2.0 * scene.largest_radius
     share = length / scene.container.lengths[0]

@@ -23,14 +23,13 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.analysis import statistics
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import average, correlated_mean, fit_power_law
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import Parts, Series, combine, runs, series_of, totals
 from gaspart.reproduction.points.point import Point

@@ -8,14 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from scipy.special import chdtr, ndtr
 
 from gaspart.analysis.flow import Grid
 from gaspart.analysis.statistics import jackknife
 from gaspart.keys import TEXT, list_of
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim, Estimate, read
 from gaspart.reproduction.figure import Parts
 from gaspart.reproduction.table import Table
@@ -33,6 +31,8 @@ def measure(tables: Sequence[str | Path], settings: dict) -> xr.Dataset:
 
     An allowance for the uncertainty of the theory makes deviations smaller; such claims are not scattered.
     """
+    from scipy.special import ndtr
+
     rows = [
         (n, row["deviation_sigma"], row["scattered"] == 1.0)
         for n, path in enumerate(tables)
@@ -132,6 +132,8 @@ def _distribution(axis: Axes, alone: np.ndarray, mean: Estimate) -> None:
 
 def _by_figure(axis: Axes, rows: Table, figures: Table) -> None:
     """Plot a row of deviations by figure, with the probability of a smaller chi-square; hollow: allowance."""
+    from scipy.special import chdtr
+
     axis.axvspan(-3.0, 3.0, color=style.GREY, alpha=0.18, linewidth=0, zorder=0)
     for position, figure in enumerate(figures):
         own = rows[rows.figure == figure.figure]

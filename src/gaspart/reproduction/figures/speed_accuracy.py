@@ -7,8 +7,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.accuracy.tabulated import model_error
@@ -16,6 +14,7 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import fit_power_law
 from gaspart.keys import names, positive
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import PARTICLES, Parts, pressure
 from gaspart.reproduction.figures._tradeoff import (

@@ -11,8 +11,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from gaspart import theory
@@ -22,6 +20,7 @@ from gaspart.analysis.statistics import histogram_chi_square, mean_of
 from gaspart.errors import SceneError
 from gaspart.keys import POSITIVE, count, list_of, positive
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.figure import Parts, kurtosis, runs
 from gaspart.reproduction.points.point import Point

@@ -14,16 +14,12 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib import colormaps
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import LogNorm
-from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
 
 from gaspart.engines import Engine, EventDriven, TimeStepped
 from gaspart.errors import SceneError, SimulationError
 from gaspart.keys import TEXT, list_of, names
 from gaspart.rendering import style
+from gaspart.rendering.style import Figure
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.figure import Parts
 from gaspart.reproduction.figures._extreme_scenes import ROWS, Row
@@ -253,7 +249,6 @@ BLOCKS = {  # drawn quantities, and the headings of their columns
 }
 GAP = 0.5  # between blocks, in columns
 FLOOR = 1e-17  # errors below this are drawn as 0
-MAP, NORM = colormaps["YlGnBu"], LogNorm(FLOOR, 1.0, clip=True)
 REASONS = (  # of rejections: a letter, the reason, and parts of the messages that state it
     ("a", "step too long: contacts late or missed", ("step too late", "misses")),
     ("b", "step too short for float32", ("than float32 resolves",)),
@@ -268,6 +263,11 @@ OTHER = "?", "another reason, in the data"
 
 def draw(dataset: xr.Dataset) -> Figure:
     """Draw a row for each scene and a column for each engine, with an error or the letter of a rejection."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import LogNorm
+    from matplotlib.patches import Rectangle
+
+    scale = ScalarMappable(LogNorm(FLOOR, 1.0, clip=True), "YlGnBu")
     scenes = Table(dataset, "row")
     rows, engines = scenes.verdict.shape
     wide = style.width() > style.COLUMN
@@ -277,7 +277,7 @@ def draw(dataset: xr.Dataset) -> Figure:
     for name, start in starts.items():
         for n, scene in enumerate(scenes):
             for k, outcome in enumerate(Table(scene.dataset, "engine")):
-                text, colour, ink = _cell(outcome, name, wide)
+                text, colour, ink = _cell(outcome, name, wide, scale)
                 at, look = (start + k, n), {"ha": "center", "va": "center", "color": ink}
                 axis.add_patch(Rectangle(at, 1, 1, facecolor=colour, edgecolor="white", linewidth=0.4))
                 if text:
@@ -297,13 +297,13 @@ def draw(dataset: xr.Dataset) -> Figure:
     for part in (*axis.spines.values(), *above.spines.values()):
         part.set_visible(False)
     axis.set_xlabel(_key(scenes, 3 if wide else 1), size=letters[1])
-    bar = figure.colorbar(ScalarMappable(NORM, MAP), ax=axis, location="bottom", aspect=50, pad=0.01)
+    bar = figure.colorbar(scale, ax=axis, location="bottom", aspect=50, pad=0.01)
     bar.set_label("relative to energy, momenta,\ncontact distance, number of contacts", size=letters[1])
     bar.ax.tick_params(labelsize=letters[1])
     return figure
 
 
-def _cell(outcome: TableRow, name: str, wide: bool) -> tuple[str, Any, str]:
+def _cell(outcome: TableRow, name: str, wide: bool, scale: Any) -> tuple[str, Any, str]:
     """Return text, background and ink of a cell.
 
     The text is the power of ten of an error, for contacts their number, if there is space; a dot if walls
@@ -320,7 +320,7 @@ def _cell(outcome: TableRow, name: str, wide: bool) -> tuple[str, Any, str]:
         return ("·" if np.isnan(size) else "0" if wide else ""), "white", style.GREY
     power = np.log10(size)
     text = f"{outcome.missed:.0f}" if name == "missed" else f"$10^{{{power:.0f}}}$"
-    return text if wide else "", MAP(NORM(size)), "black" if power < -6.5 else "white"
+    return text if wide else "", scale.to_rgba(size), "black" if power < -6.5 else "white"
 
 
 def reason(message: str) -> tuple[str, str]:

@@ -15,8 +15,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
@@ -27,6 +25,7 @@ from gaspart.analysis.statistics import fit_polynomial, jackknife, means_of
 from gaspart.analysis.structure_factors import factors, in_shells, shells_of, wave_vectors
 from gaspart.keys import count, positive
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import PARTICLES, Parts, runs, series_of
 from gaspart.reproduction.figures.chemical_potential import (

@@ -12,10 +12,6 @@ from itertools import product
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.colors import to_rgb
-from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 
 from gaspart.accuracy import table
 from gaspart.accuracy.option import Option, fluid_option
@@ -24,6 +20,7 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.engines.engine import Candidate
 from gaspart.keys import COUNT, POSITIVE, count, list_of, names
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import Parts
 from gaspart.reproduction.figures._flows import (
@@ -330,6 +327,8 @@ HIGHEST = 1.6  # largest error that is drawn, divided by the accuracy
 
 def draw(dataset: xr.Dataset) -> Figure:
     """Draw the cheapest engine and its cost, and the parts of the errors of each engine."""
+    from matplotlib.patches import Patch
+
     figure, (*maps, errors) = style.new(*((2.0,),) * len(TITLES), (2.4,))
     for axis, letter, (quantity, title) in zip(maps, "abcde", TITLES.items(), strict=True):
         _draw_map(axis, dataset.sel(quantity=quantity))
@@ -346,6 +345,8 @@ def draw(dataset: xr.Dataset) -> Figure:
 
 def tint(engine: str) -> tuple[float, float, float]:
     """Return the colour of an engine."""
+    from matplotlib.colors import to_rgb
+
     kind, white = TINTS[engine]
     red, green, blue = (white + (1.0 - white) * part for part in to_rgb(style.COLOURS[kind]))
     return red, green, blue
@@ -416,6 +417,8 @@ def _nearest(values: xr.DataArray, target: float) -> int:
 
 def _draw_parts(axis: Axes, dataset: xr.Dataset) -> None:
     """Draw errors divided by the required accuracy at the `PLACES`, by engine and cause."""
+    from matplotlib.patches import Patch
+
     rows: list[tuple[float, str]] = []
     for p, at in enumerate(places(dataset)):
         top = -(len(ENGINES) + 1.5) * p

@@ -7,7 +7,7 @@ Enskog's values. Times are in collisions of a particle.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -20,16 +20,13 @@ from gaspart.analysis.transport import green_kubo, helfand
 from gaspart.errors import SceneError
 from gaspart.keys import positive
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import ENSKOG_LIMIT, PARTICLES, Parts
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
 from gaspart.scene.gas import plain_gas
 from gaspart.trajectory.reading import open_trajectory
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 TITLE, CHAPTER = "Viscosity and conductivity", "Motion and its memory"
 GROWTH = {

@@ -19,14 +19,13 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.analysis.motion import mask_between
 from gaspart.analysis.statistics import fit_linear, fit_polynomial, mean_of, means_of
 from gaspart.keys import POSITIVE, list_of, positive
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.figure import PARTICLES, Parts
 from gaspart.reproduction.figures._displacement import MODE_COUPLING, reduced_curves

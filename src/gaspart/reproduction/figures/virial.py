@@ -11,14 +11,13 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import Fit, combine_estimates, fit_polynomial
 from gaspart.keys import count, flag, list_of, positive, record
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import Parts, pressure
 from gaspart.reproduction.points.point import Point

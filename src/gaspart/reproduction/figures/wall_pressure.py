@@ -10,8 +10,6 @@ from collections.abc import Iterator
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
@@ -20,6 +18,7 @@ from gaspart.analysis.series import face_pressures
 from gaspart.analysis.statistics import average, combine_estimates, correlated_mean, fit_power_law
 from gaspart.errors import SceneError
 from gaspart.rendering import style
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import PARTICLES, Parts, runs
 from gaspart.reproduction.points.point import Point

@@ -91,22 +91,23 @@ def _file(module: str) -> Path | None:
 
 @cache
 def digest(*roots: str | Path) -> str:
-    """Return a short digest of the files of a closure, and of a user's modules among its roots.
+    """Return a short digest of the files of a closure; a user's module has a path that ends in .py.
 
     Docstrings and comments do not change the digest.
     """
-    own = [root for root in roots if isinstance(root, Path) and not root.is_absolute()]
-    return _digest_of([*_in_order(closure(*roots)), *own])
+    own = {str(root): Path(root) for root in roots if isinstance(root, str) and root.endswith(".py")}
+    rest = (own.get(str(root), root) for root in roots)
+    return _digest_of([*_in_order(closure(*rest)), *own.values()])
 
 
 @cache
-def measuring_digest(module: str | Path, figure: str) -> str:
+def measuring_digest(module: str, figure: str) -> str:
     """Return a short digest of the code with which the module of a figure measures.
 
     This code is what its function `measure` needs: definitions in the module, and files that these import.
     Claims and drawing are no part of it.
     """
-    path = module if isinstance(module, Path) else _file(module)
+    path = Path(module) if module.endswith(".py") else _file(module)
     assert path is not None, module
     tree = ast.parse(_TYPES.sub("", path.read_text(encoding="utf-8")))
     definitions: dict[str, list[ast.stmt]] = {}

@@ -1,24 +1,19 @@
-"""Made-up fills with known answers."""
+"""Made-up fills with known answers, and small real ones."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-import xarray as xr
-from reproduction.claims.data import judged
-from reproduction.families.drawn import Points, draw, follows, lines, shows, varied
 
 from gaspart import theory
-from gaspart.reproduction.families.insertion import figure
-from gaspart.reproduction.families.insertion.claims import fill_failures as claims_of_fill_failures
-from gaspart.reproduction.families.insertion.measure import (
+from gaspart.reproduction.figures.fill_failures import (
     Fill,
     approach_exponent,
     dilute_failures,
     failures_by_density,
+    measure,
     saturation,
 )
-from gaspart.reproduction.families.insertion.measure import fill_failures as measure_fill_failures
 from gaspart.reproduction.jobs.fill import fill
 from gaspart.reproduction.points.point import Point
 
@@ -106,7 +101,7 @@ def test_real_fills(tmp_path):
         point(tmp_path, "dilute", dimension=3, count=3000, packing_fraction=0.05, attempts=20, **periodic),
     ]
     settings = {"saturated": ["discs", "source"], "bins": 12, "windows": [10, 3], "dilute": 0.04}
-    dataset = measure_fill_failures(points, settings)
+    dataset = measure(points, settings)
     assert dataset["rule"].values.tolist() == ["periodic", "centres_to_walls", "periodic"]
     ends = dataset["saturation"].values[:, 0]
     assert ends[0] == pytest.approx(0.547, abs=0.02) and ends[1] == pytest.approx(0.53, abs=0.04)
@@ -123,95 +118,3 @@ def test_low_density_failures_are_compared_particle_by_particle():
     failures = rng.geometric(1.0 / (1.0 + expected), size=(200, 400)) - 1
     ratio, error = dilute_failures(Fill(failures, failures.sum(axis=1) + 400, 1e-4, 3), up_to=0.04)
     assert abs(ratio - 1.0) < 4.0 * error and error < 0.02
-
-
-def fills(**changes):
-    """Four containers, as a long run would measure them."""
-    side = np.array([5.65, 14.0, 100.0, 50.0])
-    rule = ["centres_to_walls", "periodic", "periodic", "periodic"]
-    ends = [
-        theory.insertion_saturation(3, 5.65, rule[0]),
-        theory.RSA_SATURATION[3],
-        theory.RSA_SATURATION[2],
-        np.nan,
-    ]
-    columns = {
-        "dimension": np.array([3, 3, 2, 3]),
-        "side_over_diameter": side,
-        "rule": np.array(rule),
-        "final_spread": np.array([0.011, 0.002, 0.001, 0.0]),
-        "approach": np.array([np.nan, 0.34, 0.49, np.nan]),
-        "approach_error": np.array([np.nan, 0.01, 0.02, np.nan]),
-        "dilute_failures": np.array([np.nan, 1.0, 1.0, 1.004]),
-        "dilute_failures_error": np.array([np.nan, 0.05, 0.05, 0.006]),
-        "saturation": np.array(ends),
-        "saturation_error": np.array([0.0025, 0.0008, 0.0005, np.nan]),
-    } | changes  # fmt: skip
-    made = {
-        name: (("container", "window"), values[:, None])
-        if name.startswith("saturation")
-        else ("container", values)
-        for name, values in columns.items()
-    }
-    return xr.Dataset(made, attrs={"dilute_up_to": 0.04})
-
-
-def verdicts(found):
-    return judged(claims_of_fill_failures(found))
-
-
-def test_right_data_agree():
-    found = verdicts(fills())
-    assert len(found) == 7
-    assert sorted(found.values()) == ["agrees"] * 5 + ["no verdict", "reproduced"]
-
-
-@pytest.mark.parametrize(
-    ("changes", "start"),
-    [
-        ({"saturation": np.array([0.53, 0.390, 0.547, np.nan])}, "saturation of random insertion, spheres p"),
-        ({"saturation": np.array([0.53, 0.3841, 0.544, np.nan])}, "saturation of random insertion, d"),
-        ({"saturation": np.array([0.46, 0.3841, 0.547, np.nan])}, "packing fraction at which insertion ends"),
-        ({"approach": np.array([np.nan, 0.5, 0.49, np.nan])}, "exponent p"),
-        ({"dilute_failures": np.array([np.nan, 1.0, 1.0, 0.95])}, "failed attempts up to"),
-    ],
-)  # fmt: skip
-def test_wrong_data_disagree(changes, start):
-    found = verdicts(fills(**changes))
-    assert {"disagrees", "source in error"} & {
-        verdict for text, verdict in found.items() if text.startswith(start)
-    }
-
-
-@pytest.fixture
-def dataset(tmp_path):
-    common = {"radius": 0.5, "attempts": 40, "replicas": 3}
-    containers = {
-        "source": {"dimension": 3, "count": 230, "side": 5.65, "boundary": "wall", "centres_to_walls": True},
-        "discs": {"dimension": 2, "count": 200, "side": 15, "boundary": "periodic"},
-        "dilute": {"dimension": 3, "count": 300, "packing_fraction": 0.05, "boundary": "periodic"},
-    }
-    points = []
-    for name, settings in containers.items():
-        point = Point(name, "single", "fill", common | settings, str(tmp_path), 1)
-        (tmp_path / name).mkdir()
-        fill(point.scene, 40, [point.seed(k) for k in range(3)]).write(point.path)
-        points.append(point)
-    return measure_fill_failures(
-        points, {"saturated": ["source", "discs"], "bins": 8, "windows": [10], "dilute": 0.04}
-    )
-
-
-def test_failures_and_the_approach_to_saturation_are_drawn(dataset):
-    ds = varied(dataset, "side_over_diameter", "packing_fraction")
-    failures, dilute, filled = draw(figure.fill_failures, ds).axes
-    source, discs, thin = (ds.isel(container=k) for k in range(3))
-
-    def series(one):
-        positive = one["failures_per_particle"].where(one["failures_per_particle"] > 0)
-        return Points(one["packing_fraction"], positive, one["failures_per_particle_error"])
-
-    shows(failures, series(source), series(discs))
-    shows(dilute, series(thin))
-    for n, (one, dimension) in enumerate(((source, 3), (discs, 2))):
-        follows(lines(filled)[3 * n], one["time"] ** (-1.0 / dimension), one["filled"])

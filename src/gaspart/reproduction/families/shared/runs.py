@@ -1,3 +1,0 @@
-"""Moved to `reproduction.figure`."""
-
-from gaspart.reproduction.figure import *  # noqa: F403

@@ -1,0 +1,35 @@
+"""Packings by chance: insertion that is full, growth that is jammed, and the contacts in between."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+from scenes import gas
+
+from gaspart.reproduction.figures.densest_fill import contacts
+from gaspart.reproduction.jobs.pack import pack
+
+
+def test_contacts_of_a_crystal_are_twelve_and_a_loose_sphere_has_none():
+    basis = np.array([[0, 0, 0], [0, 1, 1], [1, 0, 1], [1, 1, 0]]) / 2
+    cells = np.stack(np.meshgrid(*[np.arange(4)] * 3), axis=-1).reshape(-1, 1, 3)
+    places, lengths = (cells + basis).reshape(-1, 3), np.full(3, 4.0)
+    radius = math.sqrt(1 / 8)
+    assert contacts(places, radius, lengths) == 12.0
+    holes = places[1:]
+    assert contacts(holes, radius, lengths) == pytest.approx((12 * 243 + 11 * 12) / 255)
+    assert contacts(places[::5], radius, lengths) == 0.0
+
+
+def test_packings_by_insertion_and_by_growth():
+    scene = gas(3, 120, 0.6)
+    grown, inserted = (xr.Dataset(*pack(scene, attempts, [(1,), (2,)])) for attempts in (None, 200))
+    assert (grown["packing_fraction"] > 0.6).all()
+    assert (inserted["packing_fraction"] < 0.4).all()
+    assert (grown["pressure"] > 1e6).all()
+    assert np.isfinite(grown["position"]).all()
+    placed = np.isfinite(inserted["position"]).all("axis").sum("particle")
+    assert np.allclose(inserted["packing_fraction"], scene.packing_fraction * placed / 120)
