@@ -38,6 +38,8 @@ FREEDOM = 6.0
 """Degrees of freedom of an error, below which it is too uncertain to be compared with."""
 LEAST = 0.25
 """Part of the places with a value that must have an error."""
+FAINT = 1e-3
+"""Part of the largest force that a few hits give."""
 EQUAL = 1e-6
 """Relative difference of values without an error."""
 
@@ -94,7 +96,7 @@ def cell_of(observable, kind, engine="event", seed=runs.SEED, longer=1.0, finer=
     parts = right_parts(observable, kind)
     if not parts:
         return Cell(*place, "wrong", "has no right value")
-    data = runs.recorded(*run)
+    data, bound = runs.recorded(*run), stated_error(observable, kind, engine)
     deviations, results = {}, {}
     for part, right in parts.items():
         selection = selection_in(part)
@@ -103,7 +105,8 @@ def cell_of(observable, kind, engine="event", seed=runs.SEED, longer=1.0, finer=
             results[key] = results[key] if key in results else measured(observable, data, **selection)
         except SceneError as error:
             return Cell(*place, "wrong", f"{part}: refused: {error.rule}")
-        deviations[part] = deviation_of(observable, kind, results[key], part, right)
+        if not is_hardly_hit(observable, results[key], part):
+            deviations[part] = deviation_of(observable, kind, results[key], part, right, bound)
     worst = max(deviations, key=lambda part: deviations[part][0])
     deviation, text = deviations[worst]
     if deviation <= LIMIT and (beside := _beside_theory(observable, kind, data)):
@@ -184,8 +187,26 @@ def selection_in(part):
     return found
 
 
-def deviation_of(observable, kind, result, part, right):
-    """Return by how much a part of a result deviates, as a normal deviate, and the numbers as a text."""
+def is_hardly_hit(observable, result, part):
+    """Return True for a face that is hit so rarely that a run states no error of its small force."""
+    if observable not in ("force", "pressure"):
+        return False
+    value, error = (float(_at(part.split(","), one)) for one in (result.estimate, result.error))
+    return math.isnan(error) and abs(value) < FAINT * float(abs(result.estimate).max())
+
+
+def stated_error(observable, kind, engine):
+    """Return the relative error at walls that an engine states before a run: a bound."""
+    scene = gp.Scene.from_dict(kind.scene)
+    key = {"density": "error_of_the_density_at_walls", "pressure": "error_of_wall_pressures"}
+    return runs.engines(kind.name)[engine].predictions(scene).get(key.get(observable), 0.0)
+
+
+def deviation_of(observable, kind, result, part, right, bound=0.0):
+    """Return by how much a part of a result deviates, as a normal deviate, and the numbers as a text.
+
+    bound: relative error that the engine states, of which `LIMIT` deviations are made
+    """
     key = result.attrs["quantity"]
     value, error = result[key], result[f"{key}_error"]
     freedom = RUN_FREEDOM
@@ -200,6 +221,7 @@ def deviation_of(observable, kind, result, part, right):
         at, known_error = (np.array(right[name], float) for name in ("values", "errors"))
     else:
         at, known_error = right
+    known_error = np.hypot(known_error, bound / LIMIT * np.abs(at))
     names_in = [word for word in part.split(",") if "=" not in word]
     if names_in and not special and part != "level":
         value, error, freedom = (_at(names_in, one) for one in (value, error, freedom))

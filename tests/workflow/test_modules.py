@@ -71,6 +71,12 @@ def test_a_simulation_depends_on_no_theory_but_that_of_its_engine():
     assert theories == {f"theory/{name}.py" for name in modules}
 
 
+def test_particles_that_are_only_placed_depend_on_no_collision():
+    needed = closure(ROOT / "workflow/scripts/compute.py", "gaspart.reproduction.jobs.fill")
+    assert PACKAGE / "kernels/insertion.py" in needed
+    assert PACKAGE / "kernels/physics/contact.py" not in needed
+
+
 def test_a_figure_imports_no_large_package_that_it_does_not_need():
     """Each is 0.1 to 1 s of every job."""
     code = f"import sys, {', '.join(modules())}; print(*sys.modules)"

@@ -360,14 +360,14 @@ def free_flight_times(simulation: Simulation, bins: int = 40) -> Observable:
     grid = Grid.line(0.0, _LONGEST * mean, count_of("bins", bins, least=2))
     (edges,), (middle,) = grid.edges, grid.middles
     densities = [grid.sums(grid.cells(time[:, None])) / grid.volume / len(time) for time, _ in members]
-    values, errors = histogram_means(densities, sizes)
+    values, errors, freedoms = histogram_means(densities, sizes)
     means, scatter = means_of([(time.mean(), path.mean()) for time, path in members], sizes)
     about: dict[str, Any] = {"units": "1 / time", "long_name": "probability density of free times"}
     along = {"free_time": (middle, {"units": "time", "long_name": "time between collisions"})}
     expected = _theory(simulation, edges)
     if expected:
         about |= {"theory": (expected[0], math.nan), "source": "independent collisions, Enskog's rate"}
-    result = with_freedom(observable("free_flight_times", along, values, errors, **about), GROUPS - 1.0)
+    result = with_freedom(observable("free_flight_times", along, values, errors, **about), freedoms)
     for n, (name, units) in enumerate((("mean_free_time", "time"), ("mean_free_path", "length"))):
         result[name] = ((), means[n], {"units": units})
         result[f"{name}_error"] = ((), scatter[n], {"units": units, "long_name": "standard uncertainty"})

@@ -23,7 +23,7 @@ from gaspart.analysis.impulses import (
 from gaspart.analysis.observable import Observable, observable, scalar, with_freedom
 from gaspart.analysis.observables import name_of, require_defined
 from gaspart.analysis.run import Run, Source, open_run, require_collisions
-from gaspart.analysis.statistics import means_of
+from gaspart.analysis.statistics import KNOWN_FREEDOM, means_of
 from gaspart.errors import SceneError
 from gaspart.trajectory.amber import face_names
 
@@ -88,7 +88,8 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
     Returns
     -------
     Observable
-        Pressure (face,) in [energy / length^d], with standard errors. Theory exists for equal particles
+        Pressure (face,) in [energy / length^d], with standard errors. An error is NaN if the face was hit in
+        fewer than three of the 16 blocks of the run. Theory exists for equal particles
         between two hard walls at a fixed distance (`gaspart.theory.wall_pressure`). If particles come to rest
         under gravity, the pressure on side walls is NaN, and so is the pressure on the floor if rough
         particles or thermal side walls exchange momentum along gravity. For particles of several sizes it is
@@ -196,6 +197,9 @@ def _of_faces(function: str, run: Run, ends: np.ndarray, about: dict[str, Any]) 
         samples[:, index] = series.over(each * time, ends) / series.over(time, ends)
         freedoms[index] -= regressors
     values, errors = means_of(samples - samples[0])  # no rounding error at rest
+    if run.frame("velocities", 0).any():  # few hits scatter by chance as little as many
+        hit = (samples != 0.0).sum(axis=0)
+        errors = np.where(hit > KNOWN_FREEDOM, errors, np.nan)
     along = {"face": (faces, {"long_name": "face of the container"})}
     result = observable(function, along, values + samples[0], errors, **about)
     serves = knows_energies(engine_class(run), run.scene)

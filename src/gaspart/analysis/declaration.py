@@ -124,8 +124,8 @@ class Named:
     Theory for comparison:
 
     theory : function in `analysis.expected` that computes the theory for the equation of the engine.
-    discretised : errors of the cells and steps of an engine that change the observable: "rates", "paths" or
-        "fluxes" (`Engine.bias`); "" if they do not change it.
+    discretised : errors of the cells and steps of an engine that change the observable: "rates", "paths",
+        "fluxes" or "walls" (`Engine.bias`); "" if they do not change it.
     bulk : function of `theory.bulk` that computes the observable of an infinite plain gas for each equation.
     source : source of the theoretical value for the exact dynamics; {state} stands for the equation of state.
     mixture : function of `gaspart.theory` that computes the theory for a mixture; "" without a theory.

@@ -347,7 +347,7 @@ def mixed_density(run: Run, axis: int, bins: int, species: int | None) -> Means 
     mixed = counted + weights * (impulses - counted)
     shares = mixed.mean(axis=0) / mixed.mean(axis=0).sum()
     mixed += (len(members) / volume - mixed.sum(axis=1))[:, None] * shares  # weights differ between bins
-    return ratio(mixed * time, np.broadcast_to(time, mixed.shape))
+    return ratio(mixed * time, np.broadcast_to(time, mixed.shape), counted=True)
 
 
 def default_bins(run: Run, axis: int, of: str) -> int:

@@ -244,17 +244,18 @@ def rdf(
         parts = g_by_impulses(run, np.array([part.start for part in stretches]), bins, end)
         if parts is not None:
             each = mixed_g(each, parts, shell_volumes(bins, run.dimension))
-        values, errors = histogram_means(each)
+        values, errors, freedoms = histogram_means(each)
         distance = (np.arange(bins) + 0.5) * (end / bins)
         if equation_of(run) == EXACT:  # centres of hard particles are never closer than this
             within = distance + 0.5 * end / bins <= 2.0 * run.radii[:stored].min()
-            errors[within & (values == 0.0)] = 0.0
+            exact = within & (values == 0.0)
+            errors[exact], freedoms[exact] = 0.0, STRETCHES - 1.0
         along = {"distance": (distance, {"units": "length", "long_name": "distance"})}
         about = describe("rdf", run, distance, end / bins)
         result = observable("rdf", along, values, errors, **about)
         tally = PairImpulseTally(float(end), 200, 0.1)
         result.attrs |= estimator(run, "counts", "counts and impulses", parts is not None, tally)
-        return with_freedom(result, STRETCHES - 1.0)
+        return with_freedom(result, freedoms)
 
 
 def chosen_frames(run: Run, values: np.ndarray) -> np.ndarray:

@@ -16,7 +16,7 @@ import numpy as np
 
 from gaspart.analysis.flow import Grid, mean_motion, sides
 from gaspart.analysis.run import Run
-from gaspart.analysis.statistics import common_freedom, correlated_mean
+from gaspart.analysis.statistics import KNOWN_FREEDOM, common_freedom, correlated_mean
 from gaspart.errors import SceneError
 
 LEAST_FRAMES = 16
@@ -24,10 +24,6 @@ LEAST_FRAMES = 16
 BLOCKS = 256
 """Maximum number of blocks of frames. More blocks would cost memory; the correlation between blocks is taken
 into account.
-"""
-_LEAST_FREEDOM = 2.0
-"""Minimum number of degrees of freedom for which an error counts as known. With fewer degrees of freedom, the
-run is too short compared with the correlation time, or the cell was occupied in too few blocks.
 """
 _ROUNDING = 1e-12  # relative scatter of a constant value
 
@@ -50,23 +46,25 @@ class Means:
         return Means(factor * self.values, factor * self.errors, self.freedoms)
 
 
-def ratio(above: np.ndarray, below: np.ndarray, still: bool = False) -> Means:
+def ratio(above: np.ndarray, below: np.ndarray, still: bool = False, counted: bool = False) -> Means:
     """Compute the ratio sum A / sum B of two series, with its error.
 
     The series have the shape (K, ...) for K consecutive blocks, at least 16. `still` is True if nothing
-    moves. The degrees of freedom of a cell are limited to the number that follows from the correlation of all
-    cells together.
+    moves. `counted` is True if A counts particles, so that a cell is empty in blocks with A = 0. The degrees
+    of freedom of a cell are limited to the number that follows from the correlation of all cells together,
+    and to one less than the number of blocks in which it was occupied.
     """
     total = below.sum(axis=0)
     values = np.divide(above.sum(axis=0), total, out=np.full(total.shape, np.nan), where=total > 0.0)
-    errors, filled = np.full(total.shape, np.nan), (below > 0.0).sum(axis=0)
-    freedoms = np.where(total > 0.0, filled - 1.0, np.nan)
+    occupied = above != 0.0 if counted and not still else below > 0.0
+    errors, filled = np.full(total.shape, np.nan), occupied.sum(axis=0)
+    freedoms = np.where(total > 0.0, np.maximum(filled - 1.0, 0.0), np.nan)
     with np.errstate(invalid="ignore"):
         rest = (above - values * below) / np.where(total > 0.0, total, np.nan) * len(below)
     defined = values[total > 0.0]
     exact = still or bool((np.abs(defined - defined[:1]) <= _ROUNDING * np.abs(defined)).all())
-    common = common_freedom(rest[:, filled > _LEAST_FREEDOM])
-    for cell in np.argwhere(filled > _LEAST_FREEDOM):
+    common = common_freedom(rest[:, filled > KNOWN_FREEDOM])
+    for cell in np.argwhere(filled > KNOWN_FREEDOM):
         at = tuple(cell)
         series = rest[(slice(None), *at)]
         if np.ptp(series) <= _ROUNDING * abs(values[at]):
@@ -74,7 +72,7 @@ def ratio(above: np.ndarray, below: np.ndarray, still: bool = False) -> Means:
             continue
         estimate = correlated_mean(series, LEAST_FRAMES).estimate
         freedoms[at] = min(estimate.freedom, common, freedoms[at])
-        errors[at] = estimate.error if freedoms[at] >= _LEAST_FREEDOM else np.nan
+        errors[at] = estimate.error if freedoms[at] >= KNOWN_FREEDOM else np.nan
     return Means(values, errors, freedoms)
 
 
@@ -167,7 +165,7 @@ class Cells:
     def density(self, weigh: Callable[[np.ndarray], np.ndarray] | None = None) -> Means:
         """Compute the number of particles, or the sum of weights (T, n), per volume."""
         (sums,) = self.sums(lambda part, cells: [None if weigh is None else weigh(cells)])
-        return ratio(sums, self.room(), self._still)
+        return ratio(sums, self.room(), self._still, counted=True)
 
     def velocity(self) -> Means:
         """Compute the mean velocity of the particles, shape (d, *cells)."""

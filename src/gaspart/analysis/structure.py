@@ -89,7 +89,7 @@ def speed_distribution(
         grid = Grid.line(0.0, end, bins)
         edges = grid.edges[0]
         counts, sizes, energy = _speeds(run, grid)
-        values, errors = histogram_means(counts / sizes[:, None] / grid.volume, sizes)
+        values, errors, freedoms = histogram_means(counts / sizes[:, None] / grid.volume, sizes)
         fixed = np.ptp(energy) <= _CONSTANT * energy.mean()
         alike = np.ptp(masses) == 0.0 and not run.flow_axes
         attributes = describe("speeds", run, edges, masses[0] if alike else None, fixed)
@@ -98,7 +98,7 @@ def speed_distribution(
         middle = 0.5 * (edges[1:] + edges[:-1])
         along = {"speed": (middle, {"units": "length / time", "long_name": "speed"})}
         result = observable("speed_distribution", along, values, errors, **attributes)
-        return with_freedom(result, STRETCHES - 1.0)
+        return with_freedom(result, freedoms)
 
 
 def _speeds(run: Run, grid: Grid) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

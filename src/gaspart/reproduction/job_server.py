@@ -43,7 +43,8 @@ from gaspart.interruption import SIGNALS
 from gaspart.system import python_with_this_package
 
 _PRELOADED = (
-    *("snakemake.iocontainers", "xarray", "netCDF4", "scipy.optimize", "scipy.special", "scipy.stats"),
+    *("snakemake.iocontainers", "xarray", "netCDF4", "scipy.integrate", "scipy.optimize", "scipy.spatial"),
+    *("scipy.special", "scipy.stats"),
     *("matplotlib.figure", "matplotlib.mathtext", "matplotlib.backends.backend_agg"),
     *("matplotlib.backends.backend_svg", "gaspart.rendering.style", "gaspart.rendering.legibility"),
     *("gaspart.simulation", "gaspart.trajectory.run", "gaspart.trajectory.provenance", "gaspart.files"),

@@ -48,9 +48,9 @@ class Expected(NamedTuple):
 
 
 OF_NUMBER = "of this number of particles"
-LEAST_OF_MIXTURE = 10
-"""Minimum number of particles of a mixture for which a theoretical value is given, because the terms of
-second order in 1/N are unknown.
+LEAST_OF_NUMBER = 10
+"""Minimum number of particles for which a contact value of a mixture or a transport coefficient is given,
+because the terms of second order in 1/N are unknown.
 """
 SOURCES = {EXACT: "Enskog", BOLTZMANN: "Boltzmann equation", ENSKOG: "Enskog equation"}
 """Name of the kinetic theory for each equation. For the exact dynamics, Enskog's theory is an approximation.
@@ -121,6 +121,14 @@ def changes_of_velocity(run: Run) -> np.ndarray:
     return np.asarray(changes / scene.moving_count)
 
 
+def is_mixed(run: Run, changes: float = RELAXED) -> bool:
+    """Return True if particles change their speeds often enough in the measured part of a run.
+
+    Otherwise means over the run depend on the velocities of its start.
+    """
+    return bool(np.ptp(changes_of_velocity(run)) >= changes)
+
+
 def contact_of_number(run: Run, packing_fraction: float, dimension: int) -> tuple[float, float] | None:
     """Return the contact value of the N particles of a periodic gas, and its uncertainty.
 
@@ -140,11 +148,11 @@ def contact_of_number(run: Run, packing_fraction: float, dimension: int) -> tupl
 def scale_of_number(run: Run, mixture: Mixture) -> float | None:
     """Return the contact value for N particles divided by the value for infinitely many particles.
 
-    For a mixture, the ratio for equal particles is used. Return None for fewer than `LEAST_OF_MIXTURE`
+    For a mixture, the ratio for equal particles is used. Return None for fewer than `LEAST_OF_NUMBER`
     particles, or if the ratio for equal particles is unknown.
     """
     eta, d = mixture.packing_fraction, mixture.dimension
-    if run.count < LEAST_OF_MIXTURE or (contact := contact_of_number(run, eta, d)) is None:
+    if run.count < LEAST_OF_NUMBER or (contact := contact_of_number(run, eta, d)) is None:
         return None
     return contact[0] / float(theory.contact_value(eta, d))
 
@@ -301,7 +309,7 @@ def pressure_tensor(run: Run, temperature: float) -> Expected | None:
     velocities are relative to the centre of mass.
     """
     gas, equation = run.fluid, equation_of(run)
-    if gas is None:
+    if gas is None or not is_mixed(run):
         return None
     eta, d = gas.packing_fraction, gas.dimension
     unit = np.eye(d).ravel()
@@ -327,9 +335,7 @@ def speeds(run: Run, edges: np.ndarray, mass: float | None, fixed: bool) -> Expe
     between the one at a constant kinetic energy and Maxwell's, whose difference is the uncertainty.
     """
     scene = run.scene
-    if mass is None or not scene.has_equilibrium or not is_relaxed(run):
-        return None
-    if np.ptp(changes_of_velocity(run)) < RELAXED:  # the speeds are those of the start
+    if mass is None or not scene.has_equilibrium or not (is_relaxed(run) and is_mixed(run)):
         return None
     shared = _densities(run, edges, mass, None)
     if scene.face_temperatures:

@@ -11,6 +11,7 @@ from gaspart.analysis.expected.equilibrium import (
     Expected,
     contact_of_number,
     equation_of,
+    is_mixed,
     is_relaxed,
     scale_of_number,
 )
@@ -46,6 +47,8 @@ def radial_distribution(run: Run, distance: np.ndarray, width: float) -> Expecte
     Carnahan and Starling's. For hard discs no theory is given.
     """
     equation, gas = equation_of(run), run.fluid
+    if not is_mixed(run, 1.0):  # each pair keeps its relative velocity
+        return None
     if equation == BOLTZMANN:
         return _of_points(run, np.ones(len(distance)))
     if equation == ENSKOG or gas is None or gas.dimension == 2:

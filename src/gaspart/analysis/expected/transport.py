@@ -10,11 +10,13 @@ import numpy as np
 
 from gaspart import theory
 from gaspart.analysis.expected.equilibrium import (
+    LEAST_OF_NUMBER,
     OF_NUMBER,
     SOURCES,
     Expected,
     engine_of,
     equation_of,
+    is_mixed,
     is_relaxed,
 )
 from gaspart.analysis.run import Run
@@ -172,10 +174,12 @@ def _transport(
     """Compute a transport coefficient from fluctuations of N particles at fixed energy.
 
     In a dilute gas of N particles the coefficients are smaller than in an infinite gas.
-    `theory.transport_finite_size_factor` gives this factor for some kinds of coefficients.
+    `theory.transport_finite_size_factor` gives this factor to first order in 1/N for some kinds of
+    coefficients. Its square is the uncertainty; without a factor, 1/N is. There is no theory for fewer than
+    `LEAST_OF_NUMBER` particles.
     """
     gas, equation = run.fluid, equation_of(run)
-    if gas is None or not temperature > 0.0:
+    if gas is None or not temperature > 0.0 or gas.count < LEAST_OF_NUMBER or not is_mixed(run):
         return None
     value = coefficient(replace(gas, temperature=temperature), equation)
     if not math.isfinite(value):
@@ -185,9 +189,11 @@ def _transport(
         error = theory.VISCOSITY_RATIO_UNCERTAINTY * value if measured else math.nan
         source = f"Enskog{', and the ratio measured in a dense gas' if measured else ''}"
         return Expected(value, error, source)
+    error = value / gas.count
     if kind:
-        value *= theory.transport_finite_size_factor(gas.count, gas.dimension, kind)
-    return Expected(value, 0.0, f"{SOURCES[equation]}, {OF_NUMBER}")
+        factor = theory.transport_finite_size_factor(gas.count, gas.dimension, kind)
+        value, error = value * factor, value * (1.0 - factor) ** 2
+    return Expected(value, error, f"{SOURCES[equation]}, {OF_NUMBER}")
 
 
 def bulk_viscosity(run: Run, temperature: float) -> Expected | None:
@@ -210,7 +216,7 @@ def thermal_conductivity(run: Run, temperature: float) -> Expected | None:
     mixture = run.mixture
     if run.scene.alike or mixture is None or not temperature > 0.0:
         return _transport(run, temperature, bulk.thermal_conductivity, "conductivity")
-    if equation_of(run) != BOLTZMANN or mixture.dimension == 2:
+    if equation_of(run) != BOLTZMANN or mixture.dimension == 2 or not is_mixed(run):
         return None
     value = theory.dilute_mixture_conductivity(
         mixture.diameters, mixture.counts, temperature, masses=mixture.masses

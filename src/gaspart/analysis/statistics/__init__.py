@@ -18,6 +18,7 @@ from gaspart.analysis.statistics.blocks import (
     slow_mean,
 )
 from gaspart.analysis.statistics.fits import (
+    KNOWN_FREEDOM,
     Combination,
     Fit,
     Optimum,
@@ -39,6 +40,7 @@ from gaspart.analysis.statistics.fits import (
 )
 
 __all__ = [
+    "KNOWN_FREEDOM",
     "Combination",
     "CorrelatedMean",
     "Fit",

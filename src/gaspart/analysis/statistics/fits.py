@@ -277,6 +277,12 @@ def average(estimates: Estimate | Sequence[Estimate]) -> Estimate:
     return sum(estimates, Estimate(0.0)) / len(estimates)
 
 
+KNOWN_FREEDOM = 2.0
+"""Minimum number of degrees of freedom for which the error of a bin counts as known. With fewer, the run is
+too short compared with the correlation time, or the bin was occupied in too few blocks.
+"""
+
+
 def means_of(samples: ArrayLike, sizes: ArrayLike | None = None) -> tuple[np.ndarray, np.ndarray]:
     """Compute the means of N independent samples (N, ...) over axis 0, and their standard errors.
 
@@ -293,16 +299,21 @@ def means_of(samples: ArrayLike, sizes: ArrayLike | None = None) -> tuple[np.nda
     return mean, np.sqrt(variance)
 
 
-def histogram_means(samples: ArrayLike, sizes: ArrayLike | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """Compute means of N histograms (N, bins), with NaN for unknown errors.
+def histogram_means(
+    samples: ArrayLike, sizes: ArrayLike | None = None
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Compute means of N histograms (N, bins), their errors, and the degrees of freedom of the errors.
 
-    A bin has no scatter if its value is the same in all samples, for example if it is always empty. The error
-    of a bin without scatter is unknown. If no bin has any scatter, all errors are 0.
+    A bin that is filled in n histograms has at most n - 1 degrees of freedom: few counts scatter by chance as
+    little as many. An error with fewer than `KNOWN_FREEDOM` is NaN, and so is the error of a bin without
+    scatter, unless no filled bin has any: nothing moves, and the errors of filled bins are 0.
     """
+    filled = (np.asarray(samples) != 0.0).sum(axis=0)
     means, errors = means_of(samples, sizes)
-    if errors.any():
-        errors = np.where(errors > 0.0, errors, np.nan)
-    return means, errors
+    if filled.any() and not errors.any():
+        return means, errors, np.full(means.shape, len(np.asarray(samples)) - 1.0)
+    known = (errors > 0.0) & (filled > KNOWN_FREEDOM)
+    return means, np.where(known, errors, np.nan), np.where(known, filled - 1.0, np.nan)
 
 
 def steady_mean(series: ArrayLike, *changes: ArrayLike) -> Estimate:

@@ -128,7 +128,7 @@ class Errors:
 
     def of(self, kind: str) -> float:
         """Return the error of a kind of quantity, see `Engine.bias`."""
-        if kind == "rates":
+        if kind in ("rates", "walls"):
             return self.lost
         return self.repeats + (self.path if kind == "paths" else self.width + self.step)
 

@@ -14,7 +14,6 @@ from gaspart.scene.face_checks import refuse_open
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.cells import Errors, Medium
     from gaspart.engines.dsmc.dynamics import DsmcDynamics
-    from gaspart.engines.engine import AccuracyRequest, Candidate
     from gaspart.scene.scene import Scene
     from gaspart.state.optional_tallies import OptionalTally
     from gaspart.state.state import State
@@ -73,8 +72,8 @@ class DSMC(Engine):
     Examples
     --------
     >>> import gaspart as gp
-    >>> gp.DSMC(model="enskog").describe()
-    'dsmc, model enskog'
+    >>> gp.DSMC(model="enskog").equation
+    'enskog'
     """
 
     time_step: float | None = field(
@@ -112,8 +111,6 @@ class DSMC(Engine):
         ("gravity", "restitution", "roughness", "viscoelasticity", "thermostat")
     ) | {"centres_to_walls", "thermal", "sliding", "accommodation", "ramp", "open"}
     counters: ClassVar[tuple[str, ...]] = ("steps",)
-    timed_at: ClassVar[tuple[float, float]] = (0.01, 1.0)
-    advised: ClassVar[tuple[str, ...]] = ("model",)
 
     @property
     def equation(self) -> str:
@@ -211,8 +208,9 @@ class DSMC(Engine):
         >>> import gaspart as gp
         >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
         >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
-        >>> gp.DSMC().for_scene(scene, interval=1.0).describe(), gp.DSMC().for_scene(scene).cells_per_side
-        ('dsmc, model boltzmann, time_step 0.5', (7, 7, 7))
+        >>> engine = gp.DSMC().for_scene(scene, interval=1.0)
+        >>> engine.time_step, engine.cells_per_side
+        (0.5, (7, 7, 7))
         """
         _, cells, step = self._chosen(scene)
         if self.time_step is None and interval is not None:
@@ -333,7 +331,7 @@ class DSMC(Engine):
         ----------
         scene : Scene
             The scene.
-        kind : {"rates", "paths", "fluxes"}
+        kind : {"rates", "paths", "fluxes", "walls"}
             Quantities on which the observable depends: rates of collisions, paths of particles, or fluxes of
             momentum and heat.
 
@@ -409,184 +407,6 @@ class DSMC(Engine):
         medium = medium_for(self, scene)
         step = step_for(self, scene, medium.gas_rates)
         return medium, cells_for(self, medium, step), step
-
-    @classmethod
-    def variants(cls) -> tuple[DSMC, ...]:
-        """Return an engine for each collision model, as candidates of a plan.
-
-        Returns
-        -------
-        tuple of DSMC
-            The engines.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> [engine.model for engine in gp.DSMC.variants()]
-        ['boltzmann', 'enskog']
-        """
-        return tuple(cls(model=model) for model in MODELS)
-
-    def candidate(self, request: AccuracyRequest) -> Candidate:
-        """Return the engine with its default cells and step, and bounds on its errors.
-
-        Parameters
-        ----------
-        request : AccuracyRequest
-            Observable of a steady scene, with the requested accuracy.
-
-        Returns
-        -------
-        Candidate
-            The engine, with bounds on its errors.
-
-        Raises
-        ------
-        SceneError
-            If cells or steps are too coarse for the local conditions, or if the gas is too dense for the
-            Enskog model.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> from gaspart.theory.conditions import even_conditions
-        >>> from gaspart.engines.engine import AccuracyRequest
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
-        >>> request = AccuracyRequest("collision_rate", 0.01, even_conditions(scene, 1.0))
-        >>> round(gp.DSMC(model="enskog").candidate(request).bias, 3)
-        0.011
-        """
-        from gaspart.engines.dsmc.accuracy import candidate
-
-        return candidate(self, request)
-
-    @property
-    def timed_as(self) -> str:
-        """Name in the table of costs; each model has its own name.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.DSMC().timed_as, gp.DSMC(model="enskog").timed_as
-        ('dsmc', 'dsmc enskog')
-        """
-        return self.name if self.model == MODELS[0] else f"{self.name} {self.model}"
-
-    def timed_step(self, scene: Scene) -> float:
-        """Return the time step divided by the default step of the engine.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-
-        Returns
-        -------
-        float, [1]
-            Time step in the unit of the table of costs.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> gp.DSMC().timed_step(gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)]))
-        1.0
-        """
-        return (self.for_scene(scene).time_step or 0.0) / self._own_step(scene)
-
-    def at_step(self, scene: Scene, step: float, precision: str) -> DSMC:
-        """Return a copy with a time step from the table of costs.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-        step : float, [1]
-            Time step divided by the default step of the engine.
-        precision : str
-            Not used, because the state is always in float64.
-
-        Returns
-        -------
-        DSMC
-            The engine.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
-        >>> gp.DSMC().at_step(scene, 2.0, "float64").timed_step(scene)
-        2.0
-        """
-        return self.for_scene(scene).with_step(step * self._own_step(scene))
-
-    def _own_step(self, scene: Scene) -> float:
-        return replace(self, time_step=None).for_scene(scene).time_step or math.inf
-
-    @property
-    def limitations(self) -> str:
-        """Limitations of the model, and limitations of all DSMC models, in words.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.DSMC().limitations
-        'excluded volume, positions of pairs'
-        """
-        lacks = {"boltzmann": "excluded volume", "enskog": "correlated collisions"}
-        return f"{lacks[self.model]}, positions of pairs"
-
-    def describe(self) -> str:
-        """Return the name of the engine with its model, and its step if known.
-
-        Returns
-        -------
-        str
-            The description.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.DSMC(time_step=0.5).describe()
-        'dsmc, model boltzmann, time_step 0.5'
-        """
-        step = "" if self.time_step is None else f", time_step {self.time_step:.4g}"
-        return f"{self.name}, model {self.model}{step}"
-
-    def notes(self, scene: Scene, observable: str, paths: bool) -> dict[str, str]:
-        """Return remarks about the engine for a plan.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-        observable : str
-            Name of the observable.
-        paths : bool
-            True if the observable depends on the paths of particles.
-
-        Returns
-        -------
-        dict of str to str
-            Remarks by title: the method of finding pairs, and the effect of steps that are longer than the
-            default.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
-        >>> list(gp.DSMC(time_step=2.0).notes(scene, "pressure", paths=False))
-        ['boxes', 'time step']
-        """
-        remarks = {"boxes": "cells, whose particles collide by chance: positions of pairs are given up"}
-        longer = 1.0 if self.time_step is None else self.time_step / self._own_step(scene)
-        if longer >= 1.5:
-            effect = "which the bias includes" if paths else f"on which {observable} does not depend"
-            remarks["time step"] = f"{longer:.2g} times the engine's own, {effect}"
-        return remarks
 
     def variant(self, scene: Scene) -> str:
         """Return the name of the compiled kernel variant for a scene.

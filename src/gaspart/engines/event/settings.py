@@ -65,8 +65,8 @@ class EventDriven(Engine):
     Examples
     --------
     >>> import gaspart as gp
-    >>> gp.EventDriven(search="lists").describe()
-    'event, float64'
+    >>> gp.EventDriven(search="lists").search
+    'lists'
     """
 
     search: str = field(
@@ -95,48 +95,6 @@ class EventDriven(Engine):
         from gaspart.engines.event.search import chosen_search
 
         return chosen_search(scene, self.search, self.boxes_per_side is not None)
-
-    def describe(self) -> str:
-        """Return the name with the floating-point precision.
-
-        Returns
-        -------
-        str
-            The description.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.EventDriven().describe()
-        'event, float64'
-        """
-        return f"{self.name}, {self.precision}"
-
-    def notes(self, scene: Scene, observable: str, paths: bool) -> dict[str, str]:
-        """Return remarks about the engine for a plan.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-        observable : str
-            Name of the observable.
-        paths : bool
-            True if the observable depends on the paths of particles.
-
-        Returns
-        -------
-        dict of str to str
-            Remarks by title: the method of finding pairs.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> gp.EventDriven().notes(scene, "pressure", paths=False)
-        {'boxes': 'automatic, about one per particle'}
-        """
-        return {"boxes": "automatic, about one per particle"}
 
     def variant(self, scene: Scene) -> str:
         """Return the name of the compiled kernel variant for a scene.

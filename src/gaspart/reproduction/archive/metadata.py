@@ -232,17 +232,17 @@ def _add_workflow(crate: Any, described: Described, citation: Citation, files: M
 
 
 def _add_run(crate: Any, workflow: Any, described: Described) -> Any:
-    """Add the run, from its first job's start to its last job's end."""
-    ends = [
-        (datetime.fromisoformat(job.ended), timedelta(seconds=float(job.seconds))) for job in described.jobs
-    ]
+    """Add the run, which begins when its first job ended, less the CPU time of this job."""
+    jobs = sorted((datetime.fromisoformat(job.ended), float(job.cpu_seconds)) for job in described.jobs)
+    archived = datetime.fromisoformat(described.summary["archived"])
+    first, seconds = jobs[0] if jobs else (archived, 0.0)  # no jobs if the logs were deleted
     machine = described.summary["machine"]
     properties = {
         "name": f"Run of the workflow: {described.summary['title']}",
         "description": f"{len(described.jobs)} jobs; archived on {machine['processor']}, "
         f"{machine['processors']} processors, {machine['system']}",
-        "startTime": min(end - took for end, took in ends).isoformat(timespec="milliseconds"),
-        "endTime": max(end for end, _ in ends).isoformat(timespec="milliseconds"),
+        "startTime": (first - timedelta(seconds=seconds)).isoformat(timespec="milliseconds"),
+        "endTime": (jobs[-1][0] if jobs else archived).isoformat(timespec="milliseconds"),
     }
     run = crate.root_dataset["mentions"] = crate.add_action(workflow, "#run", properties=properties)
     return run

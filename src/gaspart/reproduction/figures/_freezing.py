@@ -1,7 +1,8 @@
 """Pressure and order of runs that start as crystal and as fluid, and their distance from equilibrium.
 
 A run that is not in equilibrium is no evidence. Its drift is part of its uncertainty, so that its claims are
-inconclusive, not confirmed.
+inconclusive, not confirmed. A run that is hardly longer than its memory does not know its uncertainty: the
+uncertainty has few degrees of freedom, which are kept.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ STARTS = {"lattice": "crystal", "compressed": "fluid"}
 LOOKS = {"crystal": 1, "fluid": 0}
 """Index of the colour and marker of each start."""
 EQUILIBRIUM_LIMIT = 3.0
-"""Largest deviation between starts or halves, in standard errors, of a run in equilibrium."""
+"""Largest deviation between starts or halves, in standard deviations, of a run in equilibrium."""
 TOLERANCE = 0.02
 """Relative half-width of the interval around a coexistence pressure."""
 Order = Callable[[np.ndarray, Sequence[float]], float]
@@ -50,8 +51,7 @@ def measure_state(point: Point, order: Order) -> dict[str, Any]:
         "density": density,
     }
     for name, replicas in (("pressure", pressures), ("order", orders)):
-        mean, drift = mean_and_drift(replicas)
-        row |= {name: (mean.value, mean.error), f"{name}_drift": (drift.value, drift.error)}
+        row[name], row[f"{name}_drift"] = mean_and_drift(replicas)
     return row
 
 
@@ -61,7 +61,7 @@ def mean_and_drift(replicas: list[np.ndarray]) -> tuple[Estimate, Estimate]:
     drifts = []
     for series, mean in zip(replicas, means, strict=True):
         first, second = series[: len(series) // 2], series[len(series) // 2 :]
-        drifts.append(Estimate(second.mean() - first.mean(), 2.0 * mean.error))
+        drifts.append(Estimate(second.mean() - first.mean(), 2.0 * mean.error, mean.freedom))
     return average(means), average(drifts)
 
 
@@ -81,18 +81,18 @@ def measure_states(points: list[Point], row: Callable[[Point], dict[str, Any]]) 
     dataset["count"] = dataset["count"].max("start").astype(int)
     dataset["density"] = dataset["density"].max("start")
     dataset["pressure"].attrs["units"] = "k_B T / sigma^d"
-    return dataset.assign(disagreement=disagreement(dataset))
+    return dataset.assign(disagreement=("packing_fraction", disagreement(dataset)))
 
 
-def disagreement(dataset: xr.Dataset) -> xr.DataArray:
-    """Return the largest deviation of each packing fraction, in standard errors."""
-    worst = []
+def disagreement(dataset: xr.Dataset) -> np.ndarray:
+    """Return the largest deviation of each packing fraction, in standard deviations; NaN without a run."""
+    deviations: list[np.ndarray] = []
     for quantity in ("pressure", "order"):
-        value, error = dataset[quantity], dataset[f"{quantity}_error"]
-        worst.append((abs(dataset[f"{quantity}_drift"]) / dataset[f"{quantity}_drift_error"]).max("start"))
-        if dataset.sizes["start"] == 2:
-            worst.append(abs(value.diff("start")).isel(start=0) / np.sqrt((error**2).sum("start")))
-    return xr.concat(worst, "what", join="outer", compat="equals").max("what")
+        value, drift = (Estimate.of(dataset, f"{quantity}{which}") for which in ("", "_drift"))
+        deviations += [side.deviation for side in drift]
+        if len(value) == 2:
+            deviations.append((value[0] - value[1]).deviation)
+    return np.asarray(np.fmax.reduce(np.abs(deviations)))
 
 
 def starts(dataset: xr.Dataset, finite: str = "pressure") -> dict[str, Table]:
@@ -111,8 +111,8 @@ def extreme(order: Estimate, melted: bool) -> Estimate:
 
 def with_drift(measured: Estimate, drift: Estimate) -> Estimate:
     """Add half the drift between the halves of a run to its uncertainty, if significant."""
-    significant = abs(drift.value) > EQUILIBRIUM_LIMIT * drift.error
-    return Estimate(measured.value, math.hypot(measured.error, 0.5 * drift.value if significant else 0.0))
+    added = 0.5 * drift.value if abs(drift.deviation) > EQUILIBRIUM_LIMIT else 0.0
+    return Estimate(measured.value, math.hypot(measured.error, added), measured.freedom)
 
 
 def draw_points(axis: Axes, states: Table, y: Estimate, kind: int, label: str | None = None) -> None:

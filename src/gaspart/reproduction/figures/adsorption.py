@@ -32,7 +32,10 @@ TITLE, CHAPTER = "Walls that hold particles", "Gravity, heat and walls"
 SETTINGS = {
     "blocks": count("stretches of each replica"),
     "layer_blocks": count("the same of layers, in whose deep wells particles stay long"),
-    "near": positive("distance from the wall's edge within which velocities of leaving particles are read"),
+    "near": positive(
+        "distance from the edge of the well, or from where particles stick, within which the velocities of "
+        "leaving particles are read"
+    ),
     "bins": count("bins of their speeds"),
 }
 KINDS = ("ideal", "layer", "sticky")
@@ -384,4 +387,4 @@ def _log_ticks(axis: Axes, *values: float) -> None:
     axis.minorticks_off()
 
 
-FIGURES = {"adsorption": Parts(SETTINGS, measure, claims, draw)}
+FIGURES = {"adsorption": Parts(SETTINGS, measure, claims, draw, key=5)}

@@ -432,6 +432,6 @@ def draw_beds(dataset: xr.Dataset) -> Figure:
 
 
 FIGURES = {
-    "settling": Parts(SETTLING, measure_settling, claim_settling, draw_settling),
-    "vibrated_bed": Parts(BED, measure_beds, claim_beds, draw_beds),
+    "settling": Parts(SETTLING, measure_settling, claim_settling, draw_settling, key=3),
+    "vibrated_bed": Parts(BED, measure_beds, claim_beds, draw_beds, key=1),
 }

@@ -224,4 +224,4 @@ def _discs(axis: Axes, particles: Table) -> None:
     style.label_axes(axis, r"$x/\sigma$", r"$y/\sigma$", xlim=(0.0, side), ylim=(0.0, side))
 
 
-FIGURES = {"cooling": Parts(SETTINGS, measure, claims, draw)}
+FIGURES = {"cooling": Parts(SETTINGS, measure, claims, draw, key=3)}

@@ -465,4 +465,4 @@ def _draw_normal(axis: Axes, dilute: Table) -> None:
     style.label_axes(axis, "(stress / pressure)$^2$, $a^2$", "normal stress / mean $-$ 1", "upper left")
 
 
-FIGURES = {"couette": Parts(SETTINGS, measure, claims, draw)}
+FIGURES = {"couette": Parts(SETTINGS, measure, claims, draw, key=3)}

@@ -60,7 +60,7 @@ def measure(points: list[Point], settings: dict) -> xr.Dataset:
     sides = list(Table(dataset.assign(unlike=unlike), "start"))
     parts = [table("start", sides, _plateau), _pictures(of_start(points, sides[-1].start), settings)]
     if compared:
-        names = [f"pressure{name}" for name in ("", "_error", "_drift", "_drift_error")]
+        names = [f"pressure{drift}{part}" for drift in ("", "_drift") for part in ("", "_error", "_freedom")]
         new = {name: f"compared_{name}" for name in (*names, "packing_fraction")}
         parts.append(measure_states(compared, _disc)[names].rename(new))
     return xr.merge([dataset, *parts], join="outer", compat="no_conflicts")

@@ -32,7 +32,7 @@ from gaspart.reproduction.figures._freezing import (
     with_drift,
 )
 from gaspart.reproduction.points.point import Point
-from gaspart.reproduction.table import Row, Table
+from gaspart.reproduction.table import Row, Table, entries
 
 TITLE, CHAPTER = "Freezing and melting", "Equation of state and structure"
 CRYSTAL_ORDER = 0.3  # smallest global Q_6 of a crystal; it is 0.45 and more near melting, 0.03 in the fluid
@@ -53,8 +53,8 @@ def measure(points: list[Point], settings: dict) -> xr.Dataset:
 
 def _sphere(point: Point) -> dict[str, Any]:
     row = measure_state(point, bond_order.global_steinhardt)
-    eta, solid = row["packing_fraction"], row["order"][0] > CRYSTAL_ORDER
-    z, finite, reference = Estimate(*row["pressure"]) / row["density"], 0.0, np.nan
+    eta, solid = row["packing_fraction"], row["order"].value > CRYSTAL_ORDER
+    z, finite, reference = row["pressure"] / row["density"], 0.0, np.nan
     if solid:
         finite = float(theory.crystal_finite_size_correction(z.value, row["count"]))
         reference = float(theory.etomica_crystal(eta)) if eta >= theory.LOWEST_CRYSTAL[3] else np.nan
@@ -62,7 +62,7 @@ def _sphere(point: Point) -> dict[str, Any]:
         finite = float(theory.finite_size_correction(eta, 3, row["count"], ensemble="canonical"))
         reference = float(theory.compressibility_factor(eta, 3))
     row |= {"crystalline": int(solid), "finite_size": finite, "reference": reference}
-    return row | {"Z": (z.value - finite, z.error)}
+    return row | {"Z": z - finite}
 
 
 def _slab(points: list[Point]) -> xr.Dataset:
@@ -79,17 +79,14 @@ def _slab(points: list[Point]) -> xr.Dataset:
         pressures.append(series_of(run).z * scene.number_density * diameter**3)
         profiles.append(_profiles(run, grid, axis))
     order, density, fraction = (np.mean(parts, axis=0) for parts in zip(*profiles, strict=True))
-    mean, drift = mean_and_drift(pressures)
-    error = mean.error
+    pressure, drift = mean_and_drift(pressures)
     if len(pressures) > 2:  # interfaces move slowly: replicas show a scatter that blocks of one run do not
-        error = max(error, mean_of([correlated_mean(series).estimate.value for series in pressures]).error)
+        scattered = mean_of([correlated_mean(series).estimate.value for series in pressures])
+        pressure = max(pressure, scattered, key=lambda estimate: estimate.error)
     both = "half", "position"
     return xr.Dataset(
         {
-            "slab_pressure": mean.value,
-            "slab_error": error,
-            "slab_drift": drift.value,
-            "slab_drift_error": drift.error,
+            **entries({"slab_pressure": pressure, "slab_drift": drift}),
             "slab_length": lengths[axis] / diameter,
             "slab_count": scene.count,
             "crystal_fraction": ("half", fraction),
@@ -166,11 +163,11 @@ def _branch(one: Row) -> Claim:
 
 
 def _coexistence(slab: Row) -> Iterator[Claim]:
-    expected, drift = theory.COEXISTENCE_PRESSURE[3], slab.slab_drift
+    expected, pressure, drift = theory.COEXISTENCE_PRESSURE[3], slab.slab_pressure, slab.slab_drift
     early, late = slab.crystal_fraction
     yield Claim.within(
         "pressure of crystal beside fluid, k_B T / sigma^3",
-        Estimate(slab.slab_pressure, math.hypot(slab.slab_error, 0.5 * drift.value)),
+        Estimate(pressure.value, math.hypot(pressure.error, 0.5 * drift.value), pressure.freedom),
         expected, TOLERANCE * expected, "[Fernandez 2012]",
         "one phase has vanished, the crystal is strained, or contacts are missed",
     )  # fmt: skip
@@ -219,8 +216,7 @@ def _branches(axis: Axes, eta: np.ndarray, sides: dict[str, Table]) -> None:
 
 def _both_phases(axis: Axes, slab: Row) -> None:
     """Draw the pressure of coexisting crystal and fluid, at their mean density."""
-    pressure = Estimate([slab.slab_pressure], [slab.slab_error])
-    style.points(axis, [slab.slab_packing_fraction], pressure, kind=6, label="coexistence")
+    style.points(axis, slab.slab_packing_fraction, slab.slab_pressure, kind=6, label="coexistence")
     style.label_axes(axis, y="pressure $P\\sigma^3/k_\\mathrm{B}T$", legend="upper left")
 
 

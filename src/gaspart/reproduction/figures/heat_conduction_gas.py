@@ -325,4 +325,4 @@ def _draw_profiles(warm: Axes, off: Axes, dense: Axes, gas: Row, kind: int) -> N
     style.points(off, position[gas.used], deviation[gas.used], **small)
 
 
-FIGURES = {"heat_conduction_gas": Parts(SETTINGS, measure, claims, draw)}
+FIGURES = {"heat_conduction_gas": Parts(SETTINGS, measure, claims, draw, key=3)}

@@ -201,4 +201,4 @@ def draw(dataset: xr.Dataset) -> Figure:
     return figure
 
 
-FIGURES = {"heat_conduction_metal": Parts(SETTINGS, measure, claims, draw)}
+FIGURES = {"heat_conduction_metal": Parts(SETTINGS, measure, claims, draw, key=1)}

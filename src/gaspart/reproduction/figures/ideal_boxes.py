@@ -222,4 +222,4 @@ def _ideal(axis: Axes, gases: Table, kind: int, label: str) -> None:
     style.points(axis, number[rest], best[rest], 0.6 * best[rest], kind=kind, hollow=True, lolims=True)
 
 
-FIGURES = {"ideal_boxes": Parts(SETTINGS, measure, claims, draw)}
+FIGURES = {"ideal_boxes": Parts(SETTINGS, measure, claims, draw, key=1)}

@@ -327,4 +327,4 @@ def _pairs(axis: Axes, two: Table, name: str, predicted: Callable[..., np.ndarra
     style.label_axes(axis, r"size ratio $\sigma_2/\sigma_1$", legend="best")
 
 
-FIGURES = {"mixture_state": Parts({}, measure, claims, draw)}
+FIGURES = {"mixture_state": Parts({}, measure, claims, draw, key=4)}

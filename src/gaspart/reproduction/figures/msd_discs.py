@@ -104,4 +104,4 @@ def _slopes(axis: Axes, long: Table) -> None:
     style.label_axes(axis, r"packing fraction $\eta$", slope, "lower left")
 
 
-FIGURES = {"msd_discs": Parts({}, measure, claims, draw)}
+FIGURES = {"msd_discs": Parts({}, measure, claims, draw, key=1)}

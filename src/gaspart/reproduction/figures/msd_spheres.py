@@ -185,4 +185,4 @@ def _size(axis: Axes, sizes: Table) -> None:
     style.label_axes(axis, r"$\sigma/L$", r"$D_L\ (\sigma\sqrt{k_\mathrm{B}T/m})$", "upper right")
 
 
-FIGURES = {"msd_spheres": Parts({}, measure, claims, draw)}
+FIGURES = {"msd_spheres": Parts({}, measure, claims, draw, key=2)}

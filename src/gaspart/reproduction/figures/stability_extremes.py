@@ -337,4 +337,4 @@ def _key(scenes: Table, columns: int) -> str:
     return "\n".join(["Rejected" if texts else "None rejected", *lines])
 
 
-FIGURES = {"stability_extremes": Parts(SETTINGS, measure, claims, draw)}
+FIGURES = {"stability_extremes": Parts(SETTINGS, measure, claims, draw, key=None)}

@@ -204,4 +204,4 @@ def _excess(table: Table) -> Estimate:
     return 100.0 * (both / table.expected.value - 1.0)
 
 
-FIGURES = {"wall_pressure": Parts({}, measure, claims, draw)}
+FIGURES = {"wall_pressure": Parts({}, measure, claims, draw, key=1)}
