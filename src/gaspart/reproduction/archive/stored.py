@@ -287,7 +287,8 @@ def _write_config(stored: Stored, folder: Path) -> None:
         target.parent.mkdir(parents=True, exist_ok=True)
         stored.copy(name, target)
     (folder / "config").mkdir(exist_ok=True)
-    write_yaml(folder / "config/config.yaml", config)
+    # Only points are planned. A figure may have a module, and no code of a stranger is run.
+    write_yaml(folder / "config/config.yaml", config | {"figures": {}, "animations": {}})
 
 
 _LONGEST_RUN = 3600.0
