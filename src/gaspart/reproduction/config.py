@@ -423,7 +423,7 @@ def explain_error(error: SceneError, config: dict, module: bool) -> SceneError:
     if module:
         rule = 'is empty: the Snakefile that has the module states `configfile: "..."` above it'
         return SceneError("config", config, rule)
-    rule = "has no config/config.yaml, over which others are laid: run this in the project's folder, on a config there"
+    rule = "has no config/config.yaml, over which others are laid: run this in the project's folder"
     return SceneError("folder", str(Path.cwd()), rule)
 
 
