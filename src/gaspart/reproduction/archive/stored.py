@@ -34,9 +34,8 @@ from gaspart.reproduction.archive.limits import (
     MOST_BYTES,
     MOST_FILES,
     check_directory,
-    check_end,
+    check_layout,
     check_names,
-    check_places,
     check_size,
     digest,
     digest_of_numbers,
@@ -192,13 +191,12 @@ def _zip_file(path: Path, source: IO[bytes]) -> Stored:
     check_directory(path, source)
     try:
         file = zipfile.ZipFile(source)
-        check_places(path, source, file.infolist(), file.start_dir)
+        check_layout(path, source, file)
     except SceneError:
         raise
     except DAMAGE:
         raise SceneError("archive", str(path), "is no zip file, or one that is cut short") from None
     entries = file.infolist()
-    check_end(path, source, len(file.comment))
     for entry in entries:
         _check_entry(path, entry)
     check_names(path, [entry.orig_filename for entry in entries])
