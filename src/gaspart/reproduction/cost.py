@@ -14,10 +14,9 @@ from gaspart.accuracy import speed, table
 from gaspart.accuracy.advisers import adviser_of, timed_as
 from gaspart.errors import SceneError
 from gaspart.files import whole_file
-from gaspart.reproduction import job_time
+from gaspart.reproduction import job_time, registry
 from gaspart.reproduction.claims.judging import Claim, judge, sufficient
 from gaspart.reproduction.config import open_config
-from gaspart.reproduction.families import registry
 from gaspart.reproduction.figure import find_parts
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.gas import Gas
@@ -228,8 +227,8 @@ def _made(results: Path, figure: str) -> float:
 
 def claims_of(figure: str, block: Mapping, dataset: xr.Dataset) -> list[Claim]:
     """Return the claims of a figure, judged as in the workflow."""
-    family, name = registry.functions(figure, block)
-    return list(find_parts(registry.module(family), name).claims(dataset, *registry.stated_claims(block)))
+    family, name = registry.find(figure, block)
+    return list(find_parts(registry.home(family), name).claims(dataset, *registry.stated_claims(block)))
 
 
 def is_decided_by_runs(claim: Claim) -> bool:

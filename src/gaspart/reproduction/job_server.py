@@ -214,7 +214,7 @@ def _preload() -> None:
     A module that cannot be loaded is reported by the job that needs it.
     """
     from gaspart.kernels.compile.cache import load_numba
-    from gaspart.reproduction.families.registry import modules
+    from gaspart.reproduction.registry import modules
 
     os.environ |= dict.fromkeys(_THREADS, "1")  # a process with threads cannot be forked safely
     gc.set_threshold(1_000_000)

@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
-from reproduction.families.stored import runs_of
+from reproduction.figures.stored import runs_of
 from reproduction.made import simulated
 
 from gaspart import theory
 from gaspart.analysis.statistics import histogram_chi_square
 from gaspart.errors import SceneError
-from gaspart.reproduction.families.shared.runs import kurtosis
+from gaspart.reproduction.figure import kurtosis
 from gaspart.reproduction.figures import speeds
 from gaspart.reproduction.figures.speeds import measure_distribution, measure_relaxation
 from gaspart.reproduction.points.point import Point

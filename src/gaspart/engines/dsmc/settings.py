@@ -114,71 +114,26 @@ class DSMC(Engine):
 
     @property
     def equation(self) -> str:
-        """Kinetic equation of the model.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.DSMC().equation
-        'boltzmann'
-        """
+        """Kinetic equation of the model."""
         return self.model
 
     @property
     def adapts_steps(self) -> bool:
-        """True if steps are divided when speeds rise.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.DSMC().adapts_steps, gp.DSMC(time_step=0.5).adapts_steps
-        (True, False)
-        """
+        """True if steps are divided when speeds rise."""
         return self.time_step is None if self.adapt is None else self.adapt in ("steps", "both")
 
     @property
     def adapts_cells(self) -> bool:
-        """True if cells become narrower when the gas becomes denser somewhere.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.DSMC().adapts_cells, gp.DSMC(cells_per_side=8).adapts_cells
-        (True, False)
-        """
+        """True if cells become narrower when the gas becomes denser somewhere."""
         return self.cells_per_side is None if self.adapt is None else self.adapt in ("cells", "both")
 
     @property
     def quantum(self) -> float | None:
-        """Length of a step; None if it is not yet known.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.DSMC(time_step=0.5).quantum
-        0.5
-        """
+        """Length of a step; None if it is not yet known."""
         return self.time_step
 
     def check_features(self, scene: Scene) -> None:
-        """Check that the engine supports all features of a scene with its collision model.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-
-        Raises
-        ------
-        SceneError
-            If the engine does not support a feature. The message names the engines that support it.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box, particles = gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)]
-        >>> gp.DSMC().check_features(gp.Scene(box, particles, gravity=(0.0, -1.0)))
-        """
+        """Raise SceneError for features that the engine, or its collision model, does not support."""
         super().check_features(scene)
         if self.model == "enskog":
             refuse_open(scene, f"{_DILUTE}: the particles of its reservoirs have no excluded volume")
@@ -218,24 +173,7 @@ class DSMC(Engine):
         return self._with(time_step=step, cells_per_side=cells, adapts=(self.adapts_steps, self.adapts_cells))
 
     def with_step(self, step: float) -> DSMC:
-        """Return a copy with this fixed time step.
-
-        Parameters
-        ----------
-        step : float, [time]
-            Length of a step.
-
-        Returns
-        -------
-        DSMC
-            The engine.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.DSMC().with_step(0.5).adapts_steps
-        False
-        """
+        """Return a copy with this fixed time step."""
         return self._with(time_step=step, adapts=(False, self.adapts_cells))
 
     def _with(self, adapts: tuple[bool, bool], **settings: Any) -> DSMC:
@@ -278,25 +216,7 @@ class DSMC(Engine):
         return {"viscosity_error": self.bias(scene, "fluxes")}
 
     def cells_along(self, scene: Scene) -> int:
-        """Return the largest number of cells along an axis.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-
-        Returns
-        -------
-        int
-            Number of cells.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> gp.DSMC().cells_along(gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)]))
-        7
-        """
+        """Return the largest number of cells along an axis."""
         return max(self._chosen(scene)[1])
 
     def added_bulk_viscosity(self, scene: Scene) -> float:
@@ -374,26 +294,7 @@ class DSMC(Engine):
         return medium.errors(cells, step)
 
     def remarks(self, scene: Scene) -> list[str]:
-        """Return remarks about notable errors of settings and model, as printed at the start of a run.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-
-        Returns
-        -------
-        list of str
-            Remarks, each a line.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
-        >>> gp.DSMC(cells_per_side=2).remarks(scene)[0].partition(", make ")[2]
-        'the viscosity 88 % too high: 11 % with cells_per_side = (7, 7, 7)'
-        """
+        """Return remarks about notable errors of settings and model, each a line."""
         from gaspart.engines.dsmc.cells import neglected, remarks
 
         text = neglected(self, scene)
@@ -409,52 +310,14 @@ class DSMC(Engine):
         return medium, cells_for(self, medium, step), step
 
     def variant(self, scene: Scene) -> str:
-        """Return the name of the compiled kernel variant for a scene.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-
-        Returns
-        -------
-        str
-            The name, which depends on the model, on whether steps adapt to speeds, and on whether there are
-            several threads.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> gp.DSMC(threads=2).variant(gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)]))
-        'boltzmann-threads'
-        """
+        """Return the name of the kernels for model, steps that may adapt, and several threads."""
         from gaspart.engines.dsmc.defaults import may_speed_up
 
         paced = "-paced" if may_speed_up(scene) else ""
         return self.model + paced + ("-threads" if self.threads > 1 else "")
 
     def for_small_scene(self, scene: Scene) -> DSMC:
-        """Return settings with which a small scene uses the same kernels as the full scene.
-
-        Parameters
-        ----------
-        scene : Scene
-            The full scene.
-
-        Returns
-        -------
-        DSMC
-            The engine with a single cell, and with the step for the full scene.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
-        >>> gp.DSMC().for_small_scene(scene).cells_per_side
-        1
-        """
+        """Return the engine with a single cell, and with the step for the full scene."""
         return self.for_scene(scene)._with(cells_per_side=1, adapts=(self.adapts_steps, False))
 
     def start(
@@ -464,37 +327,7 @@ class DSMC(Engine):
         seed: int | tuple[int, ...] = 0,
         tallies: Sequence[OptionalTally] = (),
     ) -> DsmcDynamics:
-        """Prepare the engine for a scene in an initial state.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-        state : State
-            State of its particles.
-        seed : int or tuple of int, default 0
-            Seed of collisions and thermal walls.
-        tallies : sequence of OptionalTally, optional
-            Optional tallies to accumulate.
-
-        Returns
-        -------
-        DsmcDynamics
-            The dynamics of the scene.
-
-        Raises
-        ------
-        SceneError
-            If the engine does not model the scene.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> state = gp.Simulation(scene, "dsmc", seed=1).state
-        >>> gp.DSMC().start(scene, state).time
-        0.0
-        """
+        """Prepare the engine; raises SceneError if it does not model the scene."""
         from gaspart.engines.dsmc.dynamics import DsmcDynamics
 
         return DsmcDynamics(self, scene, state, seed, tallies)

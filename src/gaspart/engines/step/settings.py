@@ -128,35 +128,11 @@ class TimeStepped(Engine):
 
     @property
     def quantum(self) -> float:
-        """Length of a step; all times are multiples of it.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.TimeStepped(time_step=0.01).quantum
-        0.01
-        """
+        """Length of a step; all times are multiples of it."""
         return self.time_step
 
     def with_step(self, step: float) -> TimeStepped:
-        """Return a copy with this time step.
-
-        Parameters
-        ----------
-        step : float, [time]
-            Length of a step.
-
-        Returns
-        -------
-        TimeStepped
-            The engine.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.TimeStepped(time_step=0.01).with_step(0.02).time_step
-        0.02
-        """
+        """Return a copy with this time step."""
         return replace(self, time_step=step)
 
     def bias(self, scene: Scene, kind: str) -> float:
@@ -216,25 +192,7 @@ class TimeStepped(Engine):
         return found
 
     def remarks(self, scene: Scene) -> list[str]:
-        """Return remarks about notable errors of the step, as printed at the start of a run.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-
-        Returns
-        -------
-        list of str
-            Remarks, each a line.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> gp.TimeStepped(time_step=0.3).remarks(scene)[0].partition(", which ")[2]
-        'changes the density at walls by up to 6.6 %; with 0.23 by 5 %'
-        """
+        """Return a remark if the density at walls has a notable error."""
         from gaspart.engines.step.limits import NOTABLE, wall_density_error
 
         error = wall_density_error(self, scene)
@@ -247,48 +205,12 @@ class TimeStepped(Engine):
         ]
 
     def variant(self, scene: Scene) -> str:
-        """Return the name of the compiled kernel variant for a scene.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-
-        Returns
-        -------
-        str
-            The name depends on the search, the precision, and whether there are several threads.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> gp.TimeStepped(time_step=0.01, threads=2).variant(scene)
-        'list-float64-threads'
-        """
+        """Return the name of the kernels for search, precision, and several threads."""
         search = "list" if self.boxes_per_side is None else "boxes"
         return f"{search}-{self.precision}" + ("-threads" if self.threads > 1 else "")
 
     def for_small_scene(self, scene: Scene) -> TimeStepped:
-        """Return settings with which a scene of few particles uses the same kernels.
-
-        Parameters
-        ----------
-        scene : Scene
-            The full scene.
-
-        Returns
-        -------
-        TimeStepped
-            The engine, with a single box if it uses boxes.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> gp.TimeStepped(time_step=0.01, boxes_per_side=4).for_small_scene(scene).boxes_per_side
-        1
-        """
+        """Return the engine, with a single box if it uses boxes."""
         return self if self.boxes_per_side is None else replace(self, boxes_per_side=1)
 
     def start(
@@ -298,37 +220,7 @@ class TimeStepped(Engine):
         seed: int | tuple[int, ...] = 0,
         tallies: Sequence[OptionalTally] = (),
     ) -> StepDynamics:
-        """Prepare the engine for a scene in an initial state.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-        state : State
-            State of its particles.
-        seed : int or tuple of int, default 0
-            Seed of thermal walls.
-        tallies : sequence of OptionalTally, optional
-            Optional tallies to accumulate.
-
-        Returns
-        -------
-        StepDynamics
-            The dynamics of the scene.
-
-        Raises
-        ------
-        SceneError
-            If the engine does not support the scene, or if the step is too long.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> state = gp.Simulation(scene, "dsmc", seed=1).state
-        >>> gp.TimeStepped(time_step=0.01).start(scene, state).time
-        0.0
-        """
+        """Prepare the engine; raises SceneError if the step is too long or the scene is not supported."""
         from gaspart.engines.step.dynamics import StepDynamics
 
         return StepDynamics(self, scene, state, seed, tallies)

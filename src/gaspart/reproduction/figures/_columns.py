@@ -18,8 +18,7 @@ from gaspart.analysis import series
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.flow import Grid
 from gaspart.keys import POSITIVE, TEXT, count, describe, list_of, positive, record
-from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.figure import Blocks
+from gaspart.reproduction.figure import Blocks, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import table
 from gaspart.scene.species import Particle, Species

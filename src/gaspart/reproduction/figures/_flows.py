@@ -22,7 +22,7 @@ from gaspart.accuracy.option import Option
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import mean_of
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared.runs import kurtosis, runs
+from gaspart.reproduction.figure import kurtosis, runs
 from gaspart.reproduction.figures._gap import Gap, averages
 from gaspart.reproduction.figures._tradeoff import (
     BOUND,

@@ -28,7 +28,7 @@ from gaspart.analysis.expected.equilibrium import expect
 from gaspart.analysis.observables import OBSERVABLES as declared
 from gaspart.analysis.statistics import jackknife, mean_of
 from gaspart.engines import DSMC, Engine, EventDriven, TimeStepped
-from gaspart.reproduction.families.shared.runs import runs, series_of
+from gaspart.reproduction.figure import runs, series_of
 from gaspart.reproduction.figures._timings import median
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row

@@ -22,8 +22,7 @@ from gaspart.keys import positive
 from gaspart.rendering import style
 from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared import ENSKOG_LIMIT, PARTICLES
-from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figure import ENSKOG_LIMIT, PARTICLES, Parts
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
 from gaspart.scene.gas import plain_gas
