@@ -9,8 +9,8 @@ import pytest
 
 import gaspart as gp
 from gaspart.kernels.physics.contact import contact_root, exchange, tangential_impulse
-from gaspart.reproduction.families.registry import families
 from gaspart.reproduction.jobs.pack import GROWTH
+from gaspart.reproduction.registry import families
 from gaspart.reproduction.report.page import statements
 from gaspart.state.compression import compress
 from gaspart.yaml_text import read_yaml

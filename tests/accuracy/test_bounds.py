@@ -8,10 +8,11 @@ import pytest
 
 import gaspart as gp
 from gaspart import theory
+from gaspart.accuracy.advisers import timed_as
 from gaspart.accuracy.conditions import measured_conditions
+from gaspart.accuracy.of_dsmc import boltzmann_error, cell_error, enskog_error, require_resolved
 from gaspart.accuracy.option import candidates, make_request
 from gaspart.accuracy.target import Target
-from gaspart.engines.dsmc.accuracy import boltzmann_error, cell_error, enskog_error, require_resolved
 from gaspart.state.initial import initial_state
 from gaspart.theory.columns import gravity_column
 from gaspart.theory.conditions import even_conditions, known_conditions
@@ -227,7 +228,7 @@ def test_observables_that_points_do_not_have_are_refused():
     target = Target(scene, "bulk_viscosity")
     able, refused = candidates(target, 0.1, target.conditions)
     assert "of particles without extent" in refused["dsmc"]
-    assert [one.engine.timed_as for one in able] == ["event", "dsmc enskog"]
+    assert [timed_as(one.engine) for one in able] == ["event", "dsmc enskog"]
     target = Target(scene, "Z")
     assert "is 1 of particles" in candidates(target, 0.1, target.conditions)[1]["dsmc"]
 

@@ -10,6 +10,7 @@ import gaspart as gp
 from gaspart.accuracy import pilot, plan
 from gaspart.accuracy import target as target_module
 from gaspart.accuracy.estimates import Component
+from gaspart.accuracy.of_engine import Candidate
 from gaspart.accuracy.option import Option, candidates, suitable_engines
 from gaspart.accuracy.pilot import Pilot, Trials, raised_bias
 from gaspart.accuracy.scatter import start_scatter
@@ -20,7 +21,6 @@ from gaspart.cli import main
 from gaspart.cli.advise import _lines, _shortfall
 from gaspart.engines import EventDriven
 from gaspart.engines.dsmc.cells import CELL_LOSS
-from gaspart.engines.engine import Candidate
 from gaspart.state import initial
 from gaspart.theory.columns import gravity_column
 

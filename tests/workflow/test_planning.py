@@ -124,9 +124,7 @@ def test_a_longer_run_reruns_its_experiment_only(smoke, tmp_path):
             {"figure", "claims", "report", "all"},
             marks=pytest.mark.thorough,
         ),
-        pytest.param(
-            ["src/gaspart/reproduction/families/registry.py"], {"report", "all"}, marks=pytest.mark.thorough
-        ),
+        pytest.param(["src/gaspart/reproduction/registry.py"], {"report", "all"}, marks=pytest.mark.thorough),
         (["src/gaspart/reproduction/config.py", "config/README.md"], set()),
     ],
 )
