@@ -38,11 +38,13 @@ def compile_run(engine, name):
 
 
 def compile_row(name):
-    """Begin a run under each of its engines, and with events if engines are compared."""
+    """Begin a run under each of its engines, and with events if it records them somewhere."""
     row = ROWS[name]
     for engine in row.engines if name in COMPARED else row.engines[:1]:
-        for record in {False, len(row.engines) > 1}:
+        for record in {False, len(row.engines) > 1 or bool(row.record)}:
             simulation = row.simulation(engine, record=record)
+            if row.record:  # a restored run records none
+                simulation.record_events = record
             first = engine == row.engines[0]
             simulation.advance(until=row.until if first else simulation.engine.quantum or 1e-3 * row.until)
     return loops_in_use()
