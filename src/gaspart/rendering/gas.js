@@ -2,12 +2,6 @@
 // A gas of the event-driven engine: `gaspart.engines.event.dynamics` with the engine's own kernels. All numbers
 // of physics are in an image of the kernels' memory, and in patches for the values of controls.
 const STOP = 0, COLLAPSE = 3, MANY = 2 ** 18, QUIET = 64, EPOCH = 10, AT_REST = 2 ** 960, OTHER = 2 ** 10;
-const bytesOf = text => Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
-const doublesOf = text => new Float64Array(bytesOf(text).buffer);
-async function unpacked(text) {
-  const stream = new Blob([bytesOf(text)]).stream().pipeThrough(new DecompressionStream("deflate"));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
-}
 const sumOf = values => {  // in numpy's order, because a length may change where a sum is a power of two
   const n = values.length, part = new Float64Array(8);
   if (n > 128) {
@@ -207,9 +201,9 @@ class Gas {
     return Math.min(length, kept(of(number ? Math.sqrt(2 * energy / number * inverse) : 0), length));
   }
 }
-// The data of a page from its text.
-async function dataOf(text) {
-  const raw = await unpacked(text.trim()), end = raw.indexOf(0), stored = raw.subarray(end + 1);
+// The data of a page: JSON, and bytes after it.
+function dataOf(raw) {
+  const end = raw.indexOf(0), stored = raw.subarray(end + 1);
   const data = JSON.parse(new TextDecoder().decode(raw.subarray(0, end)), (_, value) => value?.bytes ? stored.slice(...value.bytes) : value);
   for (const start of data.starts)
     for (const name of ["positions", "velocities", "spins", "radii", "masses", "inertia", "weights"]) start[name] = new Float64Array(start[name].buffer);

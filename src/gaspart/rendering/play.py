@@ -23,7 +23,7 @@ from gaspart.kernels.compile.cache import load_numba
 from gaspart.kernels.compile.webassembly import modules
 from gaspart.rendering.controls import RULES, Controls
 from gaspart.rendering.particles import FASTEST
-from gaspart.rendering.view import View
+from gaspart.rendering.view import View, page_of
 from gaspart.scene.face_checks import piston_end
 from gaspart.scene.faces import FACES
 from gaspart.scene.scene import Scene, require_scene
@@ -32,7 +32,6 @@ from gaspart.state.given import state_at_time_zero
 from gaspart.state.initial import initial_state
 from gaspart.state.state import State
 
-_FOLDER = Path(__file__).parent
 _MARK = "gaspart play"
 _DENSITIES = 0.25, 0.5, 1.0, 2.0
 """Numbers of particles, divided by the number in the scene."""
@@ -100,9 +99,9 @@ def play(scene: Scene, seed: int = 0) -> View:
     check_scene(scene)
     if scales(scene).crossing_time == float("inf"):
         raise SceneError("scene", scene, "nothing moves at the start, and nothing falls")
-    text = (_FOLDER / "play.html").read_text(encoding="utf-8").replace("TITLE", _MARK, 1)
-    text = text.replace("GAS", (_FOLDER / "gas.js").read_text(encoding="utf-8"), 1)
-    return View(text.replace("DATA", _packed(_content(scene, seed)), 1), _HEIGHT)
+    engine = Path(__file__).with_name("gas.js").read_text(encoding="utf-8")
+    page = page_of("play.html", _MARK, GAS=engine, DATA=_packed(_content(scene, seed)))
+    return View(page, _HEIGHT)
 
 
 def _packed(content: dict) -> str:
