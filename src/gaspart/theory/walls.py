@@ -14,11 +14,11 @@ to one of the lengths is the force on a wall:
 .. math:: N / V = \rho + \Gamma s_1 + \Gamma_\tau s_2 + \Gamma_\kappa s_3, \qquad
           F / A = P - 2 (w-1) \gamma / l - 2 (w-1)(w-2) \tau / l^2 ,
 
-this is the force for equal lengths; otherwise the derivative is computed by differences. Gamma = - rho (d gamma / d rho) / (dP / d rho), and the other adsorptions
-follow by the same rule. rho is the density of a bulk fluid with the same chemical potential. Between two
-walls (w = 1) there are no edges, and the pressure on the walls is P. gamma, tau and kappa are exact to fifth
-order in the density, from cluster integrals (`clusters`). All quantities are in units of the diameter and k_B
-T.
+this is the force for equal lengths; otherwise the derivative is computed by differences. Gamma = - rho (d
+gamma / d rho) / (dP / d rho), and the other adsorptions follow by the same rule. rho is the density of a bulk
+fluid with the same chemical potential. Between two walls (w = 1) there are no edges, and the pressure on the
+walls is P. gamma, tau and kappa are exact to fifth order in the density, from cluster integrals (`clusters`).
+All quantities are in units of the diameter and k_B T.
 """
 
 import math

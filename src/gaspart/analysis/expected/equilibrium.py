@@ -268,13 +268,16 @@ def wall_pressure(run: Run, touched: np.ndarray) -> Expected | None:
 
     For hard particles the result is the pressure of the fluid between hard walls. For point particles it is N
     k_B T divided by the accessible volume. `touched` (d,) are the side lengths of the accessible volume.
+    Particles that hardly collide keep the energies along the axes that they have at the start: the scatter of
+    these energies is part of the uncertainty.
     """
     gas, equation = run.scene.gas, equation_of(run)
     if gas is None or equation == ENSKOG:
         return None
+    scatter = 0.0 if is_mixed(run) else math.sqrt(2.0 * (1.0 - 1.0 / gas.dimension) / run.count)
     if equation == BOLTZMANN:
         value = run.count * run.temperature / float(touched.prod())
-        return Expected(value, 0.0, "Boltzmann equation: an ideal gas", 0.0)
+        return Expected(value, scatter * value, "Boltzmann equation: an ideal gas", 0.0)
     if run.scene.centres_to_walls:
         return None
     sides = (np.array(run.scene.container.lengths) / gas.diameter)[~run.periodic]
@@ -287,6 +290,7 @@ def wall_pressure(run: Run, touched: np.ndarray) -> Expected | None:
     except ValueError:  # above the density range of the theory
         return None
     value, error = np.repeat(parts, 2, axis=0).T
+    error = np.hypot(error, scatter * value)
     unit = run.temperature / gas.diameter**gas.dimension
     ideal = run.count * run.temperature / float(touched.prod())
     return Expected(value * unit, error * unit, "fluid between hard walls", value * unit - ideal)
