@@ -14,7 +14,7 @@ from sphinx.pycode import ModuleAnalyzer
 from gaspart.cli import lines
 from gaspart.reproduction.claims.table import fill_caption, read
 from gaspart.reproduction.config import merged_with_default
-from gaspart.reproduction.families.registry import chapter, families
+from gaspart.reproduction.registry import chapter, families
 from gaspart.reproduction.report.page import CHAPTERS
 
 ROOT = Path(__file__).parents[1]

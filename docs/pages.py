@@ -24,7 +24,7 @@ from gaspart.cli.arguments import WIDTH
 from gaspart.cli.new import templates
 from gaspart.public import read_stub
 from gaspart.reproduction.claims.table import fill_caption, read
-from gaspart.reproduction.families.registry import families, titles
+from gaspart.reproduction.registry import families, home, titles
 from gaspart.yaml_text import read_yaml
 
 ROOT = Path(__file__).parents[1]
@@ -144,9 +144,9 @@ def figures(folder):
             text += fill_caption(caption, [], "(see the claims)") + "\n\n"
             text += claims_of(ROOT / f"results/claims/{figure}.csv")
             text += f".. code-block:: sh\n\n   snakemake --cores all results/figures/{figure}.png\n\n"
-        for kind, name in (("measure", "Measurement"), ("claims", "Claims")):
-            doc = importlib.import_module(f"gaspart.reproduction.families.{family}.{kind}").__doc__
-            text += heading(name, "-") + f".. code-block:: text\n\n{indented(doc.strip())}\n"
+        name = home(family)
+        doc = importlib.import_module(name).__doc__
+        text += f".. code-block:: text\n   :caption: {name}\n\n{indented(doc.strip())}\n"
         pages[f"figures/{family}.rst"] = text
     listed = "".join(f"   {family}\n" for family in titles())
     index = indexes.figures(folder / "figures/small")

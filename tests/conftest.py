@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from battery.loops import LIST, loops_in_use
 from hypothesis import settings
 from xdist.scheduler import LoadScopeScheduling
 
@@ -37,6 +38,8 @@ if INTERPRETED:
     read_fields()
     do_without_vectors()
 
+LOOPS_BEFORE = set()
+"""Digests of the engines' loops that earlier tests of this process have used."""
 TESTS = Path(__file__).parent
 # These have an environment of their own: make referees.
 collect_ignore = ["referees"]
@@ -59,6 +62,9 @@ class ByFile(LoadScopeScheduling):
 
 def pytest_addoption(parser):
     parser.addoption("--no-skips", action="store_true", help="fail if any test is skipped")
+    parser.addoption(
+        "--canonical", action="store_true", help="fail an unmarked test that uses kernels of its own"
+    )
 
 
 def pytest_configure(config):
@@ -80,6 +86,20 @@ def no_figure_stays_open():
     yield
     if pyplot := sys.modules.get("matplotlib.pyplot"):
         pyplot.close("all")
+
+
+@pytest.fixture(autouse=True)
+def only_canonical_kernels(request):
+    """With --canonical, fail an unmarked test whose engines run other loops than `make test` has compiled."""
+    yield
+    if request.config.getoption("canonical") and not INTERPRETED:
+        new = loops_in_use() - LOOPS_BEFORE
+        LOOPS_BEFORE.update(new)
+        if not {"thorough", "interpreted"} & {mark.name for mark in request.node.iter_markers()}:
+            own = new - set(LIST.read_text().split())
+            assert not own, (
+                "a scene with kernels of its own: take one of battery/kinds_of_runs.py, or mark it thorough"
+            )
 
 
 def pytest_xdist_make_scheduler(config, log):

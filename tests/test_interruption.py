@@ -9,6 +9,7 @@ import subprocess
 import sys
 import textwrap
 import time
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -92,8 +93,23 @@ def saved_time(path, engine):
         return float(saved["start"] + saved["clock"] if engine == "event" else saved["steps"] * 0.015625)
 
 
-@pytest.mark.parametrize("number", SIGNALS, ids=["SIGINT", "SIGTERM"])
-@pytest.mark.parametrize("engine", ["event", "step", "threads"])
+def with_signals(cases, few):
+    """Each case with each signal; `make test` has these few, a case for each signal."""
+    return [
+        pytest.param(
+            case,
+            number,
+            id=f"{case}-{number.name}",
+            marks=() if few.get(case) == number else pytest.mark.thorough,
+        )
+        for case, number in product(cases, SIGNALS)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("engine", "number"),
+    with_signals(["event", "step", "threads"], {"event": signal.SIGINT, "threads": signal.SIGTERM}),
+)
 def test_a_run_ends_with_a_checkpoint_and_says_how_to_continue(folder, engine, number):
     options = {"event": [], "step": ["--engine", "step", "--time-step", "0.015625"]}
     options["threads"] = [*options["step"], "--threads", "2"]
@@ -115,8 +131,9 @@ def test_a_run_ends_with_a_checkpoint_and_says_how_to_continue(folder, engine, n
     assert printed in early or "nothing was changed" in printed or "continues it from time" in printed
 
 
-@pytest.mark.parametrize("number", SIGNALS, ids=["SIGINT", "SIGTERM"])
-@pytest.mark.parametrize("wait", [0.0, 0.05, 0.5])
+@pytest.mark.parametrize(
+    ("wait", "number"), with_signals([0.0, 0.05, 0.5], {0.0: signal.SIGTERM, 0.5: signal.SIGINT})
+)
 def test_other_commands_end_at_once_during_imports_too(folder, number, wait):
     # for some seconds; so many more that they need more memory than there is would be refused at once
     process = start("collisions", "scene.yaml", "-o", "met.nc", "--count", "5000000", folder=folder)

@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 from gaspart.reproduction.claims.table import fill_caption, place_fault
-from gaspart.reproduction.families.registry import families
+from gaspart.reproduction.registry import families
 
 TEXT = (Path(__file__).parents[1] / "workflow/report/paper.md").read_text(encoding="utf-8")
 PLACES = [" ".join(place.split()) for place in re.findall(r"\{\{(.*?)\}\}", TEXT, re.DOTALL)]

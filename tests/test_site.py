@@ -15,7 +15,7 @@ import gaspart as gp
 from gaspart import theory
 from gaspart.cli import commands, lines
 from gaspart.cli.new import templates
-from gaspart.reproduction.families.registry import families
+from gaspart.reproduction.registry import families
 
 pytestmark = pytest.mark.thorough
 

@@ -5,6 +5,7 @@ import shutil
 import signal
 import socket
 from contextlib import contextmanager
+from itertools import product
 
 import pytest
 from malformed import within
@@ -98,8 +99,20 @@ def run(tmp_path_factory):
     return gp.run(SCENE, gp.EventDriven(), 1, 1.0, 0.5, tmp_path_factory.mktemp("run") / "run.nc")
 
 
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
+def pairs():
+    """Each command with each kind of file; `make test` has each command once and each kind twice or more."""
+    return [
+        pytest.param(
+            command,
+            kind,
+            id=f"{' '.join(command)}-{kind}",
+            marks=() if n % len(KINDS) == m else pytest.mark.thorough,
+        )
+        for (n, command), (m, kind) in product(enumerate(COMMANDS), enumerate(KINDS))
+    ]
+
+
+@pytest.mark.parametrize(("command", "kind"), pairs())
 def test_as_an_input_of_a_command(folder, run, capsys, command, kind):
     shutil.copy(run, folder)
     (folder / "results/tables").mkdir(parents=True)

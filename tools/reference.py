@@ -11,8 +11,8 @@ from gaspart.analysis.declaration import DIMENSIONS
 from gaspart.analysis.observables import ALIASES, OBSERVABLES
 from gaspart.engines import ENGINES
 from gaspart.keys import Kind
+from gaspart.reproduction import registry
 from gaspart.reproduction.config import scene_schema, schema
-from gaspart.reproduction.families import registry
 from gaspart.reproduction.points import point_keys
 from gaspart.reproduction.points import points as config_keys
 from gaspart.scene.features import EXCLUDED, FEATURES

@@ -8,10 +8,11 @@ import pytest
 
 import gaspart as gp
 from gaspart import theory
+from gaspart.accuracy.advisers import timed_as
 from gaspart.accuracy.conditions import measured_conditions
+from gaspart.accuracy.of_dsmc import boltzmann_error, cell_error, enskog_error, require_resolved
 from gaspart.accuracy.option import candidates, make_request
 from gaspart.accuracy.target import Target
-from gaspart.engines.dsmc.accuracy import boltzmann_error, cell_error, enskog_error, require_resolved
 from gaspart.state.initial import initial_state
 from gaspart.theory.columns import gravity_column
 from gaspart.theory.conditions import even_conditions, known_conditions
@@ -112,7 +113,9 @@ def test_time_steps_err_by_twice_the_contacts_that_they_miss(dimension, missed):
     assert stepped.discretisation == pytest.approx(stepped.engine.bias(scene, "rates"), rel=1e-9)
 
 
-@pytest.mark.parametrize(("fraction", "width"), [(0.01, 5), (0.001, 3)])
+@pytest.mark.parametrize(
+    ("fraction", "width"), [(0.01, 5), pytest.param(0.001, 3, marks=pytest.mark.thorough)]
+)
 def test_points_between_walls_collide_too_often(fraction, width):
     """A particle of a diameter has fewer neighbours at a wall: in a dilute gas by half a diameter over the
     width."""
@@ -225,7 +228,7 @@ def test_observables_that_points_do_not_have_are_refused():
     target = Target(scene, "bulk_viscosity")
     able, refused = candidates(target, 0.1, target.conditions)
     assert "of particles without extent" in refused["dsmc"]
-    assert [one.engine.timed_as for one in able] == ["event", "dsmc enskog"]
+    assert [timed_as(one.engine) for one in able] == ["event", "dsmc enskog"]
     target = Target(scene, "Z")
     assert "is 1 of particles" in candidates(target, 0.1, target.conditions)[1]["dsmc"]
 

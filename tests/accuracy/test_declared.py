@@ -7,6 +7,7 @@ import xarray as xr
 from scenes import gas
 
 import gaspart as gp
+from gaspart.accuracy.advisers import timed_as
 from gaspart.accuracy.option import candidates
 from gaspart.accuracy.target import Target
 from gaspart.analysis.measuring import measure
@@ -97,7 +98,7 @@ def test_mutual_diffusion_has_the_model_error_of_diffusion():
     models = {}
     for name in ("D", "mutual_diffusion"):
         made, _ = candidates(Target.from_name(scene, name), 0.1, even_conditions(scene, 1.0))
-        models[name] = {one.engine.timed_as: (one.model, one.discretisation) for one in made}
+        models[name] = {timed_as(one.engine): (one.model, one.discretisation) for one in made}
     assert models["D"] == models["mutual_diffusion"]
     assert models["D"]["dsmc enskog"][0] == pytest.approx(0.066, abs=0.003)
 
@@ -109,9 +110,9 @@ def test_no_advice_is_to_measure_what_a_model_states():
     even = even_conditions(scene, 1.0)
     made, refused = candidates(Target.from_name(scene, "Z"), 0.1, even)
     assert (
-        "dsmc" not in {one.engine.timed_as for one in made}
+        "dsmc" not in {timed_as(one.engine) for one in made}
         and "is 1 of particles without extent" in refused["dsmc"]
     )
     assert "dsmc" in {
-        one.engine.timed_as for one in candidates(Target.from_name(scene, "collision_rate"), 0.1, even)[0]
+        timed_as(one.engine) for one in candidates(Target.from_name(scene, "collision_rate"), 0.1, even)[0]
     }

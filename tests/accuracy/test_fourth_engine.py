@@ -7,12 +7,13 @@ import pytest
 
 import gaspart as gp
 from gaspart.accuracy import pilot, plan, table
+from gaspart.accuracy.advisers import ADVISERS
+from gaspart.accuracy.of_engine import Adviser, Candidate
 from gaspart.accuracy.option import candidates
 from gaspart.accuracy.table import price_of
 from gaspart.accuracy.target import Target
 from gaspart.cli.advise import _lines
 from gaspart.engines import ENGINES, EventDriven
-from gaspart.engines.engine import Candidate
 from gaspart.reproduction import cost
 from gaspart.theory.conditions import even_conditions
 
@@ -26,18 +27,18 @@ class Fourth(EventDriven):
     name = "fourth"
     title = "fourth"
     reference = False
+
+    def bias(self, scene, kind):
+        return 1e-3
+
+
+class FourthAdviser(Adviser):
     limitations = "honesty"
 
     def candidate(self, asked):
-        """With an error of a thousandth."""
-        return Candidate(self, discretisation=1e-3)
-
-    def bias(self, scene, kind):
-        """The same."""
-        return 1e-3
+        return Candidate(self.engine, discretisation=1e-3)
 
     def describe(self):
-        """By its name."""
         return "fourth engine"
 
 
@@ -46,6 +47,7 @@ def fourth(tmp_path, monkeypatch):
     """The engine, with rows of the table that are those of the event-driven one at a tenth of the cost."""
     monkeypatch.setattr(pilot, "cache_directory", lambda: tmp_path / "cache")
     monkeypatch.setitem(ENGINES, "fourth", Fourth)
+    monkeypatch.setitem(ADVISERS, Fourth, FourthAdviser)
     timed = [row for row in table.read() if row["engine"] == "event" and row["quantity"] == "seconds"]
     rows = table.read() + tuple({**row, "engine": "fourth", "value": 0.1 * row["value"]} for row in timed)
     monkeypatch.setattr(table, "read", lambda: rows)
@@ -79,7 +81,7 @@ def test_its_costs_are_predicted(monkeypatch):
         SimpleNamespace(job="simulate", scene=GAS, engine=engine, schedule=times, replicas=1)
         for engine in (EventDriven(), Fourth())
     ]
-    event, own = map(cost._seconds, points)
+    event, own = map(cost.predicted_seconds, points)
     assert own == pytest.approx(0.1 * event)
     assert price_of(GAS, Fourth(), "Z").ratios == {}
 
@@ -90,7 +92,7 @@ def test_dsmc_is_predicted_by_its_own_rows(monkeypatch):
     dilute = replace(GAS, container=gp.Container((60.0,) * 3, "periodic"))
     times = SimpleNamespace(duration=10.0)
     found = [
-        cost._seconds(
+        cost.predicted_seconds(
             SimpleNamespace(job="simulate", scene=dilute, engine=engine, schedule=times, replicas=1)
         )
         for engine in (gp.EventDriven(), gp.DSMC())

@@ -10,6 +10,7 @@ import gaspart as gp
 from gaspart.accuracy import pilot, plan
 from gaspart.accuracy import target as target_module
 from gaspart.accuracy.estimates import Component
+from gaspart.accuracy.of_engine import Candidate
 from gaspart.accuracy.option import Option, candidates, suitable_engines
 from gaspart.accuracy.pilot import Pilot, Trials, raised_bias
 from gaspart.accuracy.scatter import start_scatter
@@ -20,7 +21,6 @@ from gaspart.cli import main
 from gaspart.cli.advise import _lines, _shortfall
 from gaspart.engines import EventDriven
 from gaspart.engines.dsmc.cells import CELL_LOSS
-from gaspart.engines.engine import Candidate
 from gaspart.state import initial
 from gaspart.theory.columns import gravity_column
 
@@ -57,7 +57,7 @@ def test_the_advised_run_reaches_the_accuracy(tmp_path):
     )  # kept from before
 
 
-@pytest.mark.parametrize("observable", ["msd", "vacf"])
+@pytest.mark.parametrize("observable", ["msd", pytest.param("vacf", marks=pytest.mark.thorough)])
 def test_lags_are_those_of_correlations(tmp_path, observable):
     """Whatever the length of the run, so that a longer one is more accurate."""
     coarse, fine = (
@@ -75,7 +75,7 @@ def test_lags_are_those_of_correlations(tmp_path, observable):
     assert error <= 0.05
 
 
-@pytest.mark.parametrize("observable", ["D", "mutual_diffusion"])
+@pytest.mark.parametrize("observable", ["D", pytest.param("mutual_diffusion", marks=pytest.mark.thorough)])
 def test_paths_are_followed_however_far_frames_are_apart(tmp_path, observable):
     """Some of these particles cross the container between frames."""
     kinds = [gp.Species(32, radius, temperature=1.0, exact_temperature=True) for radius in (0.5, 0.4)]
@@ -145,6 +145,7 @@ def test_an_engine_that_cannot_start_is_no_candidate():
     assert {"dsmc", "dsmc enskog"} == set(made.refused) and "much larger" in made.refused["dsmc"]
 
 
+@pytest.mark.thorough
 def test_pilots_of_diffusion_and_structure_are_their_own():
     """Frames of others may lie too far apart, or be too many."""
     kinds = [gp.Species(32, radius, temperature=1.0, exact_temperature=True) for radius in (0.5, 0.4)]
@@ -278,6 +279,7 @@ def test_cost_follows_from_noise_and_bias():
     assert settled.duration == pytest.approx(2.0 * measured)  # longer than a quarter of the run
 
 
+@pytest.mark.thorough
 def test_what_one_run_cannot_reach_is_shared_by_replicas():
     """Of a run the frames that are correlated are limited, here by the collisions of light particles."""
     kinds = [gp.Species(20, 0.5, mass=mass, temperature=1.0, exact_temperature=True) for mass in (1.0, 100.0)]
@@ -397,6 +399,7 @@ def test_a_plain_gas_between_walls_has_one_pilot_or_two(monkeypatch):
     assert len(made) <= 2 and sum(made) <= 0.4
 
 
+@pytest.mark.thorough
 def test_a_pilot_in_which_a_column_falls_is_continued():
     """Spheres that start at the top of it reach the floor within the first of four parts."""
     scene = column(40, 120.0, 0.1, ((0.0, 0.0, 100.0), (6.0, 6.0, 120.0)))
@@ -417,7 +420,7 @@ def test_the_energy_of_random_places_scatters_as_stated():
     """That of the temperature, from the energies of starts, which all have an exact temperature."""
     scene = column(60, 80.0, 0.05)
     energies = []
-    for seed in range(100):
+    for seed in range(40):
         state = initial.initial_state(scene, seed)
         energies.append(state.translational_energy + 0.05 * float(state.positions[:, 2].sum()))
     found = start_scatter(Target(scene, "temperature"))
@@ -427,7 +430,7 @@ def test_the_energy_of_random_places_scatters_as_stated():
         column_of.of_energy(np.mean(energies) - 30.0 * 0.05 + k * np.std(energies), False) for k in (1, -1)
     )
     expected = (hot.temperature - cold.temperature) / (hot.temperature + cold.temperature)
-    assert found.value == pytest.approx(expected, rel=3.0 / math.sqrt(2.0 * 99.0) + 0.05)
+    assert found.value == pytest.approx(expected, rel=3.0 / math.sqrt(2.0 * 39.0) + 0.05)
     drawn = replace(scene, species=[replace(scene.species[0], exact_temperature=False)])
     assert start_scatter(Target(drawn, "temperature")).value > found.value
     heated = replace(scene, faces={"z_low": gp.Thermal(1.0)})

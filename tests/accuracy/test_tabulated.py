@@ -9,8 +9,8 @@ import pytest
 import gaspart as gp
 from gaspart import theory
 from gaspart.accuracy import tabulated
+from gaspart.accuracy.of_engine import Candidate
 from gaspart.accuracy.option import fluid_option
-from gaspart.engines.engine import Candidate
 from gaspart.scene.gas import Gas
 from gaspart.theory.discretisation import contact_values
 

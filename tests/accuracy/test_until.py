@@ -71,7 +71,9 @@ def ended(known, accuracy, correct):
     return None
 
 
-@pytest.mark.parametrize("correlation", [-0.3, 0.0, 0.5, 0.8])
+@pytest.mark.parametrize(
+    "correlation", [0.5, *(pytest.param(x, marks=pytest.mark.thorough) for x in (-0.3, 0.0, 0.8))]
+)
 def test_the_interval_at_the_end_covers_the_true_value_in_95_of_100_runs(correlation):
     """Autoregressive series whose mean is known. The accuracies are such that runs end at many of the
     examinations."""
@@ -186,7 +188,9 @@ def test_a_gas_is_run_until_it_is_accurate(whole):
     assert not all(one.met for one in earlier)
 
 
-@pytest.mark.parametrize("frames", [1, 63, 64, 65, 200])
+@pytest.mark.parametrize(
+    "frames", [64, 200, *(pytest.param(n, marks=pytest.mark.thorough) for n in (1, 63, 65))]
+)
 def test_a_run_that_was_cut_short_ends_at_the_same_frame(tmp_path, monkeypatch, whole, frames):
     """Just before an examination, at it and after it, and anywhere."""
     path, reach = tmp_path / "run.nc", recording.Recording._finish_frame

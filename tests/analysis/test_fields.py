@@ -36,6 +36,7 @@ def test_density_adds_up_and_is_uniform(tmp_path):
     assert 0.5 < z.std() < 1.6
 
 
+@pytest.mark.thorough
 def test_flow_follows_the_plates(sheared):
     found = gp.analysis.field(sheared, "velocity", "y", cells=5)
     along, across = found.estimate.sel(component="x"), found.estimate.sel(component="y")

@@ -330,6 +330,7 @@ def test_a_run_until_a_pressure_is_accurate_keeps_what_it_needs(tmp_path):
     assert reached.met and reached.freedom >= 15.0
 
 
+@pytest.mark.thorough
 def test_the_pressure_of_two_discs_has_no_controls_and_an_honest_error(tmp_path):
     """With controls 52 of 60 values were within two errors of their mean."""
     kind = gp.Species(2, 0.5, temperature=1.0, exact_temperature=True)

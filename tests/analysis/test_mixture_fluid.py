@@ -72,6 +72,7 @@ def test_many_sizes_have_no_species(path, function):
         function(data.assign_attrs(scene=dump_yaml(many.to_dict())))
 
 
+@pytest.mark.thorough
 def test_a_mixture_conducts_without_diffusion(tmp_path):
     """Ten times as heavy spheres: half of the flux of energy is that of diffusing species. Of equal ones it
     is what their common gas conducts."""

@@ -63,6 +63,7 @@ def test_discs_among_many_obstacles_have_one(tmp_path):
     assert found.estimate.ndim == 0 and 0.5 < float(found.estimate) < 0.9
 
 
+@pytest.mark.thorough
 def test_a_slope_that_falls_is_no_coefficient(tmp_path):
     """Discs in cages of interior walls, in a periodic container."""
     lines = [((0.0, y), (30.0, y)) for y in (0.0, 15.0)] + [((x, 0.0), (x, 30.0)) for x in (0.0, 15.0)]
@@ -155,6 +156,7 @@ def test_species_alike_diffuse_as_single_particles(tmp_path):
     assert np.mean(ratios) == pytest.approx(1.0, abs=3.0 * 0.075 / math.sqrt(6))  # 7.5 % for each run
 
 
+@pytest.mark.thorough
 def test_dilute_gas_of_unequal_masses(tmp_path):
     """Chapman and Enskog's value, to which higher approximations add some 3 %."""
     scene = _scene(0.01, _kind(100), _kind(100, mass=8.0))
@@ -352,7 +354,7 @@ def test_few_particles_in_the_file_change_nothing_but_the_theory(tmp_path):
         assert np.array_equal(found.estimate, other.estimate) and np.array_equal(found.error, other.error)
 
 
-@pytest.mark.parametrize("mass", [1.0, 3.0])
+@pytest.mark.parametrize("mass", [1.0, pytest.param(3.0, marks=pytest.mark.thorough)])
 def test_errors_are_those_of_independent_runs(tmp_path, mass):
     """By the mean over lags of the squared scatter of 24 runs of one energy."""
     kinds = [(30, 1.0), (10, mass)]

@@ -74,7 +74,9 @@ def test_deviations_over_errors_follow_student(kind, size):
     assert np.mean(np.abs(deviations) > 3.0) < 0.01
 
 
-@pytest.mark.parametrize("memory", [-0.9, -0.6, -0.5, 0.0, 0.5, 0.9])
+@pytest.mark.parametrize(
+    "memory", [-0.6, 0.9, *(pytest.param(x, marks=pytest.mark.thorough) for x in (-0.9, -0.5, 0.0, 0.5))]
+)
 def test_the_correlation_time_of_a_markov_series(memory):
     """(1 + m) / (1 - m) of twice the time, below 1 for an anticorrelated series, which holds more independent
     values than samples."""
@@ -85,7 +87,14 @@ def test_the_correlation_time_of_a_markov_series(memory):
     assert np.mean(found) == pytest.approx((1.0 + memory) / (1.0 - memory), rel=0.05)
 
 
-@pytest.mark.parametrize(("period", "decay"), [(20, 0.97), (50, 0.98), (100, 0.99), (200, 0.995)])
+@pytest.mark.parametrize(
+    ("period", "decay"),
+    [
+        (50, 0.98),
+        (100, 0.99),
+        *(pytest.param(*x, marks=pytest.mark.thorough) for x in ((20, 0.97), (200, 0.995))),
+    ],
+)
 @pytest.mark.parametrize("white", [0.0, 1.0])
 def test_the_correlation_time_of_an_oscillation_longer_than_the_order_of_the_fit(period, decay, white):
     """Of an autoregressive series of order 2, and of the same beside as much white noise, which hides
@@ -167,7 +176,9 @@ def test_without_a_tail_the_error_is_that_of_other_series():
     assert 1.0 <= np.mean(slow / plain) < 1.25
 
 
-@pytest.mark.parametrize("memory", [-0.5, 0.0, 0.5, 0.9])
+@pytest.mark.parametrize(
+    "memory", [0.9, *(pytest.param(x, marks=pytest.mark.thorough) for x in (-0.5, 0.0, 0.5))]
+)
 def test_autocorrelation_time(memory):
     exact = 0.5 + memory / (1.0 - memory)
     series = [autoregressive(2**16, memory, seed) for seed in range(7, 13)]

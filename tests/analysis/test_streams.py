@@ -122,6 +122,7 @@ with gp.open_trajectory(large) as trajectory:
 """
 
 
+@pytest.mark.thorough
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="limits of address space are Linux's")
 def test_a_file_larger_than_memory_is_measured(tmp_path):
     scene = gp.Scene(gp.Container((60.0,) * 3, "periodic"), [gp.Species(20_000, 0.1, temperature=1.0)])

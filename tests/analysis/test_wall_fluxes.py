@@ -66,6 +66,7 @@ def test_heat_between_free_flight_and_a_fluid():
     assert (off(found) < 3.0).all() and (found.error < 0.03 * flux).all()
 
 
+@pytest.mark.thorough
 def test_heat_of_a_fluid():
     """Knudsen number 0.05: Fourier's flux would be 25 % more without temperature jumps."""
     scene = plates(2000, 0.05, hot=2.0)

@@ -2,17 +2,20 @@
 
     PYTHONPATH=tests python -m battery.compile_kernels
 
-Otherwise two processes that need a kernel at the same time would both compile it.
+Otherwise two processes that need a kernel at the same time would both compile it. `pytest --canonical`
+refuses unmarked tests that use other loops of the engines.
 """
 
 import os
 from concurrent.futures import ProcessPoolExecutor
 
 from battery.disturbed import ROWS
-from battery.kinds_of_runs import CANONICAL, start_of
+from battery.kinds_of_runs import CANONICAL, kernels_of, start_of
+from battery.loops import LIST, loops_in_use
 from battery.test_bits import CANONICAL as CANONICAL_ROWS
+from scenes import gas
 
-from gaspart.reproduction.points.point import compiled_features
+import gaspart as gp
 
 
 def different(chosen):
@@ -20,9 +23,7 @@ def different(chosen):
     found = {}
     for engine, name in chosen:
         start = start_of(engine, name)
-        features = sorted(compiled_features(start.scene))
-        variant = engine, start.engine.variant(start.scene), *features, *start.forms
-        found.setdefault(variant, (engine, name))
+        found.setdefault((*kernels_of(start.engine, start.scene), *start.forms), (engine, name))
     return list(found.values())
 
 
@@ -31,6 +32,7 @@ def compile_run(engine, name):
     start = start_of(engine, name)
     for form in start.forms:
         start.record(form, 2)
+    return loops_in_use()
 
 
 def compile_row(name):
@@ -39,6 +41,19 @@ def compile_row(name):
     for engine in row.engines:
         for record in {False, len(row.engines) > 1}:
             row.simulation(engine, record=record).advance(until=1e-3 * row.until)
+    return loops_in_use()
+
+
+DISCS = gp.EventDriven(), gp.TimeStepped(2.0**-6), gp.DSMC(2.0**-4), gp.DSMC(2.0**-4, model="enskog")
+"""Engines under which many tests have a plain gas of discs."""
+
+
+def compile_discs(engine):
+    """Begin a run of discs."""
+    simulation = gp.Simulation(gas(2, 100, 0.1), engine, 1)
+    simulation.record_events = engine.records_events
+    simulation.advance(until=0.25)
+    return loops_in_use()
 
 
 def main():
@@ -46,8 +61,10 @@ def main():
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         done = [pool.submit(compile_run, *run) for run in different(CANONICAL)]
         done += [pool.submit(compile_row, name) for name in ROWS if name in CANONICAL_ROWS]
-        for future in done:
-            future.result()
+        done += [pool.submit(compile_discs, engine) for engine in DISCS]
+        loops = set().union(*(future.result() for future in done))
+    LIST.parent.mkdir(exist_ok=True)
+    LIST.write_text("\n".join(sorted(loops)))
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@ import gaspart as gp
 from gaspart.analysis.run import repeat_run
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
+from gaspart.reproduction.points.point import compiled_features
 from gaspart.state.state import State
 from gaspart.state.tally import ImpulseTally, PairImpulseTally, StressTally
 from gaspart.trajectory.correlator import Correlations
@@ -203,6 +204,18 @@ CANONICAL = [
 """Runs whose kernels `make test` compiles; the other kinds are in `make test-all`."""
 
 
+def kernels_of(engine, scene):
+    """Return what the kernels of a scene under an engine depend on."""
+    return engine.name, engine.variant(scene), scene.dimension, frozenset(compiled_features(scene))
+
+
+@cache
+def canonical_kernels():
+    """Return what the kernels of the canonical runs depend on."""
+    chosen = [(engines(KINDS[name].interval)[engine], KINDS[name].scene) for engine, name in CANONICAL]
+    return {kernels_of(*run) for run in chosen}
+
+
 def by_run(chosen):
     """A parameter for each of these runs; those that are not canonical are thorough."""
     marks = [() if run in CANONICAL else pytest.mark.thorough for run in chosen]
@@ -246,7 +259,10 @@ class Start:
         found = {
             "frames": {"displacements": True, "pairs": self.engine.records_events},
             "correlations": {"displacements": True, "correlations": Correlations(half, LAGS)},
-            "fluxes": {"correlations": Correlations(half, LAGS, stress=True)},
+            "fluxes": {
+                "pairs": self.engine.records_events,
+                "correlations": Correlations(half, LAGS, stress=True),
+            },
         }
         for form, tally in self.tallies.items():
             found[form] = {"tallies": [tally]}

@@ -8,7 +8,7 @@ import pytest
 import gaspart as gp
 from gaspart.cli import commands, main
 from gaspart.cli.new import templates
-from gaspart.reproduction.families.registry import families
+from gaspart.reproduction.registry import families
 
 ROOT = Path(__file__).parents[2]
 

@@ -165,3 +165,20 @@ def test_obstacles_against_which_a_face_would_press_are_refused():
             replace(scene, walls=[gp.Wall(*ends)])
     for wall in (gp.Wall((0.0, 1.5), (1.0, 1.5)), gp.Wall((1.0, 0.0), (1.0, 9.0))):
         assert replace(scene, walls=[wall]).walls == (wall,)
+
+
+@pytest.mark.interpreted
+def test_of_walls_at_a_vibrating_face_only_upright_ones_stand():
+    """The face slides along an upright plate, across whichever axis it lies; it presses against any other."""
+    container, balls = gp.Container((9.0, 9.0, 9.0)), [gp.Species(1, 0.5)]
+    for axis, name in enumerate("xyz"):
+        scene = gp.Scene(container, balls, faces={f"{name}_low": SINE})
+        up, across, other = np.roll(np.eye(3), -axis, axis=0)
+        corner = 2.0 * (across + other)
+        for edges in ((5.0 * up, across), (across, 5.0 * up), (5.0 * up, across + other)):
+            plate = gp.Plate(tuple(corner), tuple(map(tuple, edges)))
+            assert replace(scene, walls=[plate]).walls == (plate,)
+        for edges in ((5.0 * up + across, other), (other, 5.0 * up + across), (across, other)):
+            plate = gp.Plate(tuple(corner), tuple(map(tuple, edges)))
+            with pytest.raises(gp.SceneError, match="walls.*less than a largest diameter"):
+                replace(scene, walls=[plate])

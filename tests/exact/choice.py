@@ -6,11 +6,21 @@ import subprocess
 from functools import cache
 from pathlib import Path
 
+from battery.kinds_of_runs import canonical_kernels, kernels_of
+from exact.kinds import kinds
+from exact.runs import engines
+
 import gaspart
 from gaspart.kernels.compile.sources import file_digests
+from gaspart.scene.scene import Scene
 
 ENGINES = {"event": ("event", "obstacles"), "step": ("step",), "dsmc": ("dsmc",), "enskog": ("dsmc",)}
 """Folders of the sources of an engine."""
+
+
+def is_canonical(scene, engine="event"):
+    """Return True if `make test` compiles the kernels of a run anyway."""
+    return kernels_of(engines(scene)[engine], Scene.from_dict(kinds()[scene].scene)) in canonical_kernels()
 
 
 def chosen(items, number):

@@ -1,8 +1,8 @@
 """Short runs of every feature, to compare compiled kernels with their own source, run as plain Python.
 
-    NUMBA_DISABLE_JIT=1 python tests/kernels/interpreted.py ends.npz
+    NUMBA_DISABLE_JIT=1 python tests/kernels/interpreted.py ends.npz periodic granular
 
-writes how they end. Python tests every index, and a coverage tool can record which lines have run.
+writes how these end. Python tests every index, and a coverage tool can record which lines have run.
 """
 
 import sys
@@ -20,6 +20,7 @@ from gaspart.analysis.structure_factors import factors, wave_vectors
 from gaspart.kernels import insertion, model
 from gaspart.kernels.event import boxes as candidates
 from gaspart.kernels.event import boxes as search
+from gaspart.kernels.event import neighbour_lists as event_list
 from gaspart.kernels.event import prediction, prefetch
 from gaspart.kernels.obstacles import distance
 from gaspart.kernels.physics import flight
@@ -30,6 +31,9 @@ from gaspart.trajectory.correlator import Correlator
 PYTHON = bool(numba.config.DISABLE_JIT)
 VISCOUS = gp.Restitution(0.8, 0.4, reference_speed=1.0)
 ROUGH, METAL = gp.Restitution(0.95, 0.4), gp.Restitution(1.0, 0.5)
+SPARSE = "rough in steps", "holding in steps", "metal in steps"
+CANONICAL = "periodic", "two masses", "granular", "oversized", "dsmc", "dsmc of a mixture", "enskog"
+"""Runs of kernels that `make test` compiles anyway."""
 FINE = {"oversized": (6, 6, 5), "oversized and rough": (12, 10)}  # boxes too narrow for the large particles
 
 
@@ -61,7 +65,7 @@ def event_scenes():
     heat = {"x_low": gp.Thermal(3.0), "x_high": gp.Thermal(1.0)}
     down = (0.0, -1.0)
     return {
-        "periodic": gas(3, 10, 0.3),
+        "periodic": gas(3, 6, 0.2),
         "two masses": gp.Scene(room, two),
         "falling": gp.Scene(box, two, gravity=(0.2, -1.0)),
         "rough": gp.Scene(box, [*two, fixed], restitution=ROUGH),
@@ -93,53 +97,99 @@ def step_scenes():
         "steps that fall": (gp.Scene(container, species, gravity=(-1.0, 0.0)), 0.02),
         "steps that lose": (gp.Scene(container, species, restitution=gp.Restitution(0.9)), 0.02),
         "steps with an oversized particle": (gp.Scene(container, thin), 0.02),
+        **{f"{name} in steps": (event_scenes()[name], 0.01) for name in ("rough", "holding", "metal")},
     }
 
 
-def end_of(scene, engine, **limits):
+def dsmc_scenes():
+    """Scenes of the DSMC engine with its settings, by name. Particles start on lattices, which need no random
+    insertion."""
+    kind = gp.Species(40, 0.05, temperature=1.0, arrangement="lattice")
+    two = [kind, replace(kind, count=20, radius=0.08, mass=3.0)]
+    flat, cube = gp.Container((6.0, 5.0), ("periodic", "wall")), gp.Container((3.0,) * 3, "periodic")
+    room = gp.Container((3.0, 3.0, 2.0), ("wall", "periodic", "wall"))
+    rough, viscous = gp.Restitution(0.8, 0.5), gp.Restitution(0.8, reference_speed=1.0)
+    heated, normal = (
+        {"y_low": gp.Thermal(2.0)},
+        {"x_low": gp.Thermal({"z_low": 2.0, "z_high": 1.0}, "normal", accommodation=0.75)},
+    )
+    openings = {"x_low": gp.Open(0.002, 2.0), "x_high": gp.Open(), "z_low": gp.Thermal(1.5)}
+    falling = gp.Scene(flat, two, gravity=(0.0, -0.3), restitution=rough, faces=heated)
+    kicked = gp.Scene(cube, two, restitution=viscous, thermostat=gp.Thermostat(1.0, 0.03))
+    dense = {"model": "enskog", "cells_per_side": (3, 4, 2)}
+    return {
+        "dsmc": (gp.Scene(cube, [kind]), {}),
+        "dsmc of a mixture": (gp.Scene(room, two), {}),
+        "dsmc, rough and falling": (falling, {}),
+        "dsmc, thermal": (gp.Scene(room, two, faces=normal), {}),
+        "dsmc, open": (gp.Scene(room, [kind], faces=openings, centres_to_walls=True), {}),
+        "dsmc, kicked": (kicked, {}),
+        "dsmc, stress": (gp.Scene(cube, two, restitution=rough), {}),
+        "enskog": (gp.Scene(room, two), dense),
+        "enskog, stress": (gp.Scene(cube, two), dense),
+        "enskog, rough": (replace(falling, gravity=None), {"model": "enskog", "cells_per_side": (7, 5)}),
+    }
+
+
+def runs():
+    """Name of a run -> its scene, engines whose bits are the same, and its length; only the first is
+    compiled too."""
+    found = {}
+    for name, scene in event_scenes().items():
+        fine = gp.EventDriven(boxes_per_side=FINE.get(name, 2))
+        found[name] = (
+            scene,
+            (gp.EventDriven(), gp.EventDriven("pairs"), fine),
+            {"max_events": 40, "duration": 50.0},
+        )
+    for name, (scene, step) in step_scenes().items():
+        engines = gp.TimeStepped(step), gp.TimeStepped(step, boxes_per_side=3, near_boxes=name not in SPARSE)
+        found[name] = scene, engines, {"duration": 0.8}
+    more = (gp.TimeStepped(0.05, boxes_per_side=1), gp.TimeStepped(0.05, threads=2))
+    found["steps"] = found["steps"][0], found["steps"][1] + more, found["steps"][2]
+    for name, (scene, settings) in dsmc_scenes().items():
+        found[name] = scene, (gp.DSMC(time_step=0.05, **settings),), {"duration": 0.8}
+    return found
+
+
+def end_of(name, engine, scene, limits):
     """Positions, velocities and spins after a short run, and what was counted."""
-    sim = gp.Simulation(scene, engine, seed=1)
-    sim.record_events = engine.name == "event"
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="gaspart")  # of cells that are too large
+        sim = gp.Simulation(scene, engine, seed=1, stress="stress" in name)
+    sim.record_events = engine.records_events
     sim.advance(**limits)
+    sim.check_invariants()
     state, tally = sim.state, sim.tally
-    parts = (state.unwrapped, state.velocities, state.spins, tally.wall_hits, tally.wall_impulse)
+    parts = (
+        state.unwrapped,
+        state.velocities,
+        state.spins,
+        tally.wall_hits,
+        tally.wall_impulse,
+        tally.wall_energy,
+    )
     counted = [tally.collisions, tally.virial_sum, tally.worst_contact, tally.deepest_overlap]
+    counted.append(tally.dissipated_energy)
+    if tally.stress_sum is not None:
+        counted += [*tally.stress_sum.ravel(), *tally.heat_sum]
     return np.concatenate([np.ravel(part) for part in (*parts, counted)])
 
 
-def ends():
-    """All ends, by name. Compiled by one search; in Python by several, ``name/search``, whose bits are the
-    same."""
-    found = {}
-    for name, scene in event_scenes().items():
-        engines = {"": gp.EventDriven()}
-        if PYTHON:
-            fine = gp.EventDriven(boxes_per_side=FINE.get(name, 2))
-            engines |= {"/pairs": gp.EventDriven("pairs"), "/boxes": fine}
-        for how, engine in engines.items():
-            found[name + how] = end_of(scene, engine, max_events=100, duration=50.0)
-    for name, (scene, step) in step_scenes().items():
-        searches = {"": {}}
-        if PYTHON:
-            searches["/boxes"] = {"boxes_per_side": 3, "near_boxes": True}
-        if PYTHON and name == "steps":
-            searches |= {"/one box": {"boxes_per_side": 1}, "/threads": {"threads": 2}}
-        for how, settings in searches.items():
-            found[name + how] = end_of(scene, gp.TimeStepped(step, **settings), duration=0.8)
-    if PYTHON:  # compared with one another alone, so that nothing is compiled
-        for name in ("rough", "holding", "metal"):
-            for how, settings in {"": {}, "/boxes": {"boxes_per_side": 2}}.items():
-                engine = gp.TimeStepped(0.01, **settings)
-                found[f"{name} in steps{how}"] = end_of(event_scenes()[name], engine, duration=1.0)
+def ends(names):
+    """The ends of these runs and the results of other kernels, by name."""
+    chosen = {name: run for name, run in runs().items() if name in names}
+    found = {
+        name: end_of(name, engines[0], scene, limits) for name, (scene, engines, limits) in chosen.items()
+    }
     found["order"] = order_of_contacts()
     found["pairs and waves"] = pairs_and_waves()
     found["correlations"] = np.append(correlations(False), correlations(True))
     packing = gp.compress(gas(2, 12, 0.6), seed=1)
     found["growth"] = np.append(packing.positions.ravel(), packing.pressure)
-    state = gp.Simulation(gas(3, 6, 0.2, "wall"), gp.EventDriven(), seed=2).state
-    found["picture"] = gp.render(state, size=(32, 24)).astype(float).ravel()
-    flat = gp.Simulation(gas(2, 6, 0.2, "wall"), gp.EventDriven(), seed=2).state
-    found["flat picture"] = gp.render(flat, size=(32, 24)).astype(float).ravel()
+    for name, dimension in (("picture", 3), ("flat picture", 2)):
+        state = gp.Simulation(gas(dimension, 6, 0.2, "wall"), gp.EventDriven(), seed=2).state
+        found[name] = gp.render(state, size=(32, 24)).astype(float).ravel()
     return found
 
 
@@ -179,9 +229,11 @@ def correlations(displacements):
 
 def read_fields():
     """Let Python read the fields of records as the compiled kernels do: flights[i].position."""
-    plain = model.flight_dtype
-    model.flight_dtype = lambda dimension: np.dtype((np.record, plain(dimension)))
-    for module, name in ((model, "PREDICTION"), (distance, "SEGMENT"), (distance, "PLATE")):
+    for module, name in ((model, "flight_dtype"), (event_list, "page_dtype")):
+        plain = getattr(module, name)
+        setattr(module, name, lambda dimension, plain=plain: np.dtype((np.record, plain(dimension))))
+    named = (model, "PREDICTION"), (event_list, "LISTED"), (distance, "SEGMENT"), (distance, "PLATE")
+    for module, name in named:
         setattr(module, name, np.dtype((np.record, getattr(module, name))))
 
 
@@ -216,6 +268,21 @@ def nearer(positions, radii, space, slot, skin, first):
     return np.uint64(marks)
 
 
+def nearer_in_page(pages, page, point, offset, square):
+    """`event.simd.nearer`, in single precision too."""
+    total = np.zeros(8, np.float32)
+    with np.errstate(over="ignore"):  # of entries that are not used
+        for k, there in enumerate(pages[int(page)]["centres"]):
+            total += ((there - np.float32(point[k])) + np.float32(offset[k])) ** 2
+    return np.uint64(sum(int(near) << n for n, near in enumerate(total < np.float32(square))))
+
+
+def equal(numbers, start, number, mask):
+    """`event.simd.equal`."""
+    near = numbers[int(start) : int(start) + 16] & np.uint32(mask)
+    return np.uint64(sum(int(there == number) << n for n, there in enumerate(near)))
+
+
 def equals(values, first, value):
     """`simd.equals`."""
     return np.uint64(sum(int(there == value) << n for n, there in enumerate(values[int(first) :][:8])))
@@ -231,15 +298,16 @@ def compact_eight(words, first, least, kept, number):
 def do_without_vectors():
     """Replace what is written in vector instructions by plain loops."""
     search.earliest, search.list_box = earliest, list_box
+    event_list.earliest, event_list.nearer, event_list.equal = earliest, nearer_in_page, equal
     prediction.fetch = prefetch.fetch = insertion.fetch = fetch
     step_contacts.fetch = step_list.fetch = fetch
     step_list.nearer, step_list.equals, step_list.compact_eight = nearer, equals, compact_eight
     step_list.bits = lambda word: np.uint64(int(word).bit_count())
-    step_list.lowest = lambda word: np.uint64((int(word) & -int(word)).bit_length() - 1)
+    step_list.lowest = event_list.lowest = lambda word: np.uint64((int(word) & -int(word)).bit_length() - 1)
 
 
 if __name__ == "__main__":
     read_fields()
     do_without_vectors()
     warnings.simplefilter("ignore", RuntimeWarning)  # words of random numbers overflow by design
-    np.savez(sys.argv[1], **ends())
+    np.savez(sys.argv[1], **ends(sys.argv[2:]))

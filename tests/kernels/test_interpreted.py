@@ -6,17 +6,30 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from kernels.interpreted import ends
+import pytest
+from kernels.interpreted import CANONICAL, PYTHON, end_of, ends, runs
 
 
-def test_python_gives_the_bits_of_the_compiled_kernels(tmp_path):
+@pytest.mark.interpreted
+@pytest.mark.parametrize("name", runs())
+def test_a_short_run_by_each_search(name):
+    """Compiled, one alone: the battery compares the searches of compiled kernels."""
+    scene, (first, *others), limits = runs()[name]
+    end = end_of(name, first, scene, limits)
+    assert np.isfinite(end).all()
+    for engine in others if PYTHON else ():
+        assert np.array_equal(end, end_of(name, engine, scene, limits)), engine
+
+
+@pytest.mark.parametrize(
+    "names", [CANONICAL, pytest.param(runs(), marks=pytest.mark.thorough)], ids=["few", "all"]
+)
+def test_python_gives_the_bits_of_the_compiled_kernels(tmp_path, names):
     env = {**os.environ, "NUMBA_DISABLE_JIT": "1", "PYTHONPATH": os.pathsep.join(sys.path)}
     script = Path(__file__).with_name("interpreted.py")
-    subprocess.run([sys.executable, script, tmp_path / "ends.npz"], env=env, check=True)
-    compiled = ends()
+    subprocess.run([sys.executable, script, tmp_path / "ends.npz", *names], env=env, check=True)
+    compiled = ends(names)
     with np.load(tmp_path / "ends.npz") as plain:
-        assert set(compiled) <= set(plain)
+        assert set(compiled) == set(plain)
         for name, end in plain.items():
-            first = name.split("/")[0]
-            there = compiled.get(first, plain[first])
-            assert np.array_equal(end, there, equal_nan=True), name
+            assert np.array_equal(end, compiled[name], equal_nan=True), name

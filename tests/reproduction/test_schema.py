@@ -11,9 +11,10 @@ from malformed import SCENES
 from reference import in_words, pages
 
 from gaspart.reproduction.config import check, merged_with_default, scene_schema, schema
-from gaspart.reproduction.families.registry import families, settings
 from gaspart.reproduction.points import point_keys
 from gaspart.reproduction.points import points as config_keys
+from gaspart.reproduction.points.modules import closure
+from gaspart.reproduction.registry import families, home, settings
 from gaspart.yaml_text import read_yaml
 
 ROOT = Path(__file__).parents[2]
@@ -50,15 +51,14 @@ def test_every_key_has_a_meaning():
 
 @pytest.mark.parametrize("family", sorted(set(families().values())))
 def test_every_setting_of_a_figure_is_declared_and_used(family):
-    package = ROOT / "src/gaspart/reproduction"
-    modules = [*package.glob(f"families/{family}/*.py"), *package.glob(f"figures/{family}.py")]
+    modules = [path for path in closure(home(family)) if path.parent.name == "figures"]
     text = "\n".join(path.read_text(encoding="utf-8") for path in modules)
-    used = set(re.findall(r'(?<!\.)\bsettings(?:\[|\.get\()"(\w+)"', text))
     declared = {
         key for figure in families() if families()[figure] == family for key in settings()[figure]
     } - {"experiments"}
-    assert declared <= used
-    assert used - declared <= set(config_keys.POINT)  # of a point
+    made = tuple(re.findall(r'\bsettings\[f"\{\w+\}(\w+)"\]', text))
+    unused = [key for key in declared if text.count(f'"{key}"') < 2]  # where it is declared
+    assert [key for key in unused if not (made and key.endswith(made))] == []
 
 
 @pytest.mark.parametrize("scene", SCENES)

@@ -93,6 +93,7 @@ def test_replays_analyses_and_checkpoints_know_the_start():
         gp.Simulation(PLAIN, gp.EventDriven(), 5).restore(sim.checkpoint())
 
 
+@pytest.mark.thorough
 def test_spins_are_taken_over_and_gravity_and_faces_may_differ(tmp_path):
     box = gas(2, 30, 0.2, "wall")
     rough = replace(box, restitution=gp.Restitution(1.0, 0.5))

@@ -23,6 +23,14 @@ def fresh(tmp_path_factory):
     return copy_of_project(tmp_path_factory.mktemp("a fresh clone"))
 
 
+@pytest.fixture(scope="session")
+def few(tmp_path_factory):
+    """The same with few figures, which Snakemake plans in less time."""
+    workspace = copy_of_project(tmp_path_factory.mktemp("a small clone"))
+    keep_figures(workspace.path, FEW)
+    return workspace
+
+
 @pytest.fixture(
     scope="session", params=["few figures", pytest.param("all figures", marks=pytest.mark.thorough)]
 )

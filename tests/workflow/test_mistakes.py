@@ -18,10 +18,10 @@ pytestmark = pytest.mark.workflow
         ("experiments: {virial_discs: {grid: {packing_fraction: []}}}", "must not be empty"),
     ],
 )
-def test_a_bad_config_is_one_line_that_names_the_file(fresh, tmp_path, text, message):
+def test_a_bad_config_is_one_line_that_names_the_file(few, tmp_path, text, message):
     bad = tmp_path / "bad.yaml"
     bad.write_text(text)
-    result = fresh.snakemake("--cores", "1", *SMOKE, str(bad))
+    result = few.snakemake("--cores", "1", *SMOKE, str(bad))
     lines = [
         line for line in result.stdout.splitlines() if not line.startswith(("Using work", "Config file"))
     ]
@@ -29,22 +29,22 @@ def test_a_bad_config_is_one_line_that_names_the_file(fresh, tmp_path, text, mes
     assert len(lines) == 1
     assert lines[0].startswith(f"gaspart: {bad}: ")
     assert message in lines[0]
-    assert not (fresh.path / "results").exists()
+    assert not (few.path / "results").exists()
 
 
-def test_a_mistake_that_only_a_job_can_find_is_one_line_in_its_log(fresh, tmp_path):
+def test_a_mistake_that_only_a_job_can_find_is_one_line_in_its_log(few, tmp_path):
     """Random insertion beyond saturation: the workflow fails, the log says why, and no output is left."""
     bad = tmp_path / "full.yaml"
     dense = "{point: {arrangement: random, count: 64}, grid: {packing_fraction: [0.6]}}"
     bad.write_text(f"experiments: {{virial_discs: {dense}}}")
     target = "results/smoke/points/virial_discs/packing_fraction=0.6"
-    result = fresh.snakemake("--cores", "1", *SMOKE, str(bad), "--", target)
+    result = few.snakemake("--cores", "1", *SMOKE, str(bad), "--", target)
     assert result.returncode != 0
-    log = (fresh.path / "results/smoke/logs/simulate/virial_discs/packing_fraction=0.6.log").read_text()
+    log = (few.path / "results/smoke/logs/simulate/virial_discs/packing_fraction=0.6.log").read_text()
     assert log.splitlines()[-1].startswith("gaspart: simulate")
     assert "does not fit by random insertion" in log
     assert "Traceback" not in log
-    assert not (fresh.path / target).exists()
+    assert not (few.path / target).exists()
 
 
 @pytest.mark.skipif(why_not(WITHOUT_RIGHTS) is not None, reason=str(why_not(WITHOUT_RIGHTS)))
@@ -80,17 +80,17 @@ def test_a_run_into_a_folder_that_may_not_be_written_to_is_one_line(tmp_path):
     assert done.stderr.count("\n") == 1
 
 
-def test_a_mistake_on_the_command_line_is_not_blamed_on_a_file(fresh):
-    result = fresh.snakemake("--cores", "1", "--dry-run", *SMOKE, "--config", "sead=99")
+def test_a_mistake_on_the_command_line_is_not_blamed_on_a_file(few):
+    result = few.snakemake("--cores", "1", "--dry-run", *SMOKE, "--config", "sead=99")
     assert result.returncode == 2
     assert result.stdout.splitlines()[-1] == "gaspart: --config: sead = 99: unknown key; did you mean seed?"
 
 
-def test_a_folder_without_a_config_is_one_line(fresh, tmp_path):
-    elsewhere, small = tmp_path / "elsewhere", fresh.path / "config/smoke.yaml"
+def test_a_folder_without_a_config_is_one_line(few, tmp_path):
+    elsewhere, small = tmp_path / "elsewhere", few.path / "config/smoke.yaml"
     elsewhere.mkdir()
     arguments = ("--cores", "1", "--dry-run", "--directory", str(elsewhere), "--configfile", str(small))
-    result = fresh.snakemake(*arguments)
+    result = few.snakemake(*arguments)
     assert result.returncode == 2
     assert result.stdout.splitlines()[-1] == (
         f"gaspart: folder = {str(elsewhere)!r}: has no config/config.yaml, over which others are laid: "
@@ -98,10 +98,10 @@ def test_a_folder_without_a_config_is_one_line(fresh, tmp_path):
     )
 
 
-def test_titles_with_braces_and_numbers_with_exponents_are_planned(fresh, tmp_path):
+def test_titles_with_braces_and_numbers_with_exponents_are_planned(few, tmp_path):
     """Snakemake fills braces in its parameters, and its reader takes 1e3 for text."""
     given = tmp_path / "given.yaml"
     title = 'title: "{x} $(touch PWNED) é <b>\\"\'"\n'
     given.write_text(f"{title}experiments: {{virial_discs: {{point: {{collisions_per_particle: 1e3}}}}}}\n")
-    result = fresh.snakemake("--cores", "1", "--dry-run", *SMOKE, str(given))
+    result = few.snakemake("--cores", "1", "--dry-run", *SMOKE, str(given))
     assert result.returncode == 0, result.stdout[-2000:]

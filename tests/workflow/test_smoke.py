@@ -12,7 +12,7 @@ from gaspart.reproduction import job_time
 from gaspart.reproduction.claims import CLAIM_KINDS, VERDICTS
 from gaspart.reproduction.config import merged_with_default
 from gaspart.reproduction.cost import budgets
-from gaspart.reproduction.families.registry import families
+from gaspart.reproduction.registry import families
 
 pytestmark = pytest.mark.workflow
 

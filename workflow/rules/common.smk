@@ -22,10 +22,10 @@ if " " in sys.executable:
 from gaspart.reproduction import job_server
 from gaspart.reproduction.claims.table import fill_caption
 from gaspart.reproduction.claims.table import summary
-from gaspart.reproduction.config import FAMILIES, add_families, check, explain_error
+from gaspart.reproduction.config import FAMILIES, add_families, check, explain_error, is_own
 from gaspart.reproduction.config import read_numbers, remove_null
-from gaspart.reproduction.families import registry
-from gaspart.reproduction.families.registry import caption, functions, of_claims, titles
+from gaspart.reproduction import registry
+from gaspart.reproduction.registry import caption, find, of_claims
 from gaspart.reproduction.points.modules import digest, kernel_digest, measuring_digest
 from gaspart.reproduction.points.point import TRAJECTORIES
 from gaspart.reproduction.points.points import all_points
@@ -58,9 +58,9 @@ else:
     read_numbers(config, files)
     POINTS = all_points(config)
 
-FIGURES = {name: functions(name, block)[0] for name, block in config["figures"].items()}  # family of each
+FIGURES = {name: find(name, block)[0] for name, block in config["figures"].items()}  # family of each
 FIRST = [name for name in ("virial_discs", "speed_relaxation", "speed_distribution_discs") if name in FIGURES]
-OWN_CAPTIONS = {name: caption(block) for name, block in config["figures"].items() if "kind" in block}
+OWN_CAPTIONS = {name: caption(block) for name, block in config["figures"].items() if is_own(block)}
 # Where figures, claims, tables, logs and the report of this run lie.
 RESULTS = f"results/{config['run']}" if config.get("run") else "results"
 
@@ -117,13 +117,13 @@ def family(wildcards):
 
 
 def function_of(wildcards):
-    return functions(wildcards.figure, config["figures"][wildcards.figure])[1]
+    return find(wildcards.figure, config["figures"][wildcards.figure])[1]
 
 
 def settings_of(wildcards):
     """What the measurement of a figure depends on, without what its other stages read."""
     block = config["figures"][wildcards.figure]
-    return {key: value for key, value in block.items() if key not in ("claims", "caption")}
+    return {key: value for key, value in block.items() if key not in ("claims", "caption", "module")}
 
 
 def stated_of(wildcards):
@@ -168,14 +168,14 @@ def flagged(path, kind):
     return report(
         path,
         caption="../report/figure.rst",
-        category=lambda wildcards: registry.title(wildcards.figure, config["figures"][wildcards.figure]),
+        category=lambda wildcards: registry.title(family(wildcards)),
         subcategory="{figure}",
         labels={"figure": "{figure}", "type": kind},
     )
 
 
 # What families state about themselves, which the report reads by their names.
-STATED = [registry.home(name) for name in titles()]
+STATED = registry.modules()
 
 
 # A digest of the modules of a job, found from its imports, is a parameter of its rule.
@@ -190,27 +190,17 @@ def sources_of(point):
 
 
 def module_of(wildcards):
-    return registry.module(family(wildcards))
+    return registry.home(family(wildcards))
 
 
 def modules_of_figure(wildcards):
-    """A digest of what a figure is made of: the files of another installed package too, where that brings the family."""
-    files = registry.files(family(wildcards))
-    return digest(*sources("figure"), *registry.parts(family(wildcards)), *files, others=files)
+    """A digest of what a figure is made of."""
+    return digest(*sources("figure"), module_of(wildcards))
 
 
 def measuring_of(wildcards):
     """A digest of what the numbers of a figure are made of."""
-    measure, *others = registry.parts(family(wildcards))
-    files = registry.files(family(wildcards))
-    return (
-        digest(measure, *files, others=files) if others else measuring_digest(measure, function_of(wildcards))
-    )
-
-
-def package_of(wildcards):
-    """Name and version of the installed package that brings a figure's family; "" for those of this one."""
-    return registry.package_of(config["figures"][wildcards.figure])
+    return measuring_digest(module_of(wildcards), function_of(wildcards))
 
 
 @cache

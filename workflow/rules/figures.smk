@@ -33,7 +33,6 @@ rule figure:
         points=lambda wildcards: [point.to_dict() for point in figure_points(wildcards)],
         settings=settings_of,
         stated=stated_of,
-        package=package_of,
         caption=caption_of,
         title=lambda wildcards: config["title"],
     script:

@@ -7,7 +7,7 @@ with job(snakemake):
 
     load_numba(ours=True)
     from gaspart.files import whole_file
-    from gaspart.reproduction.points.trust import MADE_BY, digest_of
+    from gaspart.reproduction.jobs.data import MADE_BY, digest_of
 
     # By its name: a job depends on what its arguments are, not on how they are written down.
     from_plain = function("gaspart.reproduction.jobs.arguments", "from_plain")

@@ -41,7 +41,6 @@ with job(snakemake):
             require_own(point)
         settings = {name: value for name, value in params.settings.items() if name != "experiments"}
         dataset = parts.measure(points, settings)
-        stated = {"package": params.package} if params.package else {}
         dataset.attrs.update(
             figure=figure,
             key=key,
@@ -50,7 +49,6 @@ with job(snakemake):
             points="\n".join([*tables, *paths]),
             git_revision=provenance.git_revision(),
             **provenance.versions(),
-            **stated,
         )
         with whole_file(output["dataset"]) as partial:
             dataset.to_netcdf(partial)
@@ -60,9 +58,7 @@ with job(snakemake):
         dataset = load(given["dataset"])
     else:
         tables, paths = list(snakemake.input.tables), list(snakemake.input.points)
-        key = content_key(
-            [*tables, *paths], params.measuring, params.title, params.package, params.settings, params.points
-        )
+        key = content_key([*tables, *paths], params.measuring, params.title, params.settings, params.points)
         dataset = load(output["dataset"])
         if dataset is None or dataset.attrs.get("key") != key:
             dataset = measure()

@@ -17,8 +17,10 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from gaspart.accuracy.advisers import timed_as
 from gaspart.accuracy.table import COLUMNS, PRECISIONS
 from gaspart.engines import DSMC
+from gaspart.engines.dsmc.settings import MODELS
 from gaspart.trajectory import provenance
 
 
@@ -80,7 +82,7 @@ def _steps(accuracy: xr.Dataset) -> Iterator[dict]:
 
 def _models(accuracy: xr.Dataset) -> Iterator[dict]:
     """Yield CPU times of both models of DSMC, with the default step and longer steps."""
-    names = {engine.equation: engine.timed_as for engine in DSMC.variants()}
+    names = {model: timed_as(DSMC(model=model)) for model in MODELS}
     for n in range(accuracy.sizes["dsmc"]):
         run = accuracy.isel(dsmc=n)
         gas = run.dsmc_dimension, run.dsmc_packing_fraction

@@ -12,14 +12,15 @@ import os
 from dataclasses import dataclass
 
 from gaspart import theory
+from gaspart.accuracy.advisers import adviser_of, candidate_engines, timed_as
 from gaspart.accuracy.estimates import Component
+from gaspart.accuracy.of_engine import AccuracyRequest, Candidate
 from gaspart.accuracy.table import EQUILIBRATION as EQUILIBRATED
 from gaspart.accuracy.table import LEAST
 from gaspart.accuracy.target import Target
 from gaspart.analysis.observables import OBSERVABLES, require_modelled
 from gaspart.analysis.run import EQUILIBRATION
-from gaspart.engines import Engine, candidate_engines
-from gaspart.engines.engine import AccuracyRequest, Candidate
+from gaspart.engines import Engine
 from gaspart.errors import SceneError
 from gaspart.scene.gas import Gas
 from gaspart.scene.scene import Scene
@@ -171,7 +172,7 @@ def suitable_engines(target: Target) -> tuple[list[Engine], dict[str, str]]:
             require_modelled(target.observable, target.scene, engine)
             suitable.append(engine)
         except SceneError as error:
-            refused[engine.timed_as] = f"{error.key}: {error.rule}"
+            refused[timed_as(engine)] = f"{error.key}: {error.rule}"
     return suitable, refused
 
 
@@ -187,9 +188,9 @@ def candidates(
     request, proposals = make_request(target, accuracy, conditions), []
     for engine in engines:
         try:
-            proposals.append(engine.candidate(request))
+            proposals.append(adviser_of(engine).candidate(request))
         except SceneError as error:
-            refused[engine.timed_as] = f"{error.key}: {error.rule}"
+            refused[timed_as(engine)] = f"{error.key}: {error.rule}"
     return proposals, refused
 
 

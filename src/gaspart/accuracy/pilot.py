@@ -15,14 +15,15 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from gaspart.accuracy.advisers import timed_as
 from gaspart.accuracy.conditions import measured_conditions
 from gaspart.accuracy.estimates import Component, components, of_face
+from gaspart.accuracy.of_engine import Candidate
 from gaspart.accuracy.option import candidates, suitable_engines
 from gaspart.accuracy.target import SEED, Target
 from gaspart.analysis.observables import KEPT, TOO_SHORT
 from gaspart.analysis.run import EQUILIBRATION, open_run
 from gaspart.engines import Engine, engine_to_dict, reference_engine
-from gaspart.engines.engine import Candidate
 from gaspart.errors import SceneError, SimulationError
 from gaspart.interruption import scratch_folder
 from gaspart.kernels.compile.cache import cache_directory
@@ -399,7 +400,7 @@ class Trials:
 
     def refuse(self, candidate: Candidate, rule: str) -> None:
         """Reject a candidate with a reason."""
-        self.refused[candidate.engine.timed_as] = rule
+        self.refused[timed_as(candidate.engine)] = rule
         del self.speeds[candidate]
 
     def has_pilot(self, engine: Engine) -> bool:
@@ -475,7 +476,7 @@ class Trials:
             try:
                 self.speeds[candidate] = speed_of(self.target, candidate.engine)
             except SceneError as error:  # for example, particles from which the engine cannot start
-                self.refused[candidate.engine.timed_as] = f"{error.key}: {error.rule}"
+                self.refused[timed_as(candidate.engine)] = f"{error.key}: {error.rule}"
 
     def _settle(self, pilot: Pilot) -> None:
         """Start later runs from the end of a pilot, if its file contains the final state."""

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from gaspart import theory
 from gaspart.accuracy import PILOT_SECONDS
 from gaspart.accuracy import tabulated as known
+from gaspart.accuracy.advisers import timed_as
 from gaspart.accuracy.conditions import require_steady
 from gaspart.accuracy.option import Option, replicas_of, sort_by_cost, suitable_engines
 from gaspart.accuracy.pilot import Announce, Pilot, Trials
@@ -226,8 +227,8 @@ def plan_from_table(
     accuracy, budget = _check_arguments(accuracy, budget)
     engines, refused = suitable_engines(target)
     options = known.options_of(target, engines, accuracy, budget)
-    able = {option.engine.timed_as for option in options}
-    missing = (engine.timed_as for engine in engines if engine.timed_as not in able)
+    able = {timed_as(option.engine) for option in options}
+    missing = (timed_as(engine) for engine in engines if timed_as(engine) not in able)
     refused |= dict.fromkeys(missing, "no setting is known to be as accurate at this density")
     replicas = replicas_of(options[0], target.span[1])
     value = known.value_of(gas, observable)

@@ -9,7 +9,7 @@ from functools import cache
 
 from gaspart import theory
 from gaspart.accuracy import table
-from gaspart.engines import candidate_engines
+from gaspart.accuracy.advisers import adviser_of, candidate_engines, timed_as
 from gaspart.scene.container import Container
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
@@ -29,13 +29,13 @@ def factor(dimension: int, engine: str, precision: str, count: int) -> float:
     """
     growth = max(1.0, count / _MOST) ** _GROWTH
     count = min(max(count, _LEAST), _MOST)
-    timed = next(candidate for candidate in candidate_engines() if candidate.timed_as == engine)
-    fraction, step = timed.timed_at
+    timed = next(candidate for candidate in candidate_engines() if timed_as(candidate) == engine)
+    fraction, step = adviser_of(timed).timed_at
     side = (count * theory.particle_volume(dimension) / fraction) ** (1.0 / dimension)
     particles = Species(count, 0.5, temperature=1.0, arrangement="lattice")
     gas = Scene(Container((side,) * dimension, boundary="periodic"), species=(particles,))
     rate = float(theory.collision_rate(fraction, dimension))
-    run = Simulation(gas, timed.at_step(gas, step, precision), seed=1)
+    run = Simulation(gas, adviser_of(timed).at_step(gas, step, precision), seed=1)
     run.advance(duration=1.0 / rate)
     stretch = 2.0 * max(_CONTACTS, 0.5 * count) / (count * rate)
     seconds = []

@@ -22,6 +22,7 @@ from pathlib import Path
 import numpy as np
 
 from gaspart import theory
+from gaspart.accuracy.advisers import adviser_of, timed_as
 from gaspart.analysis.observables import OBSERVABLES
 from gaspart.engines import Engine
 from gaspart.scene.features import FEATURES
@@ -197,7 +198,7 @@ def price_of(scene: Scene, engine: Engine, observable: str) -> Price:
         "two_masses": len({kind.mass for kind in scene.kinds}) > 1,
         "stress": OBSERVABLES[observable].needs == "fluxes",
     }
-    measured, present = prices(engine.timed_as), scene.features
+    measured, present = prices(timed_as(engine)), scene.features
     ratios = {_NAMES[name]: measured[name] for name in _NAMES if has[name] and name in measured}
     unknown = [_NAMES[name] for name in _NAMES if has[name] and name not in measured]
     unknown += [FEATURES[name].meaning for name in FEATURES if name in present and name not in _MEASURED]
@@ -210,8 +211,10 @@ def _single(engine: Engine, dimension: int) -> float | None:
     The ratio is for the gas with which the engine is timed; None for an engine that was not timed in both
     precisions.
     """
-    fraction, step = engine.timed_at
+    adviser = adviser_of(engine)
+    fraction, step = adviser.timed_at
     single, double = (
-        seconds(dimension, fraction, engine.timed_as, precision, step) for precision in ("float32", "float64")
+        seconds(dimension, fraction, adviser.timed_as, precision, step)
+        for precision in ("float32", "float64")
     )
     return single / double if math.isfinite(single / double) else None

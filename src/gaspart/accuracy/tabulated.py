@@ -11,11 +11,12 @@ from dataclasses import replace
 
 from gaspart import theory
 from gaspart.accuracy import table
+from gaspart.accuracy.advisers import adviser_of, timed_as
+from gaspart.accuracy.of_engine import Candidate
 from gaspart.accuracy.option import Option, fluid_option, sort_by_cost
 from gaspart.accuracy.target import Target
 from gaspart.analysis.observables import OBSERVABLES, observables_with
 from gaspart.engines import Engine
-from gaspart.engines.engine import Candidate
 from gaspart.errors import SceneError
 from gaspart.scene.gas import Gas, plain_gas
 from gaspart.scene.scene import Scene
@@ -103,15 +104,15 @@ def is_tabulated(scene: Scene, observable: str) -> bool:
 def options_of(target: Target, engines: list[Engine], accuracy: float, budget: float | None) -> list[Option]:
     """Return the cheapest option of each engine over all measured settings, the best first."""
     options = [
-        _option(target, engine.at_step(target.scene, step, precision), accuracy, budget, step)
+        _option(target, adviser_of(engine).at_step(target.scene, step, precision), accuracy, budget, step)
         for engine in engines
-        for precision, step in table.steps(target.scene.dimension, engine.timed_as)
+        for precision, step in table.steps(target.scene.dimension, timed_as(engine))
     ]
     best: dict[str, Option] = {}
     for option in sort_by_cost(
         [option for option in options if math.isfinite(option.speed) and option.bias < accuracy]
     ):
-        best.setdefault(option.engine.timed_as, option)
+        best.setdefault(timed_as(option.engine), option)
     return list(best.values())
 
 
@@ -121,7 +122,7 @@ def _option(target: Target, engine: Engine, accuracy: float, budget: float | Non
     `step` has the unit of the table.
     """
     gas = fluid_of(target.scene)
-    each = table.seconds(gas.dimension, gas.packing_fraction, engine.timed_as, engine.precision, step)
+    each = table.seconds(gas.dimension, gas.packing_fraction, timed_as(engine), engine.precision, step)
     noise = table.noise(gas.dimension, gas.packing_fraction, target.observable)
     value = value_of(gas, target.observable)
     option = fluid_option(gas, _with_bounds(target, engine, gas, step), each, noise, accuracy, value)
@@ -135,8 +136,8 @@ def _with_bounds(target: Target, engine: Engine, gas: Gas, step: float) -> Candi
     engine computes.
     """
     observable, row = target.observable, (gas.dimension, gas.packing_fraction)
-    if table.has_biases(engine.timed_as):
-        error = table.bias(*row, engine.precision, step, observable, engine.timed_as)
+    if table.has_biases(timed_as(engine)):
+        error = table.bias(*row, engine.precision, step, observable, timed_as(engine))
         return Candidate(engine, discretisation=error)
     model = model_error(gas.packing_fraction, gas.dimension, engine.equation, observable)
     kind = "paths" if OBSERVABLES[observable].memory else "rates"

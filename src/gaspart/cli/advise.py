@@ -88,9 +88,12 @@ def _advise(options: argparse.Namespace) -> None:
 
 def _lines(plan: Plan, file: str) -> list[str]:
     """Return the advice as text; `file` is the scene file, which the advised command names."""
+    from gaspart.accuracy.advisers import adviser_of
+
     best, target = plan.best, plan.target
-    notes = best.engine.notes(target.scene, target.observable, target.declared.memory)
-    lines = [_line("engine", best.engine.describe()), *(_line(*note) for note in notes.items())]
+    adviser = adviser_of(best.engine)
+    notes = adviser.notes(target.scene, target.observable, target.declared.memory)
+    lines = [_line("engine", adviser.describe()), *(_line(*note) for note in notes.items())]
     if math.isfinite(best.seconds):
         lines += _run(plan, file)
     lines += _rarely_visited(plan)
@@ -107,8 +110,9 @@ def _lines(plan: Plan, file: str) -> list[str]:
     for other in plan.options[1:]:
         able = other.bias < plan.accuracy and math.isfinite(other.seconds)
         cost = f"{other.seconds:.3g} s" if able else "not as accurate"
-        without = f"gives up {other.engine.limitations}"
-        lines.append(_line("why not", f"{other.engine.describe()}: {cost}; {_components(other)}; {without}"))
+        adviser = adviser_of(other.engine)
+        reasons = f"{cost}; {_components(other)}; gives up {adviser.limitations}"
+        lines.append(_line("why not", f"{adviser.describe()}: {reasons}"))
     lines += [_line("why not", f"{name}: {rule}") for name, rule in plan.refused.items()]
     return lines
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from gaspart.engines.engine import (
     ENGINES,
     Engine,
-    candidate_engines,
     engine_from_dict,
     engine_to_dict,
     reference_engine,
@@ -23,7 +22,6 @@ __all__ = [
     "Engine",
     "EventDriven",
     "TimeStepped",
-    "candidate_engines",
     "engine_from_dict",
     "engine_to_dict",
     "reference_engine",

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import MISSING, asdict, dataclass, fields
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, ClassVar, TypeVar
 
 from gaspart.errors import SceneError
 from gaspart.keys import from_mapping, validate
@@ -21,44 +21,6 @@ if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
     from gaspart.state.optional_tallies import OptionalTally
     from gaspart.state.state import State
-    from gaspart.theory.conditions import Conditions
-
-
-# Accuracy requests to engines, and the answers.
-
-
-@dataclass(frozen=True)
-class AccuracyRequest:
-    """Observable of a steady scene, and its requested relative accuracy.
-
-    The requested accuracy is for the standard error and the bias together.
-    """
-
-    observable: str
-    accuracy: float
-    conditions: Conditions
-    face: str | None = None
-    transported: bool = False
-    initial: State | None = None
-
-    @property
-    def scene(self) -> Scene:
-        """Scene for which the conditions hold."""
-        return self.conditions.scene
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """Engine with its settings for a scene, and bounds on its relative errors."""
-
-    engine: Engine
-    model: float = 0.0
-    discretisation: float = 0.0
-
-    @property
-    def bias(self) -> float:
-        """Bound on the total systematic error: the sum of both bounds."""
-        return self.model + self.discretisation
 
 
 E = TypeVar("E", bound="type[Engine]")
@@ -81,9 +43,6 @@ class Engine:
     tallies : names of the optional tallies (`state.tally`) that it supports
     first_segment : work, in events or steps, before the first check of the wall-clock time
     reference : True if the engine has no systematic error and is the reference for other engines
-    timed_at : packing fraction and time step of the entry in the table of costs that is timed to convert the
-        table to another machine
-    advised : settings that `engine: auto` in a config may specify
     """
 
     name: ClassVar[str]
@@ -97,8 +56,6 @@ class Engine:
     tallies: ClassVar[frozenset[str]] = frozenset()
     first_segment: ClassVar[int] = 1
     reference: ClassVar[bool] = False
-    timed_at: ClassVar[tuple[float, float]] = (0.1, 0.0)
-    advised: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
         validate(self)
@@ -141,58 +98,10 @@ class Engine:
         """
         return 0.0
 
-    @classmethod
-    def variants(cls) -> tuple[Engine, ...]:
-        """Return the candidates of a plan for this engine: one engine per collision model."""
-        return (cls(),)
-
-    def candidate(self, request: AccuracyRequest) -> Candidate:
-        """Return the engine with settings for a requested accuracy, and bounds on its errors.
-
-        Raises SceneError if the engine is not suitable.
-        """
-        return Candidate(self)
-
-    @property
-    def timed_as(self) -> str:
-        """Name in the table of costs (`gaspart.accuracy.table`)."""
-        return self.name
-
     @property
     def precision(self) -> str:
         """Floating-point type of the state."""
         return "float64"
-
-    def timed_step(self, scene: Scene) -> float:
-        """Return the time step in the unit of the table of costs, or 0."""
-        return 0.0
-
-    def at_step(self, scene: Scene, step: float, precision: str) -> Engine:
-        """Return the engine with the settings of a row of the table of costs.
-
-        step : time step in the unit of the table of costs
-        """
-        return self
-
-    def advised_settings(self) -> dict[str, Any]:
-        """Return the settings in `advised`, by name."""
-        return {name: getattr(self, name) for name in self.advised}
-
-    @property
-    def limitations(self) -> str:
-        """Limitations in words."""
-        return "nothing"
-
-    def describe(self) -> str:
-        """Return the name with the relevant settings, in words."""
-        return self.name
-
-    def notes(self, scene: Scene, observable: str, paths: bool) -> dict[str, str]:
-        """Return remarks about the engine for a plan, by title.
-
-        paths : True if the observable depends on the paths of particles
-        """
-        return {}
 
     def added_bulk_viscosity(self, scene: Scene) -> float:
         """Return the bulk viscosity of a dilute gas, which is due to cells alone."""
@@ -298,14 +207,6 @@ def resolve_engine(engine: Engine | str | None) -> Engine:
     if not isinstance(engine, Engine):
         raise SceneError("engine", engine, f"must be an engine: {constructors()}")
     return engine
-
-
-def candidate_engines() -> list[Engine]:
-    """Return the candidate engines of a plan, beginning with the reference engine."""
-    return sorted(
-        (variant for engine in ENGINES.values() for variant in engine.variants()),
-        key=lambda variant: not variant.reference,
-    )
 
 
 def required_settings(engine: type[Engine]) -> list[str]:

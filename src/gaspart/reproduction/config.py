@@ -6,7 +6,7 @@ Errors are single lines with file, key, value and rule.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import chdir, contextmanager, suppress
 from functools import cache
 from importlib.util import find_spec
@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any
 
 from gaspart.errors import SceneError, unknown_word
 from gaspart.files import resolve_path
-from gaspart.keys import Kind, choice, names, record, require
+from gaspart.keys import TEXT, Kind, choice, describe, names, record, require
 from gaspart.keys.values import finite, size
+from gaspart.reproduction import registry
 from gaspart.reproduction.claims.table import fill_caption, place_fault
-from gaspart.reproduction.families import registry
 from gaspart.reproduction.points import jobs, point_keys
 from gaspart.reproduction.points import points as config_keys
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
@@ -75,7 +75,7 @@ def add_families(config: dict[str, Any], folder: Path) -> list[Path]:
             if not isinstance(content[key], dict) or content[key].keys() - _SECTIONS:
                 rule = f"must be {', '.join(sorted(_SECTIONS))}, or a block of sizes with such keys"
                 raise SceneError(key, content[key], rule, str(file))
-        for part in ({key: content[key] for key in content.keys() & _SECTIONS}, content.get(sizes, {})):
+        for part in ({key: content[key] for key in content.keys() & _SECTIONS}, content.get(str(sizes), {})):
             below = _merge(below, part)
     merged = _merge(below, config)
     config.clear()
@@ -189,28 +189,30 @@ def origin(key: str, config: dict, contents: list[tuple[str, Any]]) -> str | Non
 
 _DRAFT = "https://json-schema.org/draft/2020-12/schema"
 _EXPERIMENTS = names("the experiments whose points the figure is made of, in this order")
+MODULE = describe(
+    {**TEXT, "pattern": r"^(?!.*\.\.)[A-Za-z0-9_][A-Za-z0-9_./-]*\.py$(?!\n)", "maxLength": 200},
+    "the path of a Python module that has the figure in its FIGURES",
+)
 
 
 @cache
-def schema(installed: tuple[tuple[str, str], ...] = ()) -> Kind:
+def schema(modules: tuple[tuple[str, str], ...] = ()) -> Kind:
     """Return the JSON schema of a config.
 
-    Scenes and engines are not part of the schema: they are validated when the points are made. `installed`
-    maps each figure whose kind another installed package defines to this kind.
+    Scenes and engines are not part of the schema: they are validated when the points are made. `modules` are
+    the user's figures with a module, and its path.
     """
     figures = {
         figure: record({"experiments": _EXPERIMENTS, **settings})
         for figure, settings in registry.settings().items()
     }
-    figures |= {figure: _of_kind(kind) for figure, kind in installed}
-    (own,) = map(_of_kind, registry.kinds())
-    return Kind({"$schema": _DRAFT, **record(config_keys.config(figures, own))})
-
-
-def _of_kind(kind: str) -> Kind:
-    """Return the schema of a figure that has a name chosen by the user."""
+    for figure, module in modules:
+        keys = {"module": MODULE, "experiments": _EXPERIMENTS, **registry.settings_in(module, figure)}
+        figures[figure] = record(keys)
+    ((kind, keys),) = registry.kinds().items()
     stated = choice("the kind of a figure with a name of one's own", kind)
-    return record({"kind": stated, "experiments": _EXPERIMENTS, **registry.settings_of_kind(kind)})
+    own = record({"kind": stated, "experiments": _EXPERIMENTS, **keys})
+    return Kind({"$schema": _DRAFT, **record(config_keys.config(figures, own))})
 
 
 def scene_schema() -> Kind:
@@ -253,14 +255,14 @@ def check(config: dict, files: Sequence[str | Path] = ()) -> dict[str, dict[str,
         removal = _error_of_removal(config, contents)
         remove_null(config)
         _check_names(config)
-        require(schema(_installed_kinds(config)), config, "")
+        require(schema(_user_modules(config)), config, "")
         if removal:
             raise removal
         planned = {experiment: checked_points(config, experiment) for experiment in config["experiments"]}
         for figure, block in config["figures"].items():
             points = figure_points(config, figure, planned)
-            if "kind" in block:
-                registry.validate(figure, block, points)
+            registry.validate(figure, block, points)
+            if is_own(block):
                 _check_caption(figure, block)
         for animation, block in config.get("animations", {}).items():
             _animation(config, animation, block)
@@ -300,43 +302,34 @@ def check_values(config: object) -> None:
     raise SceneError("config", len(stack), f"there may be {MOST_VALUES} values")
 
 
-def _check_names(config: object) -> None:
-    """Raise SceneError unless a figure has either a name of the package or a kind.
+def is_own(entry: Mapping[str, Any]) -> bool:
+    """Return True for the entry of a user's figure, whose name and caption are in the config."""
+    return "kind" in entry or "module" in entry
 
-    Both together are an error too.
-    """
+
+def _check_names(config: object) -> None:
+    """Raise SceneError unless a figure has either a name of the package, or a kind, or a module."""
     figures = config.get("figures") if isinstance(config, dict) else None
     for figure, block in figures.items() if isinstance(figures, dict) else ():
         if not isinstance(block, dict):
             continue  # the schema reports this
-        if "kind" in block and figure in registry.families():
-            rule = "is a figure of gaspart, which has no kind: a figure of one's own needs another name"
-            raise SceneError(f"figures.{figure}", block["kind"], rule)
-        if "kind" not in block and figure not in registry.families():
-            rule = unknown_word(figure, registry.families())
-            raise SceneError(f"figures.{figure}", block, f"{rule} (one's own has a kind: observable)")
-
-
-def _installed_kinds(config: object) -> tuple[tuple[str, str], ...]:
-    """Return (figure, kind) of each figure whose kind another installed package defines.
-
-    Raises SceneError for a kind that is unknown, or whose package cannot be used.
-    """
-    figures = config.get("figures") if isinstance(config, dict) else None
-    pairs = []
-    for figure, block in figures.items() if isinstance(figures, dict) else ():
-        kind = block.get("kind") if isinstance(block, dict) else None
-        if kind is None or kind in list(registry.kinds()):
-            continue
         where = f"figures.{figure}"
-        if kind not in registry.known_kinds():
-            raise SceneError(f"{where}.kind", kind, f"must be one of {registry.known_kinds()}")
-        try:
-            registry.settings_of_kind(kind)
-        except SceneError as error:
-            raise error.inside(where) from None
-        pairs.append((figure, kind))
-    return tuple(pairs)
+        if is_own(block) and figure in registry.families():
+            rule = "is a figure of gaspart, without kind and module: a figure of one's own needs another name"
+            raise SceneError(where, block.get("kind", block.get("module")), rule)
+        if not is_own(block) and figure not in registry.families():
+            rule = unknown_word(figure, registry.families())
+            raise SceneError(where, block, f"{rule} (one's own has a kind: observable, or a module)")
+        if "module" in block:
+            require(MODULE, block["module"], f"{where}.module")
+
+
+def _user_modules(config: dict) -> tuple[tuple[str, str], ...]:
+    """Return (figure, path) of each figure with a module."""
+    figures = config.get("figures")
+    figures = figures if isinstance(figures, dict) else {}
+    own = {figure: block for figure, block in figures.items() if isinstance(block, dict)}
+    return tuple((figure, block["module"]) for figure, block in own.items() if "module" in block)
 
 
 def _check_caption(figure: str, block: dict) -> None:

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 
 from gaspart import theory
 from gaspart.accuracy import speed, table
+from gaspart.accuracy.advisers import adviser_of, timed_as
 from gaspart.errors import SceneError
 from gaspart.files import whole_file
-from gaspart.reproduction import job_time
+from gaspart.reproduction import job_time, registry
 from gaspart.reproduction.claims.judging import Claim, judge, sufficient
 from gaspart.reproduction.config import open_config
-from gaspart.reproduction.families import registry
 from gaspart.reproduction.figure import find_parts
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.gas import Gas
@@ -65,10 +65,10 @@ def predicted_seconds(point: Point) -> float | None:
     fluid = replace(gas, packing_fraction=min(gas.packing_fraction, densest))
     rate = float(theory.collision_rate(**fluid.parameters))
     contacts = 0.5 * gas.count * rate * point.schedule.duration * point.replicas
-    step, fine = engine.timed_step(point.scene), 1.0
+    step, fine = adviser_of(engine).timed_step(point.scene), 1.0
     table_steps = [
         table_step
-        for precision, table_step in table.steps(gas.dimension, engine.timed_as)
+        for precision, table_step in table.steps(gas.dimension, timed_as(engine))
         if precision == "float64"
     ]
     nearest = (
@@ -79,8 +79,8 @@ def predicted_seconds(point: Point) -> float | None:
     # below the shortest time step in the table, the cost is proportional to the number of steps
     if step and nearest > step:
         fine = nearest / step
-    each = fine * table.seconds(gas.dimension, gas.packing_fraction, engine.timed_as, "float64", nearest)
-    return contacts * each * _speed(gas, engine.timed_as, "float64") if math.isfinite(each) else None
+    each = fine * table.seconds(gas.dimension, gas.packing_fraction, timed_as(engine), "float64", nearest)
+    return contacts * each * _speed(gas, timed_as(engine), "float64") if math.isfinite(each) else None
 
 
 def _speed(gas: Gas, engine: str, precision: str) -> float:
@@ -227,8 +227,8 @@ def _made(results: Path, figure: str) -> float:
 
 def claims_of(figure: str, block: Mapping, dataset: xr.Dataset) -> list[Claim]:
     """Return the claims of a figure, judged as in the workflow."""
-    family, name = registry.functions(figure, block)
-    return list(find_parts(registry.module(family), name).claims(dataset, *registry.stated_claims(block)))
+    family, name = registry.find(figure, block)
+    return list(find_parts(registry.home(family), name).claims(dataset, *registry.stated_claims(block)))
 
 
 def is_decided_by_runs(claim: Claim) -> bool:

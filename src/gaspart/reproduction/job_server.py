@@ -43,7 +43,8 @@ from gaspart.interruption import SIGNALS
 from gaspart.system import python_with_this_package
 
 _PRELOADED = (
-    *("snakemake.iocontainers", "xarray", "netCDF4", "scipy.optimize", "scipy.special", "scipy.stats"),
+    *("snakemake.iocontainers", "xarray", "netCDF4", "scipy.integrate", "scipy.optimize", "scipy.spatial"),
+    *("scipy.special", "scipy.stats"),
     *("matplotlib.figure", "matplotlib.mathtext", "matplotlib.backends.backend_agg"),
     *("matplotlib.backends.backend_svg", "gaspart.rendering.style", "gaspart.rendering.legibility"),
     *("gaspart.simulation", "gaspart.trajectory.run", "gaspart.trajectory.provenance", "gaspart.files"),
@@ -213,7 +214,7 @@ def _preload() -> None:
     A module that cannot be loaded is reported by the job that needs it.
     """
     from gaspart.kernels.compile.cache import load_numba
-    from gaspart.reproduction.families.registry import modules
+    from gaspart.reproduction.registry import modules
 
     os.environ |= dict.fromkeys(_THREADS, "1")  # a process with threads cannot be forked safely
     gc.set_threshold(1_000_000)

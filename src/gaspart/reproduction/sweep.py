@@ -30,7 +30,7 @@ from gaspart.files import only_process
 from gaspart.kernels.compile.cache import load_numba
 from gaspart.keys.values import count_of, positive_number
 from gaspart.reproduction.config import check_values, gridded_points
-from gaspart.reproduction.families.own.measure import measure_point
+from gaspart.reproduction.figures.own import measure_point
 from gaspart.reproduction.jobs.replicas import replica_paths, write_replicas
 from gaspart.reproduction.jobs.simulate import recipes, record
 from gaspart.reproduction.points import jobs

@@ -13,7 +13,7 @@ import xarray as xr
 from gaspart.analysis.declaration import DIMENSIONS
 from gaspart.analysis.observable import ByFace, Observable, label_of
 from gaspart.errors import SceneError, unknown_word
-from gaspart.reproduction.families.own.measure import mean_of
+from gaspart.reproduction.figures.own import mean_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

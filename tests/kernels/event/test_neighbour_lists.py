@@ -38,11 +38,22 @@ def separations(sim, points):
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_lists_hold_exactly_what_the_centres_say(dimension, boundary):
     boundary = boundary if isinstance(boundary, str) else boundary[:dimension]
-    scene = gas(dimension, 300, 0.3, boundary)
-    sim = gp.Simulation(scene, gp.EventDriven("lists"), seed=4)
+    check_lists(gas(dimension, 300, 0.3, boundary), 700)
+
+
+@pytest.mark.interpreted
+@pytest.mark.parametrize("lengths", [(8.0, 6.0), (5.0, 6.5, 7.5)])
+def test_lists_are_complete_in_uneven_containers(lengths):
+    species = [gp.Species(16, 0.5, temperature=1.0)]
+    check_lists(gp.Scene(gp.Container(lengths, "periodic"), species), 8)
+
+
+def check_lists(scene, events):
+    """Compare the lists with the distances between their centres, five times after as many events."""
+    dimension, sim = scene.dimension, gp.Simulation(scene, gp.EventDriven("lists"), seed=4)
     margin, reach = distances(scene)
     for _ in range(5):
-        sim.advance(max_events=700)
+        sim.advance(max_events=events)
         centres = lists_of(sim).listed["centre"][:, :dimension]
         apart = separations(sim, centres)
         np.fill_diagonal(apart, np.inf)

@@ -11,7 +11,7 @@ from reproduction.made import made
 import gaspart as gp
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
-from gaspart.reproduction.families.shared.runs import runs
+from gaspart.reproduction.figure import runs
 from gaspart.reproduction.figures.beds import (
     bed_means,
     count_contacts,

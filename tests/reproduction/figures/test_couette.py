@@ -45,7 +45,7 @@ def point(tmp_path, monkeypatch):
 
 def measured(one):
     Path(one.path).parent.mkdir(parents=True)
-    simulate(one.path, **one.arguments)
+    simulate(Path(one.path), **one.arguments)
     return couette.measure([one], SETTINGS).isel(point=0)
 
 

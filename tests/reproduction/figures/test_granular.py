@@ -13,7 +13,7 @@ from reproduction.made import made
 import gaspart as gp
 from gaspart import theory
 from gaspart.analysis.run import Run
-from gaspart.reproduction.families.shared.runs import runs
+from gaspart.reproduction.figure import runs
 from gaspart.reproduction.figures import cooling, driven_gas, equipartition
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import xarray as xr
-from reproduction.families.stored import runs_of
+from reproduction.figures.stored import runs_of
 
 import gaspart as gp
 from gaspart.reproduction.figures import heat_capacity

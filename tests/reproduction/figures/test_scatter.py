@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from reproduction.claims.data import claim
-from reproduction.families.drawn import draw
+from reproduction.figures.drawn import draw
 
 from gaspart.reproduction import claims
 from gaspart.reproduction.claims import UNVERIFIED, Estimate

@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
-from reproduction.families.stored import runs_of
+from reproduction.figures.stored import runs_of
 from reproduction.made import simulated
 
 from gaspart import theory
 from gaspart.analysis.statistics import histogram_chi_square
 from gaspart.errors import SceneError
-from gaspart.reproduction.families.shared.runs import kurtosis
+from gaspart.reproduction.figure import kurtosis
 from gaspart.reproduction.figures import speeds
 from gaspart.reproduction.figures.speeds import measure_distribution, measure_relaxation
 from gaspart.reproduction.points.point import Point
@@ -108,7 +108,7 @@ def test_a_mixture_of_hit_and_never_hit_particles_is_told_apart(stored):
     for one in chosen:
         for path in one.replica_paths:
             stored[path] = trajectory(mixture(rng, 0.25)[[0, 1, 1]], [0.0, 1.0, 2.0])
-    ds = measure_relaxation(chosen, RELAXATION)
+    ds = measure_relaxation(chosen, RELAXATION | {"highest": 2.6})  # speed 1 is inside a bin
     assert ds["engine"].values.tolist() == ["event", "step"]
     assert ds["never_hit"].values == pytest.approx(np.array([[1.0, 0.25, 0.25]] * 2))
     expected = 0.25 + 0.75 * 5 / 3
@@ -116,6 +116,12 @@ def test_a_mixture_of_hit_and_never_hit_particles_is_told_apart(stored):
     assert float(ds["kurtosis_error"].max()) < 0.02
     assert ds["collisions"].values == pytest.approx(np.array([[0.0, 1.0, 2.0]] * 2))
     widths = (ds["upper"] - ds["lower"]).values
+    classes = np.diff([*theory.maxwell_cdf(np.append(ds["lower"], ds["upper"][-1]), 3, 1 / 3), 1.0])
+    first = np.searchsorted(ds["upper"], 1.0)
+    mixed = 0.25 * (np.arange(21) == first) + 0.75 * classes
+    deficits = [-np.log(classes[first]), *[(mixed * np.log(mixed / classes)).sum()] * 2]
+    assert np.all(np.abs(ds["entropy_deficit"] - deficits) <= 4 * ds["entropy_deficit_error"] + 1e-12)
+    assert (ds["entropy_deficit_error"] < 0.03).all()
     assert (ds["density"].values * widths).sum(axis=-1) == pytest.approx(np.ones((2, 2)), abs=2e-3)
 
 
@@ -182,5 +188,6 @@ def test_a_real_gas_relaxes(tmp_path):
     theoretical = theory.relaxation(3)
     assert ds["kurtosis"].values == pytest.approx(theoretical.kurtosis(s), abs=0.12)
     assert ds["never_hit"].values == pytest.approx(theoretical.never_hit(s), abs=0.06)
+    assert np.diff(ds["entropy_deficit"])[:5].max() < 0.0
     assert float(ds["temperature_drift"].max()) < 1e-13
     assert s[-1] == pytest.approx(float(theoretical.collisions(ds.attrs["collision_rate"] * 8.0)), rel=0.15)

@@ -9,9 +9,9 @@ import xarray as xr
 import gaspart as gp
 from gaspart import theory
 from gaspart.accuracy.estimates import Component
+from gaspart.accuracy.of_engine import Candidate
 from gaspart.accuracy.option import Option
 from gaspart.analysis.estimate import Estimate
-from gaspart.engines.engine import Candidate
 from gaspart.reproduction.figures import _flows as flows
 from gaspart.reproduction.figures import _tradeoff as tradeoff
 from gaspart.reproduction.figures import speed_accuracy, time_to_accuracy

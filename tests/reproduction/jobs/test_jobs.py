@@ -17,13 +17,13 @@ from gaspart.engines import EventDriven, TimeStepped
 from gaspart.reproduction.config import checked_points
 from gaspart.reproduction.jobs.arguments import from_plain
 from gaspart.reproduction.jobs.compare import compare
-from gaspart.reproduction.jobs.data import PointData
+from gaspart.reproduction.jobs.data import MADE_BY, PointData, digest_of
 from gaspart.reproduction.jobs.echo import DISPLACEMENT, echo
 from gaspart.reproduction.jobs.fill import fill
 from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.jobs import JOBS
 from gaspart.reproduction.points.modules import PACKAGE, closure, find_imports
-from gaspart.reproduction.points.trust import MADE_BY, digest_of, require_own
+from gaspart.reproduction.points.trust import require_own
 from gaspart.scene.container import Container
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species

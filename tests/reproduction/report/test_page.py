@@ -12,8 +12,8 @@ import pytest
 import xarray as xr
 from PIL import Image
 
-from gaspart.reproduction.families.registry import chapter, families, titles
 from gaspart.reproduction.figures._tradeoff import ENGINES, NAMES, PARTS
+from gaspart.reproduction.registry import chapter, families, titles
 from gaspart.reproduction.report.explore import engines, series
 from gaspart.reproduction.report.page import (
     CHAPTERS,

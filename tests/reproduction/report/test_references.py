@@ -19,7 +19,7 @@ ROOT = Path(__file__).parents[3]
 REFERENCES = read_references(ROOT / "workflow/report/references.yaml")
 YEAR = re.compile(r"\b(?:18|19|20)\d\d\b")
 CAPTIONS = [*sorted((ROOT / "workflow/report").glob("*.rst")), ROOT / "workflow/report/sources.yaml"]
-CLAIMS = sorted((ROOT / "src/gaspart/reproduction/families").glob("*/*claims.py"))
+CLAIMS = sorted((ROOT / "src/gaspart/reproduction/figures").glob("[!_]*.py"))
 NO_CITATION = "Kolafa's shorter\nequation of 1986"
 EXAMPLES = (
     Reference(1, "Yeh 2004", ("Yeh", "Hummer"), 2004, "J. Phys. Chem. B 108, 15873", "10.1021/jp0477147"),
@@ -31,10 +31,13 @@ BY_KEY = {one.key: one for one in EXAMPLES}
 
 
 def strings(path):
-    """The texts of a module of claims, with spaces alone between words."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Constant) and isinstance(node.value, str):
-            yield " ".join(node.value.split())
+    """The texts of a figure's module but docstrings and short names in legends, with spaces alone between
+    words."""
+    nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+    docstrings = {node.value for node in nodes if isinstance(node, ast.Expr)}
+    for node in nodes:
+        if isinstance(node, ast.Constant) and len(str(node.value)) > 14 and node not in docstrings:
+            yield " ".join(str(node.value).split())
 
 
 TEXTS = {path.name: [path.read_text(encoding="utf-8")] for path in CAPTIONS}

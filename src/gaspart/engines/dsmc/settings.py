@@ -14,7 +14,6 @@ from gaspart.scene.face_checks import refuse_open
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.cells import Errors, Medium
     from gaspart.engines.dsmc.dynamics import DsmcDynamics
-    from gaspart.engines.engine import AccuracyRequest, Candidate
     from gaspart.scene.scene import Scene
     from gaspart.state.optional_tallies import OptionalTally
     from gaspart.state.state import State
@@ -73,8 +72,8 @@ class DSMC(Engine):
     Examples
     --------
     >>> import gaspart as gp
-    >>> gp.DSMC(model="enskog").describe()
-    'dsmc, model enskog'
+    >>> gp.DSMC(model="enskog").equation
+    'enskog'
     """
 
     time_step: float | None = field(
@@ -112,76 +111,29 @@ class DSMC(Engine):
         ("gravity", "restitution", "roughness", "viscoelasticity", "thermostat")
     ) | {"centres_to_walls", "thermal", "sliding", "accommodation", "ramp", "open"}
     counters: ClassVar[tuple[str, ...]] = ("steps",)
-    timed_at: ClassVar[tuple[float, float]] = (0.01, 1.0)
-    advised: ClassVar[tuple[str, ...]] = ("model",)
 
     @property
     def equation(self) -> str:
-        """Kinetic equation of the model.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.DSMC().equation
-        'boltzmann'
-        """
+        """Kinetic equation of the model."""
         return self.model
 
     @property
     def adapts_steps(self) -> bool:
-        """True if steps are divided when speeds rise.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.DSMC().adapts_steps, gp.DSMC(time_step=0.5).adapts_steps
-        (True, False)
-        """
+        """True if steps are divided when speeds rise."""
         return self.time_step is None if self.adapt is None else self.adapt in ("steps", "both")
 
     @property
     def adapts_cells(self) -> bool:
-        """True if cells become narrower when the gas becomes denser somewhere.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.DSMC().adapts_cells, gp.DSMC(cells_per_side=8).adapts_cells
-        (True, False)
-        """
+        """True if cells become narrower when the gas becomes denser somewhere."""
         return self.cells_per_side is None if self.adapt is None else self.adapt in ("cells", "both")
 
     @property
     def quantum(self) -> float | None:
-        """Length of a step; None if it is not yet known.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.DSMC(time_step=0.5).quantum
-        0.5
-        """
+        """Length of a step; None if it is not yet known."""
         return self.time_step
 
     def check_features(self, scene: Scene) -> None:
-        """Check that the engine supports all features of a scene with its collision model.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-
-        Raises
-        ------
-        SceneError
-            If the engine does not support a feature. The message names the engines that support it.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box, particles = gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)]
-        >>> gp.DSMC().check_features(gp.Scene(box, particles, gravity=(0.0, -1.0)))
-        """
+        """Raise SceneError for features that the engine, or its collision model, does not support."""
         super().check_features(scene)
         if self.model == "enskog":
             refuse_open(scene, f"{_DILUTE}: the particles of its reservoirs have no excluded volume")
@@ -211,8 +163,9 @@ class DSMC(Engine):
         >>> import gaspart as gp
         >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
         >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
-        >>> gp.DSMC().for_scene(scene, interval=1.0).describe(), gp.DSMC().for_scene(scene).cells_per_side
-        ('dsmc, model boltzmann, time_step 0.5', (7, 7, 7))
+        >>> engine = gp.DSMC().for_scene(scene, interval=1.0)
+        >>> engine.time_step, engine.cells_per_side
+        (0.5, (7, 7, 7))
         """
         _, cells, step = self._chosen(scene)
         if self.time_step is None and interval is not None:
@@ -220,24 +173,7 @@ class DSMC(Engine):
         return self._with(time_step=step, cells_per_side=cells, adapts=(self.adapts_steps, self.adapts_cells))
 
     def with_step(self, step: float) -> DSMC:
-        """Return a copy with this fixed time step.
-
-        Parameters
-        ----------
-        step : float, [time]
-            Length of a step.
-
-        Returns
-        -------
-        DSMC
-            The engine.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.DSMC().with_step(0.5).adapts_steps
-        False
-        """
+        """Return a copy with this fixed time step."""
         return self._with(time_step=step, adapts=(False, self.adapts_cells))
 
     def _with(self, adapts: tuple[bool, bool], **settings: Any) -> DSMC:
@@ -280,25 +216,7 @@ class DSMC(Engine):
         return {"viscosity_error": self.bias(scene, "fluxes")}
 
     def cells_along(self, scene: Scene) -> int:
-        """Return the largest number of cells along an axis.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-
-        Returns
-        -------
-        int
-            Number of cells.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> gp.DSMC().cells_along(gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)]))
-        7
-        """
+        """Return the largest number of cells along an axis."""
         return max(self._chosen(scene)[1])
 
     def added_bulk_viscosity(self, scene: Scene) -> float:
@@ -376,26 +294,7 @@ class DSMC(Engine):
         return medium.errors(cells, step)
 
     def remarks(self, scene: Scene) -> list[str]:
-        """Return remarks about notable errors of settings and model, as printed at the start of a run.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-
-        Returns
-        -------
-        list of str
-            Remarks, each a line.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
-        >>> gp.DSMC(cells_per_side=2).remarks(scene)[0].partition(", make ")[2]
-        'the viscosity 88 % too high: 11 % with cells_per_side = (7, 7, 7)'
-        """
+        """Return remarks about notable errors of settings and model, each a line."""
         from gaspart.engines.dsmc.cells import neglected, remarks
 
         text = neglected(self, scene)
@@ -410,231 +309,15 @@ class DSMC(Engine):
         step = step_for(self, scene, medium.gas_rates)
         return medium, cells_for(self, medium, step), step
 
-    @classmethod
-    def variants(cls) -> tuple[DSMC, ...]:
-        """Return an engine for each collision model, as candidates of a plan.
-
-        Returns
-        -------
-        tuple of DSMC
-            The engines.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> [engine.model for engine in gp.DSMC.variants()]
-        ['boltzmann', 'enskog']
-        """
-        return tuple(cls(model=model) for model in MODELS)
-
-    def candidate(self, request: AccuracyRequest) -> Candidate:
-        """Return the engine with its default cells and step, and bounds on its errors.
-
-        Parameters
-        ----------
-        request : AccuracyRequest
-            Observable of a steady scene, with the requested accuracy.
-
-        Returns
-        -------
-        Candidate
-            The engine, with bounds on its errors.
-
-        Raises
-        ------
-        SceneError
-            If cells or steps are too coarse for the local conditions, or if the gas is too dense for the
-            Enskog model.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> from gaspart.theory.conditions import even_conditions
-        >>> from gaspart.engines.engine import AccuracyRequest
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
-        >>> request = AccuracyRequest("collision_rate", 0.01, even_conditions(scene, 1.0))
-        >>> round(gp.DSMC(model="enskog").candidate(request).bias, 3)
-        0.011
-        """
-        from gaspart.engines.dsmc.accuracy import candidate
-
-        return candidate(self, request)
-
-    @property
-    def timed_as(self) -> str:
-        """Name in the table of costs; each model has its own name.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.DSMC().timed_as, gp.DSMC(model="enskog").timed_as
-        ('dsmc', 'dsmc enskog')
-        """
-        return self.name if self.model == MODELS[0] else f"{self.name} {self.model}"
-
-    def timed_step(self, scene: Scene) -> float:
-        """Return the time step divided by the default step of the engine.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-
-        Returns
-        -------
-        float, [1]
-            Time step in the unit of the table of costs.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> gp.DSMC().timed_step(gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)]))
-        1.0
-        """
-        return (self.for_scene(scene).time_step or 0.0) / self._own_step(scene)
-
-    def at_step(self, scene: Scene, step: float, precision: str) -> DSMC:
-        """Return a copy with a time step from the table of costs.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-        step : float, [1]
-            Time step divided by the default step of the engine.
-        precision : str
-            Not used, because the state is always in float64.
-
-        Returns
-        -------
-        DSMC
-            The engine.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
-        >>> gp.DSMC().at_step(scene, 2.0, "float64").timed_step(scene)
-        2.0
-        """
-        return self.for_scene(scene).with_step(step * self._own_step(scene))
-
-    def _own_step(self, scene: Scene) -> float:
-        return replace(self, time_step=None).for_scene(scene).time_step or math.inf
-
-    @property
-    def limitations(self) -> str:
-        """Limitations of the model, and limitations of all DSMC models, in words.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.DSMC().limitations
-        'excluded volume, positions of pairs'
-        """
-        lacks = {"boltzmann": "excluded volume", "enskog": "correlated collisions"}
-        return f"{lacks[self.model]}, positions of pairs"
-
-    def describe(self) -> str:
-        """Return the name of the engine with its model, and its step if known.
-
-        Returns
-        -------
-        str
-            The description.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.DSMC(time_step=0.5).describe()
-        'dsmc, model boltzmann, time_step 0.5'
-        """
-        step = "" if self.time_step is None else f", time_step {self.time_step:.4g}"
-        return f"{self.name}, model {self.model}{step}"
-
-    def notes(self, scene: Scene, observable: str, paths: bool) -> dict[str, str]:
-        """Return remarks about the engine for a plan.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-        observable : str
-            Name of the observable.
-        paths : bool
-            True if the observable depends on the paths of particles.
-
-        Returns
-        -------
-        dict of str to str
-            Remarks by title: the method of finding pairs, and the effect of steps that are longer than the
-            default.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
-        >>> list(gp.DSMC(time_step=2.0).notes(scene, "pressure", paths=False))
-        ['boxes', 'time step']
-        """
-        remarks = {"boxes": "cells, whose particles collide by chance: positions of pairs are given up"}
-        longer = 1.0 if self.time_step is None else self.time_step / self._own_step(scene)
-        if longer >= 1.5:
-            effect = "which the bias includes" if paths else f"on which {observable} does not depend"
-            remarks["time step"] = f"{longer:.2g} times the engine's own, {effect}"
-        return remarks
-
     def variant(self, scene: Scene) -> str:
-        """Return the name of the compiled kernel variant for a scene.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-
-        Returns
-        -------
-        str
-            The name, which depends on the model, on whether steps adapt to speeds, and on whether there are
-            several threads.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> gp.DSMC(threads=2).variant(gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)]))
-        'boltzmann-threads'
-        """
+        """Return the name of the kernels for model, steps that may adapt, and several threads."""
         from gaspart.engines.dsmc.defaults import may_speed_up
 
         paced = "-paced" if may_speed_up(scene) else ""
         return self.model + paced + ("-threads" if self.threads > 1 else "")
 
     def for_small_scene(self, scene: Scene) -> DSMC:
-        """Return settings with which a small scene uses the same kernels as the full scene.
-
-        Parameters
-        ----------
-        scene : Scene
-            The full scene.
-
-        Returns
-        -------
-        DSMC
-            The engine with a single cell, and with the step for the full scene.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
-        >>> gp.DSMC().for_small_scene(scene).cells_per_side
-        1
-        """
+        """Return the engine with a single cell, and with the step for the full scene."""
         return self.for_scene(scene)._with(cells_per_side=1, adapts=(self.adapts_steps, False))
 
     def start(
@@ -644,37 +327,7 @@ class DSMC(Engine):
         seed: int | tuple[int, ...] = 0,
         tallies: Sequence[OptionalTally] = (),
     ) -> DsmcDynamics:
-        """Prepare the engine for a scene in an initial state.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-        state : State
-            State of its particles.
-        seed : int or tuple of int, default 0
-            Seed of collisions and thermal walls.
-        tallies : sequence of OptionalTally, optional
-            Optional tallies to accumulate.
-
-        Returns
-        -------
-        DsmcDynamics
-            The dynamics of the scene.
-
-        Raises
-        ------
-        SceneError
-            If the engine does not model the scene.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> state = gp.Simulation(scene, "dsmc", seed=1).state
-        >>> gp.DSMC().start(scene, state).time
-        0.0
-        """
+        """Prepare the engine; raises SceneError if it does not model the scene."""
         from gaspart.engines.dsmc.dynamics import DsmcDynamics
 
         return DsmcDynamics(self, scene, state, seed, tallies)

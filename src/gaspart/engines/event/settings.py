@@ -65,8 +65,8 @@ class EventDriven(Engine):
     Examples
     --------
     >>> import gaspart as gp
-    >>> gp.EventDriven(search="lists").describe()
-    'event, float64'
+    >>> gp.EventDriven(search="lists").search
+    'lists'
     """
 
     search: str = field(
@@ -96,92 +96,13 @@ class EventDriven(Engine):
 
         return chosen_search(scene, self.search, self.boxes_per_side is not None)
 
-    def describe(self) -> str:
-        """Return the name with the floating-point precision.
-
-        Returns
-        -------
-        str
-            The description.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.EventDriven().describe()
-        'event, float64'
-        """
-        return f"{self.name}, {self.precision}"
-
-    def notes(self, scene: Scene, observable: str, paths: bool) -> dict[str, str]:
-        """Return remarks about the engine for a plan.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-        observable : str
-            Name of the observable.
-        paths : bool
-            True if the observable depends on the paths of particles.
-
-        Returns
-        -------
-        dict of str to str
-            Remarks by title: the method of finding pairs.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> gp.EventDriven().notes(scene, "pressure", paths=False)
-        {'boxes': 'automatic, about one per particle'}
-        """
-        return {"boxes": "automatic, about one per particle"}
-
     def variant(self, scene: Scene) -> str:
-        """Return the name of the compiled kernel variant for a scene.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-
-        Returns
-        -------
-        str
-            Name of the search; "boxes" also for the search "direct", which has a single box.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> gp.EventDriven().variant(scene)
-        'boxes'
-        """
+        """Return the name of the search; "direct" is the search with boxes in a single box."""
         search = self._search(scene)
         return "boxes" if search == "direct" else search
 
     def for_small_scene(self, scene: Scene) -> EventDriven:
-        """Return settings with which a scene of few particles uses the same kernels.
-
-        Parameters
-        ----------
-        scene : Scene
-            The full scene.
-
-        Returns
-        -------
-        EventDriven
-            The engine with the search that is chosen for the full scene, and with a single box if the search
-            uses boxes.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> gp.EventDriven().for_small_scene(scene).search
-        'boxes'
-        """
+        """Return the engine with the search of the full scene, and a single box if it has boxes."""
         boxes = None if self.boxes_per_side is None else 1
         return EventDriven(search=self._search(scene), boxes_per_side=boxes)
 
@@ -192,37 +113,7 @@ class EventDriven(Engine):
         seed: int | tuple[int, ...] = 0,
         tallies: Sequence[OptionalTally] = (),
     ) -> EventDynamics:
-        """Prepare the engine for a scene in an initial state.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-        state : State
-            State of its particles.
-        seed : int or tuple of int, default 0
-            Seed of thermal walls and kicks.
-        tallies : sequence of OptionalTally, optional
-            Optional tallies to accumulate.
-
-        Returns
-        -------
-        EventDynamics
-            The dynamics of the scene.
-
-        Raises
-        ------
-        SceneError
-            If the scene does not support the search.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> state = gp.Simulation(scene, "dsmc", seed=1).state
-        >>> gp.EventDriven().start(scene, state).time
-        0.0
-        """
+        """Prepare the engine; raises SceneError if the scene does not support the search."""
         from gaspart.engines.event.dynamics import EventDynamics
 
         return EventDynamics(scene, state, seed, self.search, self.boxes_per_side, tallies)

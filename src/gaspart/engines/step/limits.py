@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from gaspart.engines.engine import AccuracyRequest, Candidate
 from gaspart.errors import SceneError, SimulationError
 from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
@@ -48,6 +46,20 @@ are half-way through each other.
 
 A number of FEW such contacts is always allowed. In gases, the fractions are 0.05 and 0.004 at the step above
 which the engine warns.
+"""
+
+SAFE = 2.0
+"""Maximum error of a pressure or a rate, divided by the fraction of missed contacts."""
+DISORDER = {True: 0.002, False: 0.15}
+"""Maximum error of a rate due to contacts in a wrong order, divided by the square of the contacts of a
+particle in a step. The keys are True for several passes. Measured: 0.0015 and 0.1 (docs/time-stepped.md).
+"""
+LATER = 0.6
+"""Largest error of the density at walls, divided by the contacts of a particle in a step.
+
+Half of the contacts in the step of a wall hit precede the hit, but are processed after it. At walls, contacts
+are up to 1.2 times as frequent as in a gas of the mean density (measured in
+a slit of 1.5 diameters: 0.49).
 """
 
 
@@ -143,7 +155,7 @@ def bias(engine: TimeStepped, scene: Scene, kind: str) -> float:
     """
     gas, several, d = _kinds_in(scene), engine.passes > 1, scene.dimension
     met = _contacts(engine.time_step, d, gas, scene.container.volume)
-    error = _SAFE * _missed_fraction(engine.time_step, several, d, gas) + DISORDER[several] * met**2
+    error = SAFE * _missed_fraction(engine.time_step, several, d, gas) + DISORDER[several] * met**2
     return float(error + (at_walls(scene) * met if kind in ("walls", "fluxes") else 0.0))
 
 
@@ -152,7 +164,7 @@ def wall_density_error(engine: TimeStepped, scene: Scene) -> float:
     if not scene.walled_axes:
         return 0.0
     met = _contacts(engine.time_step, scene.dimension, _kinds_in(scene), scene.container.volume)
-    return _LATER * met
+    return LATER * met
 
 
 def at_walls(scene: Scene) -> float:
@@ -164,7 +176,7 @@ def at_walls(scene: Scene) -> float:
     radius = scene.largest_moving_radius
     lower, upper = (np.array(ends) for ends in scene.reach(radius))
     widths = np.maximum(upper - lower, 2.0 * radius * np.finfo(float).eps)[list(scene.walled_axes)]
-    return _LATER * min(1.0, float((radius / widths).sum())) if radius > 0.0 else 0.0
+    return LATER * min(1.0, float((radius / widths).sum())) if radius > 0.0 else 0.0
 
 
 def _kinds_in(scene: Scene) -> Kinds:
@@ -251,56 +263,3 @@ def _contacts(time_step: float, dimension: int, gas: Kinds, volume: float) -> fl
     thermal = math.sqrt(math.pi * float((gas.number * gas.square).sum() / count))
     around = 4.0 * diameter**2 if dimension == 3 else 2.0 * diameter
     return float(density * around * contact * thermal * time_step)
-
-
-# Time step for an accuracy, and a bound on its error due to missed contacts.
-
-
-_SHARE = 0.125
-"""Maximum error due to missed contacts, as a fraction of the requested accuracy."""
-_SAFE = 2.0
-"""Maximum error of a pressure or a rate, divided by the fraction of missed contacts."""
-DISORDER = {True: 0.002, False: 0.15}
-"""Maximum error of a rate due to contacts in a wrong order, divided by the square of the contacts of a
-particle in a step. The keys are True for several passes. Measured: 0.0015 and 0.1 (docs/time-stepped.md).
-"""
-_LATER = 0.6
-"""Largest error of the density at walls, divided by the contacts of a particle in a step.
-
-Half of the contacts in the step of a wall hit precede the hit, but are processed after it. At walls, contacts
-are up to 1.2 times as frequent as in a gas of the mean density (measured in
-a slit of 1.5 diameters: 0.49).
-"""
-_LONGEST = 0.2
-"""Longest step, as a fraction of the mean time between collisions of a particle."""
-_AT_WALLS = ("pressure", "force", "heat_flux", "wall_shear", "density")
-"""Observables at walls, where a wall hit is processed before all collisions of its step."""
-
-
-def candidate(engine: TimeStepped, request: AccuracyRequest) -> Candidate:
-    """Return the engine with the longest step that is sufficiently accurate.
-
-    Raises SceneError for a gas without collisions.
-    """
-    conditions, initial = request.conditions, request.initial
-    hot = _as_hot(initial, float(conditions.temperature.max())) if initial else None
-    missed = missed_contacts(1.0, True, hot) if hot else 0.0
-    free = float((conditions.path / np.maximum(conditions.speed, 1e-300)).min())
-    if not missed > 0.0 or not math.isfinite(free):
-        raise SceneError("time_step", None, "follows from contacts, which particles at rest do not have")
-    assert hot is not None
-    met = contacts_per_step(1.0, hot)
-    linear, square = 0.0, _SAFE * missed + DISORDER[True] * met**2
-    if request.observable in _AT_WALLS:
-        linear = met * (_LATER if request.observable == "density" else at_walls(request.scene))
-    most = _SHARE * request.accuracy
-    longest = min(2.0 * most / (linear + math.sqrt(linear**2 + 4.0 * square * most)), _LONGEST * free)
-    step = float(f"{0.95 * longest:.2g}")  # never above the longest step, for any rounding
-    return Candidate(engine.with_step(step), discretisation=(linear + square * step) * step)
-
-
-def _as_hot(state: State, temperature: float) -> State:
-    """Return a state in which each velocity component of a moving particle is sqrt(kT/m)."""
-    moving = np.isfinite(state.masses)
-    mean = np.where(moving, np.sqrt(temperature / np.where(moving, state.masses, 1.0)), 0.0)
-    return replace(state, velocities=np.repeat(mean[:, None], state.dimension, axis=1))

@@ -10,10 +10,8 @@ from gaspart.engines.engine import Engine, register
 from gaspart.errors import SceneError
 from gaspart.keys import choice, count, declare, flag, per_side, positive
 from gaspart.scene.faces import FACE_KINDS
-from gaspart.scene.gas import plain_gas
 
 if TYPE_CHECKING:
-    from gaspart.engines.engine import AccuracyRequest, Candidate
     from gaspart.engines.step.dynamics import StepDynamics
     from gaspart.scene.scene import Scene
     from gaspart.state.optional_tallies import OptionalTally
@@ -76,8 +74,8 @@ class TimeStepped(Engine):
     Examples
     --------
     >>> import gaspart as gp
-    >>> gp.TimeStepped(time_step=0.01).describe()
-    'step, time_step 0.01, float64, 4 passes'
+    >>> gp.TimeStepped(time_step=0.01, precision="float32").passes
+    4
     """
 
     time_step: float = field(metadata=declare(positive("duration of a step")))
@@ -119,8 +117,6 @@ class TimeStepped(Engine):
         "rebuilds",
     )
 
-    timed_at: ClassVar[tuple[float, float]] = (0.1, 0.08)
-    advised: ClassVar[tuple[str, ...]] = ("time_step", "precision")
     tallies: ClassVar[frozenset[str]] = frozenset(("impulses", "fixed_collisions", "per_area"))
 
     def __post_init__(self) -> None:
@@ -132,87 +128,12 @@ class TimeStepped(Engine):
 
     @property
     def quantum(self) -> float:
-        """Length of a step; all times are multiples of it.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.TimeStepped(time_step=0.01).quantum
-        0.01
-        """
+        """Length of a step; all times are multiples of it."""
         return self.time_step
 
     def with_step(self, step: float) -> TimeStepped:
-        """Return a copy with this time step.
-
-        Parameters
-        ----------
-        step : float, [time]
-            Length of a step.
-
-        Returns
-        -------
-        TimeStepped
-            The engine.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.TimeStepped(time_step=0.01).with_step(0.02).time_step
-        0.02
-        """
+        """Return a copy with this time step."""
         return replace(self, time_step=step)
-
-    @classmethod
-    def variants(cls) -> tuple[TimeStepped, ...]:
-        """Return the candidates of a plan for this engine.
-
-        Returns
-        -------
-        tuple of TimeStepped
-            The engine itself; its step is chosen later.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> len(gp.TimeStepped.variants())
-        1
-        """
-        return (cls(1.0),)
-
-    def candidate(self, request: AccuracyRequest) -> Candidate:
-        """Return the engine with the longest step that is sufficiently accurate.
-
-        Parameters
-        ----------
-        request : AccuracyRequest
-            Observable of a steady scene, and its requested accuracy.
-
-        Returns
-        -------
-        Candidate
-            The engine, and bounds on its errors.
-
-        Raises
-        ------
-        SceneError
-            If no particles collide.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> from gaspart.theory.conditions import even_conditions
-        >>> from gaspart.engines.engine import AccuracyRequest
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> state = gp.Simulation(scene, "dsmc", seed=1).state
-        >>> request = AccuracyRequest("pressure", 0.01, even_conditions(scene, 1.0), initial=state)
-        >>> candidate = gp.TimeStepped(time_step=0.01).candidate(request)
-        >>> candidate.engine.time_step, round(candidate.bias, 4)
-        (0.018, 0.0012)
-        """
-        from gaspart.engines.step.limits import candidate
-
-        return candidate(self, request)
 
     def bias(self, scene: Scene, kind: str) -> float:
         """Bound the relative error of a quantity due to missed contacts and their order.
@@ -271,25 +192,7 @@ class TimeStepped(Engine):
         return found
 
     def remarks(self, scene: Scene) -> list[str]:
-        """Return remarks about notable errors of the step, as printed at the start of a run.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-
-        Returns
-        -------
-        list of str
-            Remarks, each a line.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> gp.TimeStepped(time_step=0.3).remarks(scene)[0].partition(", which ")[2]
-        'changes the density at walls by up to 6.6 %; with 0.23 by 5 %'
-        """
+        """Return a remark if the density at walls has a notable error."""
         from gaspart.engines.step.limits import NOTABLE, wall_density_error
 
         error = wall_density_error(self, scene)
@@ -301,163 +204,13 @@ class TimeStepped(Engine):
             f" the density at walls by up to {100.0 * error:.2g} %; with {step:g} by {100.0 * NOTABLE:g} %"
         ]
 
-    def timed_step(self, scene: Scene) -> float:
-        """Return the time step in diameters divided by the thermal speed of a plain gas.
-
-        Parameters
-        ----------
-        scene : Scene
-            Scene of equal particles.
-
-        Returns
-        -------
-        float, [1]
-            Time step in the unit of the table of costs.
-
-        Raises
-        ------
-        SceneError
-            If the scene is not a plain gas.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> round(gp.TimeStepped(time_step=0.01).timed_step(scene), 4)
-        0.025
-        """
-        return self.time_step / _unit(scene)
-
-    def at_step(self, scene: Scene, step: float, precision: str) -> TimeStepped:
-        """Return a copy with a time step and a precision of the table of costs.
-
-        Parameters
-        ----------
-        scene : Scene
-            Scene of equal particles.
-        step : float, [1]
-            Time step in diameters divided by the thermal speed of a plain gas.
-        precision : {"float64", "float32"}
-            Floating-point type of the state.
-
-        Returns
-        -------
-        TimeStepped
-            The engine.
-
-        Raises
-        ------
-        SceneError
-            If the scene is not a plain gas.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> gp.TimeStepped(time_step=0.01).at_step(scene, 0.05, "float32").describe()
-        'step, time_step 0.02, float32, 4 passes'
-        """
-        return replace(self, time_step=step * _unit(scene), precision=precision)
-
-    @property
-    def limitations(self) -> str:
-        """Limitations of the engine in words.
-
-        The engine misses contacts that begin and end within a step.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.TimeStepped(time_step=0.01).limitations
-        'exact contacts'
-        """
-        return "exact contacts"
-
-    def describe(self) -> str:
-        """Return the name with step, precision and passes.
-
-        Returns
-        -------
-        str
-            The description.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.TimeStepped(time_step=0.01).describe()
-        'step, time_step 0.01, float64, 4 passes'
-        """
-        return f"{self.name}, time_step {self.time_step:.4g}, {self.precision}, {self.passes} passes"
-
-    def notes(self, scene: Scene, observable: str, paths: bool) -> dict[str, str]:
-        """Return remarks about the engine for a plan.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-        observable : str
-            Name of the observable.
-        paths : bool
-            True if the observable depends on the paths of particles.
-
-        Returns
-        -------
-        dict of str to str
-            Remarks by title: the method of finding pairs.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> gp.TimeStepped(time_step=0.01).notes(scene, "pressure", paths=False)
-        {'boxes': 'none: a neighbour list'}
-        """
-        return {"boxes": "none: a neighbour list"}
-
     def variant(self, scene: Scene) -> str:
-        """Return the name of the compiled kernel variant for a scene.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-
-        Returns
-        -------
-        str
-            The name depends on the search, the precision, and whether there are several threads.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> gp.TimeStepped(time_step=0.01, threads=2).variant(scene)
-        'list-float64-threads'
-        """
+        """Return the name of the kernels for search, precision, and several threads."""
         search = "list" if self.boxes_per_side is None else "boxes"
         return f"{search}-{self.precision}" + ("-threads" if self.threads > 1 else "")
 
     def for_small_scene(self, scene: Scene) -> TimeStepped:
-        """Return settings with which a scene of few particles uses the same kernels.
-
-        Parameters
-        ----------
-        scene : Scene
-            The full scene.
-
-        Returns
-        -------
-        TimeStepped
-            The engine, with a single box if it uses boxes.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> gp.TimeStepped(time_step=0.01, boxes_per_side=4).for_small_scene(scene).boxes_per_side
-        1
-        """
+        """Return the engine, with a single box if it uses boxes."""
         return self if self.boxes_per_side is None else replace(self, boxes_per_side=1)
 
     def start(
@@ -467,43 +220,7 @@ class TimeStepped(Engine):
         seed: int | tuple[int, ...] = 0,
         tallies: Sequence[OptionalTally] = (),
     ) -> StepDynamics:
-        """Prepare the engine for a scene in an initial state.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-        state : State
-            State of its particles.
-        seed : int or tuple of int, default 0
-            Seed of thermal walls.
-        tallies : sequence of OptionalTally, optional
-            Optional tallies to accumulate.
-
-        Returns
-        -------
-        StepDynamics
-            The dynamics of the scene.
-
-        Raises
-        ------
-        SceneError
-            If the engine does not support the scene, or if the step is too long.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> state = gp.Simulation(scene, "dsmc", seed=1).state
-        >>> gp.TimeStepped(time_step=0.01).start(scene, state).time
-        0.0
-        """
+        """Prepare the engine; raises SceneError if the step is too long or the scene is not supported."""
         from gaspart.engines.step.dynamics import StepDynamics
 
         return StepDynamics(self, scene, state, seed, tallies)
-
-
-def _unit(scene: Scene) -> float:
-    """Return the time to cross a diameter at the thermal speed of a plain gas."""
-    gas = plain_gas(scene)
-    return gas.diameter / gas.thermal_speed

@@ -16,11 +16,11 @@ from gaspart.files import resolve_path
 from gaspart.reproduction.archive.limits import name_fault
 from gaspart.reproduction.claims import table
 from gaspart.reproduction.claims.table import fill_caption
-from gaspart.reproduction.config import check, merged_with_default
-from gaspart.reproduction.families.registry import caption
+from gaspart.reproduction.config import check, is_own, merged_with_default
 from gaspart.reproduction.jobs.simulate import recipes
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
 from gaspart.reproduction.points.points import figure_points
+from gaspart.reproduction.registry import caption
 from gaspart.trajectory.recipe import read_recipe
 from gaspart.yaml_text import read_yaml
 
@@ -254,6 +254,7 @@ def sources(run: Finished) -> Iterator[str]:
     for folder in folders(run):
         yield from _files(run.root, folder)
     yield from run.configs
+    yield from (block["module"] for block in run.config["figures"].values() if "module" in block)
     for name in scene_files(run.config):
         if name_fault(name):
             raise SceneError("scene", name, "must be in the project's folder for an archive")
@@ -306,7 +307,7 @@ def _caption(run: Finished, figure: str) -> str | None:
     None for a figure of a module: its caption is in another folder, and only the report contains it.
     """
     block = run.config["figures"][figure]
-    if "kind" in block:
+    if is_own(block):
         return caption(block)
     for root in (run.root, _OF_PACKAGE):
         if (path := root / f"workflow/report/{figure}.rst").is_file():

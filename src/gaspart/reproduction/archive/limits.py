@@ -6,10 +6,10 @@ import hashlib
 import os
 import struct
 from bisect import bisect_left as bisect
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import IO
-from zipfile import ZipInfo
+from zipfile import ZipFile
 
 from gaspart.errors import SceneError
 from gaspart.trajectory.opening import open_netcdf_file
@@ -85,21 +85,22 @@ def check_size(path: Path, stated: int, there: int) -> None:
         raise SceneError("archive", str(path), rule)
 
 
-def check_places(path: Path, file: IO[bytes], entries: Sequence[ZipInfo], end: int) -> None:
-    """Raise SceneError unless the entries of a zip file lie without gaps up to `end`.
+def check_layout(path: Path, source: IO[bytes], file: ZipFile) -> None:
+    """Raise SceneError unless the entries of a zip file lie without gaps, and nothing follows its end.
 
     Other programs might unpack data in the gaps. May raise struct.error for a truncated file.
     """
     at = gap = 0
-    for entry in sorted(entries, key=lambda entry: entry.header_offset):
+    for entry in sorted(file.infolist(), key=lambda entry: entry.header_offset):
         if not at <= entry.header_offset <= at + gap:
             break
         contents = entry.header_offset + _LENGTHS + 4
-        file.seek(entry.header_offset + _LENGTHS)
-        at = contents + sum(struct.unpack("<HH", file.read(4))) + entry.compress_size
+        source.seek(entry.header_offset + _LENGTHS)
+        at = contents + sum(struct.unpack("<HH", source.read(4))) + entry.compress_size
         gap = _DESCRIPTOR if entry.flag_bits & _HAS_DESCRIPTOR else 0
     else:
-        if at <= end <= at + gap:
+        source.seek(-_END_BYTES - len(file.comment), os.SEEK_END)
+        if at <= file.start_dir <= at + gap and source.read().startswith(_END):
             return
     raise SceneError("archive", str(path), "has bytes that belong to no entry, or to two")
 
@@ -120,13 +121,6 @@ def check_directory(path: Path, file: IO[bytes]) -> None:
                 if _DIRECTORY < length <= size:  # if the size exceeds the file, the zip reader reports it
                     raise SceneError("archive", str(path), "has a list of entries that is too long")
             offset = tail.find(mark, offset + 1)
-
-
-def check_end(path: Path, file: IO[bytes], comment: int) -> None:
-    """Raise SceneError if bytes follow the end of a zip file, which has a comment of this length."""
-    file.seek(-_END_BYTES - comment, os.SEEK_END)
-    if not file.read().startswith(_END):
-        raise SceneError("archive", str(path), "has bytes after its end")
 
 
 # SHA-256 digests of files, of the numbers in a trajectory, and of sets of files.

@@ -101,20 +101,16 @@ class Described:
 
     files : (size, digest) of each file of the archive, by path.
     summary : content of `run.json`.
-    jobs : rows of `jobs.csv`.
     captions : captions by path.
     claims : number of claims.
-    workflow : path of the Snakefile.
-    folders : folders of sources.
     """
 
+    run: contents.Finished
     files: Mapping[str, tuple[int, str]]
     summary: Mapping[str, Any]
     jobs: Sequence[tables.JobTime]
     captions: Mapping[str, str]
     claims: int
-    workflow: str
-    folders: Sequence[str]
 
 
 def metadata(described: Described, citation: Citation) -> str:
@@ -129,25 +125,21 @@ def metadata(described: Described, citation: Citation) -> str:
     files = {
         path: _add_file(crate, path, described)
         for path in described.files
-        if path != described.workflow and path.partition("/")[0] not in contents.FOLDERS
+        if path != described.run.workflow and path.partition("/")[0] not in contents.FOLDERS
     }  # folders of sources are described as a whole, not file by file
     folders = [
         crate.add_dataset(
             dest_path=f"{name}/", properties={"name": name, "description": contents.FOLDERS[name]}
         )
-        for name in described.folders
+        for name in contents.folders(described.run)
     ]
     workflow = _add_workflow(crate, described, citation, files)
     workflow["creator"] = creators
     run = _add_run(crate, workflow, described)
     run["agent"] = creators
     run["object"] = [files[path] for path in (tables.CONFIG, contents.LOCKED) if path in files] + folders
-    run["result"] = [file for path, file in files.items() if path.startswith(f"{_results(described)}/")]
+    run["result"] = [file for path, file in files.items() if path.startswith(f"{described.run.results}/")]
     return json.dumps(crate.metadata.generate(), indent=1, ensure_ascii=False) + "\n"
-
-
-def _results(described: Described) -> str:
-    return str(described.summary["results"])
 
 
 def _add_work(crate: Any, identity: str, name: str, **properties: str) -> Any:
@@ -189,7 +181,7 @@ def _sizes(described: Described, path: str) -> dict[str, str]:
 def _add_file(crate: Any, path: str, described: Described) -> Any:
     file_path = PurePosixPath(path)
     properties = {"name": file_path.name, **_sizes(described, path)}
-    caption = f"{_results(described)}/captions/{file_path.stem}.rst"
+    caption = f"{described.run.results}/captions/{file_path.stem}.rst"
     if path in _MEANINGS:
         properties["description"] = _MEANINGS[path]
     elif "figures" in file_path.parts and caption in described.captions:
@@ -202,11 +194,11 @@ def _add_file(crate: Any, path: str, described: Described) -> Any:
 
 def _add_workflow(crate: Any, described: Described, citation: Citation, files: Mapping[str, Any]) -> Any:
     """Add the Snakefile as main entity, with its input and output in this run."""
-    summary, results = described.summary, _results(described)
+    summary, results, path = described.summary, described.run.results, described.run.workflow
     version = f"{summary['gaspart']} ({summary['revision']})" if summary["revision"] else summary["gaspart"]
-    properties = {"name": citation.title, "version": version, **_sizes(described, described.workflow)}
+    properties = {"name": citation.title, "version": version, **_sizes(described, path)}
     workflow = crate.add_workflow(
-        dest_path=described.workflow,
+        dest_path=path,
         main=True,
         lang="snakemake",
         lang_version=summary["machine"]["packages"].get("snakemake"),
@@ -223,26 +215,26 @@ def _add_workflow(crate: Any, described: Described, citation: Citation, files: M
     }
     for role, parameters in roles.items():
         added = []
-        for name, path in parameters.items():
+        for name, file in parameters.items():
             parameter = crate.add_formal_parameter(name, "File", f"#{name}", valueRequired=role == "input")
-            parameter["workExample"], files[path]["exampleOfWork"] = files[path], parameter
+            parameter["workExample"], files[file]["exampleOfWork"] = files[file], parameter
             added.append(parameter)
         workflow[role] = _single(added)
     return workflow
 
 
 def _add_run(crate: Any, workflow: Any, described: Described) -> Any:
-    """Add the run, from its first job's start to its last job's end."""
-    ends = [
-        (datetime.fromisoformat(job.ended), timedelta(seconds=float(job.seconds))) for job in described.jobs
-    ]
+    """Add the run, which begins when its first job ended, less the CPU time of this job."""
+    jobs = sorted((datetime.fromisoformat(job.ended), float(job.cpu_seconds)) for job in described.jobs)
+    archived = datetime.fromisoformat(described.summary["archived"])
+    first, seconds = jobs[0] if jobs else (archived, 0.0)  # no jobs if the logs were deleted
     machine = described.summary["machine"]
     properties = {
         "name": f"Run of the workflow: {described.summary['title']}",
         "description": f"{len(described.jobs)} jobs; archived on {machine['processor']}, "
         f"{machine['processors']} processors, {machine['system']}",
-        "startTime": min(end - took for end, took in ends).isoformat(timespec="milliseconds"),
-        "endTime": max(end for end, _ in ends).isoformat(timespec="milliseconds"),
+        "startTime": (first - timedelta(seconds=seconds)).isoformat(timespec="milliseconds"),
+        "endTime": (jobs[-1][0] if jobs else archived).isoformat(timespec="milliseconds"),
     }
     run = crate.root_dataset["mentions"] = crate.add_action(workflow, "#run", properties=properties)
     return run

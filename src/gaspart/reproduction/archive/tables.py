@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from datetime import UTC, datetime
 from importlib.metadata import distributions
+from itertools import islice
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -66,14 +67,10 @@ class ClaimData(NamedTuple):
 
 
 class JobTime(NamedTuple):
-    """Row of `jobs.csv`: time in s, memory in MB and end in UTC of a job.
-
-    cpu_seconds, largest_memory : values that the job states; "" for a job of an older version.
-    """
+    """Row of `jobs.csv`: CPU time in s, peak memory in MB, and end in UTC of a job."""
 
     rule: str
     job: str
-    seconds: str
     cpu_seconds: str
     largest_memory: str
     ended: str
@@ -118,24 +115,20 @@ def claim_rows(run: Finished, files: Iterable[PointFile]) -> list[ClaimData]:
 
 
 def job_times(run: Finished) -> list[JobTime]:
-    """Return the time of each job of the run.
+    """Return time and memory of each job of the run, as its log states them.
 
-    The times are read from Snakemake's benchmarks and from the logs of the jobs. Points that the config no
-    longer has are left out.
+    Points that the config no longer has are left out.
     """
-    folder = run.root / run.results / "benchmarks"
+    folder = run.root / run.results / "logs"
     kept = {(point.experiment, point.name) for point in run.points}
     rows = []
-    for path in sorted(folder.rglob("*.tsv")):
+    for path in sorted(folder.rglob("*.log")):
         rule, *names = path.relative_to(folder).with_suffix("").parts
-        if rule in ("simulate", "compute") and tuple(names) not in kept:
-            continue
-        with path.open(newline="", encoding="utf-8") as file:
-            timed = next(csv.DictReader(file, delimiter="\t"))
-        ended = datetime.fromtimestamp(path.stat().st_mtime, UTC).isoformat(timespec="seconds")
-        own = job_time.read_used(run.root / run.results, rule, *names)
-        stated = (f"{own.seconds:.2f}", f"{own.memory:.1f}") if own else ("", "")
-        rows.append(JobTime(rule, "/".join(names), timed["s"], *stated, ended))
+        used = job_time.read_used(folder.parent, rule, *names)
+        if used and (rule not in ("simulate", "compute") or tuple(names) in kept):
+            ended = datetime.fromtimestamp(path.stat().st_mtime, UTC).isoformat(timespec="seconds")
+            numbers = f"{used.seconds:.2f}", f"{used.memory:.1f}"
+            rows.append(JobTime(rule, "/".join(names), *numbers, ended))
     return rows
 
 
@@ -154,20 +147,18 @@ def rows_of(text: str, columns: Sequence[str] = ()) -> list[dict[str, str]]:
     The table must have at least these columns. Raises ValueError if a column is missing, if a field has more
     than 131072 characters, or if there are more than `MOST_ROWS` rows.
     """
-    lines = csv.reader(io.StringIO(text, newline=""), strict=True)
-    rows: list[dict[str, str]] = []
+    lines = csv.DictReader(io.StringIO(text, newline=""), strict=True)
     try:
-        names = next(lines, [])
-        if missing := [name for name in columns if name not in names]:
-            raise ValueError(f"it has no column {missing[0]}")
-        for row in lines:
-            if len(row) != len(names):
-                raise ValueError(f"line {lines.line_num} has {len(row)} fields, where {len(names)} are named")
-            if len(rows) == MOST_ROWS:
-                raise ValueError(f"it has more than {MOST_ROWS} rows")
-            rows.append(dict(zip(names, row, strict=True)))
+        missing = [name for name in columns if name not in (lines.fieldnames or ())]
+        rows = list(islice(lines, MOST_ROWS + 1))
     except csv.Error as error:
         raise ValueError(f"line {lines.line_num}: {error}") from None
+    if missing:
+        raise ValueError(f"it has no column {missing[0]}")
+    if len(rows) > MOST_ROWS:
+        raise ValueError(f"it has more than {MOST_ROWS} rows")
+    if any(None in row or None in row.values() for row in rows):  # more or fewer fields than names
+        raise ValueError("it has rows of different lengths")
     return rows
 
 

@@ -100,9 +100,7 @@ class _Writer:
         self._add_text(tables.JOBS, tables.text_of(jobs, tables.JobTime._fields))
         self._add_text(tables.CONFIG, dump_yaml(run.config))
         self._add_text(tables.RUN, json.dumps(summary, indent=1, ensure_ascii=False) + "\n")
-        described = Described(
-            dict(self._files), summary, jobs, captions, len(claims), run.workflow, contents.folders(run)
-        )
+        described = Described(run, dict(self._files), summary, jobs, captions, len(claims))
         self._add_text(METADATA, metadata(described, read_citation(run.root / contents.CITATION)))
         check_names(run.root, self._files)
         lines = [f"{value}  {name}\n" for name, (_, value) in sorted(self._files.items())]

@@ -18,8 +18,7 @@ from gaspart.analysis import series
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.flow import Grid
 from gaspart.keys import POSITIVE, TEXT, count, describe, list_of, positive, record
-from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.figure import Blocks
+from gaspart.reproduction.figure import Blocks, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import table
 from gaspart.scene.species import Particle, Species
@@ -152,6 +151,7 @@ def profile(column: Field, stretch: Stretch, bins: int) -> tuple[np.ndarray, np.
 
 
 def column_settings(**columns: str) -> dict[str, Any]:
+    """Return the settings of `measure_columns`, with the meanings of further columns."""
     columns = {"dilute": "nearly an ideal gas", "dense": "at fluid densities at the floor"} | columns
     named = {name: describe(TEXT, meaning, default=None) for name, meaning in columns.items()}
     return {
@@ -180,9 +180,8 @@ INNER = {
 """Dimensions, in addition to point, of the arrays of a column."""
 
 
-def measure_columns(
-    points: list[Point], settings: dict, of_source: Callable[[Point], dict], reported: str
-) -> xr.Dataset:
+def measure_columns(points: list[Point], settings: dict, of_source: Callable[[Point], dict]) -> xr.Dataset:
+    """Measure columns of discs of one size; `of_source` returns further numbers of the column "source"."""
     names = {experiment: name for name, experiment in settings["columns"].items()}
 
     def row(point: Point) -> dict[str, Any]:
@@ -193,7 +192,7 @@ def measure_columns(
     low, high = np.array(settings["ranges"], dtype=float).T
     dataset = table("point", points, row, inner=INNER).set_coords("column")
     dataset = dataset.assign_coords(range_low=("range", low), range_high=("range", high))
-    return dataset.assign_attrs({name: settings[name] for name in ("clear", "source_collisions", reported)})
+    return dataset.assign_attrs(clear=settings["clear"], source_collisions=settings["source_collisions"])
 
 
 def _collisions(point: Point) -> float:

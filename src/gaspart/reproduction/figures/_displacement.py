@@ -30,6 +30,7 @@ SHORT_INTERVAL = 0.5
 # Collisions per particle between which the integral of C is compared with the msd's slope.
 GREEN_KUBO_FROM, GREEN_KUBO_TO = 8.0, 16.0
 REDUCED_TIME = "diameter sqrt(mass / temperature)"
+MODE_COUPLING = "hydrodynamic modes of the container, transport coefficients Enskog's (gaspart.theory.modes)"
 ABSENT = Estimate(math.nan, math.nan, math.nan)
 UNITS = {
     "side": "diameter",

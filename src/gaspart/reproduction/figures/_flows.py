@@ -15,13 +15,14 @@ import numpy as np
 import xarray as xr
 
 from gaspart import theory
+from gaspart.accuracy.advisers import adviser_of
 from gaspart.accuracy.estimates import Component
+from gaspart.accuracy.of_engine import AccuracyRequest, Candidate
 from gaspart.accuracy.option import Option
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import mean_of
-from gaspart.engines.engine import AccuracyRequest, Candidate
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared.runs import kurtosis, runs
+from gaspart.reproduction.figure import kurtosis, runs
 from gaspart.reproduction.figures._gap import Gap, averages
 from gaspart.reproduction.figures._tradeoff import (
     BOUND,
@@ -120,7 +121,7 @@ def _flow(
         candidate = Candidate(engine, discretisation=engine.bias(scene, "fluxes"))
     else:
         request = AccuracyRequest("heat_flux", 1.0, even_conditions(scene, 1.0), transported=True)
-        candidate = engine.candidate(request)
+        candidate = adviser_of(engine).candidate(request)
     numbers = value, variance, contacts, decay, decay
     return Flow(observable, fraction_of(point), candidate, scene.count, *numbers)
 

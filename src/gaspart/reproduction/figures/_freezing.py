@@ -19,7 +19,7 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import average, correlated_mean
 from gaspart.rendering import style
 from gaspart.rendering.style import Axes
-from gaspart.reproduction.families.shared.runs import runs, series_of
+from gaspart.reproduction.figure import runs, series_of
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, table
 

@@ -14,7 +14,7 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.flow import Grid
 from gaspart.analysis.series import Blocks
 from gaspart.analysis.statistics import steady_mean
-from gaspart.reproduction.families.shared.runs import runs
+from gaspart.reproduction.figure import runs
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.faces import thermal_face
 from gaspart.scene.scene import Scene

@@ -19,6 +19,7 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.accuracy import table
+from gaspart.accuracy.of_engine import Candidate
 from gaspart.accuracy.option import Option, fluid_option
 from gaspart.accuracy.table import PRECISIONS
 from gaspart.accuracy.tabulated import model_error
@@ -27,8 +28,7 @@ from gaspart.analysis.expected.equilibrium import expect
 from gaspart.analysis.observables import OBSERVABLES as declared
 from gaspart.analysis.statistics import jackknife, mean_of
 from gaspart.engines import DSMC, Engine, EventDriven, TimeStepped
-from gaspart.engines.engine import Candidate
-from gaspart.reproduction.families.shared.runs import runs, series_of
+from gaspart.reproduction.figure import runs, series_of
 from gaspart.reproduction.figures._timings import median
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row

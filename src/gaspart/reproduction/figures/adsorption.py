@@ -19,8 +19,7 @@ from gaspart.keys import count, positive
 from gaspart.rendering import style
 from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.figure import Blocks, Parts
+from gaspart.reproduction.figure import Blocks, Parts, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
 from gaspart.scene.faces import Well, thermal_face
@@ -33,7 +32,10 @@ TITLE, CHAPTER = "Walls that hold particles", "Gravity, heat and walls"
 SETTINGS = {
     "blocks": count("stretches of each replica"),
     "layer_blocks": count("the same of layers, in whose deep wells particles stay long"),
-    "near": positive("distance from the wall's edge within which velocities of leaving particles are read"),
+    "near": positive(
+        "distance from the edge of the well, or from where particles stick, within which the velocities of "
+        "leaving particles are read"
+    ),
     "bins": count("bins of their speeds"),
 }
 KINDS = ("ideal", "layer", "sticky")

@@ -23,8 +23,7 @@ from gaspart.keys import count
 from gaspart.rendering import style
 from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figure import Parts, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
 from gaspart.theory.boltzmann import relaxing_speeds, tagged_paths

@@ -31,9 +31,7 @@ from gaspart.keys import count, names
 from gaspart.rendering import style
 from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared import PARTICLES, SOURCE_C
-from gaspart.reproduction.families.shared.runs import pressure, runs
-from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figure import PARTICLES, SOURCE_C, Parts, pressure, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
 from gaspart.scene.gas import plain_gas

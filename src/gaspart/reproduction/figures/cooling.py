@@ -19,9 +19,7 @@ from gaspart.keys import count, names
 from gaspart.rendering import style
 from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared import PARTICLES
-from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figure import PARTICLES, Parts, runs
 from gaspart.reproduction.figures.equipartition import law, read
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, table

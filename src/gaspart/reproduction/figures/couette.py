@@ -24,8 +24,7 @@ from gaspart.keys import count, names, positive, record
 from gaspart.rendering import style
 from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figure import Parts, runs
 from gaspart.reproduction.figures._gap import Gap
 from gaspart.reproduction.figures.transport import ACCURATE, ENSKOG, FEW_PER_CENT, coefficient
 from gaspart.reproduction.points.point import Point

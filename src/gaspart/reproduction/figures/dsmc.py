@@ -26,8 +26,7 @@ from gaspart.keys import count, names, record
 from gaspart.rendering import style
 from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared.runs import series_of
-from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figure import Parts, series_of
 from gaspart.reproduction.figures._gap import Gap, averages
 from gaspart.reproduction.figures.msd_spheres import spheres
 from gaspart.reproduction.points.point import Point

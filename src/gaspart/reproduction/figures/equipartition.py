@@ -20,9 +20,7 @@ from gaspart.keys import positive
 from gaspart.rendering import style
 from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared import PARTICLES, SOURCE_C
-from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figure import PARTICLES, SOURCE_C, Parts, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
 from gaspart.scene.restitution import Restitution

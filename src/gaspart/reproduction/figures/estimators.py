@@ -22,8 +22,7 @@ from gaspart.keys import list_of, positive
 from gaspart.rendering import style
 from gaspart.rendering.style import Figure
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figure import Parts, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, table
 

@@ -24,8 +24,7 @@ from gaspart.keys import count, list_of, names, positive
 from gaspart.rendering import style
 from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared import PARTICLES
-from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figure import PARTICLES, Parts
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
 from gaspart.theory.packing import insertion_saturation_uncertainty

@@ -19,8 +19,7 @@ from gaspart.keys import POSITIVE, count, list_of, positive
 from gaspart.rendering import style
 from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figure import Parts, runs
 from gaspart.reproduction.figures._freezing import (
     EQUILIBRIUM_LIMIT,
     LOOKS,

@@ -18,8 +18,7 @@ from gaspart.analysis.statistics import correlated_mean, mean_of
 from gaspart.rendering import style
 from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared.runs import runs, series_of
-from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figure import Parts, runs, series_of
 from gaspart.reproduction.figures._freezing import (
     LOOKS,
     TOLERANCE,

@@ -35,13 +35,15 @@ _FALL = 0.3  # fraction of the time before the sample in which the oscillation i
 
 def measure_one_kind(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure density, temperature and pressure against height for one kind of discs."""
-    return measure_columns(points, settings, ringing, "source_temperature")
+    dataset = measure_columns(points, settings, ringing)
+    return dataset.assign_attrs(source_temperature=settings["source_temperature"])
 
 
 def measure_two_kinds(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure profiles of heavy and light discs, and the slope of their ratio."""
-    layers = len(settings["source_shares"])
-    return measure_columns(points, settings, lambda point: layer_fractions(point, layers), "source_shares")
+    shares = settings["source_shares"]
+    dataset = measure_columns(points, settings, lambda point: layer_fractions(point, len(shares)))
+    return dataset.assign_attrs(source_shares=shares)
 
 
 def ringing(point: Point) -> dict[str, Estimate]:

@@ -17,8 +17,7 @@ from gaspart.keys import count
 from gaspart.rendering import style
 from gaspart.rendering.style import Figure
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.figure import Blocks, Parts
+from gaspart.reproduction.figure import Blocks, Parts, runs
 from gaspart.reproduction.figures._columns import field
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, table

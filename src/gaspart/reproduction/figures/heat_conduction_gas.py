@@ -16,8 +16,7 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.keys import count, positive
 from gaspart.rendering import style
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.figure import Blocks, Parts
+from gaspart.reproduction.figure import Blocks, Parts, runs
 from gaspart.reproduction.figures._gap import Gap, averages
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table

@@ -19,8 +19,7 @@ from gaspart.analysis.statistics import fit_polynomial
 from gaspart.keys import count
 from gaspart.rendering import style
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.figure import Blocks, Parts
+from gaspart.reproduction.figure import Blocks, Parts, runs
 from gaspart.reproduction.figures._gap import Gap
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table

@@ -14,9 +14,9 @@ from gaspart.analysis.motion import Curves, line, mask_between
 from gaspart.rendering import style
 from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared import MODE_COUPLING
 from gaspart.reproduction.figure import Parts
 from gaspart.reproduction.figures import _displacement as shared
+from gaspart.reproduction.figures._displacement import MODE_COUPLING
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, table
 

@@ -17,8 +17,7 @@ from gaspart.errors import SceneError
 from gaspart.rendering import style
 from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared import ENSKOG_LIMIT
-from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figure import ENSKOG_LIMIT, Parts
 from gaspart.reproduction.figures import _displacement as shared
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, entries, table

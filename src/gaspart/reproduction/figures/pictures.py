@@ -16,8 +16,7 @@ from gaspart.rendering.particles import FASTEST, DrawnParticles, colours_of
 from gaspart.rendering.pictures import picture
 from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.runs import runs
-from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figure import Parts, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, entries
 from gaspart.scene.limits import ball_volume

@@ -31,8 +31,7 @@ from gaspart.analysis.statistics import average, correlated_mean, fit_power_law
 from gaspart.rendering import style
 from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared.runs import Series, combine, runs, series_of, totals
-from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figure import Parts, Series, combine, runs, series_of, totals
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, table
 from gaspart.scene.scene import Scene

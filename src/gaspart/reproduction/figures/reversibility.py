@@ -14,8 +14,7 @@ from gaspart.analysis.statistics import mean_of
 from gaspart.rendering import style
 from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared import PARTICLES
-from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figure import PARTICLES, Parts
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, table
 

@@ -16,9 +16,7 @@ from gaspart.keys import names, positive
 from gaspart.rendering import style
 from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared import PARTICLES
-from gaspart.reproduction.families.shared.runs import pressure
-from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figure import PARTICLES, Parts, pressure
 from gaspart.reproduction.figures._tradeoff import (
     NAMES,
     OBSERVABLES,

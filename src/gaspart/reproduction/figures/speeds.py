@@ -22,12 +22,12 @@ from gaspart.keys import POSITIVE, count, list_of, positive
 from gaspart.rendering import style
 from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared.runs import kurtosis, runs
-from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figure import Blocks, Parts, kurtosis, runs
 from gaspart.reproduction.points.point import Point
-from gaspart.reproduction.table import Table, table
+from gaspart.reproduction.table import Row, Table, table
 from gaspart.scene.gas import plain_gas
 from gaspart.scene.scene import Scene
+from gaspart.theory.entropy import ENTROPY_UNCERTAINTY, Energies, entropy_deficit, equal_speeds
 from gaspart.theory.speeds import RELAXATION_UNCERTAINTY
 
 TITLE, CHAPTER = "Speed distributions", "Motion and its memory"
@@ -78,7 +78,7 @@ def shared_means(samples: list[np.ndarray]) -> list[tuple[np.ndarray, np.ndarray
 
 
 def measure_relaxation(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure kurtosis, fraction never hit and histograms during relaxation, for each engine."""
+    """Measure kurtosis, fraction never hit, entropy and histograms during relaxation, for each engine."""
     groups = [[Velocities(run) for run in runs(point, 0)] for point in points]
     scene, time = points[0].scene, groups[0][0].time
     for point, group in zip(points, groups, strict=True):
@@ -95,9 +95,14 @@ def measure_relaxation(points: list[Point], settings: dict) -> xr.Dataset:
     }
 
     def row(engine: int) -> dict[str, Any]:
-        return {"replicas": len(groups[engine]), **{name: mean[engine] for name, mean in means.items()}}
+        return {
+            "replicas": len(groups[engine]),
+            "entropy_deficit": _entropy_deficit(groups[engine], grid),
+            **{name: mean[engine] for name, mean in means.items()},
+        }
 
-    over_time = dict.fromkeys(("collisions", "kurtosis", "never_hit", "temperature_drift"), ("frame",))
+    names = "collisions", "kurtosis", "never_hit", "temperature_drift", "entropy_deficit"
+    over_time = dict.fromkeys(names, ("frame",))
     inner = {**over_time, "density": ("snapshot", "bin")}
     dataset = table("engine", range(len(groups)), row, inner=inner, units={}, of=points)
     freedom = sum(len(group) - 1 for group in groups)
@@ -138,6 +143,25 @@ def _relaxing(run: Velocities, grid: Grid, frames: np.ndarray) -> dict[str, Any]
         "temperature_drift": np.abs(run.temperature / run.temperature[0] - 1.0),
         "initial_slope": float(np.linalg.lstsq(cubic, fourth[early] - 1.0, rcond=None)[0][0]),
     }
+
+
+def _entropy_deficit(replicas: list[Velocities], grid: Grid) -> Estimate:
+    """Measure the entropy below that of equilibrium (T,), of the pooled histograms of the replicas.
+
+    The expected bias of K occupied classes and n speeds, (K - 1) / 2n, is subtracted (Miller 1955).
+    """
+    edges = grid.edges[0]
+    dimension, count = replicas[0].velocities.shape[2], replicas[0].velocities.shape[1] * len(replicas)
+    below = theory.maxwell_cdf(edges, dimension, 1.0 / dimension)
+    expected = np.diff(np.append(below, 1.0))
+    shares = [np.array([_density(frame, grid) * grid.volume for frame in run.speeds]) for run in replicas]
+
+    def deficit(bins: np.ndarray) -> np.ndarray:
+        classes = np.append(bins, np.maximum(1.0 - bins.sum(axis=1, keepdims=True), 0.0), axis=1)
+        occupied = (classes > 0.5 / count).sum(axis=1)
+        return entropy_deficit(classes, expected) - (occupied - 1) / (2.0 * count)
+
+    return Blocks((share,) for share in shares)(deficit)
 
 
 def _density(speeds: np.ndarray, grid: Grid) -> np.ndarray:
@@ -234,18 +258,21 @@ def _kolmogorov_distance(cumulative: np.ndarray) -> float:
 
 
 BOLTZMANN = "homogeneous Boltzmann equation from equal speeds (gaspart.theory.boltzmann)"
+SOLVED = "homogeneous Boltzmann equation from equal speeds, on a grid (gaspart.theory.entropy)"
+GRID = "width of the cells of energy"
 MONTE_CARLO = "statistical error of the Monte Carlo solution"
 MAXWELL = "Maxwell's distribution (exact)"
 
 
 def claim_relaxation(dataset: xr.Dataset) -> Iterator[Claim]:
-    """Yield the claims on kurtosis and fraction never hit at source A's times, for each engine.
+    """Yield the claims on kurtosis, fraction never hit and entropy at source A's times, for each engine.
 
     The scatter of the runs includes the scatter of the number of collisions.
     """
     for gas in Table(dataset, "engine"):
         by, relaxation = f"({ENGINE_TITLES[gas.engine]} engine)", theory.relaxation(gas.dimension)
         frames = Table(gas.dataset, "frame")
+        solution, deficit = _expected_deficit(gas)
         for frame in frames[gas.shown]:
             s, when = frame.collisions.value, f"at t = {frame.time:g} {by}"
             yield Claim(
@@ -259,6 +286,13 @@ def claim_relaxation(dataset: xr.Dataset) -> Iterator[Claim]:
                 frame.never_hit, Estimate(relaxation.never_hit(s), RELAXATION_UNCERTAINTY), 0.005, BOLTZMANN,
                 "collisions that prefer some particles, or a wall that changes a speed",
                 allowance_source=MONTE_CARLO,
+            )  # fmt: skip
+            yield Claim(
+                f"entropy per particle below that of equilibrium {when}",
+                frame.entropy_deficit,
+                Estimate(np.interp(s, solution.collisions, deficit), ENTROPY_UNCERTAINTY), 0.01, SOLVED,
+                "speeds that do not gain entropy as molecular chaos requires",
+                allowance_source=GRID,
             )  # fmt: skip
         last = frames[-1]
         expected = relaxation.collisions(last.collision_rate * last.time)
@@ -316,13 +350,19 @@ def claim_distribution(dataset: xr.Dataset) -> Iterator[Claim]:
         )  # fmt: skip
 
 
+def _expected_deficit(gas: Row | Table) -> tuple[Energies, np.ndarray]:
+    """Solve the Boltzmann equation over the measured collisions; return its entropy deficit in these bins."""
+    solution = equal_speeds(float(np.ceil(gas.collisions.value.max())))
+    return solution, solution.deficit(np.append(gas.lower, gas.upper[-1]))
+
+
 SPEED, SIGMA = r"speed $v/\sqrt{\langle v^2\rangle}$", r"residual ($\sigma$)"
 
 
 def draw_relaxation(dataset: xr.Dataset) -> Figure:
-    """Draw histograms at the source's times, and kurtosis and fraction never hit against collisions."""
-    figure, axes = style.new((2.8,), (1.9, 1.0), (1.9, 1.0))
-    histograms, kurtoses, kurtosis_residual, unhit, unhit_residual = axes
+    """Draw histograms at the source's times; kurtosis, fraction never hit and entropy against collisions."""
+    figure, axes = style.new((2.8,), (1.9, 1.0), (1.9, 1.0), (1.9, 1.0))
+    histograms, kurtoses, kurtosis_residual, unhit, unhit_residual, entropies, entropy_residual = axes
     engines = Table(dataset, "engine")
     _histograms(histograms, engines)
     relaxation = theory.relaxation(engines.dimension)
@@ -336,12 +376,18 @@ def draw_relaxation(dataset: xr.Dataset) -> Figure:
     unhit.semilogy(s, relaxation.never_hit(s), color=style.DATA, zorder=2)
     _compare(kurtoses, kurtosis_residual, engines, "kurtosis", relaxation.kurtosis)
     _compare(unhit, unhit_residual, engines, "never_hit", relaxation.never_hit)
+    solution, deficit = _expected_deficit(engines)
+    shown = solution.collisions <= longest
+    entropies.semilogy(solution.collisions[shown], deficit[shown], color=style.DATA, zorder=2)
+    curve = lambda s: np.interp(s, solution.collisions, deficit)  # noqa: E731
+    _compare(entropies, entropy_residual, engines, "entropy_deficit", curve)
     for axis in axes[1:]:
         axis.set_xlim(0.0, longest)
     y = r"kurtosis $\langle v^4\rangle/\langle v^2\rangle^2$"
     style.label_axes(kurtoses, y=y, legend="lower right", ylim=(0.97, 1.76))
     style.label_axes(unhit, y="fraction never hit", legend="lower left")
-    style.letters(histograms, kurtoses, unhit)
+    style.label_axes(entropies, y=r"entropy $(S_\mathrm{eq}-S)/Nk$")
+    style.letters(histograms, kurtoses, unhit, entropies)
     return figure
 
 

@@ -27,9 +27,7 @@ from gaspart.keys import count, positive
 from gaspart.rendering import style
 from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared import PARTICLES
-from gaspart.reproduction.families.shared.runs import runs, series_of
-from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figure import PARTICLES, Parts, runs, series_of
 from gaspart.reproduction.figures.chemical_potential import (
     MEASURED,
     MeasuredState,

@@ -14,10 +14,10 @@ import numpy as np
 import xarray as xr
 
 from gaspart.accuracy import table
+from gaspart.accuracy.of_engine import Candidate
 from gaspart.accuracy.option import Option, fluid_option
 from gaspart.accuracy.table import PRECISIONS, REFERENCE, STEP
 from gaspart.analysis.estimate import Estimate
-from gaspart.engines.engine import Candidate
 from gaspart.keys import COUNT, POSITIVE, count, list_of, names
 from gaspart.rendering import style
 from gaspart.rendering.style import Axes, Figure

@@ -22,8 +22,7 @@ from gaspart.keys import positive
 from gaspart.rendering import style
 from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared import ENSKOG_LIMIT, PARTICLES
-from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figure import ENSKOG_LIMIT, PARTICLES, Parts
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
 from gaspart.scene.gas import plain_gas
@@ -128,10 +127,11 @@ def measure_growth(points: list[Point], settings: dict) -> xr.Dataset:
     `_modes` are shifted to the height of the integral where the comparison starts. `_short_waves` is the
     fraction of the growth that is due to waves of one to two mean free paths.
     """
-    return table("point", points, _growing, settings, **_FORM)
+    starts = {"viscosity": settings["viscosity_from"], "conductivity": settings["conductivity_from"]}
+    return table("point", points, _growing, starts, **_FORM)
 
 
-def _growing(point: Point, settings: dict) -> dict[str, Any]:
+def _growing(point: Point, starts: dict[str, float]) -> dict[str, Any]:
     gas, lengths = plain_gas(point.scene), point.scene.container.lengths
     if gas.dimension != 2 or gas.diameter != 1.0 or gas.temperature != 1.0:
         raise SceneError(f"experiments.{point.experiment}", "gas", "must be discs of diameter and k_B T 1")
@@ -145,7 +145,7 @@ def _growing(point: Point, settings: dict) -> dict[str, Any]:
             *((green_kubo(run, flux) / exact, lags) for run, lags in _runs(point)), strict=True
         )
         samples, time = np.concatenate(curves), _ends(lags[0])
-        late = rate * time >= settings[f"{name}_from"]
+        late = rate * time >= starts[name]
         modes, longer = (
             theory.transport_modes(time, eta, count, name, shortest)[late] / exact
             for shortest in (1.0, LONGER)

@@ -27,9 +27,8 @@ from gaspart.keys import POSITIVE, list_of, positive
 from gaspart.rendering import style
 from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim, Estimate
-from gaspart.reproduction.families.shared import MODE_COUPLING, PARTICLES
-from gaspart.reproduction.figure import Parts
-from gaspart.reproduction.figures._displacement import reduced_curves
+from gaspart.reproduction.figure import PARTICLES, Parts
+from gaspart.reproduction.figures._displacement import MODE_COUPLING, reduced_curves
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
 

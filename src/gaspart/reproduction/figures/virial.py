@@ -19,8 +19,7 @@ from gaspart.keys import count, flag, list_of, positive, record
 from gaspart.rendering import style
 from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.families.shared.runs import pressure
-from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.figure import Parts, pressure
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
 from gaspart.scene.gas import plain_gas

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
@@ -14,6 +16,13 @@ if TYPE_CHECKING:
 
 
 _NONE: Mapping = MappingProxyType({})
+MADE_BY = "made_by"
+"""Attribute of a data set of a point: the digest of the arguments of its job."""
+
+
+def digest_of(parameters: dict[str, Any]) -> str:
+    """Return the digest of the arguments of a job, as plain values."""
+    return hashlib.sha256(json.dumps(parameters, sort_keys=True).encode()).hexdigest()[:16]
 
 
 class PointData(NamedTuple):

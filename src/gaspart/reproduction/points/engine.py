@@ -112,6 +112,7 @@ def chosen(settings: dict, scene: Scene, where: str) -> dict:
     The choice is made for the machine of the table, so that a config has the same meaning everywhere. A
     length is set only if the point has no length. Raises SceneError.
     """
+    from gaspart.accuracy.advisers import adviser_of
     from gaspart.accuracy.plan import plan_from_table
     from gaspart.accuracy.table import EQUILIBRATION
 
@@ -124,7 +125,8 @@ def chosen(settings: dict, scene: Scene, where: str) -> dict:
         raise error.inside(where) from None
     merged = {key: value for key, value in settings.items() if key not in point_keys.ENGINE_KEYS["auto"]}
     engine = advice.best.engine
-    merged |= {"engine": engine.name, **engine.advised_settings()}
+    merged["engine"] = engine.name
+    merged |= {name: getattr(engine, name) for name in adviser_of(engine).advised}
     if not point_keys.LENGTHS.keys() & settings.keys():
         merged["collisions_per_particle"] = math.ceil(advice.collisions_per_particle)
         merged.setdefault("replicas", advice.replicas)

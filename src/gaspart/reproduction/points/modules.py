@@ -90,22 +90,24 @@ def _file(module: str) -> Path | None:
 
 
 @cache
-def digest(*roots: str | Path, others: tuple[Path, ...] = ()) -> str:
-    """Return a short digest of the files of a closure, and of other files.
+def digest(*roots: str | Path) -> str:
+    """Return a short digest of the files of a closure; a user's module has a path that ends in .py.
 
-    The other files belong to another installed package. Docstrings and comments do not change the digest.
+    Docstrings and comments do not change the digest.
     """
-    return _digest_of([*_in_order(closure(*roots)), *others])
+    own = {str(root): Path(root) for root in roots if isinstance(root, str) and root.endswith(".py")}
+    rest = (own.get(str(root), root) for root in roots)
+    return _digest_of([*_in_order(closure(*rest)), *own.values()])
 
 
 @cache
-def measuring_digest(module: str | Path, figure: str) -> str:
+def measuring_digest(module: str, figure: str) -> str:
     """Return a short digest of the code with which the module of a figure measures.
 
     This code is what its function `measure` needs: definitions in the module, and files that these import.
     Claims and drawing are no part of it.
     """
-    path = module if isinstance(module, Path) else _file(module)
+    path = Path(module) if module.endswith(".py") else _file(module)
     assert path is not None, module
     tree = ast.parse(_TYPES.sub("", path.read_text(encoding="utf-8")))
     definitions: dict[str, list[ast.stmt]] = {}
@@ -137,16 +139,16 @@ def _names_bound(node: ast.stmt) -> list[str]:
 
 
 def _measure_of(statements: list[ast.stmt], figure: str) -> ast.AST:
-    """Return `measure` in the `Parts` of a figure; all of `FIGURES` if the figure is not stated there."""
-    for node in ast.walk(ast.Module(statements, [])):
-        if not isinstance(node, ast.Dict):
-            continue
-        for key, value in zip(node.keys, node.values, strict=True):
-            if isinstance(key, ast.Constant) and key.value == figure and isinstance(value, ast.Call):
-                named = [keyword.value for keyword in value.keywords if keyword.arg == "measure"]
-                if len(value.args) > 1 or named:
-                    return value.args[1] if len(value.args) > 1 else named[0]
-    return ast.Module(statements, [])
+    """Return `measure` in the `Parts` of a figure, or of all figures if it is not stated there."""
+    nodes = list(ast.walk(ast.Module(statements, [])))
+    tables = [node for node in nodes if isinstance(node, ast.Dict)]
+    entries = [entry for table in tables for entry in zip(table.keys, table.values, strict=True)]
+    own = [value for key, value in entries if isinstance(key, ast.Constant) and key.value == figure]
+    calls = [node for node in own or nodes if isinstance(node, ast.Call)]
+    stated = [call for call in calls if ast.unparse(call.func).endswith("Parts")]
+    measures = [keyword.value for call in stated for keyword in call.keywords if keyword.arg == "measure"]
+    measures += [call.args[1] for call in stated if len(call.args) > 1]
+    return ast.Module([ast.Expr(measure) for measure in measures] or statements, [])
 
 
 @cache

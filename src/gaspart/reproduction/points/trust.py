@@ -2,22 +2,12 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 from importlib import import_module
 from pathlib import Path
-from typing import Any
 
 from gaspart.errors import SceneError
+from gaspart.reproduction.jobs.data import MADE_BY, digest_of
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
-
-MADE_BY = "made_by"
-"""Attribute of a data set of a point: the digest of the arguments of its job."""
-
-
-def digest_of(parameters: dict[str, Any]) -> str:
-    """Return the digest of the arguments of a job, as plain values."""
-    return hashlib.sha256(json.dumps(parameters, sort_keys=True).encode()).hexdigest()[:16]
 
 
 def require_own(point: Point) -> None:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gaspart.reproduction.families import registry
+from gaspart.reproduction import registry
 from gaspart.theory.state import compressibility_factor
 from gaspart.theory.virial import HIGHEST_ORDER, partial_sum
 from gaspart.yaml_text import read_yaml

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from gaspart.reproduction.claims import counts
 from gaspart.reproduction.claims.table import fill_caption
-from gaspart.reproduction.families.registry import chapter
+from gaspart.reproduction.registry import chapter
 
 if TYPE_CHECKING:
     from docutils import nodes

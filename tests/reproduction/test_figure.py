@@ -1,3 +1,4 @@
+import os
 from pathlib import Path
 
 import numpy as np
@@ -5,15 +6,18 @@ import pytest
 
 from gaspart import run, theory
 from gaspart.errors import SceneError
-from gaspart.reproduction.families.shared.runs import (
+from gaspart.reproduction.figure import (
     COUNTED,
     Series,
     combine,
+    content_key,
+    find_parts,
     pressure,
     runs,
     series_of,
 )
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.registry import families, home
 
 
 def small_point(tmp_path, **settings):
@@ -104,3 +108,21 @@ def test_replicas_that_agree_have_a_small_chi_square_and_others_do_not():
     apart = combine([made_up(2.0 + 0.1 * seed, 0.1, seed) for seed in range(6)])
     assert apart.chi_square > 40.0  # 5 degrees of freedom: a chance of 1e-7
     assert alike.counters["collisions"] == 6 * 64
+
+
+def test_a_key_of_content_follows_files_and_settings_alone(tmp_path):
+    folder, file = tmp_path / "point", tmp_path / "point.nc"
+    folder.mkdir()
+    (folder / "replica-0.nc").write_bytes(b"frames")
+    file.write_bytes(b"numbers")
+    key = content_key([folder, file], {"bins": 3})
+    os.utime(file, (0, 0))
+    assert content_key([folder, file], {"bins": 3}) == key
+    assert content_key([file, folder], {"bins": 3}) != key != content_key([folder, file], {"bins": 4})
+    (folder / "replica-0.nc").write_bytes(b"other frames")
+    assert content_key([folder, file], {"bins": 3}) != key
+
+
+@pytest.mark.parametrize("figure", families())
+def test_the_parts_of_each_figure_are_found(figure):
+    assert callable(find_parts(home(families()[figure]), figure).measure)

@@ -1,4 +1,4 @@
-"""Bounds on the errors of the DSMC engine in a steady scene, from local conditions.
+"""Adviser of the DSMC engine: bounds on its errors in a steady scene, from local conditions.
 
 The Boltzmann model neglects the excluded volume: it sets the contact value to 1, and the virial and the
 distance between collision partners to 0. The Enskog model uses the contact value at the local density. It
@@ -9,16 +9,16 @@ the layers of particles at walls. Both models average over the variations of the
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import ClassVar
 
 import numpy as np
 
-from gaspart.engines.engine import AccuracyRequest, Candidate
+from gaspart.accuracy.of_engine import AccuracyRequest, Adviser, Candidate
+from gaspart.engines.dsmc.settings import DSMC, MODELS
 from gaspart.errors import SceneError
-
-if TYPE_CHECKING:
-    from gaspart.engines.dsmc.settings import DSMC
-    from gaspart.theory.conditions import Conditions
+from gaspart.scene.scene import Scene
+from gaspart.theory.conditions import Conditions
 
 DENSEST = 0.4
 """Maximum packing fraction up to which the errors of the Enskog model are known."""
@@ -42,21 +42,70 @@ cell.
 """
 
 
-def candidate(engine: DSMC, request: AccuracyRequest) -> Candidate:
-    """Choose cells and step of the engine, and bound its errors.
+class DsmcAdviser(Adviser[DSMC]):
+    """Adviser of the DSMC engine."""
 
-    Raises SceneError if the cells or the step are too coarse for the local conditions, or if the gas is too
-    dense for the Enskog model.
-    """
-    conditions, dense = request.conditions, engine.model == "enskog"
-    filled = float(conditions.filled.max())
-    if dense and filled > DENSEST:
-        rule = f"the Enskog model is known up to {DENSEST:g}, also where the gas is densest"
-        raise SceneError("packing_fraction", round(filled, 4), rule)
-    resolved = engine.for_scene(request.scene)
-    require_resolved(resolved, conditions)
-    model = enskog_error(request, cells_of(resolved, conditions)) if dense else boltzmann_error(request)
-    return Candidate(engine, model, cell_error(resolved, request))
+    timed_at: ClassVar[tuple[float, float]] = (0.01, 1.0)
+    advised: ClassVar[tuple[str, ...]] = ("model",)
+    pairs: ClassVar[str] = "cells, whose particles collide by chance: positions of pairs are given up"
+
+    @staticmethod
+    def variants(kind: type[DSMC]) -> tuple[DSMC, ...]:
+        """Return an engine for each collision model."""
+        return tuple(kind(model=model) for model in MODELS)
+
+    def candidate(self, request: AccuracyRequest) -> Candidate:
+        """Return the engine with its default cells and step, and bounds on its errors.
+
+        Raises SceneError if the cells or the step are too coarse for the local conditions, or if the gas is
+        too dense for the Enskog model.
+        """
+        conditions, dense = request.conditions, self.engine.model == "enskog"
+        filled = float(conditions.filled.max())
+        if dense and filled > DENSEST:
+            rule = f"the Enskog model is known up to {DENSEST:g}, also where the gas is densest"
+            raise SceneError("packing_fraction", round(filled, 4), rule)
+        resolved = self.engine.for_scene(request.scene)
+        require_resolved(resolved, conditions)
+        model = enskog_error(request, cells_of(resolved, conditions)) if dense else boltzmann_error(request)
+        return Candidate(self.engine, model, cell_error(resolved, request))
+
+    @property
+    def timed_as(self) -> str:
+        """Name of the collision model in the table of costs."""
+        model = self.engine.model
+        return self.engine.name if model == "boltzmann" else f"{self.engine.name} {model}"
+
+    def timed_step(self, scene: Scene) -> float:
+        """Return the step divided by the default step."""
+        return (self.engine.for_scene(scene).time_step or 0.0) / self._own_step(scene)
+
+    def at_step(self, scene: Scene, step: float, precision: str) -> DSMC:
+        """Return a copy with a step in default steps."""
+        return self.engine.for_scene(scene).with_step(step * self._own_step(scene))
+
+    def _own_step(self, scene: Scene) -> float:
+        return replace(self.engine, time_step=None).for_scene(scene).time_step or math.inf
+
+    @property
+    def limitations(self) -> str:
+        """Limitations of the model, and of all DSMC models."""
+        lacks = {"boltzmann": "excluded volume", "enskog": "correlated collisions"}
+        return f"{lacks[self.engine.model]}, positions of pairs"
+
+    def describe(self) -> str:
+        """Return the name with the model, and the step if it is known."""
+        step = "" if self.engine.time_step is None else f", time_step {self.engine.time_step:.4g}"
+        return f"{self.engine.name}, model {self.engine.model}{step}"
+
+    def notes(self, scene: Scene, observable: str, paths: bool) -> dict[str, str]:
+        """Return also the effect of a step that is longer than the default."""
+        remarks, step = super().notes(scene, observable, paths), self.engine.time_step
+        longer = 1.0 if step is None else step / self._own_step(scene)
+        if longer >= 1.5:
+            effect = "which the bias includes" if paths else f"on which {observable} does not depend"
+            remarks["time step"] = f"{longer:.2g} times the engine's own, {effect}"
+        return remarks
 
 
 def boltzmann_error(request: AccuracyRequest) -> float:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from reproduction.families.drawn import Points, draw, lines, shows
+from reproduction.figures.drawn import Points, draw, lines, shows
 
 import gaspart as gp
 from gaspart.analysis import measuring
@@ -18,8 +18,8 @@ from gaspart.analysis.observables import OBSERVABLES, observables_with
 from gaspart.errors import SceneError
 from gaspart.reproduction.claims import judge
 from gaspart.reproduction.config import check
-from gaspart.reproduction.families.own import caption, figure, measure
-from gaspart.reproduction.families.own.claims import APPROXIMATE, observable
+from gaspart.reproduction.figures import own
+from gaspart.reproduction.figures.own import APPROXIMATE, caption
 from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.points import figure_points
 
@@ -65,6 +65,10 @@ CONFIG = {
 }
 
 
+def observable(dataset, stated):
+    return list(own.claims(dataset, stated))
+
+
 def changed(**settings):
     config = copy.deepcopy(CONFIG)
     config["figures"]["my_gas"] = {**SETTINGS, **settings}
@@ -84,7 +88,7 @@ def simulated(tmp_path_factory):
 
 def measured(points, **settings):
     settings = {**SETTINGS, **settings}
-    dataset = measure.observable(points, settings)
+    dataset = own.measure(points, settings)
     return dataset.assign_attrs(settings=json.dumps(settings))
 
 
@@ -119,7 +123,7 @@ def test_an_exponent_and_a_theory_of_unknown_uncertainty():
         | {"theory": at**0.5, "theory_error": np.nan}
         for at in x
     ]
-    dataset = measure.from_rows("point", rows).assign_attrs(observable="D", against="count", source="Enskog")
+    dataset = own.from_rows("point", rows).assign_attrs(observable="D", against="count", source="Enskog")
     power = {"that": "exponent", "tolerance": 0.05, "source": "free flight", "fails_if": "it is not"}
     verdicts = {value: judge(observable(dataset, [{**power, "value": value}])) for value in (0.5, 1.0)}
     assert verdicts == {0.5: ["agrees"], 1.0: ["disagrees"]}
@@ -132,10 +136,10 @@ def test_an_exponent_and_a_theory_of_unknown_uncertainty():
 
 def test_numbers_are_drawn_with_theory(simulated):
     dataset = measured(simulated)
-    (axis,) = draw(figure.observable, dataset).axes
+    (axis,) = draw(own.draw, dataset).axes
     shows(axis, Points(dataset["against"], dataset["value"], dataset["value_error"]))
     assert np.allclose(lines(axis)[0].get_ydata(), dataset["theory"])
-    (plain,) = draw(figure.observable, measured(simulated, theory=False, logarithmic="both")).axes
+    (plain,) = draw(own.draw, measured(simulated, theory=False, logarithmic="both")).axes
     assert not lines(plain)
     assert plain.get_xscale() == plain.get_yscale() == "log"
 
@@ -143,7 +147,7 @@ def test_numbers_are_drawn_with_theory(simulated):
 def test_a_curve_is_drawn_for_each_point_and_may_be_taken_at_one_place(simulated):
     dataset = measured(simulated, observable="rdf")
     assert dataset["value"].dims == ("point", "along")
-    (axis,) = draw(figure.observable, dataset).axes
+    (axis,) = draw(own.draw, dataset).axes
     drawn = lines(axis)[2]  # after the first curve and its theory
     assert np.array_equal(drawn.get_ydata(), dataset["value"][1], equal_nan=True)
     contact = measured(simulated, observable="rdf", place=1.0)
@@ -169,7 +173,7 @@ def test_an_observable_with_names_has_a_series_for_each(simulated, monkeypatch):
     faces = {"face": (np.array(["y high", "y low"]), {})}
     values, errors = np.array([1.0, 2.0]), np.array([0.1, 0.2])
     one = made("pressure", faces, values, errors, units="1", long_name="pressure", theory=(1.5, np.nan))
-    monkeypatch.setattr(measure, "measure_point", lambda *_, **__: ({"pressure": [one, one]}, 1.0, {}))
+    monkeypatch.setattr(own, "measure_point", lambda *_, **__: ({"pressure": [one, one]}, 1.0, {}))
     dataset = measured(simulated, observable="pressure")
     assert dataset["series"].values.tolist() == ["y high"] * 2 + ["y low"] * 2
     assert dataset["value"].values.tolist() == [1.0, 1.0, 2.0, 2.0]
@@ -229,6 +233,36 @@ def test_a_name_of_the_package_is_not_one_of_ones_own():
     with pytest.raises(SceneError, match="kind: observable"):
         check({**CONFIG, "figures": {"my_gas": {"experiments": ["gas"]}}})
     check({**CONFIG, "figures": {}})
+
+
+MODULE = """
+from gaspart.keys import count
+from gaspart.reproduction.figure import Parts
+
+FIGURES = {"mine": Parts({"order": count("the order", default=2)}, None, None, None)}
+"""
+
+
+def test_a_figure_may_have_a_module_beside_the_config(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.py").write_text(MODULE)
+    (tmp_path / "broken.py").write_text("1 / 0")
+
+    def checked(**settings):
+        figures = {"mine": {"module": "mine.py", "experiments": ["gas"], **settings}}
+        return check({**copy.deepcopy(CONFIG), "figures": figures})
+
+    assert len(checked(order=3, caption="**Mine.** Text")["gas"]) == 2
+    for settings, complaint in (
+        ({"order": 0}, "figures.mine.order = 0: must be"),
+        ({"width": 1}, "figures.mine.width = 1: unknown key"),
+        ({"caption": "{{Z"}, "figures.mine.caption = .*: {{ is not closed"),
+        ({"module": "../mine.py"}, "figures.mine.module = '../mine.py': must"),
+        ({"module": "absent.py"}, "figures.mine.module = 'absent.py': must have .* FileNotFoundError"),
+        ({"module": "broken.py"}, "figures.mine.module = 'broken.py': must have .* ZeroDivisionError"),
+    ):
+        with pytest.raises(SceneError, match=complaint):
+            checked(**settings)
 
 
 def test_a_viscosity_needs_frames_of_a_run_with_correlations_of_the_stress(tmp_path):
