@@ -19,8 +19,8 @@ async function session(Gas, startOf, data, steps) {
   return results;
 }
 if (typeof process !== "undefined") {  // arguments: gas.js, the data of a page, steps
-  const fs = await import("node:fs"), { createRequire } = await import("node:module");
+  const fs = await import("node:fs"), { inflateSync } = await import("node:zlib"), { createRequire } = await import("node:module");
   const [script, page, steps] = process.argv.slice(2), { Gas, dataOf, startOf } = createRequire(script)(script);
-  const data = await dataOf(fs.readFileSync(page, "utf8"));
+  const data = dataOf(new Uint8Array(inflateSync(Buffer.from(fs.readFileSync(page, "utf8"), "base64"))));
   console.log(JSON.stringify(await session(Gas, startOf, data, JSON.parse(fs.readFileSync(steps)))));
 }

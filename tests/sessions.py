@@ -6,8 +6,6 @@ import random
 import shutil
 import subprocess
 import time
-import zlib
-from base64 import b64encode
 from dataclasses import replace
 from pathlib import Path
 
@@ -31,7 +29,7 @@ def page_data(scene, folder):
     finally:
         play._densities = every
     path = folder / "data.txt"
-    path.write_text(b64encode(zlib.compress(json.dumps(content).encode())).decode())
+    path.write_text(play._packed(content))
     return path
 
 

@@ -99,14 +99,14 @@ def test_the_partition_function_of_discs_has_no_unit_with_two_powers_of_h_only()
 
 
 @pytest.mark.thorough
-def test_slowly_growing_spheres_pass_the_63_per_cent_of_source_a():
-    side = (256 * pi / 6.0 / 0.6) ** (1.0 / 3.0)
+def test_slowly_growing_spheres_pass_63_per_cent_and_end_at_the_densest_packing():
+    side = (108 * pi / 6.0 / 0.6) ** (1.0 / 3.0)
     container = gp.Container(lengths=(side, side, side), boundary="periodic")
     scene = gp.Scene(
-        container=container, species=[gp.Species(count=256, radius=0.5, arrangement="compressed")]
+        container=container, species=[gp.Species(count=108, radius=0.5, arrangement="compressed")]
     )
-    packing = compress(scene, 1, GROWTH / 32.0, until="jammed")
-    assert 0.66 < packing.packing_fraction < pi / sqrt(18.0)
+    packing = compress(scene, (2,), GROWTH / 32.0, until="jammed")
+    assert packing.packing_fraction == pytest.approx(pi / sqrt(18.0), abs=1e-5)  # [Hales 2005]
 
 
 def test_two_shells_of_half_boxes_hold_every_partner_at_the_cost_that_the_page_states():

@@ -46,7 +46,7 @@ def test_wrong_positions(runs):
     ideal = replace(good, positions=rng.random(good.positions.shape) * good.lengths, counted=None)
     found = verdicts(ideal)
     assert found["overlaps"] is False and found["pressure Z"] is False
-    near = good.positions.copy()
+    near = np.array(good.positions)
     near[3, 5] = near[3, 6] + [0.0, 0.0, 1.0 - 1e-3]
     assert verdicts(replace(good, positions=near % good.lengths))["overlaps"] is False
     assert verdicts(replace(good, positions=near % good.lengths), tolerance=1.0)["overlaps"] is True
@@ -55,7 +55,7 @@ def test_wrong_positions(runs):
 @pytest.mark.parametrize("resolution", [0.3, 1.0, 1e6])
 def test_a_coarse_file_does_not_excuse_spheres_at_one_place(runs, resolution):
     good = runs["spheres"]
-    near = good.positions.copy()
+    near = np.array(good.positions)
     near[3, 5] = near[3, 6]
     found = judge(replace(good, positions=near, resolution=resolution))[0]
     assert found.name == "overlaps" and found.passed is False and "1 of a contact distance" in found.text
@@ -64,7 +64,7 @@ def test_a_coarse_file_does_not_excuse_spheres_at_one_place(runs, resolution):
 def test_particles_behind_walls(runs):
     good = replace(runs["discs"], periodic=(False, False))
     assert verdicts(good)["container"] is True
-    out = good.positions.copy()
+    out = np.array(good.positions)
     out[-1, 0, 1] = -0.01
     assert verdicts(replace(good, positions=out))["container"] is False
 

@@ -142,27 +142,27 @@ def test_one_frame_is_judged_by_its_places_only(good):
 
 @pytest.mark.parametrize("isolated", [True, False])
 def test_one_speed_that_is_one_per_cent_off(good, isolated):
-    velocities = good.velocities.copy()
+    velocities = np.array(good.velocities)
     velocities[20:, 7] *= 1.01
     found = outcome(replace(good, velocities=velocities, isolated=isolated))
     assert found["energy"] is False and found["momentum"] is False
 
 
 def test_all_speeds_one_per_cent_off(good):
-    assert outcome(replace(good, velocities=1.01 * good.velocities))["flights"] is False
+    assert outcome(replace(good, velocities=1.01 * np.array(good.velocities)))["flights"] is False
     assert outcome(replace(good, time=1.01 * good.time))["flights"] is False
 
 
 def test_a_missing_momentum(good):
-    velocities = good.velocities.copy()
+    velocities = np.array(good.velocities)
     velocities[11:, 3, 0] *= -1.0  # the energy stays
     found = outcome(replace(good, velocities=velocities))
     assert found["momentum"] is False and found["energy"] is True
 
 
 def test_an_overlap_of_a_millionth(good):
-    exact = replace(good, positions=good.positions[:1] + 0.0, velocities=None, time=None, resolution=0.0)
-    pair = exact.positions.copy()
+    exact = replace(good, positions=np.array(good.positions[:1]), velocities=None, time=None, resolution=0.0)
+    pair = np.array(exact.positions)
     pair[0, 0] = pair[0, 1] + [1.0 - 1e-6, 0.0, 0.0]
     keep = np.ones(good.count, dtype=bool)
     gap = pair[0] - pair[0, 0]

@@ -1,5 +1,7 @@
 """Trajectories as other programs write them, and files that are none."""
 
+import tracemalloc
+
 import netCDF4
 import numpy as np
 import pytest
@@ -7,6 +9,7 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart.cli import main
+from gaspart.inspection.checks import judge
 from gaspart.inspection.readers import read_frames
 
 SIDES = np.array([6.0, 7.0, 8.0])
@@ -156,3 +159,33 @@ def test_other_numbers_of_a_plain_file_are_not_sizes(tmp_path, comment, fifth):
     path.write_text(f"1\n{comment}\nA 1 1 1 {fifth}\n")
     with pytest.raises(gp.SceneError, match="lengths|radius"):
         read_frames(path)
+
+
+def test_a_run_is_checked_in_blocks_with_the_same_results(tmp_path, monkeypatch):
+    """The lines of checks do not depend on how many frames, or paths, are in memory at once."""
+    path = gp.run(gas(3, 60, 0.1), gp.EventDriven(), 1, 12.0, 0.1, tmp_path / "a.nc")
+    lines = [str(check) for check in judge(read_frames(path))]
+    assert sum(line.startswith("ok") for line in lines) >= 5
+    monkeypatch.setattr("gaspart.inspection.frames._BLOCK", 400)
+    monkeypatch.setattr("gaspart.inspection.statistics._NUMBERS", 3000)
+    frames = read_frames(path)
+    assert [str(check) for check in judge(frames)] == lines
+    assert np.array_equal(np.asarray(frames.positions), np.array([frames.positions[n] for n in range(121)]))
+    assert len(frames.positions[::2]) == 61 and frames.positions[-1] is frames.positions[120]
+
+
+@pytest.mark.thorough
+def test_the_memory_of_a_check_does_not_grow_with_a_run(tmp_path, monkeypatch):
+    for name, number in ("frames._BLOCK", 20_000), ("statistics._NUMBERS", 50_000):
+        monkeypatch.setattr(f"gaspart.inspection.{name}", number)
+    monkeypatch.setattr("gaspart.trajectory.amber._CHUNK", 200_000)
+    scene, times = gas(3, 200, 0.1), (2.0, 14.0)
+    paths = [gp.run(scene, gp.EventDriven(), 1, t, 0.02, tmp_path / f"{t}.nc") for t in times]
+    peaks = []
+    for path in [paths[0], *paths]:  # once more, for imports
+        tracemalloc.start()
+        judge(read_frames(path))
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    grown = paths[1].stat().st_size - paths[0].stat().st_size
+    assert grown > 3e6 and peaks[2] - peaks[1] < 0.3 * grown, (peaks, grown)

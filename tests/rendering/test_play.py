@@ -132,7 +132,7 @@ byId("link").click(); await ready();
 const kept = gas.state, { hash } = location;
 await steps(5);
 const saved = JSON.parse(decodeURIComponent(hash.slice(7)));
-seen.kept = doublesOf(saved.positions).every((x, n) => x === kept.positions[n]);
+seen.kept = new Float64Array(bytesOf(saved.positions).buffer).every((x, n) => x === kept.positions[n]);
 seen.over = over();
 return seen;
 """

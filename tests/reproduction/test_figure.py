@@ -11,11 +11,13 @@ from gaspart.reproduction.figure import (
     Series,
     combine,
     content_key,
+    find_parts,
     pressure,
     runs,
     series_of,
 )
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.registry import families, home
 
 
 def small_point(tmp_path, **settings):
@@ -119,3 +121,8 @@ def test_a_key_of_content_follows_files_and_settings_alone(tmp_path):
     assert content_key([file, folder], {"bins": 3}) != key != content_key([folder, file], {"bins": 4})
     (folder / "replica-0.nc").write_bytes(b"other frames")
     assert content_key([folder, file], {"bins": 3}) != key
+
+
+@pytest.mark.parametrize("figure", families())
+def test_the_parts_of_each_figure_are_found(figure):
+    assert callable(find_parts(home(families()[figure]), figure).measure)

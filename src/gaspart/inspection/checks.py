@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +17,7 @@ from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
 from gaspart.inspection.conserved import judge_conserved, judge_flights
 from gaspart.inspection.energy import conserved_energy
-from gaspart.inspection.frames import Frames
+from gaspart.inspection.frames import Frames, Rows, map_frames, read_in_blocks
 from gaspart.inspection.statistics import (
     FIT_ERROR,
     SPEEDS,
@@ -92,7 +91,7 @@ def _allowed_overlap(frames: Frames, tolerance: float | None) -> float:
     if (
         step and frames.velocities is not None
     ):  # a pair that a step has pushed together separates in later steps
-        coarse = max(coarse, 2.0 * math.sqrt(float(frames.squares.max())) * step / diameter)
+        coarse = max(coarse, 2.0 * math.sqrt(float(frames.squares.largest.max())) * step / diameter)
     return coarse if tolerance is None else tolerance
 
 
@@ -139,7 +138,7 @@ def _overlap_bounds(frame: Frames) -> tuple[float, float]:
     if reach > 0.5 * float(sides.min()):
         return 0.0, math.inf
     bins = min(8 * frame.count, _BINS)
-    counts = pair_counts(frame.positions, sides, bins, reach)
+    counts = pair_counts(np.asarray(frame.positions), sides, bins, reach)
     if not counts.any():
         return 0.0, 0.0
     nearest = int(np.argmax(counts > 0))
@@ -152,13 +151,16 @@ def _inside(frames: Frames, tolerance: float | None) -> Check:
     walls = ~np.array(frames.periodic)
     if not walls.any():
         return Check("container", None, "periodic, so that nothing can leave it")
-    lengths = frames.lengths if frames.lengths_by_frame is None else frames.lengths_by_frame[:, None]
-    positions, lengths = frames.positions[:, :, walls], lengths[..., walls]
-    there = np.isfinite(positions)
-    out = float(np.maximum(-positions, positions - lengths).max(where=there, initial=0.0))
+    sides = frames.lengths[None] if frames.lengths_by_frame is None else frames.lengths_by_frame
+    out, halfway = 0.0, True
+    for n, frame in enumerate(frames.positions):
+        positions, lengths = frame[:, walls], sides[n % len(sides), walls]
+        beyond = np.maximum(-positions, positions - lengths)
+        out = max(out, float(beyond.max(where=np.isfinite(positions), initial=0.0)))
+        halfway = halfway and bool((np.abs(positions) <= 0.5 * lengths).all())
     out /= 2.0 * float(frames.radii.min())
     text = "all centres are inside" if out <= 0.0 else f"a centre is {out:.2g} diameters outside"
-    if out > 0.0 and (np.abs(positions) <= 0.5 * lengths).all():
+    if out > 0.0 and halfway:
         text += "; all are inside if 0 is the centre of the container: give --origin centre"
     return Check("container", out <= _allowed_overlap(frames, tolerance), text)
 
@@ -177,11 +179,10 @@ def _pressure(frames: Frames) -> Check:
     gas = frames.gas
     assert gas is not None, "see `_no_pressure`"
     eta, d = gas.packing_fraction, gas.dimension
-    way, spacing = frames.path, frames.spacing
-    first = first_relaxed_frame(way, spacing)
+    first = first_relaxed_frame(frames)
     if first is None:
-        return Check(name, None, describe_motion(way, spacing))
-    chosen = np.array(decorrelated_frames(way, WIDTH * gas.diameter, first))
+        return Check(name, None, describe_motion(frames))
+    chosen = np.array(decorrelated_frames(frames.paths(), WIDTH * gas.diameter, first))
     if len(chosen) < _LEAST_FRAMES:
         text = f"{len(chosen)} independent samples are too few for an error: it needs {_LEAST_FRAMES}"
         return Check(name, None, text)
@@ -190,7 +191,7 @@ def _pressure(frames: Frames) -> Check:
     if frames.counted is not None and frames.time is not None:
         return _by_collisions(frames.counted, float(frames.time[first]))
     chosen = chosen[np.unique(np.linspace(0, len(chosen) - 1, MOST_FRAMES).astype(int))]
-    used = replace(frames, positions=frames.positions[chosen])
+    used = frames.parts(chosen)
     if has_too_few_contacts(used):
         return Check(name, None, f"pairs near contact are too few in {len(chosen)} independent samples")
     contact_value = correlated_mean(contact_values(used)).estimate
@@ -241,17 +242,11 @@ def _diffusion(frames: Frames) -> Check:
     name = _DIFFUSION
     if reason := why_not_speeds(frames) or why_not(frames):
         return Check(name, None, reason)
-    way, spacing = frames.path, frames.spacing
-    first = first_relaxed_frame(way, spacing)
+    first = first_relaxed_frame(frames)
     if first is None:
-        return Check(name, None, describe_motion(way, spacing))
+        return Check(name, None, describe_motion(frames))
     assert frames.velocities is not None and frames.time is not None, "see `why_not`"
-    used = replace(
-        frames,
-        positions=frames.positions[first:],
-        velocities=frames.velocities[first:],
-        time=frames.time[first:],
-    )
+    used = frames.parts(slice(first, None))
     energy = (frames.velocities[first] ** 2).sum(axis=1)
     if max(density_modulation(used, 0), density_modulation(used, 0, energy)) > UNEVEN:
         return Check(name, None, "density or temperature is not uniform: not relaxed")
@@ -285,14 +280,13 @@ def judge_open(path: Path, tolerance: float | None = None) -> tuple[str, list[Ch
     recipe = read_recipe(path)
     scene = recipe.scene
     with open_trajectory(path) as data:
-        data.load()
-    counts = particle_numbers(scene, data)
-    kind = "discs" if scene.dimension == 2 else "spheres"
-    title = f"{path}: {counts.min()} to {counts.max()} {kind} in {len(counts)} frames"
-    checks = [_particles(data, counts), _energy(scene, data)]
-    if "keep" not in data.attrs:
-        frames = _frames(recipe, data)
-        checks = [*judge_places(frames, tolerance), *checks, judge_flights(frames)]
+        counts = particle_numbers(scene, data)
+        kind = "discs" if scene.dimension == 2 else "spheres"
+        title = f"{path}: {counts.min()} to {counts.max()} {kind} in {len(counts)} frames"
+        checks = [_particles(data, counts), _energy(scene, data)]
+        if "keep" not in data.attrs:
+            frames = _frames(recipe, data)
+            checks = [*judge_places(frames, tolerance), *checks, judge_flights(frames)]
     unknown = "speed law", "pressure Z", "diffusion coefficient D"
     return title, [*checks, *(Check(name, None, _CHANGING) for name in unknown)]
 
@@ -301,13 +295,13 @@ def _frames(recipe: Recipe, data: xr.Dataset) -> Frames:
     """Return the frames of a run. Absent particles have NaN positions and zero velocities."""
     scene = recipe.scene
     lengths = np.array(scene.container.lengths)
-    positions, velocities = (data[name].values.astype(float) for name in ("coordinates", "velocities"))
+    velocities = map_frames(_vectors(data, "velocities"), lambda frame, n: np.nan_to_num(frame))
     return Frames(
-        positions=positions,
+        positions=_vectors(data, "coordinates"),
         lengths=lengths,
         radii=data["radius"].values.astype(float),
         periodic=scene.container.periodic,
-        velocities=np.nan_to_num(velocities),
+        velocities=velocities,
         time=data["time"].values,
         resolution=float(np.finfo(np.float32).eps * lengths.max()),
         sampled=not recipe.engine.forbids_overlap,
@@ -316,10 +310,17 @@ def _frames(recipe: Recipe, data: xr.Dataset) -> Frames:
     )
 
 
+def _vectors(data: xr.Dataset, name: str) -> Rows:
+    """Return the vectors of all frames, NaN for absent particles; they are read when they are used."""
+    values = data[name]
+    length, count, dimension = values.shape
+    return read_in_blocks((length, count, dimension), lambda frames: values[frames].values.astype(float))
+
+
 def _particles(data: xr.Dataset, counts: np.ndarray) -> Check:
     """Compare the number of particles in each frame with the counted entries and exits."""
-    stored = data["coordinates"] if "coordinates" in data else data["velocities"]
-    there = np.isfinite(stored.values[..., 0]).sum(axis=1)
+    stored = _vectors(data, "coordinates" if "coordinates" in data else "velocities")
+    there = np.array([np.isfinite(frame[:, 0]).sum() for frame in stored])
     wrong = int(np.abs(there - counts).argmax())
     text = f"{counts[0]} at the start, with those that have entered less those that have left"
     if there[wrong] == counts[wrong]:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from gaspart.analysis.flow import sum_squares
-from gaspart.inspection.frames import Frames
+from gaspart.inspection.frames import Frames, Vectors
 from gaspart.inspection.statistics import why_not_speeds
 from gaspart.inspection.verdict import Check
 
@@ -21,6 +22,7 @@ WRONG = 1e-3
 resolution of the numbers.
 """
 _SINGLE = float(np.finfo(np.float32).eps)
+_SAMPLE = 1000  # numbers whose decimal places are counted
 _DIGITS = 12  # decimal places at which decimal and binary numbers differ
 
 
@@ -39,7 +41,7 @@ def flights(frames: Frames) -> Flights:
     """Compare displacements with velocities for particles whose velocity is the same in two frames."""
     assert frames.velocities is not None and frames.time is not None, "requires velocities and times"
     squares = frames.squares
-    root = float(np.sqrt(squares.sum() / max(np.count_nonzero(squares), 1)))
+    root = float(np.sqrt(squares.total.sum() / max(squares.moving.sum(), 1)))
     late = root * max(2.0 * resolution(frames.time), _SINGLE * float(np.abs(frames.time).max()))
     wrong, number, where = 0.0, 0, 0
     sides = np.where(frames.periodic, np.inf, frames.lengths - 2.0 * frames.radii.min())
@@ -62,12 +64,13 @@ def flights(frames: Frames) -> Flights:
     return Flights(number, wrong, where)
 
 
-def resolution(values: np.ndarray) -> float:
+def resolution(values: Vectors) -> float:
     """Return the rounding error of numbers in single precision, or with few decimal places."""
-    frames = values if values.ndim == 3 else [values]  # a block fits into the processor cache
+    frames = values if len(values.shape) == 3 else [np.asarray(values)]
     if all(np.array_equal(frame, frame.astype(np.float32)) for frame in frames):
-        return _SINGLE * float(max(values.max(initial=0.0), -values.min(initial=0.0)))
-    sample = values.reshape(-1)[:1000]
+        return _SINGLE * max((float(np.abs(frame).max(initial=0.0)) for frame in frames), default=0.0)
+    some = islice(frames, -(-_SAMPLE // max(1, int(np.prod(values.shape[1:])))))
+    sample = np.concatenate([np.ravel(frame) for frame in some])[:_SAMPLE]
     for digits in range(1, _DIGITS):
         if np.array_equal(sample, np.round(sample, digits)):
             return 0.5 * 10.0**-digits
@@ -92,9 +95,10 @@ def judge_conserved(frames: Frames, driven: bool = False) -> list[Check]:
     assert frames.velocities is not None, "see `why_not_speeds`"
     if len(frames.positions) < 2:
         return [Check(name, None, "needs two frames") for name in names]
-    root = float(np.sqrt(frames.squares.mean()))
+    total = frames.squares.total
+    root = float(np.sqrt(total.mean() / frames.count))
     allowed = DRIFT + 2.0 * resolution(frames.velocities) / root
-    energy = frames.squares.sum(axis=1) / (frames.count * root**2)
+    energy = total / (frames.count * root**2)
     checks = [_steady("energy", np.abs(np.diff(energy)), allowed, frames.isolated)]
     net = float(energy[-1] - energy[0])
     one_way = abs(net) > _ONE_WAY * float(np.abs(np.diff(energy)).sum())
@@ -105,7 +109,7 @@ def judge_conserved(frames: Frames, driven: bool = False) -> list[Check]:
         checks = [Check("energy", False, text, acts=True)]
     if any(frames.periodic):
         axes = np.flatnonzero(frames.periodic)
-        mean = np.stack([frames.velocities[..., k].mean(axis=1) for k in axes], axis=1) / root
+        mean = np.array([[each[:, k].mean() for k in axes] for each in frames.velocities]) / root
         change = np.sqrt((np.diff(mean, axis=0) ** 2).sum(axis=1))
         checks.append(_steady("momentum", change, allowed, frames.isolated))
     else:
@@ -181,14 +185,15 @@ def _are_copied(frames: Frames, doubtful: bool) -> bool:
     """
     velocities = frames.velocities
     assert velocities is not None, "see `continuous`"
-    if not velocities.any() or np.any(velocities != velocities[0]):
+    first = velocities[0]
+    if not first.any() or any(np.any(each != first) for each in velocities):
         return False
     if frames.time is None:
         if doubtful:
             return True
         # the time step that fits most particles; if none fits, particles do not move by their velocities
-        squares = np.maximum(frames.squares[0], np.finfo(float).tiny)
-        times = [np.median((step * velocities[0]).sum(axis=1) / squares) for step in frames.steps()]
+        squares = np.maximum(sum_squares(first), np.finfo(float).tiny)
+        times = [np.median((step * first).sum(axis=1) / squares) for step in frames.steps()]
         frames = replace(frames, time=np.concatenate([[0.0], np.cumsum(times)]))
     deviation = flights(frames)
     return deviation.worst > WRONG or not deviation.number

@@ -10,7 +10,7 @@ import numpy as np
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
 from gaspart.inspection.conserved import continuous
-from gaspart.inspection.frames import Frames
+from gaspart.inspection.frames import Frames, Rows, Vectors, map_frames
 from gaspart.scene.container import Container
 from gaspart.scene.scene import Scene
 
@@ -52,8 +52,8 @@ class Contents:
     note : where sizes were found, if the format does not define it.
     """
 
-    positions: np.ndarray
-    velocities: np.ndarray | None = None
+    positions: Vectors
+    velocities: Vectors | None = None
     time: np.ndarray | None = None
     steps: np.ndarray | None = None
     radii: np.ndarray | None = None
@@ -107,7 +107,8 @@ def complete_frames(contents: Contents, overrides: Overrides, path: str) -> Fram
         _require_finite("velocities", contents.velocities, path)
     sort_by_id(contents, path)
     if contents.lengths is None and overrides.lengths is None:
-        raise SceneError("lengths", None, "is not stated: give --lengths X,Y[,Z]", path)
+        line = ", or write the sides as the second line" if path.endswith(".xyz") else ""
+        raise SceneError("lengths", None, f"is not stated: give --lengths X,Y[,Z]{line}", path)
     radii = _per_frame(_radii(contents, overrides, path))
     d = _dimension(contents, overrides, 2.0 * float(radii.max()))
     sides, container = _container(contents, overrides, d, path)
@@ -116,11 +117,13 @@ def complete_frames(contents: Contents, overrides: Overrides, path: str) -> Fram
     alike = masses is None or np.ptp(masses) == 0.0
     steady = len(sides) == 1 and len(radii) == 1
     frames = Frames(
-        positions=_wrap(contents.positions, origin, sides, container.periodic, path),
+        positions=_wrapped(contents.positions, origin, sides, container.periodic, path),
         lengths=sides[0],
         radii=radii[0],
         periodic=container.periodic,
-        velocities=None if contents.velocities is None else contents.velocities[:, :, :d].astype(float),
+        velocities=None
+        if contents.velocities is None
+        else map_frames(contents.velocities, lambda frame, n: frame[:, :d].astype(float), d),
         time=_times(contents, overrides, path),
         plain=contents.plain and steady and alike,
         isolated=contents.isolated and steady and alike,
@@ -141,28 +144,33 @@ def complete_frames(contents: Contents, overrides: Overrides, path: str) -> Fram
     return continuous(frames, contents.velocities_from_first, contents.ids is not None)
 
 
-def _wrap(
-    positions: np.ndarray, origin: np.ndarray, sides: np.ndarray, periodic: tuple[bool, ...], path: str
-) -> np.ndarray:
+def _wrapped(
+    positions: Vectors, origin: np.ndarray, sides: np.ndarray, periodic: tuple[bool, ...], path: str
+) -> Rows:
     """Return positions (T, N, d) from the lower corner, wrapped to [0, L) on periodic axes.
 
     The corner and the side lengths are (1, d) or (T, d). Coordinates are wrapped one axis at a time, because
     numpy broadcasts an axis of length 3 slowly.
     """
-    frames, count, _ = positions.shape
-    wrapped = np.empty((frames, count, len(periodic)))
-    for n, frame in enumerate(positions):
+
+    def wrap(frame: np.ndarray, n: int) -> np.ndarray:
         low, size = origin[n % len(origin)], sides[n % len(sides)]
+        wrapped = np.empty((len(frame), len(periodic)))
         for k, along in enumerate(periodic):
             x = frame[:, k].astype(float) - low[k]
-            if np.abs(x).max() > _FARTHEST * size[k]:
-                rule = f"has a position that is more than {_FARTHEST:.0e} containers away, in frame {n}"
-                raise SceneError("file", path, rule)
             if along:
                 x -= size[k] * np.floor(x / size[k])
                 x[x >= size[k]] = 0.0  # -1e-17 rounds to L
-            wrapped[n, :, k] = x
-    return wrapped
+            wrapped[:, k] = x
+        return wrapped
+
+    d = len(periodic)
+    for n, frame in enumerate(positions):
+        low, size = origin[n % len(origin)], sides[n % len(sides)]
+        if (np.abs(frame[:, :d] - low) > _FARTHEST * size).any():
+            rule = f"has a position that is more than {_FARTHEST:.0e} containers away, in frame {n}"
+            raise SceneError("file", path, rule)
+    return map_frames(positions, wrap, d)
 
 
 def _origin(contents: Contents, overrides: Overrides, sides: np.ndarray, path: str) -> np.ndarray:
@@ -178,12 +186,12 @@ def _origin(contents: Contents, overrides: Overrides, sides: np.ndarray, path: s
     return np.zeros((1, d)) if contents.origin is None else _per_frame(contents.origin)[:, :d]
 
 
-def _require_finite(name: str, values: np.ndarray, path: str) -> None:
+def _require_finite(name: str, values: Vectors, path: str) -> None:
     """Raise SceneError if values are not finite or too large, and name the first such frame."""
-    wrong = ~(np.abs(values) <= _LARGEST).all(axis=(1, 2))
-    if wrong.any():
-        rule = f"that are not finite, absent or above {_LARGEST:g}, in frame {wrong.argmax()}"
-        raise SceneError("file", path, f"has {name} {rule}")
+    for n, frame in enumerate(values):
+        if not (np.abs(frame) <= _LARGEST).all():
+            rule = f"that are not finite, absent or above {_LARGEST:g}, in frame {n}"
+            raise SceneError("file", path, f"has {name} {rule}")
 
 
 def sort_by_id(contents: Contents, path: str) -> None:
@@ -203,14 +211,14 @@ def sort_by_id(contents: Contents, path: str) -> None:
         frame = int(np.argmax(np.any(ids != ids[0], axis=1)))
         rule = f"has other particles in frame {frame} than in frame 0, by their ids"
         raise SceneError("file", path, f"{rule}: changing particles cannot be checked")
-    for name in ("positions", "velocities", "radii", "masses"):
+    for name in ("positions", "velocities"):
+        if getattr(contents, name) is not None:
+            setattr(contents, name, map_frames(getattr(contents, name), lambda frame, n: frame[order[n]]))
+    for name in ("radii", "masses"):
         values = getattr(contents, name)
-        if values is None:
-            continue
-        if name in ("radii", "masses") and values.ndim == 1:
+        if values is not None:
             values = np.broadcast_to(values, order.shape)
-        index = order[:, :, None] if values.ndim == 3 else order
-        setattr(contents, name, np.take_along_axis(values, index, axis=1))
+            setattr(contents, name, np.take_along_axis(values, order, axis=1))
 
 
 def _dimension(contents: Contents, overrides: Overrides, diameter: float) -> int:
@@ -225,11 +233,13 @@ def _dimension(contents: Contents, overrides: Overrides, diameter: float) -> int
         return 2
     if contents.flat is not None:
         return 2 if contents.flat else 3
-    moving = np.any(positions != positions[0]) or bool(velocities is not None and velocities.any())
-    along = velocities is not None and velocities.shape[2] == 3 and velocities[:, :, 2].any()
+    moves = velocities is not None and any(frame.any() for frame in velocities)
+    moving = moves or any(np.any(frame != positions[0]) for frame in positions)
+    along = velocities is not None and velocities.shape[2] == 3 and any(v[:, 2].any() for v in velocities)
+    height = positions[0][0, 2]
     if (
         along
-        or np.ptp(positions[:, :, 2]) > 0.0
+        or any((frame[:, 2] != height).any() for frame in positions)
         or (overrides.lengths is not None and len(overrides.lengths) == 3)
     ):
         return 3

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -16,6 +17,82 @@ from gaspart.engines import Engine
 from gaspart.scene.gas import Gas
 from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
+
+
+class Rows:
+    """Vectors (T, N, d) whose frames are read, or computed, when they are used.
+
+    Indexed by frames like an array: a number returns the vectors (N, d) of a frame, a slice or numbers return
+    `Rows`. The last two frames are kept, because most checks compare consecutive frames.
+    """
+
+    def __init__(self, shape: tuple[int, int, int], read: Callable[[int], np.ndarray]) -> None:
+        self.shape, self._read = shape, read
+        self._kept: dict[int, np.ndarray] = {}
+
+    def __len__(self) -> int:
+        return self.shape[0]
+
+    def __getitem__(self, index: Any) -> Any:
+        if not isinstance(index, int | np.integer):
+            numbers = np.arange(len(self))[index]
+            return Rows((len(numbers), *self.shape[1:]), lambda n: self[numbers[n]])
+        n = int(index) + (len(self) if index < 0 else 0)
+        if not 0 <= n < len(self):
+            raise IndexError(index)
+        if n not in self._kept:
+            if len(self._kept) > 1:
+                del self._kept[next(iter(self._kept))]
+            self._kept[n] = self._read(n)
+        return self._kept[n]
+
+    def __iter__(self) -> Iterator[np.ndarray]:
+        return (self[n] for n in range(len(self)))
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
+        return np.array(list(self), dtype)
+
+
+Vectors = np.ndarray | Rows
+"""Vectors (T, N, d) of all frames, in memory or not."""
+
+
+_BLOCK = 500_000  # number of values that are read at once
+
+
+def read_in_blocks(shape: tuple[int, int, int], read: Callable[[slice], np.ndarray]) -> Rows:
+    """Return vectors of which `read` returns consecutive frames."""
+    size = max(1, _BLOCK // max(1, shape[1] * shape[2]))
+
+    @lru_cache(maxsize=2)  # checks compare consecutive frames
+    def block(number: int) -> np.ndarray:
+        return read(slice(number * size, (number + 1) * size))
+
+    return Rows(shape, lambda n: block(n // size)[n % size])
+
+
+def map_frames(
+    vectors: Vectors, function: Callable[[np.ndarray, int], np.ndarray], width: int | None = None
+) -> Rows:
+    """Return function(frame, n) for each frame (N, d), computed when it is used; its vectors have `width`."""
+    shape = vectors.shape[0], vectors.shape[1], vectors.shape[2] if width is None else width
+    return Rows(shape, lambda n: function(vectors[n], n))
+
+
+class Squares(NamedTuple):
+    """Sums over squared speeds in each frame, shape (T,).
+
+    total, largest : sum and maximum of the squared speeds.
+    moving : number of squared speeds that are not 0.
+    peculiar : sum of the squares relative to the mean velocity along periodic axes.
+    kurtosis : mean fourth power of these relative velocities divided by the squared mean square; 1 at rest.
+    """
+
+    total: np.ndarray
+    largest: np.ndarray
+    moving: np.ndarray
+    peculiar: np.ndarray
+    kurtosis: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -42,11 +119,11 @@ class Frames:
     note : where sizes were found, if the format does not define it.
     """
 
-    positions: np.ndarray
+    positions: Vectors
     lengths: np.ndarray
     radii: np.ndarray
     periodic: tuple[bool, ...]
-    velocities: np.ndarray | None = None
+    velocities: Vectors | None = None
     time: np.ndarray | None = None
     plain: bool = True
     resolution: float = 0.0
@@ -108,19 +185,24 @@ class Frames:
         return Gas(self.dimension, self.packing_fraction, self.count, self.diameter, temperature)
 
     @cached_property
-    def squares(self) -> np.ndarray:
-        """Squared speeds, shape (T, N)."""
+    def squares(self) -> Squares:
+        """Sums over squared speeds in each frame."""
         assert self.velocities is not None, "requires velocities"
-        return sum_squares(self.velocities)
+        rows = []
+        for n, velocities in enumerate(self.velocities):
+            squares, relative = sum_squares(velocities), self.peculiar_squares(n)
+            mean = relative.mean()
+            kurtosis = (relative**2).mean() / mean**2 if mean > 0.0 else 1.0
+            rows.append((squares.sum(), squares.max(), np.count_nonzero(squares), relative.sum(), kurtosis))
+        return Squares(*np.array(rows).T)
 
-    @cached_property
-    def peculiar_squares(self) -> np.ndarray:
-        """Squared speeds relative to the mean velocity of each frame along periodic axes, shape (T, N)."""
+    def peculiar_squares(self, frame: int) -> np.ndarray:
+        """Return squared speeds (N,) relative to the mean velocity of a frame along periodic axes."""
         assert self.velocities is not None, "requires velocities"
-        total = np.zeros(self.velocities.shape[:2])
-        for k, periodic in enumerate(self.periodic):
-            along = self.velocities[..., k]
-            total += (along - along.mean(axis=1, keepdims=True) if periodic else along) ** 2
+        velocities = self.velocities[frame]
+        total = np.zeros(len(velocities))
+        for along, periodic in zip(velocities.T, self.periodic, strict=True):
+            total += (along - along.mean() if periodic else along) ** 2
         return total
 
     @property
@@ -130,7 +212,7 @@ class Frames:
         The temperature is 0 for a single particle that has no motion relative to the mean.
         """
         freedom = self.dimension * self.count - sum(self.periodic)
-        return np.asarray(self.peculiar_squares.sum(axis=1) / max(freedom, 1))
+        return np.asarray(self.squares.peculiar / max(freedom, 1))
 
     def steps(self) -> Iterator[np.ndarray]:
         """Yield the displacements (N, d) between consecutive frames, by nearest images."""
@@ -143,19 +225,32 @@ class Frames:
             apart[:, k] -= self.lengths[k] * np.round(apart[:, k] / self.lengths[k])
         return apart
 
-    @cached_property
-    def path(self) -> np.ndarray:
-        """Displacement (T, N, d) of each particle since the first frame.
+    def paths(self, part: slice = slice(None)) -> Iterator[np.ndarray]:
+        """Yield the displacements (N, d) of all or some particles since the first frame, in each frame.
 
         The displacement is relative to the centre of mass along axes on which particles exchange momentum
         only with each other.
         """
-        path = np.zeros(self.positions.shape)
-        for n, step in enumerate(self.steps()):
-            np.add(path[n], step, out=path[n + 1])
-        for k in np.flatnonzero(self.periodic):
-            path[..., k] -= path[..., k].mean(axis=1, keepdims=True)
-        return path
+        moved = np.zeros(self.positions[0][part].shape)
+        yield moved
+        for n, (before, after) in enumerate(pairwise(self.positions)):
+            moved = moved + self.nearest(after[part] - before[part])
+            drift = moved.mean(axis=0) if part == slice(None) else self._drift[n]
+            yield moved - np.where(self.periodic, drift, 0.0)
+
+    @cached_property
+    def _drift(self) -> np.ndarray:
+        """Displacement of the centre of all particles since the first frame, (T - 1, d)."""
+        return np.cumsum([step.mean(axis=0) for step in self.steps()], axis=0)
+
+    def parts(self, frames: Sequence[int] | slice) -> Frames:
+        """Return some of the frames."""
+        return replace(
+            self,
+            positions=self.positions[frames],
+            velocities=None if self.velocities is None else self.velocities[frames],
+            time=None if self.time is None else self.time[frames],
+        )
 
     def at(self, frame: int) -> Frames:
         """Return a single frame with its container and radii, without absent particles."""

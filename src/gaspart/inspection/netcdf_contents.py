@@ -10,8 +10,6 @@ import math
 import os
 import re
 import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -20,10 +18,11 @@ import numpy as np
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
 from gaspart.inspection.contents import Contents, Overrides
+from gaspart.inspection.frames import Vectors, map_frames, read_in_blocks
 from gaspart.scene.face_checks import refuse_open
 from gaspart.state.insertion import per_particle
 from gaspart.trajectory.amber import BOOKKEEPING
-from gaspart.trajectory.opening import check_frames, open_descriptor, open_netcdf_file
+from gaspart.trajectory.opening import check_frames, open_descriptor, open_netcdf
 from gaspart.trajectory.recipe import read_recipe
 
 # Size of a netCDF-3 file according to its header. If a file is shorter, the library reads zeros without a
@@ -152,12 +151,31 @@ def read_netcdf(path: Path, overrides: Overrides) -> Contents:
     if by_gaspart:
         check_frames(path)
         refuse_open(read_recipe(path).scene, "changes the particles: frames are those of particles that stay")
-    with open_netcdf_file(path) if by_gaspart else _foreign(path) as file:
-        _check_convention(file, path)
-        contents = _contents(file, overrides, path)
+    file = _OpenFile(open_netcdf(path) if by_gaspart else _foreign(path))
+    _check_convention(file, path)
+    contents = _contents(file, overrides, path)
     if by_gaspart:
         _add_scene(contents, path)
     return contents
+
+
+class _OpenFile:
+    """Open netCDF4.Dataset, which is closed as soon as no vectors are read from it any more.
+
+    A Dataset alone would stay open until the garbage collector finds the references among its parts.
+    """
+
+    def __init__(self, dataset: Any) -> None:
+        self._dataset = dataset
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._dataset, name)
+
+    def __getitem__(self, name: str) -> Any:
+        return self._dataset[name]
+
+    def __del__(self) -> None:
+        self._dataset.close()
 
 
 def is_own(path: Path) -> bool:
@@ -170,16 +188,14 @@ def is_own(path: Path) -> bool:
     return any(name.encode() in head for name in BOOKKEEPING)
 
 
-@contextmanager
-def _foreign(path: Path) -> Iterator[Any]:
+def _foreign(path: Path) -> Any:
     """Open a netCDF file of another program; reject a file that ends before its last value."""
     with open_regular(path) as file:
         minimum, size = needed_bytes(file), os.fstat(file.fileno()).st_size
         if minimum is not None and size < minimum:
             rule = f"is truncated: {size} bytes, where its header states {minimum}"
             raise SceneError("file", str(path), rule)
-        with open_descriptor(file) as dataset:
-            yield dataset
+        return open_descriptor(file)
 
 
 def _check_convention(file: Any, path: Path) -> None:
@@ -211,18 +227,41 @@ def _read(file: Any, name: str) -> np.ndarray | None:
     """
     if name not in file.variables:
         return None
+    _check_packing(file[name])
+    values, absent = _values(file[name], ...)
+    return None if absent.size and absent.all() else values
+
+
+def _check_packing(variable: Any) -> None:
+    """Raise ValueError for text in the place of a number that changes the values of a variable."""
     for attribute in _PACKING:
-        if isinstance(getattr(file[name], attribute, None), str) and file[name].dtype.kind != "S":
-            raise ValueError(f"{attribute} of {name} must be a number")
+        if isinstance(getattr(variable, attribute, None), str) and variable.dtype.kind != "S":
+            raise ValueError(f"{attribute} of {variable.name} must be a number")
+
+
+def _values(variable: Any, index: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Return values of a variable, NaN where they were never written, and the mask of the latter."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the library says which of these numbers it does not use
-        values = file[name][...]
+        values = variable[index]
     absent = np.ma.getmaskarray(values)
     if not absent.any():
-        return np.asarray(np.ma.getdata(values))
-    if absent.all():
+        return np.asarray(np.ma.getdata(values)), absent
+    return np.ma.filled(values.astype(float) if values.dtype.kind in "iu" else values, np.nan), absent
+
+
+def _read_vectors(file: Any, name: str, path: Path) -> Vectors | None:
+    """Return the vectors of all frames, which are read when they are used.
+
+    Return None in the same cases as `_read`.
+    """
+    variable = file.variables.get(name)
+    if variable is None or variable.ndim != 3 or variable.dimensions[0] != "frame":
+        return _read_frames(file, name, path)
+    _check_packing(variable)
+    if all(_values(variable, n)[1].all() for n in range(len(variable))):
         return None
-    return np.ma.filled(values.astype(float) if values.dtype.kind in "iu" else values, np.nan)
+    return read_in_blocks(variable.shape, lambda frames: _values(file[name], frames)[0])
 
 
 def _read_frames(file: Any, name: str, path: Path, width: int | None = None) -> np.ndarray | None:
@@ -286,20 +325,20 @@ def _find_variable(file: Any, *names: str) -> str:
     return next((there[name] for name in names if name in there), names[0])
 
 
-def _velocities(file: Any, path: Path) -> tuple[np.ndarray | None, str | None]:
+def _velocities(file: Any, path: Path) -> tuple[Vectors | None, str | None]:
     """Return the velocities (T, N, 3), or None and the reason if some frames have none."""
-    values = _read_frames(file, "velocities", path)
-    if values is None or values.ndim != 3:
+    values = _read_vectors(file, "velocities", path)
+    if values is None or len(values.shape) != 3:
         return values, None
-    stored = np.isfinite(values).any(axis=(1, 2))
-    if stored.all():
+    stored = sum(bool(np.isfinite(frame).any()) for frame in values)
+    if stored == len(values):
         return values, None
-    return None, f"velocities are stored in {stored.sum()} of {len(stored)} frames only"
+    return None, f"velocities are stored in {stored} of {len(values)} frames only"
 
 
 def _positions(
     file: Any, overrides: Overrides, lengths: np.ndarray | None, origin: np.ndarray | None, path: Path
-) -> tuple[np.ndarray, float]:
+) -> tuple[Vectors, float]:
     """Return the positions and their resolution.
 
     Positions are (T, N, 3), or (T, N, 2) if z was never written.
@@ -307,16 +346,11 @@ def _positions(
     name = next((name for name in _POSITIONS if name in file.variables), None)
     if name is None or "atom" not in file.dimensions:
         raise SceneError("file", str(path), "has no coordinates in frames: not AMBER's convention")
-    positions = _read_frames(file, name, path)
-    if positions is None or positions.ndim != 3:
+    positions = _read_vectors(file, name, path)
+    if positions is None or len(positions.shape) != 3:
         raise SceneError("file", str(path), f"has no frame of {name}")
-    if positions.shape[2] == 3 and np.isnan(positions[:, :, 2]).all():
-        positions = positions[:, :, :2]
-    for n, frame in enumerate(positions):
-        if not np.isfinite(frame).all():
-            count = np.isfinite(frame).all(axis=1).sum()
-            rule = f"has {count} particles in frame {n}, of {positions.shape[1]}"
-            raise SceneError("file", str(path), f"{rule}: a changing number cannot be checked")
+    if positions.shape[2] == 3 and all(np.isnan(frame[:, 2]).all() for frame in positions):
+        positions = map_frames(positions, lambda frame, n: frame[:, :2], 2)
     scale = 1.0
     if name == "scaled_coordinates":
         sides = lengths if overrides.lengths is None else np.array([overrides.lengths])
@@ -324,15 +358,23 @@ def _positions(
         if sides is None or sides.shape[1] < d or not (sides[:, :d] > 0.0).all():
             rule = f"does not state them, and {name} are multiples of them: give --lengths X,Y[,Z]"
             raise SceneError("lengths", None, f"{path} {rule}")
-        positions = positions * sides[:, None, :d]
-        positions += 0.0 if origin is None else origin[:, None, :d]
+        low = np.zeros((1, d)) if origin is None else origin
+        positions = map_frames(
+            positions, lambda frame, n: frame * sides[n % len(sides), :d] + low[n % len(low), :d]
+        )
         scale = float(sides.max())
+    reach = 0.0
+    for n, frame in enumerate(positions):
+        if not np.isfinite(frame).all():
+            count = np.isfinite(frame).all(axis=1).sum()
+            rule = f"has {count} particles in frame {n}, of {positions.shape[1]}"
+            raise SceneError("file", str(path), f"{rule}: a changing number cannot be checked")
+        reach = max(reach, float(np.abs(frame).max(initial=0.0)))
     kind, factor = file[name].dtype, abs(float(getattr(file[name], "scale_factor", 1.0)))
     if kind.kind in "iu":
         return positions, factor * scale
-    sides = np.zeros(1) if lengths is None else lengths[np.isfinite(lengths)]
-    extent = np.abs(positions).max(initial=float(sides.max(initial=0.0)))
-    return positions, float(np.finfo(kind).eps * extent)
+    extents = np.zeros(1) if lengths is None else lengths[np.isfinite(lengths)]
+    return positions, float(np.finfo(kind).eps * max(reach, float(extents.max(initial=0.0))))
 
 
 def _times(file: Any) -> tuple[np.ndarray | None, float]:

@@ -31,8 +31,8 @@ from gaspart.system import memory
 from gaspart.trajectory.recipe import read_recipe
 
 COPIES = 4
-"""Memory needed to read a file, divided by the size of the file: copies in double precision, as stored, and
-in the container.
+"""Memory needed to read a GSD or XYZ file, divided by the size of the file. The frames of netCDF files are
+read in blocks.
 """
 SUFFIXES = (".nc", ".gsd", ".xyz")
 _READERS = {
@@ -90,7 +90,8 @@ def _contents(path: Path, overrides: Overrides) -> Contents:
             rule += "`dump 1 all netcdf 1 dump.nc id x y z vx vy vz` and, in place of `run`, "
             rule += f"`rerun {path.name} dump x y z vx vy vz`"
         raise SceneError("file", str(path), rule)
-    _require_memory(path)
+    if reader is not read_netcdf:  # which reads frames one by one
+        _require_memory(path)
     return reader(path, overrides)
 
 

@@ -8,6 +8,8 @@ measures require neither times nor a law of motion, so files of all programs can
 from __future__ import annotations
 
 import math
+from collections import deque
+from collections.abc import Iterable
 from itertools import pairwise
 
 import numpy as np
@@ -43,7 +45,7 @@ def count_collisions(frames: Frames) -> np.ndarray:
     """
     velocities = frames.velocities
     assert velocities is not None, "requires velocities"
-    square = frames.squares.sum(axis=1)
+    square = frames.squares.total
     least = 0.5 / frames.count
     small = np.maximum(_CHANGED**2 * square / frames.count, np.finfo(float).tiny)
     changed, products = np.zeros(len(velocities) - 1), np.zeros(len(velocities) - 1)
@@ -73,29 +75,33 @@ def independent(times: np.ndarray, rate: float) -> float:
     return len(times) ** 2 / total
 
 
-def decorrelated_frames(way: np.ndarray, distance: float, first: int = 0) -> list[int]:
-    """Return frames after `first`, between which particles have moved by `distance`.
+def decorrelated_frames(paths: Iterable[np.ndarray], distance: float, first: int = 0) -> list[int]:
+    """Return frames from `first` on, between which particles have moved by `distance`.
 
-    The root mean square displacement between consecutive returned frames is at least this distance.
+    The root mean square displacement between consecutive returned frames is at least this distance. `paths`
+    are the displacements (N, d) since frame 0 in each frame.
     """
-    chosen = [first]
-    for n in range(first + 1, len(way)):
-        if sum_squares(way[n] - way[chosen[-1]]).mean() >= distance**2:
+    chosen, before = list[int](), np.zeros(0)
+    for n, moved in enumerate(paths):
+        if n == first or (n > first and sum_squares(moved - before).mean() >= distance**2):
             chosen.append(n)
+            before = moved
     return chosen
 
 
-def first_relaxed_frame(way: np.ndarray, distance: float) -> int | None:
-    """Return the first frame in which particles have moved by `distance`, or None.
+def first_relaxed_frame(frames: Frames) -> int | None:
+    """Return the first frame in which particles have moved by the distance between neighbours, or None.
 
     The displacement is the root mean square over the particles.
     """
-    return next((n for n, moved in enumerate(way) if sum_squares(moved).mean() >= distance**2), None)
+    moved = (sum_squares(path).mean() for path in frames.paths())
+    return next((n for n, square in enumerate(moved) if square >= frames.spacing**2), None)
 
 
-def describe_motion(way: np.ndarray, distance: float) -> str:
+def describe_motion(frames: Frames) -> str:
     """Return the reason why positions have not relaxed."""
-    there = math.sqrt(float(sum_squares(way[-1]).mean()))
+    moved = deque(frames.paths(), maxlen=1)[0]
+    there, distance = math.sqrt(float(sum_squares(moved).mean())), frames.spacing
     return (
         f"particles must move by {distance:.3g} after the first frame, to relax; they have moved {there:.2g}"
     )
@@ -139,9 +145,11 @@ def why_not_speeds(frames: Frames) -> str | None:
     """Return the reason why speeds cannot be checked, or None."""
     if frames.velocities is None:
         return frames.no_velocities
-    if not frames.squares.any() and not np.any(frames.velocities):
+    if not frames.squares.moving.any() and not any(np.any(each) for each in frames.velocities):
         return "all velocities are 0"
-    if not np.isfinite(frames.squares).all() and not np.isfinite(frames.velocities).all():
+    if not np.isfinite(frames.squares.total).all() and not all(
+        np.isfinite(each).all() for each in frames.velocities
+    ):
         return "not all velocities are finite"
     if frames.gas is None:
         return "particles differ, or are moved by more than elastic contacts"
@@ -166,7 +174,7 @@ def judge_speeds(frames: Frames) -> list[Check]:
     names = SPEEDS
     if reason := why_not_speeds(frames):
         return [Check(name, None, reason) for name in names]
-    series, expected = _kurtosis(frames), _expected_kurtosis(frames)
+    series, expected = frames.squares.kurtosis, _expected_kurtosis(frames)
     clock, rate = count_collisions(frames), theory.KURTOSIS_RELAXATION_RATE[frames.dimension]
     scatter, skewness = theory.kurtosis_scatter(frames.dimension, frames.count)
     excess = max(abs(series[0] - expected), scatter)
@@ -177,11 +185,12 @@ def judge_speeds(frames: Frames) -> list[Check]:
             f" {clock[-1]:.3g}"
         )
         return [Check(name, None, reason) for name in names]
-    moved = first_relaxed_frame(frames.path, frames.spacing)
+    moved = first_relaxed_frame(frames)
     if moved is None:
-        return [Check(name, None, describe_motion(frames.path, frames.spacing)) for name in names]
+        return [Check(name, None, describe_motion(frames)) for name in names]
     first = max(int(np.argmax(clock >= relaxation)), moved)
-    if any(density_modulation(frames, n, _squares(frames, n)) > UNEVEN for n in (first, len(series) - 1)):
+    squares = ((n, frames.peculiar_squares(n)) for n in (first, len(series) - 1))
+    if any(density_modulation(frames, n, each) > UNEVEN for n, each in squares):
         return [Check(name, None, "the temperature is not uniform: not relaxed") for name in names]
     samples = independent(clock[first:], rate)
     kurtosis = Estimate(series[first:].mean(), scatter / math.sqrt(samples))
@@ -199,28 +208,13 @@ def _law(frames: Frames) -> Check:
     bins = min(30, frames.count // 10)
     if bins < 4:
         return Check("speed law", None, f"{frames.count} particles are too few for a histogram")
-    square = _squares(frames, -1)
+    square = frames.peculiar_squares(-1)
     temperature = float(frames.temperatures[-1])
     result = histogram_chi_square(
         np.sqrt(square), lambda v: theory.maxwell_cdf(v, frames.dimension, temperature), bins
     )
     text = f"chi-square {result.chi_square:.3g} of {result.degrees_of_freedom} about Maxwell's, last frame"
     return Check("speed law", result.p_value > RARE, f"{text} (p = {result.p_value:.2g})")
-
-
-def _squares(frames: Frames, n: int) -> np.ndarray:
-    """Return squared speeds (N,) in a frame, relative to the centre of mass along periodic axes."""
-    return np.asarray(frames.peculiar_squares[n])
-
-
-def _kurtosis(frames: Frames) -> np.ndarray:
-    """Compute <v^4> / <v^2>^2 of each frame (T,); 1 for a frame at rest."""
-    values = []
-    for n in range(len(frames.positions)):
-        square = _squares(frames, n)
-        mean = square.mean()
-        values.append((square**2).mean() / mean**2 if mean > 0.0 else 1.0)
-    return np.array(values)
 
 
 def _expected_kurtosis(frames: Frames) -> float:
@@ -316,6 +310,7 @@ def _at_contact(edges: np.ndarray, volumes: np.ndarray, dimension: int) -> np.nd
 
 
 _GROUPS = 32
+_NUMBERS = 2_000_000  # numbers of the paths that are in memory at once
 
 
 def why_not(frames: Frames) -> str | None:
@@ -357,11 +352,16 @@ def diffusion(frames: Frames) -> tuple[Estimate, tuple[float, float]]:
     of N particles, D is (N - 1) / N of its value without this condition. The result is corrected for this
     factor. The error is the scatter of groups of particles.
     """
-    way, n = frames.path, frames.count
+    length, n = len(frames.positions), frames.count
     lags = _lags(frames)
-    while 4 * lags[-1] <= len(way):
+    while 4 * lags[-1] <= length:
         lags = [*lags, 2 * lags[-1]]
-    squares = np.array([((way[lag:] - way[:-lag]) ** 2).sum(axis=2).mean(axis=0) for lag in lags])  # (K, N)
+    squares = np.empty((len(lags), n))
+    size = max(1, _NUMBERS // (length * frames.dimension))
+    for first in range(0, n, size):  # paths of some particles, because those of all are many
+        part = slice(first, first + size)
+        way = np.array(list(frames.paths(part)))
+        squares[:, part] = [((way[lag:] - way[:-lag]) ** 2).sum(axis=2).mean(axis=0) for lag in lags]
     times = _interval(frames) * np.diff(lags)
     rises = np.diff(squares, axis=0) / (6.0 * times[:, None]) * n / (n - 1.0)
     groups = np.array([part.mean(axis=1) for part in np.array_split(rises, groups_of(frames), axis=1)])

@@ -2,12 +2,6 @@
 // A gas of the event-driven engine: `gaspart.engines.event.dynamics` with the engine's own kernels. All numbers
 // of physics are in an image of the kernels' memory, and in patches for the values of controls.
 const STOP = 0, COLLAPSE = 3, MANY = 2 ** 18, QUIET = 64, EPOCH = 10, AT_REST = 2 ** 960, OTHER = 2 ** 10;
-const bytesOf = text => Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
-const doublesOf = text => new Float64Array(bytesOf(text).buffer);
-async function unpacked(text) {
-  const stream = new Blob([bytesOf(text)]).stream().pipeThrough(new DecompressionStream("deflate"));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
-}
 const sumOf = values => {  // in numpy's order, because a length may change where a sum is a power of two
   const n = values.length, part = new Float64Array(8);
   if (n > 128) {
@@ -42,13 +36,13 @@ class Gas {
     const image = data.starts[start].images[flags.replace("t", "")];
     if (!image) throw Error("this combination is not in the page");
     data.compiled ??= {};
-    data.compiled[image.module] ??= WebAssembly.compile(await unpacked(data.modules[image.module]));
+    data.compiled[image.module] ??= WebAssembly.compile(data.modules[image.module]);
     return new Gas(data, data.starts[start], image, await data.compiled[image.module], values, flags);
   }
   constructor(data, start, image, module, values, flags) {
     Object.assign(this, { data, image, flags, count: start.count, dimension: data.lengths.length });
     this.start = start; this.scene = image.scene;
-    const blob = bytesOf(image.blob), d = this.dimension;
+    const { blob } = image, d = this.dimension;
     this.memory = new WebAssembly.Memory({ initial: Math.ceil((image.start + blob.length) / 65536) });
     const stack = new WebAssembly.Global({ value: "i32", mutable: true }, image.start);
     const env = { __linear_memory: this.memory, __stack_pointer: stack, fmod: (a, b) => a % b };
@@ -74,10 +68,10 @@ class Gas {
       for (const control of this.data.controls.filter(one => one.group === group))
         index = index * control.values.length + values[control.name];
       if (!patches[index]) throw Error("this combination is not in the page");
-      const [words, changes] = patches[index], bytes = bytesOf(words), from = new DataView(bytes.buffer);
+      const [words, changes] = patches[index], from = new DataView(words.buffer);
       const present = mapping => Object.fromEntries(Object.entries(mapping).filter(([, value]) => value !== null));
       this.scene = present({ ...this.scene, ...changes, faces: present({ ...this.scene.faces, ...changes.faces }) });
-      for (let at = 0; at < bytes.length; at += 12)
+      for (let at = 0; at < words.length; at += 12)
         this.view.setBigInt64(from.getUint32(at, true), from.getBigInt64(at + 4, true), true);
     }
   }
@@ -207,11 +201,12 @@ class Gas {
     return Math.min(length, kept(of(number ? Math.sqrt(2 * energy / number * inverse) : 0), length));
   }
 }
-// The data of a page from its text.
-async function dataOf(text) {
-  const data = JSON.parse(new TextDecoder().decode(await unpacked(text.trim())));
+// The data of a page: JSON, and bytes after it.
+function dataOf(raw) {
+  const end = raw.indexOf(0), stored = raw.subarray(end + 1);
+  const data = JSON.parse(new TextDecoder().decode(raw.subarray(0, end)), (_, value) => value?.bytes ? stored.slice(...value.bytes) : value);
   for (const start of data.starts)
-    for (const name of ["positions", "velocities", "spins", "radii", "masses", "inertia", "weights"]) start[name] = doublesOf(start[name]);
+    for (const name of ["positions", "velocities", "spins", "radii", "masses", "inertia", "weights"]) start[name] = new Float64Array(start[name].buffer);
   return data;
 }
 const startOf = (data, start) => ({ ...data.starts[start], piston: null });

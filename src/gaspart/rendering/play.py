@@ -23,7 +23,7 @@ from gaspart.kernels.compile.cache import load_numba
 from gaspart.kernels.compile.webassembly import modules
 from gaspart.rendering.controls import RULES, Controls
 from gaspart.rendering.particles import FASTEST
-from gaspart.rendering.view import View
+from gaspart.rendering.view import View, page_of
 from gaspart.scene.face_checks import piston_end
 from gaspart.scene.faces import FACES
 from gaspart.scene.scene import Scene, require_scene
@@ -32,7 +32,6 @@ from gaspart.state.given import state_at_time_zero
 from gaspart.state.initial import initial_state
 from gaspart.state.state import State
 
-_FOLDER = Path(__file__).parent
 _MARK = "gaspart play"
 _DENSITIES = 0.25, 0.5, 1.0, 2.0
 """Numbers of particles, divided by the number in the scene."""
@@ -100,18 +99,26 @@ def play(scene: Scene, seed: int = 0) -> View:
     check_scene(scene)
     if scales(scene).crossing_time == float("inf"):
         raise SceneError("scene", scene, "nothing moves at the start, and nothing falls")
-    text = (_FOLDER / "play.html").read_text(encoding="utf-8").replace("TITLE", _MARK, 1)
-    packed = _text(zlib.compress(json.dumps(_content(scene, seed)).encode(), 9))
-    text = text.replace("GAS", (_FOLDER / "gas.js").read_text(encoding="utf-8"), 1)
-    return View(text.replace("DATA", packed, 1), _HEIGHT)
+    engine = Path(__file__).with_name("gas.js").read_text(encoding="utf-8")
+    page = page_of("play.html", _MARK, GAS=engine, DATA=_packed(_content(scene, seed)))
+    return View(page, _HEIGHT)
 
 
-def _text(content: bytes) -> str:
-    return base64.b64encode(content).decode()
+def _packed(content: dict) -> str:
+    """Return data as base64 of compressed JSON; bytes follow the JSON, which contains their positions."""
+    stored = bytearray()
+
+    def store(part: bytes) -> dict:
+        start = len(stored)
+        stored.extend(part)
+        return {"bytes": [start, len(stored)]}
+
+    text = json.dumps(content, default=store, separators=(",", ":"))
+    return base64.b64encode(zlib.compress(text.encode() + b"\0" + stored, 9)).decode()
 
 
-def _numbers(values: np.ndarray) -> str:
-    return _text(np.ascontiguousarray(values, dtype="<f8").tobytes())
+def _numbers(values: np.ndarray) -> bytes:
+    return np.ascontiguousarray(values, dtype="<f8").tobytes()
 
 
 def _content(scene: Scene, seed: int) -> dict:
@@ -150,7 +157,7 @@ def _content(scene: Scene, seed: int) -> dict:
         "fastest": FASTEST * math.sqrt(2.0) * (speed or math.sqrt(2.0 * _fall(scene))),
         "pushed": _SPEED * speed,
         "interval": scales(scene).crossing_time / _PICTURES,
-        "colours": [matplotlib.colors.to_hex(colour) for colour in colours],
+        "colours": np.rint(255.0 * colours).astype(int).dot([1, 1 << 8, 1 << 16]).tolist(),
         "maxwell": _maxwell(),
         "barometric": np.exp(-np.linspace(0.0, _HIGHEST, _TABLE)).tolist(),
         "ends": [_FASTEST, _HIGHEST],
@@ -158,7 +165,7 @@ def _content(scene: Scene, seed: int) -> dict:
         "first": [start["count"] for start in starts].index(scene.count),
         "digest": hashlib.sha256(b"".join(code)).hexdigest()[:16],
         "starts": starts,
-        "modules": [_text(zlib.compress(module, 9)) for module in code],
+        "modules": code,
     }
 
 
@@ -238,14 +245,14 @@ def _image(scene: Scene, controls: Controls, kind: str, state: State, seed: int)
                 patches[group].append(None)
                 continue
             words = b"".join(struct.pack("<I8s", *item) for item in patch.items())
-            patches[group].append([_text(words), _changes(base.to_dict(), changed_scene.to_dict())])
+            patches[group].append([words, _changes(base.to_dict(), changed_scene.to_dict())])
             changed |= set(patch)
         touched |= changed
     return {
         "kernels": image.kernels,
         "start": START,
         "unit": image.unit,
-        "blob": _text(bytes(image.data)),
+        "blob": bytes(image.data),
         "words": image.words,
         "slots": image.slots,
         "arrays": image.arrays,

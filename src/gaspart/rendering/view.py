@@ -31,7 +31,7 @@ from gaspart.trajectory.opening import not_a_trajectory
 if TYPE_CHECKING:
     import xarray as xr
 
-_TEMPLATE = Path(__file__).with_name("view.html")
+_FOLDER = Path(__file__).parent
 _RAMP = 16  # colours of the bar of speeds
 _HIGHEST = 254  # levels of speeds and bond orders, stored as bytes; the next byte marks fixed particles
 # number of positions on an axis: even, so that changes modulo (this number + 1) fit into two bytes
@@ -137,8 +137,15 @@ def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order:
             raise SceneError("frame", 0, "the trajectory has no frame yet")
         chosen = np.unique(np.linspace(0, last, min(frames, last + 1)).round().astype(int))
         content = json.dumps(_content(data, chosen, order))
-    text = _TEMPLATE.read_text(encoding="utf-8").replace("TITLE", _MARK, 1)
-    return View(text.replace("DATA", content, 1))
+    return View(page_of("view.html", _MARK, DATA=content))
+
+
+def page_of(name: str, mark: str, **parts: str) -> str:
+    """Return a page from its file, the head that pages share, and texts by the words that they replace."""
+    text = "".join((_FOLDER / part).read_text(encoding="utf-8") for part in ("page.html", name))
+    for word, part in {"TITLE": mark, **parts}.items():
+        text = text.replace(word, part, 1)
+    return text
 
 
 def _with_names(simulation: Simulation) -> xr.Dataset:

@@ -63,7 +63,7 @@ def load_module(module: str) -> ModuleType:
 def find_parts(module: str, name: str) -> Parts:
     """Return the parts of a figure, or of a kind of figures, in a module."""
     loaded = load_module(module)
-    parts: Parts = {**getattr(loaded, "KINDS", {}), **loaded.FIGURES}[name]
+    parts: Parts = loaded.FIGURES[name] if name in loaded.FIGURES else loaded.KINDS[name]
     return parts
 
 

@@ -11,7 +11,7 @@ tested as a family. A family rejects at least one true claim with the same proba
 test (Holm's correction at the level 0.0027, two-sided). In addition, a two-sided chi-square tests the
 deviations of all values of the family together, because uncertainties that are too large are also wrong. If
 an uncertainty is computed from a few samples, the deviation is tested with Student's t. The claims of figures
-are in `families/<family>/claims.py`.
+are in the modules of `figures`.
 """
 
 from gaspart.public import attach as _attach

@@ -1,4 +1,4 @@
-"""Densest random packings, by insertion and by growth: packing fractions, and contacts per sphere."""
+"""Densest random packings, by insertion and by growth: packing fractions, contacts, and bounds."""
 
 from __future__ import annotations
 
@@ -13,16 +13,20 @@ from gaspart.analysis.estimate import Estimate, concise
 from gaspart.rendering import style
 from gaspart.rendering.particles import DrawnParticles, colours_of
 from gaspart.rendering.pictures import picture
-from gaspart.rendering.style import Figure
+from gaspart.rendering.style import Axes, Figure
 from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import Parts
+from gaspart.reproduction.jobs.pack import GROWTH
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
+from gaspart.scene.limits import CLOSE_PACKING
 
 TITLE, CHAPTER = "Random insertion", "Equation of state and structure"
 # Largest gap, in diameters, between two particles of a jammed packing that count as touching. Contacts at the
 # reduced pressure 10^6 have gaps of about 10^-6. Few other neighbours are as near as 10^-4.
 TOUCH = 1e-4
+RANDOM_CLOSE = 0.634  # largest packing fraction of random packings in the mean-field theory of [Song 2008]
+SLOW = GROWTH / 32.0  # growth rate from which on spheres are expected to order
 BACKBONE = 4  # least contacts of a sphere that is held in place; other spheres rattle in their cages
 
 
@@ -48,9 +52,12 @@ def _packing(point: Point) -> dict[str, Any]:
     fraction, error = _mean(fractions)
     return {
         "rule": rule,
+        "growth": point.settings.get("growth_rate", GROWTH) if rule == "compressed" else np.nan,
         "packing_fraction": fraction,
         "error": error,
         "freedom": max(1, fractions.size - 1),
+        "densest": float(fractions.max()),
+        "replicas": fractions.size,
         "contacts": _mean(np.array(touching)),
         "position": positions[0],
         "radius": float(radii[0]),
@@ -84,11 +91,11 @@ def contacts(positions: np.ndarray, radius: float, lengths: np.ndarray) -> float
 
 
 def claims(dataset: xr.Dataset) -> Iterator[Claim]:
-    """Yield claims that growth ends denser than 0.60 with six contacts, and insertion below saturation."""
+    """Yield claims on growth, fast and slow, and that insertion ends below saturation."""
     for packing in Table(dataset, "packing"):
         fraction = Estimate(packing.packing_fraction, packing.error, packing.freedom)
         if packing.rule == "compressed":
-            yield from _jammed(packing, fraction)
+            yield from _grown(packing, fraction)
             continue
         side = packing.length[0] / (2.0 * packing.radius)
         yield Claim.at_most(
@@ -96,6 +103,19 @@ def claims(dataset: xr.Dataset) -> Iterator[Claim]:
             "over saturation",
             fraction / theory.insertion_saturation(3, side, packing.rule), 1.0, 0.02,
             "[Zhang 2013], with the wall excess of fill_failures", "overlaps are accepted",
+        )  # fmt: skip
+
+
+def _grown(packing: Row, fraction: Estimate) -> Iterator[Claim]:
+    if packing.growth == GROWTH:
+        yield from _jammed(packing, fraction)
+    elif packing.growth <= SLOW:
+        yield Claim.at_least(
+            f"packing fraction of the densest of {packing.replicas} packings of spheres grown "
+            f"{GROWTH / packing.growth:g} times more slowly, over {RANDOM_CLOSE:g}",
+            Estimate(packing.densest / RANDOM_CLOSE), 1.02, 0.01,
+            "[Lubachevsky 1990]: spheres that grow slowly order",
+            "[Song 2008]'s bound for random packings holds however slowly spheres grow",
         )  # fmt: skip
 
 
@@ -125,10 +145,12 @@ CAPTIONS = {
 
 
 def draw(dataset: xr.Dataset) -> Figure:
-    """Draw the source's fill (first packing) and the compressed packing (last), with densities."""
-    figure, axes = style.new((3.4,), (3.4,))
+    """Draw the source's fill and a jammed packing, and packing fractions beside their bounds."""
+    figure, axes = style.new((3.4,), (3.4,), (2.4,))
     packings = Table(dataset, "packing")
-    for letter, axis, packing in zip("ab", axes, (packings[0], packings[-1]), strict=True):
+    grown = packings[packings.rule == "compressed"]
+    _draw_bounds(axes.pop(), packings, grown)
+    for letter, axis, packing in zip("ab", axes, (packings[0], grown[0]), strict=True):
         positions = packing.position[np.isfinite(packing.position).all(axis=1)]
         count = len(positions)
         particles = DrawnParticles(
@@ -145,6 +167,25 @@ def draw(dataset: xr.Dataset) -> Figure:
         style.letter(axis, f"({letter})")
         axis.set_title(f"{CAPTIONS[packing.rule]}\nη = {concise(packing.packing_fraction, packing.error)}")
     return figure
+
+
+def _draw_bounds(axis: Axes, packings: Table, grown: Table) -> None:
+    """Draw packing fraction against growth rate, and the bounds that source A cites."""
+    for value, dashes, label in (
+        (CLOSE_PACKING[3], "-", "densest, 74 % (Hales)"),
+        (RANDOM_CLOSE, "--", "random close, 63 % (Song)"),
+    ):
+        style.level(axis, value, ls=dashes, label=label)
+    fractions = Estimate(grown.packing_fraction, grown.error)
+    style.points(axis, grown.growth, fractions, label="grown until jammed")
+    axis.plot(grown.growth, grown.densest, "_", color=style.COLOURS[0], label="densest of these")
+    for inserted in packings.packing_fraction[packings.rule == "periodic"]:
+        style.level(axis, inserted, ls=":", label="inserted, periodic")
+    axis.set(xscale="log", xlim=(0.5 * SLOW, 2.0 * GROWTH))
+    labels = "growth rate of the diameter / thermal speed", r"packing fraction $\eta$"
+    style.label_axes(axis, *labels, ylim=(0.3, 0.8))
+    axis.legend(loc="center right")
+    style.letter(axis, "(c)")
 
 
 FIGURES = {"densest_fill": Parts({}, measure, claims, draw)}

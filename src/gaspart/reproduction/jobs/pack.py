@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from gaspart.keys import Kind
+from gaspart.keys import Kind, positive
 from gaspart.reproduction.jobs.data import PointData
 from gaspart.reproduction.jobs.fill import ATTEMPTS, insert
 
@@ -17,9 +17,15 @@ if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
 
 RESULT = "random insertion until nothing more fits; with `arrangement: compressed` growth until all jam"
-KEYS: dict[str, Kind] = {"attempts": ATTEMPTS}
 GROWTH = 2.0**-6
 """Growth rate of particles until jamming: slow enough to find all contacts, too fast to crystallise."""
+KEYS: dict[str, Kind] = {
+    "attempts": ATTEMPTS,
+    "growth_rate": positive(
+        "growth rate of the diameter over the thermal speed, with `arrangement: compressed`; 1/64 without it",
+        default=None,
+    ),
+}
 
 
 def engines(point: Point) -> list[Engine]:
@@ -34,14 +40,19 @@ def arguments(point: Point) -> dict:
     """
     if ("attempts" in point.settings) == (point.settings.get("arrangement") == "compressed"):
         raise point.make_error("attempts", "is required with job: pack, unless the arrangement is compressed")
-    return {"scene": point.scene, "attempts": point.settings.get("attempts"), "seeds": point.seeds}
+    if "growth_rate" in point.settings and "attempts" in point.settings:
+        raise point.make_error("growth_rate", "excludes attempts")
+    own = {"growth": rate} if (rate := point.settings.get("growth_rate")) else {}
+    return {"scene": point.scene, "attempts": point.settings.get("attempts"), "seeds": point.seeds, **own}
 
 
-def pack(scene: Scene, attempts: int | None, seeds: list[tuple[int, ...]]) -> PointData:
+def pack(
+    scene: Scene, attempts: int | None, seeds: list[tuple[int, ...]], growth: float = GROWTH
+) -> PointData:
     """Pack a scene of one species, once per seed, by insertion or growth.
 
     Insertion tries up to `attempts` random positions for each particle. If `attempts` has the value None, the
-    particles grow until they jam instead.
+    particles grow at the rate `growth` until they jam instead.
 
     Returns a dataset with position (replica, particle, axis), NaN for a particle that was never placed;
     radius and packing_fraction (replica,); reduced pressure (replica,), NaN for insertion; and length
@@ -55,7 +66,7 @@ def pack(scene: Scene, attempts: int | None, seeds: list[tuple[int, ...]]) -> Po
     positions, scales, fractions, pressures = np.full(shape, np.nan), [], [], []
     for row, seed in zip(positions, seeds, strict=True):
         if attempts is None:
-            packing = compress(scene, seed, GROWTH, until="jammed")
+            packing = compress(scene, seed, growth, until="jammed")
             row[:] = packing.positions
             scales.append(packing.scale)
             fractions.append(packing.packing_fraction)
