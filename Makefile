@@ -93,7 +93,7 @@ INTERPRETED = $(shell grep -rl mark.interpreted tests --include='test_*.py')
 test: develop
 	NUMBA_DISABLE_JIT=1 $(TEST) -m interpreted --hypothesis-profile=few $(INTERPRETED) $(OPTIONS)
 	PYTHONPATH=tests .venv/bin/python -W ignore -m battery.compile_kernels
-	$(TEST) -m "not thorough and not interpreted" $(OPTIONS)
+	$(TEST) --canonical -m "not thorough and not interpreted" $(OPTIONS)
 
 test-all: develop
 	.venv/bin/python -m pytest --numprocesses=auto -m "" --hypothesis-profile=search $(OPTIONS)

@@ -38,6 +38,8 @@ if INTERPRETED:
     read_fields()
     do_without_vectors()
 
+OF_CANONICAL_KERNELS = ("accuracy", "battery", "cli", "engines", "exact", "trajectory")
+"""Folders whose unmarked tests use the loops of `battery.compile_kernels` alone."""
 LOOPS_BEFORE = set()
 """Digests of the engines' loops that earlier tests of this process have used."""
 TESTS = Path(__file__).parent
@@ -62,9 +64,7 @@ class ByFile(LoadScopeScheduling):
 
 def pytest_addoption(parser):
     parser.addoption("--no-skips", action="store_true", help="fail if any test is skipped")
-    parser.addoption(
-        "--canonical", action="store_true", help="fail an unmarked test that uses kernels of its own"
-    )
+    parser.addoption("--canonical", action="store_true", help="fail unmarked tests that use other kernels")
 
 
 def pytest_configure(config):
@@ -95,7 +95,8 @@ def only_canonical_kernels(request):
     if request.config.getoption("canonical") and not INTERPRETED:
         new = loops_in_use() - LOOPS_BEFORE
         LOOPS_BEFORE.update(new)
-        if not {"thorough", "interpreted"} & {mark.name for mark in request.node.iter_markers()}:
+        marks = {mark.name for mark in request.node.iter_markers()}
+        if place_of(request.node)[0] in OF_CANONICAL_KERNELS and not {"thorough", "interpreted"} & marks:
             own = new - set(LIST.read_text().split())
             assert not own, (
                 "a scene with kernels of its own: take one of battery/kinds_of_runs.py, or mark it thorough"
@@ -106,11 +107,16 @@ def pytest_xdist_make_scheduler(config, log):
     return ByFile(config, log)
 
 
+def place_of(item):
+    """Return the folders and the file of a test, below `tests`."""
+    return item.path.relative_to(TESTS).parts if item.path.is_relative_to(TESTS) else ("",)
+
+
 def pytest_collection_modifyitems(config, items):
     """Begin with the smoke workflow and with the folders that take longest."""
 
     def place(item):
-        parts = item.path.relative_to(TESTS).parts if item.path.is_relative_to(TESTS) else ("",)
+        parts = place_of(item)
         return parts[-1] not in OF_SMOKE_RUN, parts[0] not in FIRST
 
     items.sort(key=place)

@@ -6,10 +6,13 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[1]
 SOME = "2d-10000-0.2-plain or start or insertion"  # their kernels are others' as well
 
 
+@pytest.mark.thorough
 def test_a_small_run_makes_the_table_and_the_figure(tmp_path):
     run, table, figure = (tmp_path / name for name in ("run.json", "performance.csv", "performance.png"))
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", "benchmarks"]

@@ -9,7 +9,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from hypothesis import example, given
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from malformed import within
 
@@ -219,6 +219,7 @@ def carried_out(line, encoding="utf-8", errors="strict"):
     return code, out.buffer.getvalue(), err.buffer.getvalue().decode()
 
 
+@settings(max_examples=settings.default.max_examples // 2)
 @example([])
 @given(command_lines())
 def test_a_command_line_ends_with_a_known_code_and_changes_no_file(folder, line):

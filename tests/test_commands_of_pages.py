@@ -76,11 +76,15 @@ def test_every_command_of_snakemake_plans(tmp_path, monkeypatch):
 
     copy, plain = copy_of_project(tmp_path), ("--report", "--workflow-profile", "--delete-temp-output")
     for page in PAGES:
-        blocks = r"^```yaml(?: title=\"([\w-]+\.yaml)\")?\n(?:# ([\w-]+\.yaml).*\n)?(.*?)^```"
+        blocks = r"^```yaml(?: title=\"([\w-]+\.yaml)\")?\n(?:# ([\w-]+\.yaml)[^\n]*\n)?(.*?)^```"
         for title, named, text in re.findall(blocks, page.read_text(encoding="utf-8"), re.M | re.S):
-            if (name := title or named) and "experiments:" in text + "figures:":
+            if (name := title or named) and "experiments:" in text:
                 (copy.path / name).write_text(text, encoding="utf-8")
+    failed = []
+    of_code = ("speed-moments", "free_path")  # figures of modules that a page prints
     for page, words in SNAKEMAKE:
-        if not set(words) & set(plain) and "speed-moments" not in " ".join(words):  # a package of its own
+        if not set(words) & set(plain) and not any(name in " ".join(words) for name in of_code):
             result = copy.snakemake("--dry-run", *words)
-            assert result.returncode == 0, (page.name, words, result.stdout[-2000:])
+            if result.returncode:
+                failed.append((page.name, words, result.stdout[-1000:]))
+    assert not failed

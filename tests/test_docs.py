@@ -18,7 +18,10 @@ SOURCE = DOCS.parent / "src/gaspart"
 FAMILY = {SOURCE / name for name in ("measure.py", "claims.py", "figure.py")}  # one in each family
 
 
-@pytest.mark.parametrize("name", ["quickstart", "accuracy", "tools"])
+@pytest.mark.parametrize(
+    "name",
+    ["quickstart", *(pytest.param(page, marks=pytest.mark.thorough) for page in ("accuracy", "tools"))],
+)
 def test_a_page_runs_from_top_to_bottom(name, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     names, printed = {}, ""

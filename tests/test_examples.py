@@ -36,8 +36,15 @@ def failures(text, name):
     return "".join(lines)
 
 
+LONG = {f"gaspart.{name}" for name in ("play", "ImpulseTally", "PairImpulseTally", "StressTally", "compress")}
+LONG |= {"gaspart.analysis.heat_flux", "gaspart.analysis.wall_shear"}
+"""Examples that compile kernels of their own."""
+EXAMPLES = [name for name, item in ITEMS.items() if ">>>" in (inspect.getdoc(item) or "")]
+
+
 @pytest.mark.parametrize(
-    "name", [name for name, item in ITEMS.items() if ">>>" in (inspect.getdoc(item) or "")]
+    "name",
+    [pytest.param(name, marks=pytest.mark.thorough if name in LONG else ()) for name in EXAMPLES],
 )
 def test_an_example_gives_what_it_states(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

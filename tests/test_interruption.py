@@ -247,7 +247,7 @@ def test_a_job_of_the_workflow_ends_with_a_checkpoint(tmp_path):
     assert saved == ("`gaspart resume" in printed)
 
 
-@pytest.mark.parametrize("signals", [12, pytest.param(500, marks=pytest.mark.thorough)])
+@pytest.mark.parametrize("signals", [6, pytest.param(500, marks=pytest.mark.thorough)])
 def test_runs_that_are_disturbed_at_random_moments_end_in_the_same_bytes(tmp_path, signals):
     """For both engines, with one and two threads. A large number takes a quarter of an hour."""
     script = Path(__file__).with_name("kills.py")

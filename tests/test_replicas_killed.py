@@ -79,8 +79,8 @@ def frames(path):
     ("disturbed", "again"),
     [
         ("all, by SIGINT", ["resume", "run.nc"]),
-        ("all, by SIGKILL", RUN),
-        ("one", ["resume", "run-2.nc"]),
+        pytest.param("all, by SIGKILL", RUN, marks=pytest.mark.thorough),
+        pytest.param("one", ["resume", "run-2.nc"], marks=pytest.mark.thorough),
         ("the other one", RUN),
     ],
 )

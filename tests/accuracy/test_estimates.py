@@ -105,6 +105,7 @@ def _quantile(freedom):
     return chi2.ppf(0.1, freedom)
 
 
+@pytest.mark.thorough
 def test_components_that_vanish_are_relative_to_the_others(tmp_path):
     scene = gas(2, 32, 0.2)
     stress = gp.Correlations(interval=0.1, lags=8, stress=True)

@@ -87,6 +87,7 @@ def test_a_single_run_states_the_scatter_of_other_seeds(walled, capsys):
     assert text.count("(for the energy of this run; other seeds scatter by 5.9 %)") == 1
 
 
+@pytest.mark.thorough
 def test_runs_without_an_energy_of_their_own_have_no_scatter(tmp_path, heated):
     with gp.open_trajectory(heated[0]) as run:
         assert scatter_of_run(run, "collision_rate").value == 0.0

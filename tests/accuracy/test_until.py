@@ -139,6 +139,7 @@ def test_a_periodic_series_ends_no_run_before_it_is_known(form, period):
     assert ends == (10 if period <= 20 else ends if period <= 100 else 0)
 
 
+@pytest.mark.interpreted
 def test_a_series_that_never_changes_is_given_up(tmp_path, monkeypatch):
     """A particle that hits a wall once in each interval between frames: the next one may differ."""
     monkeypatch.setattr(reached, "IDLE", 128)

@@ -88,3 +88,10 @@ def test_without_freud_the_message_names_what_to_install(monkeypatch):
     structure._freud.cache_clear()
     with pytest.raises(SceneError, match=r"bond order .*: pip install 'gaspart\[order\]'"):
         structure.hexatic(triangular(), HEXAGONAL)
+
+
+@pytest.mark.parametrize("side", [1e-6, 40.0, 1.12e5, 1e7])
+def test_the_unit_of_length_does_not_matter(side):
+    places = np.random.default_rng(1).random((16, 2))
+    found = [structure.hexatic(places * each, (each, each)) for each in (side, 8.0)]
+    assert np.allclose(*found, atol=1e-4)

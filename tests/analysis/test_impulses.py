@@ -352,3 +352,11 @@ def test_the_pressure_of_two_discs_has_no_controls_and_an_honest_error(tmp_path)
         errors.append(float(found.error))
     ratio = np.std(values, ddof=1) / np.sqrt(np.mean(np.square(errors)))
     assert 0.7 < ratio < 1.35  # of 29 degrees of freedom, and 15 of each error
+
+
+def test_a_run_without_any_impulse_has_the_density_of_counts(tmp_path):
+    scene = gp.Scene(gp.Container((20.0,) * 3), [gp.Species(20, 0.05, temperature=1.0)])
+    path = gp.run(scene, gp.EventDriven(), 1, 0.02, 0.001, tmp_path / "a.nc", tallies=[ImpulseTally("z", 40)])
+    found = gp.analysis.density(path)
+    assert found.attrs["estimator"] == "counts"
+    assert float(found.estimate.mean()) == pytest.approx(scene.number_density)

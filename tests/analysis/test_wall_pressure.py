@@ -184,3 +184,14 @@ def test_the_force_beside_a_well_does_not_depend_on_the_interval_between_frames(
     simulation.advance(96.0)
     found = gp.analysis.wall_force(run(scene, 96.0, interval, tmp_path / "a.nc"), start=0.0)
     np.testing.assert_allclose(found.estimate.values, simulation.tally.wall_impulse[:4] / 96.0, rtol=1e-12)
+
+
+@pytest.mark.parametrize(("lengths", "count"), [((5.0, 12.0), 22), ((4.0, 7.0, 9.0), 60)])
+def test_walls_at_different_distances_have_pressures_of_their_own(tmp_path, lengths, count):
+    scene = gp.Scene(gp.Container(lengths), [gp.Species(count, 0.5, temperature=1.0, exact_temperature=True)])
+    found = gp.analysis.wall_pressure(gp.run(scene, gp.EventDriven(), 5, 4000.0, 4.0, tmp_path / "a.nc"))
+    assert np.unique(found.theory).size == len(lengths)
+    assert (abs(found.deviation) < 4.0).all()
+    narrow, wide = (found.estimate.values[ends].mean() for ends in (slice(0, 2), slice(-2, None)))
+    error = math.hypot(*found.error.values[[0, 1, -2, -1]]) / 2.0
+    assert wide - narrow > 6.0 * error  # edges and corners press less on walls that are close

@@ -10,9 +10,10 @@ import os
 from concurrent.futures import ProcessPoolExecutor
 
 from battery.disturbed import ROWS
-from battery.kinds_of_runs import CANONICAL, kernels_of, start_of
+from battery.kinds_of_runs import CANONICAL, kernels_of, repeated_simulation, start_of
 from battery.loops import LIST, loops_in_use
 from battery.test_bits import CANONICAL as CANONICAL_ROWS
+from battery.test_bits import COMPARED
 from scenes import gas
 
 import gaspart as gp
@@ -32,15 +33,20 @@ def compile_run(engine, name):
     start = start_of(engine, name)
     for form in start.forms:
         start.record(form, 2)
+        repeated_simulation(engine, name, form, 2)
     return loops_in_use()
 
 
 def compile_row(name):
-    """Begin a run under each of its engines, and with events if engines are compared."""
+    """Begin a run under each of its engines, and with events if it records them somewhere."""
     row = ROWS[name]
-    for engine in row.engines:
-        for record in {False, len(row.engines) > 1}:
-            row.simulation(engine, record=record).advance(until=1e-3 * row.until)
+    for engine in row.engines if name in COMPARED else row.engines[:1]:
+        for record in {False, len(row.engines) > 1 or bool(row.record)}:
+            simulation = row.simulation(engine, record=record)
+            if row.record:  # a restored run records none
+                simulation.record_events = record
+            first = engine == row.engines[0]
+            simulation.advance(until=row.until if first else simulation.engine.quantum or 1e-3 * row.until)
     return loops_in_use()
 
 
@@ -60,7 +66,7 @@ def main():
     """Compile all."""
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         done = [pool.submit(compile_run, *run) for run in different(CANONICAL)]
-        done += [pool.submit(compile_row, name) for name in ROWS if name in CANONICAL_ROWS]
+        done += [pool.submit(compile_row, name) for name in ROWS if name in CANONICAL_ROWS | COMPARED]
         done += [pool.submit(compile_discs, engine) for engine in DISCS]
         loops = set().union(*(future.result() for future in done))
     LIST.parent.mkdir(exist_ok=True)

@@ -194,7 +194,7 @@ def runs():
 
 
 _EVENT = ("periodic", "walls", "gravity", "lees_edwards", "plates", "piston", "thermostat", "mixture", "open")
-_EVENT += ("wind", "two", "ten")
+_EVENT += ("wind",)
 CANONICAL = [
     *(("event", name) for name in _EVENT),
     *(("step", name) for name in ("periodic", "walls", "mixture")),
@@ -202,6 +202,11 @@ CANONICAL = [
     *(("dsmc enskog", name) for name in ("periodic", "mixture")),
 ]
 """Runs whose kernels `make test` compiles; the other kinds are in `make test-all`."""
+
+
+KNOWN_BY_OTHERS = {("event", "wind"), ("step", "periodic"), ("step", "walls")}
+KNOWN_BY_OTHERS |= {(f"dsmc {model}", "periodic") for model in ("boltzmann", "enskog")}
+"""Canonical runs whose observables are those of other ones: of mixtures, and in a frame that moves."""
 
 
 def kernels_of(engine, scene):
@@ -216,9 +221,9 @@ def canonical_kernels():
     return {kernels_of(*run) for run in chosen}
 
 
-def by_run(chosen):
-    """A parameter for each of these runs; those that are not canonical are thorough."""
-    marks = [() if run in CANONICAL else pytest.mark.thorough for run in chosen]
+def by_run(chosen, without=frozenset()):
+    """A parameter for each of these runs; those that are not canonical are thorough, and these ones too."""
+    marks = [() if run in CANONICAL and run not in without else pytest.mark.thorough for run in chosen]
     return pytest.mark.parametrize(
         ("engine", "name"),
         [pytest.param(*run, id=" ".join(run), marks=mark) for run, mark in zip(chosen, marks, strict=True)],
@@ -307,12 +312,12 @@ def recorded(engine, name):
 
 
 @cache
-def repeated_simulation(engine, name, form="frames"):
+def repeated_simulation(engine, name, form="frames", intervals=FRAMES):
     """The frames of the same run as a simulation, which gives them by being run again, with the impulses of a
     form."""
     start = start_of(engine, name)
     tallies = [tally for key, tally in start.tallies.items() if key == form]
     simulation = gp.Simulation(start.scene, start.engine, start.seed, initial=start.initial, tallies=tallies)
     quantum = start.engine.quantum or 0.0
-    simulation.advance(until=FRAMES * start.interval + 0.5 * quantum)
+    simulation.advance(until=intervals * start.interval + 0.5 * quantum)
     return repeat_run(simulation, pairs=start.engine.records_events and not start.scene.is_open)

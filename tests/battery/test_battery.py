@@ -8,7 +8,7 @@ from itertools import product
 
 import pytest
 from battery import table
-from battery.kinds_of_runs import CANONICAL, KINDS, by_run, engines, recorded, runs
+from battery.kinds_of_runs import CANONICAL, KINDS, KNOWN_BY_OTHERS, by_run, engines, recorded, runs
 from battery.observed import MEANS, SAMPLED, SINGLE, WITHOUT_NAME, names
 
 from gaspart.analysis.observables import observables_with
@@ -30,7 +30,7 @@ ELSEWHERE = {
 """Features of scenes that the battery has not, and the tests of their symmetries."""
 
 
-@by_run(RUNS)
+@by_run(RUNS, without=KNOWN_BY_OTHERS)
 def test_observables_change_as_they_state(engine, name):
     broken = [cell for cell in table.cells(engine, name) if cell.state == "broken"]
     assert not broken, "\n".join(

@@ -133,13 +133,18 @@ def test_resume_and_info_of_an_unfinished_run(folder, capsys):
         pytest.param(GAS, ["-o", "nowhere/run.nc"], "must be a file in an existing folder", id="output"),
     ],
 )
-def test_a_mistake_costs_one_line(tmp_path, scene, options, complaint):
+def test_a_mistake_costs_one_line(tmp_path, monkeypatch, capsys, scene, options, complaint):
+    monkeypatch.chdir(tmp_path)
     path = tmp_path / "scene.yaml"
     if scene is not None:
         path.write_bytes(scene if isinstance(scene, bytes) else scene.encode())
-    done = shell("run", "scene.yaml", "-o", "run.nc", *BRIEFLY, *options, folder=tmp_path)
-    assert (done.returncode, done.stdout) == (2, "")
-    assert re.fullmatch(rf"gaspart: error: .*{complaint}.*\n", done.stderr), done.stderr
+    try:
+        code = main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY, *options])
+    except SystemExit as end:  # of the reader of options
+        code = end.code
+    printed = capsys.readouterr()
+    assert (code, printed.out) == (2, "")
+    assert re.fullmatch(rf"gaspart: error: .*{complaint}.*\n", printed.err), printed.err
     assert {file.name for file in tmp_path.iterdir()} <= {"scene.yaml"}
 
 

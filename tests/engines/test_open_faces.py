@@ -464,6 +464,7 @@ def test_a_reservoir_excludes_what_a_vacuum_allows():
         gp.Scene(container, species, walls=[wall], faces=face, centres_to_walls=True)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("engine", [gp.EventDriven(), gp.DSMC(time_step=0.1)], ids=["event", "dsmc"])
 def test_a_disc_leaves_when_its_surface_reaches_a_vacuum(engine):
     scene = gp.Scene(gp.Container((20.0, 10.0)), [gp.Species(1, 0.5, speed=1.0)], faces={"x_high": gp.Open()})

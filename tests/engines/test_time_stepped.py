@@ -51,6 +51,7 @@ def test_any_search_gives_the_same_bits(scene, precision, rewind, passes, seed):
         assert all(np.array_equal(one, other) for one, other in zip(ends[0], end, strict=True))
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("axis", [0, 1])
 @pytest.mark.parametrize("boxes", [1, 2, 3])
 def test_near_boxes_are_searched_across_a_periodic_face(axis, boxes):

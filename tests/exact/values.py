@@ -24,7 +24,7 @@ FEW = 6
 BINS, WAVE_BINS = 40, 30
 SHELLS, REACH = 60, 0.499
 """Bins of g(r), up to this part of the shortest side."""
-DENSE = ("discs_69",)
+DENSE = ("discs_69", "discs_88")
 """Kinds in which no body can be inserted."""
 LEFT = 0.02
 """Part of a bin that fixed bodies must leave, for a density there."""

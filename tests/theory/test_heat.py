@@ -55,6 +55,7 @@ def test_partial_accommodation_by_the_balance_of_streams(one, other):
     )
     part = one * other / (one + other - one * other)
     assert net[0] == pytest.approx(part * streams[:2].sum())
+    assert one != other or part == pytest.approx(one / (2.0 - one))
     free = free_molecular_stress(density, 0.1)
     assert free_molecular_stress(density, 0.1, **fractions) == pytest.approx(part * free)
 

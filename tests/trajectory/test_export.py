@@ -12,7 +12,11 @@ from gaspart.inspection.readers import read_frames
 from gaspart.trajectory import export as export_module
 
 
-@pytest.fixture(scope="module", params=[(3, 0.55), (2, 0.6)], ids=["spheres", "discs"])
+@pytest.fixture(
+    scope="module",
+    params=[pytest.param((3, 0.55), marks=pytest.mark.thorough), (2, 0.6)],
+    ids=["spheres", "discs"],
+)
 def state(request, tmp_path_factory):
     """The folder and the last frame of a dense, equilibrated run."""
     dimension, eta = request.param

@@ -17,6 +17,7 @@ from gaspart.theory.equations import carnahan_starling
 
 HOME = "analysis/observables.py"
 WORDS = {
+    "accuracy/of_step.py": "what a bound on the error of a step exists for",
     "analysis/fields.py": "quantities of a field",
     "rendering/view.py": "by what particles are coloured",
     "theory/geometry.py": "names of arguments",

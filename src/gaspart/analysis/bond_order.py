@@ -8,6 +8,7 @@ one thread, because a job of the workflow has one thread. freud is an optional d
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from functools import cache
 from types import ModuleType
@@ -19,6 +20,10 @@ from gaspart.errors import optional
 
 NEIGHBOURS = 12
 """Number of neighbours of a sphere in a face-centred cubic crystal."""
+_WIDEST = 10
+"""Logarithm to base 2 of the longest side that freud gets. Its Voronoi diagram of a few discs needs much
+memory for a side of 1e5, and ends the process for a side of 1e7.
+"""
 
 
 @cache
@@ -31,11 +36,14 @@ def _freud() -> ModuleType:
 def _system(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> tuple[Any, np.ndarray]:
     """Return a freud box and the positions in freud's coordinates.
 
-    The origin of freud's coordinates is the centre of the box. For discs z = 0.
+    The origin of freud's coordinates is the centre of the box. For discs z = 0. Units of length that do not
+    suit freud's Voronoi diagram are changed by a power of two, which changes no other bit.
     """
-    box = _freud().box.Box(*map(float, lengths), is2D=len(lengths) == 2)
+    longest = math.frexp(max(map(float, lengths)))[1]  # a power of two
+    scale = 2.0 ** (min(max(longest, 0), _WIDEST) - longest)
+    box = _freud().box.Box(*(scale * float(length) for length in lengths), is2D=len(lengths) == 2)
     points = np.zeros((len(positions), 3), dtype=np.float32)
-    points[:, : len(lengths)] = np.asarray(positions) - 0.5 * np.asarray(lengths)
+    points[:, : len(lengths)] = scale * (np.asarray(positions) - 0.5 * np.asarray(lengths))
     return box, box.wrap(points)
 
 

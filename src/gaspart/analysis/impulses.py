@@ -197,7 +197,7 @@ def numbers_by_impulses(run: Run, axis: int, bins: int, species: int | None) -> 
         return None
     rows = [n for n in np.unique(run.species) if species is None or n == species]
     fluxes = [_momentum_flux(run, axis, has.bins, int(row)) for row in rows]
-    if any(flux is None for flux in fluxes):
+    if any(flux is None or not flux.flux.any() for flux in fluxes):  # without impulses nothing is known
         return None
     fine = np.asarray(sum(flux.numbers() for flux in fluxes if flux is not None))
     return fine.reshape(len(fine), bins, -1).sum(axis=2)

@@ -26,6 +26,7 @@ _CHAPTERS = {
         "heat",
         "accommodation",
         "metal",
+        "lorentz",
         "shear",
         "channel",
         "gradient",

@@ -19,7 +19,8 @@ from gaspart.theory.geometry import Numbers, Values
 
 SLOPE, BEND = {2: 0.5625, 3: 1.5}, {2: 0.0, 3: 0.5}
 """Coefficients of the contact value, see `contact_values`, by dimension."""
-_HIGHEST = 0.7  # packing fraction up to which contact values are evaluated
+HIGHEST = 0.7
+"""Packing fraction up to which contact values are evaluated."""
 MISSED_CONTACTS = {2: 1.0 / 4.0, 3: 2.0 / 3.0}
 """Fraction of the contacts of a dilute gas that begin and end within a step, divided by (v_th dt / sigma)^2,
 by dimension, with v_th = sqrt(k_B T / m): the flux of pairs through chords that they cross within a step.
@@ -61,7 +62,7 @@ Garcia & Wagner, Phys. Fluids 12, 2621 (2000)."""
 def contact_values(number_densities: np.ndarray, radii: np.ndarray, dimension: int) -> np.ndarray:
     """Compute the contact values of a mixture in the Enskog model."""
     filled = ball_volume(dimension) * float((number_densities * radii**dimension).sum())
-    free = 1.0 - min(filled, _HIGHEST)
+    free = 1.0 - min(filled, HIGHEST)
     surface = ball_volume(dimension) * float((number_densities * radii ** (dimension - 1)).sum())
     ratio = surface * 2.0 * radii[:, None] * radii / (radii[:, None] + radii)
     return 1.0 / free + SLOPE[dimension] * ratio / free**2 + BEND[dimension] * ratio**2 / free**3

@@ -14,11 +14,11 @@ to one of the lengths is the force on a wall:
 .. math:: N / V = \rho + \Gamma s_1 + \Gamma_\tau s_2 + \Gamma_\kappa s_3, \qquad
           F / A = P - 2 (w-1) \gamma / l - 2 (w-1)(w-2) \tau / l^2 ,
 
-this is the force for equal lengths. Gamma = - rho (d gamma / d rho) / (dP / d rho), and the other adsorptions
-follow by the same rule. rho is the density of a bulk fluid with the same chemical potential. Between two
-walls (w = 1) there are no edges, and the pressure on the walls is P. gamma, tau and kappa are exact to fifth
-order in the density, from cluster integrals (`clusters`). All quantities are in units of the diameter and k_B
-T.
+this is the force for equal lengths; otherwise the derivative is computed by differences. Gamma = - rho (d
+gamma / d rho) / (dP / d rho), and the other adsorptions follow by the same rule. rho is the density of a bulk
+fluid with the same chemical potential. Between two walls (w = 1) there are no edges, and the pressure on the
+walls is P. gamma, tau and kappa are exact to fifth order in the density, from cluster integrals (`clusters`).
+All quantities are in units of the diameter and k_B T.
 """
 
 import math
@@ -166,14 +166,15 @@ def surface_tension_uncertainty(packing_fraction: Numbers, dimension: int) -> Va
 
 @check_ranges
 def wall_pressure(
-    length: float, density: float, count: int, dimension: int, axes: int
+    length: float | Sequence[float], density: float, count: int, dimension: int, axes: int
 ) -> tuple[float, float]:
     """Compute the mean pressure of N particles on the walls of a container, and its uncertainty.
 
     Parameters
     ----------
-    length : float, [1]
-        Side of the container along each walled axis, in diameters, at least 2.
+    length : float or sequence of float, [1]
+        Side of the container along each walled axis, in diameters, at least 2. If the sides differ, a
+        sequence (axes,), first the distance between the walls on which the pressure acts.
     density : float, [1/length^d]
         Number of particles per volume accessible to centres, in units of the diameter.
     count : int
@@ -214,17 +215,19 @@ def wall_pressure(
     >>> round(pressure, 4), uncertainty < 0.01
     (0.5134, True)
     """
-    if not length >= SHORTEST:
-        rule = f"must be at least {SHORTEST:g} diameters: closer walls are no walls of one fluid"
-        raise SceneError("length", length, rule)
     if not 1 <= axes <= checked_dimension(dimension):
         raise ValueError(f"axes: {axes} (from 1 to {dimension} have walls)")
     walled = int(axes)
-    sides = (length - 1.0,) * walled
+    lengths = np.broadcast_to(np.asarray(length, dtype=float), walled)
+    if not (lengths >= SHORTEST).all():
+        rule = f"must be at least {SHORTEST:g} diameters: closer walls are no walls of one fluid"
+        raise SceneError("length", length, rule)
+    sides = tuple((lengths - 1.0).tolist())
     none = (0.0,) * walled
-    eta, value, shift = _in_container(sides, density, count, dimension, none)
+    eta, value, shift = (float(each) for each in _in_container(sides, density, count, dimension, none))
     errors = [number_density(eta, dimension) * float(compressibility_uncertainty(eta, dimension))]
-    errors += [math.sqrt(walled) * _opposite(eta, dimension, length) * value, shift**2 / value]
+    errors += [_opposite(eta, dimension, float(side)) * value for side in lengths]
+    errors.append(shift**2 / value)
     for kind in range(walled):
         further = [0.0] * walled
         further[kind] = _estimate_neglected(dimension, kind)

@@ -90,3 +90,12 @@ def test_the_whole_tally_is_the_same_however_a_run_is_split():
         assert two.state.count == 300
     assert np.array_equal(one.state.positions, two.state.positions)
     assert str(one.tally) == str(two.tally)
+
+
+def test_a_gas_denser_than_the_contact_values_is_refused():
+    crystal = gp.Scene(
+        gp.Container((3.0482, 5.2796), boundary="periodic"),
+        [gp.Species(18, 0.5, temperature=1.0, arrangement="lattice")],
+    )
+    with pytest.raises(gp.SceneError, match=r"packing_fraction = 0.8785: .*up to 0.7"):
+        gp.Simulation(crystal, gp.DSMC(model="enskog"))

@@ -264,28 +264,33 @@ def _mixture_of_species(run: Run) -> Mixture | None:
 
 
 def wall_pressure(run: Run, touched: np.ndarray) -> Expected | None:
-    """Compute the expected pressure on two walls at a fixed distance.
+    """Compute the expected pressure on each wall (face,), at fixed distances of the walls.
 
     For hard particles the result is the pressure of the fluid between hard walls. For point particles it is N
     k_B T divided by the accessible volume. `touched` (d,) are the side lengths of the accessible volume.
+    Particles that hardly collide keep the energies along the axes that they have at the start: the scatter of
+    these energies is part of the uncertainty.
     """
-    walled, lengths = ~run.periodic, np.array(run.scene.container.lengths)
     gas, equation = run.scene.gas, equation_of(run)
     if gas is None or equation == ENSKOG:
         return None
+    scatter = 0.0 if is_mixed(run) else math.sqrt(2.0 * (1.0 - 1.0 / gas.dimension) / run.count)
     if equation == BOLTZMANN:
         value = run.count * run.temperature / float(touched.prod())
-        return Expected(value, 0.0, "Boltzmann equation: an ideal gas", 0.0)
-    sides = lengths[walled]
-    if run.scene.centres_to_walls or np.ptp(sides) > 1e-9 * sides.max():
+        return Expected(value, scatter * value, "Boltzmann equation: an ideal gas", 0.0)
+    if run.scene.centres_to_walls:
         return None
+    sides = (np.array(run.scene.container.lengths) / gas.diameter)[~run.periodic]
     density = gas.count / float((touched / gas.diameter).prod())
     try:
-        value, error = theory.wall_pressure(
-            sides[0] / gas.diameter, density, gas.count, gas.dimension, int(walled.sum())
-        )
+        parts = [
+            theory.wall_pressure(np.roll(sides, -first), density, gas.count, gas.dimension, len(sides))
+            for first in range(len(sides))
+        ]
     except ValueError:  # above the density range of the theory
         return None
+    value, error = np.repeat(parts, 2, axis=0).T
+    error = np.hypot(error, scatter * value)
     unit = run.temperature / gas.diameter**gas.dimension
     ideal = run.count * run.temperature / float(touched.prod())
     return Expected(value * unit, error * unit, "fluid between hard walls", value * unit - ideal)

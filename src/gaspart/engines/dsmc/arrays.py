@@ -26,7 +26,7 @@ from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
 from gaspart.state.random import key_of
 from gaspart.state.state import State
-from gaspart.theory.discretisation import BEND, SLOPE
+from gaspart.theory.discretisation import BEND, HIGHEST, SLOPE
 from gaspart.theory.rates import accessible
 
 if TYPE_CHECKING:
@@ -193,6 +193,9 @@ def dense_for(scene: Scene, state: State, grid: Grid, kinds: int) -> Dense:
         raise SceneError("lengths", scene.container.lengths, 'model = "enskog" needs sides of a diameter')
     volume = grid.volume * cells
     sums = [float((state.radii**power).sum()) for power in (d, d - 1)]
+    if (filled := sums[0] * ball_volume(d) / volume) > HIGHEST:
+        rule = f'model = "enskog" has contact values up to {HIGHEST:g}'
+        raise SceneError("packing_fraction", round(filled, 4), rule)
     fields = np.repeat(np.array(sums)[:, None] * ball_volume(d) / volume, cells, axis=1)
     steps = max(1.0, _SAMPLES * cells / max(1, state.count))
     around = scene.is_periodic
