@@ -38,7 +38,7 @@ if INTERPRETED:
     read_fields()
     do_without_vectors()
 
-OF_CANONICAL_KERNELS = ("accuracy", "battery", "cli", "engines", "exact", "trajectory")
+OF_CANONICAL_KERNELS = ("battery", "cli", "exact")
 """Folders whose unmarked tests use the loops of `battery.compile_kernels` alone."""
 LOOPS_BEFORE = set()
 """Digests of the engines' loops that earlier tests of this process have used."""

@@ -173,7 +173,7 @@ def test_all_frames_are_exported_with_their_numbers_and_containers(run, suffix):
         assert np.array_equal(corners, origin) and (name != "piston x_low" or np.ptp(corners[:, 0]) > 0.1)
     frames = read_frames(out, time_step=0.5 if suffix == ".gsd" else None)
     assert np.array_equal(frames.time, times)
-    assert np.array_equal(frames.velocities.astype(np.float32), velocities)
+    assert np.array_equal(np.asarray(frames.velocities, np.float32), velocities)
     d = scene.dimension
     for n in range(len(times)):
         one = frames.at(n)
