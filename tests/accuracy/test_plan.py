@@ -420,7 +420,7 @@ def test_the_energy_of_random_places_scatters_as_stated():
     """That of the temperature, from the energies of starts, which all have an exact temperature."""
     scene = column(60, 80.0, 0.05)
     energies = []
-    for seed in range(40):
+    for seed in range(100):
         state = initial.initial_state(scene, seed)
         energies.append(state.translational_energy + 0.05 * float(state.positions[:, 2].sum()))
     found = start_scatter(Target(scene, "temperature"))
@@ -430,7 +430,7 @@ def test_the_energy_of_random_places_scatters_as_stated():
         column_of.of_energy(np.mean(energies) - 30.0 * 0.05 + k * np.std(energies), False) for k in (1, -1)
     )
     expected = (hot.temperature - cold.temperature) / (hot.temperature + cold.temperature)
-    assert found.value == pytest.approx(expected, rel=3.0 / math.sqrt(2.0 * 39.0) + 0.05)
+    assert found.value == pytest.approx(expected, rel=3.0 / math.sqrt(2.0 * 99.0) + 0.05)
     drawn = replace(scene, species=[replace(scene.species[0], exact_temperature=False)])
     assert start_scatter(Target(drawn, "temperature")).value > found.value
     heated = replace(scene, faces={"z_low": gp.Thermal(1.0)})

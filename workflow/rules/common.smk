@@ -210,7 +210,7 @@ def variant_of(experiment, point):
 
 def stamp_of(wildcards):
     point = point_of(wildcards)
-    return f"results/kernels/{kernel_digest(*sources_of(point))}/{variant_of(point.experiment, point.name)}.stamp"
+    return f"results/kernels/{kernel_digest(*sources_of(point))}/{variant_of(point.experiment, point.name)}.compiled"
 
 
 def task_of(wildcards):

@@ -3,7 +3,8 @@
 # The stamp's path holds a digest of the compiled modules and one of the features of the scene, and the rule has
 # neither inputs nor a `script:`, so that nothing but a missing stamp can make it run. It must be so: while a job that
 # is to be rerun has `ancient` output, Snakemake (9.27) leaves everything downstream of it unexamined, whatever else
-# may have changed. Parameters that are made with `threads` count as derived, and make nothing run.
+# may have changed. Who edits the command below gives the stamps another suffix. Parameters that are made with
+# `threads` count as derived, and make nothing run.
 
 
 # Paths are no parameters: they would enter the hashes of what is shared by `--cache`.
@@ -12,7 +13,7 @@ PYTHON, WARM = sys.executable, str(FOLDER / "workflow/scripts/warm.py")
 
 rule warm:
     output:
-        touch("results/kernels/{digest}/{variant}.stamp"),
+        touch("results/kernels/{digest}/{variant}.compiled"),
     log:
         "<results>/logs/warm/{digest}/{variant}.log",
     priority: 2
