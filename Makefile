@@ -99,7 +99,7 @@ test-all: develop
 	.venv/bin/python -m pytest --numprocesses=auto -m "" --hypothesis-profile=search $(OPTIONS)
 
 digests: setup
-	$(SNAKEMAKE) --quiet rules --configfile config/smoke.yaml -- points
+	$(SNAKEMAKE) --quiet rules --configfile config/smoke.yaml --until simulate
 	.venv/bin/python tests/workflow/digests.py results/smoke/points
 
 precise: setup
