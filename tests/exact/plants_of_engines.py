@@ -11,7 +11,7 @@ _ROWS = (
      ("masses_walls", "collision_rate", "dsmc")),
     ("kinetic gas up to a nearer wall", _DSMC, "margin=float(not scene.centres_to_walls)",
      "margin=0.9 * float(not scene.centres_to_walls)", ("masses_walls", "density", "dsmc")),
-    ("contact values of a denser gas", _DSMC, "ball_volume(d) / volume", "1.5 * ball_volume(d) / volume",
+    ("contact values of a denser gas", _DSMC, "[:, None] * ball_volume(d)", "[:, None] * 1.5 * ball_volume(d)",
      ("periodic", "Z", "enskog")),
     ("contact values to first order", _DSMC, "bend=BEND[d]", "bend=0.0", ("halves", "Z", "enskog")),
     ("half of the slope of contact values", _DSMC, "slope=SLOPE[d]", "slope=0.5 * SLOPE[d]",
