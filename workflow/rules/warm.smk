@@ -7,8 +7,14 @@
 # `threads` count as derived, and make nothing run.
 
 
-# Paths are no parameters: they would enter the hashes of what is shared by `--cache`.
-PYTHON, WARM = sys.executable, str(FOLDER / "workflow/scripts/warm.py")
+# Paths are no parameters, which would enter the hashes of what is shared by `--cache`. On a cluster the job reads this
+# file again.
+os.environ |= {"GASPART_PYTHON": shlex.split(sys.executable)[0], "GASPART_WARM": str(SCRIPTS / "warm.py")}
+
+
+envvars:
+    "GASPART_PYTHON",
+    "GASPART_WARM",
 
 
 rule warm:
@@ -26,4 +32,4 @@ rule warm:
     params:
         task=lambda wildcards, threads: task_of(wildcards),
     shell:
-        "{PYTHON} {WARM:q} {params.task:q} > {log} 2>&1"
+        '"$GASPART_PYTHON" "$GASPART_WARM" {params.task:q} > {log} 2>&1'
