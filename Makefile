@@ -1,5 +1,5 @@
-# make            set up, reproduce every figure, write results/report.html, print the verdicts; EFFORT=0.25 takes a
-#                 third of the time, and a later run of more effort continues its files
+# make            set up, reproduce every figure, write results/report.html, print the verdicts; EFFORT=0.25 makes
+#                 shorter runs, which a later run of more effort continues
 # make decide     continue exactly the runs behind claims that are open; says first which and how long
 # make first      set up, three figures of the sources: results/first.html, in some two minutes
 # make test       set up, run the tests that catch most per second; OPTIONS=... are options of pytest

@@ -79,7 +79,6 @@ with job(snakemake):
         undefined=jinja2.StrictUndefined,
     )
     environment.filters["number"] = "{:.5g}".format
-    environment.filters["longer"] = page.longer
     statements = page.statements(read_yaml(given.statements), claims)
     if not any(one["figure"] in of_figure for one in statements):  # a report of other figures
         statements = []

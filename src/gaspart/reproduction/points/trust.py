@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from importlib import import_module
-from pathlib import Path
 
 from gaspart.errors import SceneError
 from gaspart.reproduction.jobs.data import MADE_BY, digest_of
@@ -23,7 +22,7 @@ def require_own(point: Point) -> None:
         with netCDF4.Dataset(point.path) as file:
             made_by = getattr(file, MADE_BY, "")
         other = [point.path] if made_by != digest_of(point.parameters) else []
-    for path in other:
-        folder = Path(point.path)
-        rule = f"was not made by the point {point.experiment}/{point.name} of this config: delete {folder}"
-        raise SceneError("points", path, rule)
+    if other:
+        name = f"{point.experiment}/{point.name}"
+        rule = f"was not made by the point {name} of this config: delete {point.path}"
+        raise SceneError("points", other[0], rule)

@@ -287,13 +287,6 @@ def headline(rows: list[dict[str, Any]]) -> dict[str, Any]:
     }
 
 
-def longer(row: Mapping[str, Any]) -> float:
-    """Return the factor of the effort with which an inconclusive claim would be decided; 0 if none would."""
-    required, error = row["required_uncertainty"], row["uncertainty"]
-    undecided = row["verdict"] == "inconclusive" and required > 0.0 and math.isfinite(error)
-    return max((error / required) ** 2, 1.0) if undecided and error > required else 0.0
-
-
 def verdicts(rows: Iterable[dict[str, Any]]) -> dict[str, int]:
     """Count the claims with each verdict."""
     return dict(Counter(row["verdict"] for row in rows))
