@@ -42,6 +42,12 @@ FAINT = 1e-3
 """Part of the largest force that a few hits give."""
 EQUAL = 1e-6
 """Relative difference of values without an error."""
+STATED = {
+    **dict.fromkeys(("collision_rate", "pair_rates", "contact_values", "Z", "pressure_tensor"), "error"),
+    **dict.fromkeys(("pressure", "force"), "error_of_wall_pressures"),
+    "density": "error_of_the_density_at_walls",
+}
+"""Observable -> prediction of an engine that bounds its relative error."""
 
 
 @dataclass(frozen=True)
@@ -196,10 +202,9 @@ def is_hardly_hit(observable, result, part):
 
 
 def stated_error(observable, kind, engine):
-    """Return the relative error at walls that an engine states before a run: a bound."""
+    """Return the relative error of rates, and at walls, that an engine states before a run: a bound."""
     scene = gp.Scene.from_dict(kind.scene)
-    key = {"density": "error_of_the_density_at_walls", "pressure": "error_of_wall_pressures"}
-    return runs.engines(kind.name)[engine].predictions(scene).get(key.get(observable), 0.0)
+    return runs.engines(kind.name)[engine].predictions(scene).get(STATED.get(observable), 0.0)
 
 
 def deviation_of(observable, kind, result, part, right, bound=0.0):
