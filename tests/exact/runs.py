@@ -78,9 +78,7 @@ def time_step(kind):
     sizes = [group for group in kind.case.groups if group.radius > FREE]
     if not sizes:
         return kind.run["interval"] / 8.0
-    d, filled = kind.dimension, sum(group.count * group.radius**kind.dimension for group in sizes)
-    packed = {2: math.sqrt(12.0), 3: math.sqrt(32.0)}[d] * filled / kind.case.box.lengths.prod()
-    part = min(STEP, GAP * (packed ** (-1.0 / d) - 1.0))
+    part = min(STEP, GAP * (kind.packed ** (-1.0 / kind.dimension) - 1.0))
     solid = kind.temperature ** -0.5 * min(
         (one.radius + other.radius) / math.sqrt(1.0 / one.mass + 1.0 / other.mass)
         for one in sizes for other in sizes

@@ -238,7 +238,7 @@ def deviation_of(observable, kind, result, part, right, bound=0.0):
     value, error = np.asarray(value, float), np.asarray(error, float)
     freedom = np.broadcast_to(np.asarray(freedom, float), value.shape)
     right, known_error = (np.broadcast_to(one, value.shape) for one in (at, known_error))
-    independent = not kind.points  # a point crosses many bins with one velocity
+    independent = not (kind.points or kind.solid)  # neighbouring bins then hold the same bodies
     return compared(value, error, freedom, right, known_error, independent)
 
 
