@@ -15,7 +15,7 @@ from gaspart.engines import Engine, resolve_engine
 from gaspart.engines.dynamics import EventLog, check_identity, checkpoint_identity
 from gaspart.errors import SceneError, SimulationError
 from gaspart.keys.values import count_of, number
-from gaspart.scene.face_checks import check_piston_end, piston_end, refuse_open
+from gaspart.scene.boundaries import check_piston_end, piston_end, refuse_open
 from gaspart.scene.scene import DRAWN, THUMBNAIL, Scene, require_scene
 from gaspart.scene.walls import Plate, Wall, box_of_walls
 from gaspart.state.given import check_apart, state_at_time_zero

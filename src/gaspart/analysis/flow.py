@@ -34,8 +34,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.scene.boundaries import flow
 from gaspart.scene.faces import Vibrating
-from gaspart.scene.shear import flow
 
 if TYPE_CHECKING:
     from gaspart.analysis.run import Run

@@ -20,10 +20,9 @@ from gaspart.engines import engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
 from gaspart.scene.accessible import Accessible
-from gaspart.scene.face_checks import refuse_open
+from gaspart.scene.boundaries import refuse_open, refuse_sheared
 from gaspart.scene.gas import Gas, Mixture
 from gaspart.scene.scene import Scene
-from gaspart.scene.shear import refuse_sheared
 from gaspart.simulation import Simulation
 from gaspart.state.insertion import per_particle
 from gaspart.state.state import by_number

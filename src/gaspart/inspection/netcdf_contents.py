@@ -19,7 +19,7 @@ from gaspart.errors import SceneError
 from gaspart.files import open_regular
 from gaspart.inspection.contents import Contents, Overrides
 from gaspart.inspection.frames import Vectors, map_frames, read_in_blocks
-from gaspart.scene.face_checks import refuse_open
+from gaspart.scene.boundaries import refuse_open
 from gaspart.state.insertion import per_particle
 from gaspart.trajectory.amber import BOOKKEEPING
 from gaspart.trajectory.opening import check_frames, open_descriptor, open_netcdf

@@ -25,7 +25,7 @@ from gaspart.kernels.dsmc.boltzmann import Stress
 from gaspart.kernels.dsmc.model import kick_all
 from gaspart.kernels.model import Space
 from gaspart.kernels.physics.exact_sum import WIDTH, exact_parts, sum_over_threads
-from gaspart.scene.face_checks import mean_count, refuse_open
+from gaspart.scene.boundaries import mean_count, refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State, drift_of

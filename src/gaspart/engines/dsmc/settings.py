@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from gaspart.engines.engine import Engine, register
 from gaspart.keys import choice, count, declare, per_side, positive
-from gaspart.scene.face_checks import refuse_open
+from gaspart.scene.boundaries import refuse_open
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.cells import Errors, Medium

@@ -21,7 +21,7 @@ from gaspart.rendering.style import Axes
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table
-from gaspart.scene.gas import plain_gas
+from gaspart.scene.facts import plain_gas
 from gaspart.trajectory.reading import open_trajectory
 
 # Largest sampling interval, in collisions per particle, of a run for short times, without D: Simpson's rule

@@ -34,7 +34,7 @@ from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import PARTICLES, SOURCE_C, Parts, pressure, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
-from gaspart.scene.gas import plain_gas
+from gaspart.scene.facts import plain_gas
 
 TITLE, CHAPTER = "Structure and chemical potential", "Equation of state and structure"
 MEASURED = names("the experiments whose frames are measured; of the others Z alone")
