@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import gaspart
-from gaspart.engines import Engine, resolve_engine
+from gaspart.engines import Engine, engine_to_dict, resolve_engine
 from gaspart.engines.dynamics import EventLog, check_identity, checkpoint_identity
 from gaspart.errors import SceneError, SimulationError
 from gaspart.keys.values import count_of, number
@@ -748,9 +748,9 @@ class Simulation:
 
     def _identity(self) -> dict[str, np.ndarray]:
         """Return the arrays of a checkpoint that identify the run."""
-        return checkpoint_identity(
-            self.scene, self.engine, self.seed, None if self._given is None else self._initial
-        )
+        neutral, given = self.engine.neutral_settings, None if self._given is None else self._initial
+        settings = {key: x for key, x in engine_to_dict(self.engine).items() if key not in neutral}
+        return checkpoint_identity(self.scene, settings, self.seed, given)
 
     def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
         """Continue bitwise identically from a checkpoint.

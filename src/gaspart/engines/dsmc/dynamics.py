@@ -31,7 +31,7 @@ from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State, drift_of
 
 if TYPE_CHECKING:
-    from gaspart.engines.dsmc.settings import DSMC
+    from gaspart.engines.dsmc.settings import DsmcSettings
 
 
 # Scenes that the DSMC engine supports.
@@ -145,7 +145,7 @@ class DsmcDynamics(SteppedDynamics):
 
     def __init__(
         self,
-        engine: DSMC,
+        engine: DsmcSettings,
         scene: Scene,
         state: State,
         seed: int | tuple[int, ...],
