@@ -6,7 +6,8 @@ import html
 import math
 import warnings
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -23,9 +24,6 @@ from gaspart.state.initial import initial_state
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
 from gaspart.state.tally import StressTally, Tally
-
-if TYPE_CHECKING:
-    from gaspart.rendering.view import View
 
 ENERGY_DRIFT = {"float64": 1e-9, "float32": 1e-3}
 """Relative drift of the gas's energy at which a run is stopped, by the engine's precision."""
@@ -45,6 +43,15 @@ PROPERTIES = (
     "species",
 )
 """Properties of particles that `Simulation.properties` can return; `State` defines them."""
+
+
+class Page(Protocol):
+    """A page that shows itself in a notebook, such as `rendering.view.View`."""
+
+    def save(self, path: str | Path, overwrite: bool = False) -> Path:
+        """Write the page to an .html file."""
+
+    def _repr_html_(self) -> str: ...
 
 
 class Simulation:
@@ -694,7 +701,7 @@ class Simulation:
                 f"at time {self.time:g} the energy has drifted by {drift:g} from {self._energy:g}"
             )
 
-    def show(self, frames: int = 200) -> View:
+    def show(self, frames: int = 200) -> Page:
         """Return an interactive view of the run so far, which shows itself in a notebook.
 
         Parameters
