@@ -42,36 +42,11 @@ _SMALLEST = 40.0
 
 @check_ranges
 def sound_attenuation(packing_fraction: float, dimension: int) -> float:
-    """Compute the attenuation of sound from Enskog's transport coefficients.
+    """Compute the attenuation of sound from Enskog's transport coefficients [length^2/time].
 
-    Parameters
-    ----------
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    float, [length^2/time]
-        Attenuation Gamma, in units of diameters and diameters sqrt(m / k_B T). Sound with the wave number k
-        decays as exp(-Gamma k^2 t / 2).
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    Gamma = [2 (d-1)/d eta + zeta] / rho + (gamma - 1) lambda / (rho c_p). The heat capacities come from
-    `modes.heat_capacities`, and the transport coefficients from Enskog theory.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(theory.sound_attenuation(0.3, dimension=3), 4)
-    4.6484
+    Attenuation Gamma, in units of diameters and diameters sqrt(m / k_B T). Sound with the wave number k
+    decays as exp(-Gamma k^2 t / 2). Gamma = [2 (d-1)/d eta + zeta] / rho + (gamma - 1) lambda / (rho c_p).
+    The heat capacities come from `modes.heat_capacities`, and the transport coefficients from Enskog theory.
     """
     d, eta = checked_dimension(dimension), packing_fraction
     constant, free = heat_capacities(eta, d)
@@ -93,82 +68,30 @@ def velocity_autocorrelation_modes(
 ) -> Values:
     """Compute the long-time velocity autocorrelation of N particles in a periodic square or cube.
 
+    C(t) divided by C(0), with the term 1/N of a momentum that is not fixed. The sum over hydrodynamic modes
+    of the module `modes`. It is valid after many collisions of a particle, for any time that sound needs to
+    cross the container. Literature: M. H. Ernst, E. H. Hauge and J. M. J. van Leeuwen, Phys. Rev. Lett. 25,
+    1254 (1970). See also `diffusion_modes`.
+
     Parameters
     ----------
     time : array_like, [time]
         Positive times, in diameters sqrt(m / k_B T).
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    count : int
-        Number N of particles.
-
-    Returns
-    -------
-    float or ndarray, same shape as `time`, [1]
-        C(t) divided by C(0), with the term 1/N of a momentum that is not fixed.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-    ValueError
-        If a time is not positive.
-
-    See Also
-    --------
-    diffusion_modes : Integral of this function.
-
-    Notes
-    -----
-    The sum over hydrodynamic modes of the module `modes`. It is valid after many collisions of a particle,
-    for any time that sound needs to cross the container.
-
-    References
-    ----------
-    .. [1] M. H. Ernst, E. H. Hauge and J. M. J. van Leeuwen, Phys. Rev. Lett. 25, 1254 (1970).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> float(theory.velocity_autocorrelation_modes(10.0, 0.3, dimension=3, count=1000).round(5))
-    0.00109
     """
     return _sum(time, packing_fraction, dimension, count, integrated=False) + 1.0 / count
 
 
 @check_ranges
 def diffusion_modes(time: Numbers, packing_fraction: float, dimension: int, count: int) -> Values:
-    """Compute the time integral of `velocity_autocorrelation_modes`, except for a constant.
+    """Compute the time integral of `velocity_autocorrelation_modes`, except for a constant [length^2/time].
+
+    Integral, in units of diameters and diameters sqrt(m / k_B T). The diffusion before modes describe the
+    motion is unknown, so only differences between times are meaningful.
 
     Parameters
     ----------
     time : array_like, [time]
         Positive times, in diameters sqrt(m / k_B T).
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    count : int
-        Number N of particles.
-
-    Returns
-    -------
-    float or ndarray, same shape as `time`, [length^2/time]
-        Integral, in units of diameters and diameters sqrt(m / k_B T).
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-    ValueError
-        If a time is not positive.
-
-    Notes
-    -----
-    The diffusion before modes describe the motion is unknown, so only differences between times are
-    meaningful.
 
     Examples
     --------

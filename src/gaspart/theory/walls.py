@@ -91,38 +91,15 @@ def _estimate_neglected(dimension: int, kind: int) -> float:
 def surface_tension(packing_fraction: Numbers, dimension: int) -> Values:
     """Compute the surface tension of the fluid at a hard wall.
 
+    Surface tension gamma sigma^(d-1) / k_B T (negative). The area of the wall is the area that centres can
+    touch. The result is exact to fifth order in the density, multiplied by (1 - eta)^-d (computed,
+    `clusters`). For spheres it is above White Bear II (H. Hansen-Goos and R. Roth, J. Phys. Condens. Matter
+    18, 8413 (2006)) by 0.3 % at eta = 0.2 and by 1.2 % at 0.3 (tested).
+
     Parameters
     ----------
     packing_fraction : array_like, [1]
         Packing fraction eta, from 0 to 0.49.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Surface tension gamma sigma^(d-1) / k_B T (negative). The area of the wall is the area that centres
-        can touch.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The result is exact to fifth order in the density, multiplied by (1 - eta)^-d (computed, `clusters`). For
-    spheres it is above White Bear II [1]_ by 0.3 % at eta = 0.2 and by 1.2 % at 0.3 (tested).
-
-    References
-    ----------
-    .. [1] H. Hansen-Goos and R. Roth, J. Phys. Condens. Matter 18, 8413 (2006).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.surface_tension(0.3, dimension=3)), 4)
-    -0.4992
     """
     eta = checked_packing_fraction(packing_fraction, _DENSEST)
     return _element(eta, checked_dimension(dimension), 0)
@@ -131,33 +108,13 @@ def surface_tension(packing_fraction: Numbers, dimension: int) -> Values:
 def surface_tension_uncertainty(packing_fraction: Numbers, dimension: int) -> Values:
     """Estimate the standard uncertainty of `surface_tension`.
 
+    The uncertainty is the contribution of the first neglected coefficient, which is assumed to equal the
+    larger of the last two known coefficients.
+
     Parameters
     ----------
     packing_fraction : array_like, [1]
         Packing fraction eta, from 0 to 0.49.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Standard uncertainty (an estimate).
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The uncertainty is the contribution of the first neglected coefficient, which is assumed to equal the
-    larger of the last two known coefficients.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.surface_tension_uncertainty(0.3, dimension=3)), 4)
-    0.0036
     """
     eta = checked_packing_fraction(packing_fraction, _DENSEST)
     further = _estimate_neglected(checked_dimension(dimension), 0)
@@ -170,6 +127,13 @@ def wall_pressure(
 ) -> tuple[float, float]:
     """Compute the mean pressure of N particles on the walls of a container, and its uncertainty.
 
+    The result is for the canonical ensemble: the equations of the module `walls` with the canonical
+    correction of first order in 1/N, including surfaces. The uncertainty has four contributions. The first is
+    the equation of state. The second is surfaces, edges and corners, estimated as in
+    `surface_tension_uncertainty`. The third is the effect of opposite walls on each other, which decreases
+    exponentially with their distance (beyond four diameters it begins at sixth order in the density). The
+    fourth is the square of the relative correction in 1/N, for the next order.
+
     Parameters
     ----------
     length : float or sequence of float, [1]
@@ -177,10 +141,6 @@ def wall_pressure(
         sequence (axes,), first the distance between the walls on which the pressure acts.
     density : float, [1/length^d]
         Number of particles per volume accessible to centres, in units of the diameter.
-    count : int
-        Number N of particles.
-    dimension : {2, 3}
-        Discs or spheres.
     axes : int
         Number of axes along which the container has walls, from 1 to `dimension`.
 
@@ -190,23 +150,6 @@ def wall_pressure(
         Force on a wall divided by the area accessible to centres, in k_B T / sigma^d.
     uncertainty : float, [1]
         Standard uncertainty of the pressure, in k_B T / sigma^d.
-
-    Raises
-    ------
-    SceneError
-        If the distance between walls is below two diameters, if the uncertainty exceeds a tenth of the
-        pressure, or if another argument is out of range.
-    ValueError
-        If the container does not have this number of axes, or if the fluid would be denser than eta = 0.49.
-
-    Notes
-    -----
-    The result is for the canonical ensemble: the equations of the module `walls` with the canonical
-    correction of first order in 1/N, including surfaces. The uncertainty has four contributions. The first is
-    the equation of state. The second is surfaces, edges and corners, estimated as in
-    `surface_tension_uncertainty`. The third is the effect of opposite walls on each other, which decreases
-    exponentially with their distance (beyond four diameters it begins at sixth order in the density). The
-    fourth is the square of the relative correction in 1/N, for the next order.
 
     Examples
     --------
