@@ -16,6 +16,7 @@ import numpy as np
 
 from gaspart import theory
 from gaspart.scene.gas import Gas
+from gaspart.theory.diffusion import ERPENBECK_WOOD_HIGHEST, viscosity_ratio
 from gaspart.theory.discretisation import contact_values
 
 EXACT, BOLTZMANN, ENSKOG = "exact", "boltzmann", "enskog"
@@ -68,7 +69,7 @@ def shear_viscosity(gas: Gas, equation: str) -> float:
     """
     value = float(theory.enskog_viscosity(**_enskog_arguments(gas, equation)))
     if equation == EXACT and gas.dimension == 3:
-        return value * float(theory.viscosity_ratio(gas.packing_fraction)) if _fluid(gas) else math.nan
+        return value * float(viscosity_ratio(gas.packing_fraction)) if _fluid(gas) else math.nan
     return value
 
 
@@ -91,7 +92,7 @@ def chemical_potential(gas: Gas, equation: str) -> float:
 
 def _fluid(gas: Gas) -> bool:
     """Return True if the density is in the range of the transport data for spheres."""
-    return gas.packing_fraction <= theory.ERPENBECK_WOOD_HIGHEST
+    return gas.packing_fraction <= ERPENBECK_WOOD_HIGHEST
 
 
 def _enskog_arguments(gas: Gas, equation: str) -> dict[str, Any]:
@@ -133,6 +134,6 @@ def finite_diffusion(gas: Gas) -> tuple[float, float]:
     side = (gas.count * theory.particle_volume(dimension) / fraction) ** (1.0 / dimension)
     value = float(theory.enskog_diffusion(fraction, dimension))
     carried = float(theory.number_density(fraction, dimension)) * value  # modes decay as nu + D
-    viscosity = float(theory.enskog_viscosity(fraction, dimension) * theory.viscosity_ratio(fraction))
+    viscosity = float(theory.enskog_viscosity(fraction, dimension) * viscosity_ratio(fraction))
     lost = theory.yeh_hummer(side, viscosity + carried)
     return -float(lost) / value, float(dimension)

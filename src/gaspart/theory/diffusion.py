@@ -98,11 +98,6 @@ def viscosity_ratio(packing_fraction: Numbers) -> Values:
     The ratio was measured by this program. It is interpolated linearly between the rows of
     `data/viscosity_3d.csv`. It is 1 up to eta = 0.3, where 1.00(1) was measured. The uncertainty is
     `VISCOSITY_RATIO_UNCERTAINTY`, plus about 2 % between the rows.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.4915 (the range of the fluid).
     """
     eta = checked_packing_fraction(packing_fraction, ERPENBECK_WOOD_HIGHEST)
     path = Path(__file__).parent / "data" / "viscosity_3d.csv"

@@ -73,12 +73,6 @@ def pair_contact_value(packing_fraction: Numbers, dimension: int) -> Values:
     particle and its images. So g = V s / (V - v). Here v is the volume of these spheres in the container, and
     s is the fraction of their surface that no sphere around another image covers. At L >= 2 sigma the spheres
     do not overlap, and g = 1 / (1 - 2^(d-1) eta).
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta of both particles together: up to pi/4 for discs and 0.3702 for spheres. At this
-        limit the side of the container is sqrt(2) diameters.
     """
     d = checked_dimension(dimension)
     eta = checked_packing_fraction(packing_fraction, _PAIR_HIGHEST[d])
@@ -106,13 +100,6 @@ def finite_size_remainder(packing_fraction: Numbers, dimension: int, side: Numbe
     likelihood of the differences between the table (`small_systems`) and the expansion. The differences are
     assumed to be normally distributed with this standard deviation. The differences change sign with the
     side. The result is infinite below 2.2 diameters.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta within the range of `compressibility_factor`.
-    side : array_like, [1]
-        Shortest side of the periodic container, in diameters.
     """
     eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
     a0, a1, a2, b0, b1 = _REMAINDER[dimension]
@@ -186,29 +173,6 @@ def insertion_potential(
     uncertainty combines both terms of this remainder, the uncertainty of the equation of state, and the
     square of the relative correction. For a single particle the result is exact: it excludes the fraction 2^d
     eta of the container.
-
-    Parameters
-    ----------
-    packing_fraction : float, [1]
-        Packing fraction eta of the particles within the range of `compressibility_factor`.
-    count : int
-        Number N of particles in the container.
-    side : float, [1]
-        Shortest side of the periodic container, in diameters.
-
-    Returns
-    -------
-    value : float, [1]
-        Excess chemical potential of N particles by insertion, divided by k_B T.
-    uncertainty : float, [1]
-        Standard uncertainty of the value.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> value, uncertainty = theory.insertion_potential(0.2, 3, count=100, side=6.4)
-    >>> round(value, 2), uncertainty < 0.01
-    (2.48, True)
     """
     d = checked_dimension(dimension)
     eta = float(checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[d]))

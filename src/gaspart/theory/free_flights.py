@@ -74,11 +74,6 @@ def free_time_pdf(
     is 1 / nu. The density decreases more slowly than an exponential, because slow particles collide less
     often. The integral is computed by Gauss-Legendre quadrature to 1e-9. Consecutive collisions are assumed
     to be independent. At a packing fraction of 0.05 the shortest flights are 2 % less frequent.
-
-    Parameters
-    ----------
-    time : array_like, [time]
-        Time t of the free flight.
     """
     gas = {"diameter": diameter, "temperature": temperature, "mass": mass}
     points, weights = np.polynomial.legendre.leggauss(_SPEEDS)

@@ -99,11 +99,6 @@ def finite_size_cumulant(cumulant: Numbers, count: Numbers, dimension: int) -> V
     the particles. Velocities are relative to the centre of mass. The formula is exact for a2 = 0: at a fixed
     energy, the velocities are uniformly distributed on a sphere in D dimensions. Corrections are of the order
     a2/N.
-
-    Parameters
-    ----------
-    cumulant : array_like, [1]
-        Fourth cumulant a2 of many particles.
     """
     freedoms = checked_dimension(dimension) * (np.asarray(count, dtype=float) - 1.0)
     return (1.0 + np.asarray(cumulant)) * freedoms / (freedoms + 2.0) - 1.0

@@ -40,13 +40,6 @@ def ideal_mean_height(height: float, weight: Numbers) -> Values:
     """Compute the mean height of the particles of an ideal gas [length].
 
     Mean height; height / 2 without a field: 1/w - height / (e^x - 1) with x = w height (exact; canonical).
-
-    Parameters
-    ----------
-    height : float, [length]
-        Largest height that a centre can reach.
-    weight : array_like, [1/length]
-        Reduced weight w = m g / (k_B T).
     """
     x = np.asarray(weight, dtype=float) * height
     small = np.abs(x) < 1e-4  # both terms cancel here; the next term is x^3 / 720
@@ -60,11 +53,6 @@ def ideal_heat_capacity(x: Numbers, dimension: int) -> Values:
 
     C_V / (N k_B): d/2 + 1 - x^2 e^x / (e^x - 1)^2 (exact; canonical). This is d/2 without gravity. It is d/2
     + 1 in a box much higher than the gas, because the potential energy also increases with T.
-
-    Parameters
-    ----------
-    x : array_like, [1]
-        Reduced height x = m g height / (k_B T).
     """
     x = np.asarray(x, dtype=float)
     half = np.where(x == 0.0, 1.0, 0.5 * x)
@@ -83,31 +71,6 @@ def ideal_energy_moments(
     the N-fold convolution of a single density times e^{-bU}. The factor e^{-bU} moves the peak to the right
     energy, and the factor e^{bU} is restored afterwards. Both moments give T = 2 <K> / (dN) and, for many
     particles, the heat capacity, see `lebowitz_percus_verlet`.
-
-    Parameters
-    ----------
-    energy : float, [energy]
-        Kinetic plus potential energy of all particles; the floor has potential energy 0.
-    height : float, [length]
-        Largest height that a centre can reach.
-    force : float, [energy/length]
-        Weight m g of a particle.
-    points : int, default 2**14
-        Number of points of the grid of potential energies.
-
-    Returns
-    -------
-    mean : float, [energy]
-        Mean kinetic energy <K>.
-    variance : float, [energy^2]
-        Variance of the kinetic energy.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> mean, variance = theory.ideal_energy_moments(100.0, count=50, height=10.0, force=0.5, dimension=2)
-    >>> round(mean, 3), round(variance, 3)
-    (50.848, 23.264)
     """
     top = force * height
     freedom = 0.5 * checked_dimension(dimension) * count
@@ -158,13 +121,6 @@ def lebowitz_percus_verlet(mean: Numbers, variance: Numbers, count: int, dimensi
 
     C_V / (N k_B): <dK^2> = (d/2) N T^2 (1 - (d/2) N k_B / C_V), to leading order in 1/N (J. L. Lebowitz, J.
     K. Percus and L. Verlet, Phys. Rev. 153, 250 (1967)) (tested against an exact case).
-
-    Parameters
-    ----------
-    mean : float or ndarray, [energy]
-        Mean of the kinetic energy K.
-    variance : float or ndarray, [energy^2]
-        Variance of the kinetic energy.
     """
     half = 0.5 * dimension
     relative = variance / (half * count * (mean / (half * count)) ** 2)

@@ -61,17 +61,6 @@ def mixture_insertion_correction(
         H_ii / 2 - (1/2) d ln det(1 + N H) / dN_i,    where N is the diagonal matrix of the numbers.
 
     See also `insertion_finite_size_correction`.
-
-    Parameters
-    ----------
-    counts : array_like, shape (S,)
-        Numbers of particles of the species.
-
-    Returns
-    -------
-    ndarray, shape (S,), [1]
-        -ln P_i - mu_i / k_B T to first order in the inverse numbers, in a periodic container. P_i is the
-        probability that a random position in the container is free for one more particle of species i.
     """
     parts, unit, free_energy = _free_energy(packing_fraction, dimension, diameters, counts, theory)
     step = _STEP * unit
@@ -152,21 +141,6 @@ def percus_yevick_partial_factors(
     and xi_n = (pi / 6) sum rho sigma^n. The sum of sqrt(x_a x_b) S_ab is S(k) of all particles. Tested: for
     equal spheres the result is S(k) of `percus_yevick_structure_factor`, and k = 0 gives the Percus-Yevick
     compressibility.
-
-    Parameters
-    ----------
-    wave_number : array_like, [1/length]
-        Wave numbers k, in inverse units of the diameters.
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.539.
-    fractions : array_like, shape (S,), optional, [1]
-        Number fractions, all positive. Default: equal.
-
-    Returns
-    -------
-    ndarray, shape (..., S, S), [1]
-        S_ab(k) = <rho_a(k) rho_b(-k)> / sqrt(N_a N_b) of each pair of species. In an ideal gas it is 1 for
-        equal species and 0 otherwise.
     """
     eta, sizes, parts = checked_mixture("santos", packing_fraction, 3, diameters, fractions)
     k = np.asarray(wave_number, dtype=float)[..., None, None, None]

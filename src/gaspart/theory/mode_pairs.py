@@ -69,8 +69,7 @@ def transport_modes(
     differences between later times are meaningful. The change of the result with `shortest` is an uncertainty
     of the theory. Doubling this length at a packing fraction of 0.3 changes the growth of the conductivity by
     12 % after 10 collisions, and by 2 % after 20 collisions. Literature: M. H. Ernst, E. H. Hauge and J. M.
-    J. van Leeuwen, Phys. Rev. A 4, 2055 (1971); J. Stat. Phys. 15, 7 (1976). See also
-    `transport_uniform_mode` and `transport_logarithmic_slope`.
+    J. van Leeuwen, Phys. Rev. A 4, 2055 (1971); J. Stat. Phys. 15, 7 (1976).
 
     Parameters
     ----------
@@ -104,58 +103,6 @@ def transport_modes(
             grown = (weight * _integrate_delayed(decay, upper, relaxation)).real
             integrals[n] += density / count * grown.sum(axis=(0, 1)) @ numbers
     return integrals.reshape(np.shape(time))[()]
-
-
-@check_ranges
-def transport_uniform_mode(time: Numbers, packing_fraction: float, count: int, quantity: str) -> Values:
-    """Compute the term k = 0 of `transport_modes`, absent at fixed momentum and energy.
-
-    Integral up to each time: [mass/time] for the viscosity, [1/time] for the conductivity. The term is rho /
-    N (k_B T) for the viscosity and rho / N (c_p + c^2) for the conductivity, multiplied by the time minus the
-    delays of both vertices. Until sound has crossed a container with N discs, the integral of the container
-    differs from the integral of an infinite fluid by this term.
-
-    Parameters
-    ----------
-    time : array_like, [time]
-        Upper limits of the integral, in diameters sqrt(m / k_B T).
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.70.
-    """
-    relaxation = _relaxation(packing_fraction, quantity)
-    weight = 1.0
-    if quantity == "conductivity":
-        capacity = heat_capacities(packing_fraction, 2)[1]
-        weight = capacity + float(speed_of_sound(packing_fraction, 2)) ** 2
-    still = np.zeros(1, dtype=complex)
-    times = np.atleast_1d(np.asarray(time, dtype=float))
-    grown = np.array([_integrate_delayed(still, upper, relaxation)[0].real for upper in times])
-    factor = float(number_density(packing_fraction, 2)) / count * weight
-    return (factor * grown).reshape(np.shape(time))[()]
-
-
-@check_ranges
-def transport_logarithmic_slope(packing_fraction: float, quantity: str) -> float:
-    """Compute the growth of the Green-Kubo integral of an infinite fluid per factor e of time.
-
-    Growth when the time increases by a factor e: [mass/time] for the viscosity, [1/time] for the
-    conductivity: (1/nu + 1/Gamma) / (32 pi) for the viscosity, and [c_p / (nu + D_T) + c^2 / Gamma] / (8 pi)
-    for the conductivity, in units of the diameter, the mass and k_B T. The module `mode_pairs` has the
-    derivation and the symbols.
-
-    Parameters
-    ----------
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.70.
-    """
-    eta, density = packing_fraction, float(number_density(packing_fraction, 2))
-    _relaxation(eta, quantity)
-    shear, sound = float(enskog_viscosity(eta, 2)) / density, sound_attenuation(eta, 2)
-    if quantity == "viscosity":
-        return (1.0 / shear + 1.0 / sound) / (32.0 * math.pi)
-    capacity = heat_capacities(eta, 2)[1]
-    heat = float(enskog_conductivity(eta, 2)) / (density * capacity)
-    return (capacity / (shear + heat) + float(speed_of_sound(eta, 2)) ** 2 / sound) / (8.0 * math.pi)
 
 
 def _relaxation(packing_fraction: float, quantity: str) -> Relaxation:

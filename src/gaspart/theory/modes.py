@@ -72,11 +72,6 @@ def velocity_autocorrelation_modes(
     of the module `modes`. It is valid after many collisions of a particle, for any time that sound needs to
     cross the container. Literature: M. H. Ernst, E. H. Hauge and J. M. J. van Leeuwen, Phys. Rev. Lett. 25,
     1254 (1970). See also `diffusion_modes`.
-
-    Parameters
-    ----------
-    time : array_like, [time]
-        Positive times, in diameters sqrt(m / k_B T).
     """
     return _sum(time, packing_fraction, dimension, count, integrated=False) + 1.0 / count
 

@@ -21,16 +21,6 @@ def rough_matrix(inertia: float, tangential: float, normal: float = 1.0) -> np.n
     and others, Phys. Rev. E 58, 3416 (1998)) (exact averages over Maxwellian velocities and spins, tested).
     T_tr = m <v^2> / 2, T_rot = I <w^2>. In a perfectly rough gas, T_tr - T_rot decays at the rate 3q /
     (1+q)^2.
-
-    Parameters
-    ----------
-    tangential : float, [1]
-        Coefficient of tangential restitution, from -1 (smooth) to 1 (perfectly rough).
-
-    Returns
-    -------
-    ndarray, shape (2, 2), [1]
-        Matrix M in d(T_tr, T_rot)/ds = M (T_tr, T_rot), with s collisions of a particle.
     """
     q = float(inertia)
     if not q > 0.0:
@@ -113,13 +103,8 @@ def rough_start_excess(inertia: float, collisions: Numbers) -> Values:
     T_tr - T_rot of perfectly rough discs divided by the initial temperature, minus exp(-3 q s / (1 + q)^2).
     NaN if it was not computed. The exponential is the result for Maxwellian velocities (M. Huthmann and A.
     Zippelius, Phys. Rev. E 56, R6275 (1997)). The values were computed by direct simulation of the
-    homogeneous Boltzmann equation (`boltzmann.rough_start`). The standard uncertainty is
+    homogeneous Boltzmann equation (`tests/theory/homogeneous.py`). The standard uncertainty is
     `ROUGH_START_UNCERTAINTY`.
-
-    Parameters
-    ----------
-    collisions : array_like, [1]
-        Number s of collisions of a particle.
     """
     table = np.loadtxt(Path(__file__).parent / "data" / "rough_start.csv", delimiter=",", skiprows=1)
     s, excess = table[np.isclose(table[:, 0], inertia), 1:].T
@@ -140,12 +125,6 @@ def rough_wall_difference(time: Numbers, inertia: float) -> Values:
     Fourier series and averaged over Maxwellian normal velocities, it is the sum over integers j of (sin a /
     (a + pi j))^2 exp(-2 (a + pi j)^2 time^2). The result is exact. The sum is truncated at j = 1000, which
     causes an error (2e-4) only for times below 0.002.
-
-    Parameters
-    ----------
-    time : array_like, [1]
-        Reduced time t sqrt(k_B T / m) / h, with the distance h between the walls that is accessible to
-        centres.
     """
     q = float(inertia)
     if not q > 0.0:

@@ -88,51 +88,11 @@ def channel_velocity(
     force / (2 mu) [height (length - height) + `VELOCITY_SLIP` l_0 length], with the viscosity mu. It is of
     first order in `force` and l_0 / length. The next order in l_0 adds 0.6 density force l_0^2 / mu (N. G.
     Hadjiconstantinou, Phys. Fluids 15, 2352 (2003)).
-
-    Parameters
-    ----------
-    height : array_like, [length]
-        Height above one of the walls.
-    length : array_like, [length]
-        Distance between the walls.
-    force : array_like, [mass length/time^2]
-        Force on each particle.
     """
     height, length, density, force = (np.asarray(a, dtype=float) for a in (height, length, density, force))
     path = 1.0 / (np.sqrt(2.0) * np.pi * density * diameter**2)
     shape = height * (length - height) + VELOCITY_SLIP * path * length
     return 0.5 * density * force / enskog_viscosity(0.0, 3, diameter) * shape
-
-
-@check_ranges
-def free_flight_drift(
-    time: Numbers, length: float, force: float = 1.0, temperature: float = 1.0, mass: float = 1.0
-) -> Values:
-    """Compute the mean velocity, along two walls, of particles that collide only with the walls
-    [length/time].
-
-    Exact (closed form). The drift is force / mass times the mean time since a particle last hit a wall,
-    limited to `time`. This mean is an integral over t of the fraction of particles that have not hit a wall
-    for the time t. The fraction is the average of 1 - abs(v) t / length, if positive, over Maxwell's
-    distribution. The drift grows with the logarithm of time without limit, because many particles cross
-    slowly.
-
-    Parameters
-    ----------
-    time : array_like, [time]
-        Time since a force on each particle was switched on; before that the gas was in equilibrium.
-    length : float, [length]
-        Distance between the walls.
-    force : float, default 1.0, [mass length/time^2]
-        Force on each particle.
-    """
-    from scipy.special import erf, exp1
-
-    crossing = length / np.sqrt(temperature / mass)
-    s = np.asarray(time, dtype=float) / crossing
-    w = 0.5 / np.maximum(s, 1e-9) ** 2
-    age = s * erf(np.sqrt(w)) + (0.5 * exp1(w) + s**2 * np.expm1(-w)) / np.sqrt(2.0 * np.pi)
-    return force / mass * crossing * age
 
 
 @check_ranges
@@ -146,13 +106,6 @@ def interpolated_stress(
     of free molecular flow and `fluid` the stress without slip, in Sherman's form (F. S. Sherman, Rarefied Gas
     Dynamics 2, 228 (1963)). To first order in `velocity` the formula is correct in both limits. Between the
     limits it is an approximation: 2 % above the stress with slip at a Knudsen number of 0.1.
-
-    Parameters
-    ----------
-    length : array_like, [length]
-        Distance between the walls.
-    velocity : array_like, [length/time]
-        Difference of the walls' velocities.
     """
     free = free_molecular_stress(density, 1.0)
     fluid = enskog_viscosity(0.0, 3, diameter) / length

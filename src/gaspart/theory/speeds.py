@@ -153,13 +153,6 @@ def kurtosis_scatter(dimension: int, count: int) -> tuple[float, float]:
     with e = v^2 and q = e^2. At constant energy it does not depend on sum(e). So its moment of order m is N^m
     <sum(q)^m> / <(sum e)^2m> for independent normal velocities, for which <e^k> is d (d+2) ... (d+2k-2). If
     the total momentum is fixed at zero, the scatter changes by the relative amount 1/N (neglected).
-
-    Returns
-    -------
-    deviation : float, [1]
-        Standard deviation.
-    skewness : float, [1]
-        Skewness.
     """
 
     def moment(freedoms: int, order: int) -> float:

@@ -129,13 +129,6 @@ def adiabatic_temperature(packing_fraction: Numbers, initial: Numbers, dimension
 
     exp(2/d times the integral of Z over ln eta), because d/2 N k_B dT = -P dV (exact), with Z of
     `compressibility_factor`. It is (V_0 / V)^(2/d) if Z is 1.
-
-    Parameters
-    ----------
-    packing_fraction : float or ndarray, [1]
-        Packing fraction eta after the compression, above 0, up to 0.70 for discs and 0.539 for spheres.
-    initial : float or ndarray, [1]
-        Packing fraction before the compression, in the same range.
     """
     highest = HIGHEST_PACKING_FRACTION[checked_dimension(dimension)]
     start = np.log(checked_packing_fraction(initial, highest))

@@ -30,11 +30,6 @@ def percus_yevick_structure_factor(wave_number: Numbers, packing_fraction: float
     S. Wertheim, Phys. Rev. Lett. 10, 321 (1963)) (E. Thiele, J. Chem. Phys. 39, 474 (1963)). The integral is
     computed by Gauss-Legendre quadrature, exact to rounding up to k = 100. S(0) is consistent with
     `percus_yevick_compressibility`.
-
-    Parameters
-    ----------
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.539.
     """
     eta = float(checked_packing_fraction(packing_fraction, METASTABLE_SPHERES))
     k = np.asarray(wave_number, dtype=float)
@@ -56,13 +51,6 @@ def percus_yevick_rdf(distance: Numbers, packing_fraction: float) -> Values:
     (1 - eta)^2 t^3 + 6 eta (1 - eta) t^2 + 18 eta^2 t - 12 eta (1 + 2 eta), it is a sum over n < r. The terms
     are the residues of (-12 eta)^(n-1) t (L / S)^n e^{t (r - n)} at the three zeros of S. The residues are
     computed together, as an integral over circles around all three zeros.
-
-    Parameters
-    ----------
-    distance : array_like, [diameter]
-        Distances r, at most 5.
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.539.
     """
     eta = float(checked_packing_fraction(packing_fraction, METASTABLE_SPHERES))
     r = np.asarray(distance, dtype=float)

@@ -32,7 +32,6 @@ from gaspart.theory.geometry import (
     Values,
     check_ranges,
     checked_dimension,
-    checked_packing_fraction,
     number_density,
 )
 from gaspart.theory.state import compressibility_factor, compressibility_uncertainty
@@ -50,9 +49,9 @@ _SHAPES: dict[int, tuple[tuple[float, ...], ...]] = {
     ),
 }
 """Polynomials in eta: gamma, tau and kappa times (1 - eta)^d divided by their second order. They follow from
-the virial coefficients and the cluster integrals of three to five centres (`film.cluster_integrals`, 6 to 12
-million samples each; the known bulk integral is a control variate). The last digit is accurate to one or two
-units. In 3D the last coefficients of the rows are accurate to 0.1, 0.6 and 4.
+the virial coefficients and the cluster integrals of three to five centres (`tests/theory/clusters.py`, 6 to
+12 million samples each; the known bulk integral is a control variate). The last digit is accurate to one or
+two units. In 3D the last coefficients of the rows are accurate to 0.1, 0.6 and 4.
 """
 _OPPOSITE = np.array(
     [[0.1, 0.2, 0.3, 0.4, 0.49], [-6.7, -5.05, -3.15, -2.6, -2.2], [3.0, 1.9, 1.75, 1.35, 1.0]]
@@ -86,39 +85,6 @@ def _element(packing_fraction: Numbers, dimension: int, kind: int, further: floa
 def _estimate_neglected(dimension: int, kind: int) -> float:
     """Estimate the first neglected coefficient by the larger of the last two known coefficients."""
     return max(map(abs, _SHAPES[dimension][kind][-2:]))
-
-
-def surface_tension(packing_fraction: Numbers, dimension: int) -> Values:
-    """Compute the surface tension of the fluid at a hard wall.
-
-    Surface tension gamma sigma^(d-1) / k_B T (negative). The area of the wall is the area that centres can
-    touch. The result is exact to fifth order in the density, multiplied by (1 - eta)^-d (computed,
-    `clusters`). For spheres it is above White Bear II (H. Hansen-Goos and R. Roth, J. Phys. Condens. Matter
-    18, 8413 (2006)) by 0.3 % at eta = 0.2 and by 1.2 % at 0.3 (tested).
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.49.
-    """
-    eta = checked_packing_fraction(packing_fraction, _DENSEST)
-    return _element(eta, checked_dimension(dimension), 0)
-
-
-def surface_tension_uncertainty(packing_fraction: Numbers, dimension: int) -> Values:
-    """Estimate the standard uncertainty of `surface_tension`.
-
-    The uncertainty is the contribution of the first neglected coefficient, which is assumed to equal the
-    larger of the last two known coefficients.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.49.
-    """
-    eta = checked_packing_fraction(packing_fraction, _DENSEST)
-    further = _estimate_neglected(checked_dimension(dimension), 0)
-    return np.abs(_element(eta, dimension, 0, further) - _element(eta, dimension, 0))
 
 
 @check_ranges
