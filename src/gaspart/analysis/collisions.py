@@ -25,8 +25,8 @@ from gaspart.engines import EventDriven
 from gaspart.errors import SceneError, SimulationError
 from gaspart.files import FileKind, begins_with, open_regular, writing
 from gaspart.keys.values import count_of, number
+from gaspart.scene.boundaries import refuse_sheared
 from gaspart.scene.scene import Scene
-from gaspart.scene.shear import refuse_sheared
 from gaspart.simulation import Simulation
 from gaspart.system import descriptor_path, memory
 from gaspart.theory.free_flights import free_time_pdf

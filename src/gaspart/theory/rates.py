@@ -14,7 +14,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from gaspart.scene.face_checks import mean_count
+from gaspart.scene.boundaries import mean_count
 from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Particle, Species

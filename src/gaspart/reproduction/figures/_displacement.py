@@ -21,7 +21,7 @@ from gaspart.rendering.style import Axes
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table
-from gaspart.scene.gas import plain_gas
+from gaspart.scene.facts import plain_gas
 from gaspart.theory.diffusion import viscosity_ratio
 from gaspart.trajectory.reading import open_trajectory
 

@@ -34,7 +34,7 @@ from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import PARTICLES, SOURCE_C, Parts, pressure, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
-from gaspart.scene.gas import plain_gas
+from gaspart.scene.facts import plain_gas
 from gaspart.theory.tables import chemical_potential_uncertainty, insertion_finite_size_correction
 
 TITLE, CHAPTER = "Structure and chemical potential", "Equation of state and structure"

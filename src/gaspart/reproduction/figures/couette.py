@@ -29,7 +29,7 @@ from gaspart.reproduction.figures._gap import Gap
 from gaspart.reproduction.figures.transport import ACCURATE, ENSKOG, FEW_PER_CENT, coefficient
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
-from gaspart.scene.faces import thermal_face
+from gaspart.scene.boundaries import thermal_face
 from gaspart.theory.discretisation import cell_factor, step_factor
 from gaspart.theory.shear import ELEMENTARY_SLIP, NORMAL_STRESSES, VELOCITY_SLIP, viscous_heating
 

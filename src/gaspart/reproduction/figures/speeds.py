@@ -25,7 +25,7 @@ from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.figure import Blocks, Parts, kurtosis, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
-from gaspart.scene.gas import plain_gas
+from gaspart.scene.facts import plain_gas
 from gaspart.scene.scene import Scene
 from gaspart.theory.entropy import ENTROPY_UNCERTAINTY, Energies, entropy_deficit, equal_speeds
 from gaspart.theory.speeds import RELAXATION_UNCERTAINTY, initial_kurtosis_slope

@@ -22,7 +22,7 @@ from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import Parts, pressure
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
-from gaspart.scene.gas import plain_gas
+from gaspart.scene.facts import plain_gas
 from gaspart.theory.virial import HIGHEST_ORDER, linear_tail, linear_tail_uncertainty
 
 TITLE, CHAPTER = "Equation of state", "Equation of state and structure"
