@@ -75,10 +75,8 @@ def brackets(
 
 
 def _contraction(rank: int, v: np.ndarray, w: np.ndarray) -> np.ndarray:
-    """Return the contraction of two harmonic tensors of velocities.
-
-    The contraction is v^l w^l P_l(cos(angle)), where v and w are the magnitudes of the velocities. In two
-    dimensions cos(l angle) replaces P_l.
+    """Return the contraction v^l w^l P_l(cos(angle)) of two harmonic tensors; cos(l angle) replaces P_l in
+    2D.
     """
     from scipy.special import eval_legendre
 
@@ -133,10 +131,8 @@ def relaxing_speeds(count: int, times: np.ndarray, hits: float, seed: int = 0) -
 def _meetings(
     rng: np.random.Generator, velocity: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Draw the collisions of a step.
-
-    Returns arrays for the M collisions: the particles i and j (M,), unit normals (M, d), and speeds of
-    approach (M,).
+    """Draw the M collisions of a step: particles i and j (M,), unit normals (M, d) and speeds of approach
+    (M,).
     """
     step = _step(velocity)
     first, second = rng.permutation(len(velocity))[: len(velocity) // 2 * 2].reshape(2, -1)
@@ -218,11 +214,8 @@ def _advance(
     hits: float,
     share: float,
 ) -> None:
-    """Move all spheres for one interval, in place.
-
-    Possible hits are drawn at a rate that exceeds the hit rate of every sphere. Each is accepted with a
-    probability proportional to the speed of approach. So the method has no time step and no error due to a
-    time step.
+    """Move all spheres for one interval, in place. Possible hits are drawn at a rate that exceeds the hit
+    rate of every sphere, and accepted in proportion to the speed of approach, so there is no time step.
     """
     fastest = float(gas.max())
     flying, moving, remaining = np.arange(len(position)), velocity.copy(), np.full(len(position), interval)

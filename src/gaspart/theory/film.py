@@ -107,10 +107,8 @@ def white_bear_slit(
 
 
 def _anderson(moves: list[np.ndarray], changes: list[np.ndarray]) -> np.ndarray:
-    """Return the next step towards the solution by Anderson mixing.
-
-    The computed change is treated as a linear function of the solution. The last steps are combined such that
-    the change is as small as possible.
+    """Return the next step towards the solution by Anderson mixing. The last steps are combined such that the
+    change is as small as possible.
     """
     if not moves:
         return _NEAR_MIXING * changes[-1]
@@ -142,9 +140,8 @@ def _bulk_measures(density: float) -> tuple[float, float]:
 def _derivatives(
     n3: np.ndarray, n2: np.ndarray, vector: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Compute the derivatives of the free energy density with respect to n_3, n_2 and n_V2.
-
-    All other weighted densities are functions of n_3, n_2 and n_V2.
+    """Compute the derivatives of the free energy density with respect to n_3, n_2 and n_V2, which give all
+    others.
     """
     void = 1.0 - n3
     logarithm = np.log(void)

@@ -97,7 +97,6 @@ def free_molecular_flux(
 @check_ranges
 def dilute_fourier_flux(length: float, hot: float, cold: float, diameter: float = 1.0) -> float:
     """Compute the heat flux through dilute spheres in a wide gap from Fourier's law [energy/(length^2 time)].
-
     Heat flux of spheres of mass 1: (2/3) lambda_0 (T_1^(3/2) - T_2^(3/2)) / length, with the conductivity
     lambda_0 proportional to sqrt T. The formula is exact in the limit of a wide gap and a dilute gas, apart
     from the accuracy of lambda_0. It does not depend on the density (Maxwell 1860).
@@ -109,14 +108,11 @@ def dilute_fourier_flux(length: float, hot: float, cold: float, diameter: float 
 @check_ranges
 def interpolated_flux(length: float, density: float, hot: float, cold: float, diameter: float = 1.0) -> float:
     """Compute the heat flux through dilute spheres between two walls at any Knudsen number [energy/(length^2
-    time)].
-
-    Heat flux of spheres of mass 1: 1 / (1 / free + 1 / fluid), where `free` is the flux of free molecular
-    flow (`free_molecular_flux`) and `fluid` the flux of Fourier's law without temperature jumps
-    (`dilute_fourier_flux`) (F. S. Sherman, Rarefied Gas Dynamics 2, 228 (1963)). The formula is correct in
-    both limits and an approximation between them. For small temperature differences, it is 4 % above the flux
-    with temperature jumps at a Knudsen number of 0.1, and 7 % above the flux of the DSMC engine at a Knudsen
-    number of 1 (`INTERPOLATED`).
+    time)]. Heat flux of spheres of mass 1: 1 / (1 / free + 1 / fluid), where `free` is the flux of free
+    molecular flow (`free_molecular_flux`) and `fluid` the flux of Fourier's law without temperature jumps
+    (`dilute_fourier_flux`) (F. S. Sherman, Rarefied Gas Dynamics 2, 228 (1963)). For small temperature
+    differences, it is 4 % above the flux with temperature jumps at a Knudsen number of 0.1, and 7 % above the
+    flux of the DSMC engine at a Knudsen number of 1 (`INTERPOLATED`).
     """
     fluid = dilute_fourier_flux(length, hot, cold, diameter)
     free = float(free_molecular_flux(density, hot, cold, 3))
@@ -209,10 +205,7 @@ def _slab_without_jumps(length: float, density: float, hot: float, cold: float, 
 
 
 class Shock(NamedTuple):
-    """Steady shock, behind which the gas moves with the piston.
-
-    See also `shock_before_piston`.
-    """
+    """Steady shock, behind which the gas moves with the piston."""
 
     speed: float
     packing_fraction: float

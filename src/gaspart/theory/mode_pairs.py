@@ -113,10 +113,8 @@ def _relaxation(packing_fraction: float, quantity: str) -> Relaxation:
 
 
 def _wave_numbers(eta: float, count: int, first: float, shortest: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return squared wave numbers (M,) that matter at the first time, and their weights.
-
-    The container is a periodic square. The wave number 0 is excluded. A weight is the number of wave vectors
-    with this square, multiplied by exp(-(k l)^4) with the shortest length l.
+    """Return squared wave numbers (M,) that matter at the first time, and their numbers times
+    exp(-(k l)^4).
     """
     density = float(number_density(eta, 2))
     unit = 2.0 * math.pi * math.sqrt(density / count)
@@ -136,9 +134,8 @@ _Pairs: TypeAlias = list[tuple[np.ndarray, np.ndarray]]
 
 
 def _viscosity_pairs(eta: float, along: Modes, across: Modes) -> _Pairs:
-    """Return weights and decays (n, m, M) of pairs of modes in the stress.
-
-    The weights and decays describe u_x u_y divided by its mean square, averaged over the directions of k.
+    """Return weights and decays (n, m, M) of pairs of modes in the stress u_x u_y, averaged over directions
+    of k.
     """
     longitudinal, transverse = along.amplitude[:, 2], across.amplitude[:, 0]
     return [
@@ -149,10 +146,7 @@ def _viscosity_pairs(eta: float, along: Modes, across: Modes) -> _Pairs:
 
 
 def _conductivity_pairs(eta: float, along: Modes, across: Modes) -> _Pairs:
-    """Return weights and decays (n, m, M) of pairs of modes in the heat flux.
-
-    The weights and decays describe (rho T s + p) u, multiplied by the density.
-    """
+    """Return weights and decays (n, m, M) of pairs of modes in the heat flux (rho T s + p) u."""
     z, capacity = float(compressibility_factor(eta, 2)), heat_capacities(eta, 2)[0]
     slope = float(speed_of_sound(eta, 2)) ** 2 - z**2 / capacity  # dp / d rho
     carried = (slope - z) / math.sqrt(slope) * along.amplitude[:, 0]
@@ -176,10 +170,8 @@ def _sums(first: Modes, second: Modes) -> np.ndarray:
 
 
 def _integrate_delayed(decay: np.ndarray, time: float, relaxation: Relaxation) -> np.ndarray:
-    """Return the integrals up to a time of exp(decay t), delayed by both vertices.
-
-    Each integral is the inverse Laplace transform of F(p)^2 / (p - decay) / p, computed from divided
-    differences of (exp(p t) - 1) / p. The result has the shape of `decay`.
+    """Return the integrals up to a time of exp(decay t), delayed by both vertices: inverse Laplace transforms
+    of F(p)^2 / (p - decay) / p.
     """
 
     def integral(p: np.ndarray) -> np.ndarray:

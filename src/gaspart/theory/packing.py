@@ -83,9 +83,8 @@ def insertion_saturation(
 def insertion_saturation_uncertainty(
     dimension: int, side_over_diameter: float | None = None, boundary: str = "periodic"
 ) -> float:
-    """Compute the standard uncertainty of `insertion_saturation`.
-
-    The uncertainty of the literature's value and the uncertainty of the wall excess, added in quadrature.
+    """Compute the standard uncertainty of `insertion_saturation`, from the literature's value and the wall
+    excess.
     """
     relative = RSA_SATURATION_UNCERTAINTY[checked_dimension(dimension)] / RSA_SATURATION[dimension]
     value = insertion_saturation(dimension, side_over_diameter, boundary)
@@ -98,12 +97,10 @@ def insertion_saturation_uncertainty(
 
 
 def available_fraction(packing_fraction: Numbers, dimension: int) -> Values:
-    """Compute the probability that a random attempt to insert a particle succeeds.
-
-    1 - 2^d eta + c_2 eta^2, with c_2 = 6 sqrt 3 / pi (2D) or 17 (3D). The fraction is exact to order eta^2,
-    up to which random insertion and equilibrium agree (B. Widom (1966)) (P. Schaaf and J. Talbot (1989)). So
-    c_2 follows from B2 and B3 (tested). The value is for an infinite or periodic container. The third order
-    is neglected. This limits the range for an accuracy of about 1 % to eta = 0.05 in 3D and 0.1 in 2D.
+    """Compute the probability that a random attempt to insert a particle succeeds. 1 - 2^d eta + c_2 eta^2,
+    with c_2 = 6 sqrt 3 / pi (2D) or 17 (3D). It is exact to order eta^2, up to which random insertion and
+    equilibrium agree (B. Widom (1966); P. Schaaf and J. Talbot (1989)). So c_2 follows from B2 and B3
+    (tested). The accuracy is about 1 % up to eta = 0.05 in 3D and 0.1 in 2D.
     """
     first = 2.0 ** checked_dimension(dimension)
     second = _AVAILABLE_SECOND[dimension]

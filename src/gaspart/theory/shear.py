@@ -83,11 +83,9 @@ def channel_velocity(
     height: Numbers, length: Numbers, density: Numbers, force: Numbers, diameter: float = 1.0
 ) -> Values:
     """Compute the velocity of dilute spheres that a force drives along two resting walls [length/time].
-
     Velocity of spheres of mass 1 at temperature 1. The profile is Poiseuille's parabola with slip: density
-    force / (2 mu) [height (length - height) + `VELOCITY_SLIP` l_0 length], with the viscosity mu. It is of
-    first order in `force` and l_0 / length. The next order in l_0 adds 0.6 density force l_0^2 / mu (N. G.
-    Hadjiconstantinou, Phys. Fluids 15, 2352 (2003)).
+    force / (2 mu) [height (length - height) + `VELOCITY_SLIP` l_0 length], with the viscosity mu. The next
+    order in l_0 adds 0.6 density force l_0^2 / mu (N. G. Hadjiconstantinou, Phys. Fluids 15, 2352 (2003)).
     """
     height, length, density, force = (np.asarray(a, dtype=float) for a in (height, length, density, force))
     path = 1.0 / (np.sqrt(2.0) * np.pi * density * diameter**2)
@@ -100,12 +98,10 @@ def interpolated_stress(
     length: Numbers, density: Numbers, velocity: Numbers, diameter: float = 1.0
 ) -> Values:
     """Compute the shear stress of dilute spheres between sliding walls at any Knudsen number [mass/(length
-    time^2)].
-
-    Shear stress of spheres of mass 1 at temperature 1: 1 / (1 / free + 1 / fluid), where `free` is the stress
-    of free molecular flow and `fluid` the stress without slip, in Sherman's form (F. S. Sherman, Rarefied Gas
-    Dynamics 2, 228 (1963)). To first order in `velocity` the formula is correct in both limits. Between the
-    limits it is an approximation: 2 % above the stress with slip at a Knudsen number of 0.1.
+    time^2)]. Shear stress of spheres of mass 1 at temperature 1: 1 / (1 / free + 1 / fluid), where `free` is
+    the stress of free molecular flow and `fluid` the stress without slip, in Sherman's form (F. S. Sherman,
+    Rarefied Gas Dynamics 2, 228 (1963)). Between the limits it is an approximation: 2 % above the stress with
+    slip at a Knudsen number of 0.1.
     """
     free = free_molecular_stress(density, 1.0)
     fluid = enskog_viscosity(0.0, 3, diameter) / length
@@ -114,12 +110,10 @@ def interpolated_stress(
 
 @check_ranges
 def viscous_heating(packing_fraction: Numbers, dimension: int) -> Values:
-    """Compute Enskog's viscosity divided by twice the thermal conductivity [mass].
-
-    Ratio in units of mass / k_B. Between two walls, T plus this ratio times u^2 is uniform. The velocity u is
-    relative to the position of the highest temperature. The result is exact if the ratio of the two
-    coefficients is constant; both are proportional to the square root of T. The ratio is 2 / 15 in the first
-    Sonine approximation of dilute spheres.
+    """Compute Enskog's viscosity divided by twice the thermal conductivity [mass]. Between two walls, T plus
+    this ratio times u^2 is uniform. u is relative to the position of the highest temperature. The result is
+    exact if the ratio of the two coefficients is constant; both are proportional to the square root of T. The
+    ratio is 2 / 15 in the first Sonine approximation of dilute spheres.
     """
     conductivity = enskog_conductivity(packing_fraction, dimension)
     return 0.5 * enskog_viscosity(packing_fraction, dimension) / conductivity

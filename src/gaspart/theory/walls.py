@@ -72,10 +72,7 @@ _STRETCH = 1e-3  # relative step in length
 
 
 def _element(packing_fraction: Numbers, dimension: int, kind: int, further: float = 0.0) -> Values:
-    """Return gamma, tau or kappa (kind 0, 1, 2).
-
-    further : coefficient of eta^4 in its polynomial
-    """
+    """Return gamma, tau or kappa (kind 0, 1, 2); `further` is the coefficient of eta^4 in its polynomial."""
     eta = np.asarray(packing_fraction, dtype=float)
     shape = np.polynomial.polynomial.polyval(eta, (*_SHAPES[dimension][kind], further))
     scale = _SECOND_ORDER[dimension][kind] * number_density(eta, dimension) ** 2
@@ -150,9 +147,8 @@ def wall_pressure(
 
 
 def _opposite(eta: float, dimension: int, length: float) -> float:
-    """Return the relative change of the pressure on a wall due to the opposite wall.
-
-    Discs are treated as spheres at the same density relative to freezing.
+    """Return the relative change of the pressure on a wall due to the opposite wall; discs as spheres equally
+    far from freezing.
     """
     fractions, amplitudes, decays = _OPPOSITE
     dense = eta * _FREEZING[3] / _FREEZING[dimension]
@@ -185,10 +181,7 @@ class _Container:
         return sum(float(_element(eta, self.dimension, kind, more)) * size for size, kind, more in parts)
 
     def rise(self, eta: float) -> float:
-        """Return d eta / d mu multiplied by the volume of a particle.
-
-        The result is rho / (dP / d rho) in the bulk fluid.
-        """
+        """Return d eta / d mu times the volume of a particle, rho / (dP / d rho)."""
         slope = _slope(lambda x: x * compressibility_factor(x, self.dimension), eta)
         return float(number_density(eta, self.dimension)) / slope
 
@@ -230,12 +223,10 @@ def _in_container(
 
 
 def _canonical(stretch: Callable[[float], _Container], density: float, count: int) -> float:
-    """Return the canonical minus the grand canonical pressure of `count` particles.
-
-    The saddle point gives the term of N particles in the grand partition function: ln Q_N = -Omega - N mu -
-    ln(2 pi dN/dmu) / 2. The result is the derivative of the last term with respect to the length of the first
-    axis at fixed N, including surfaces. It is of first order in 1/N, as in `state.finite_size_correction` for
-    a periodic container.
+    """Return the canonical minus the grand canonical pressure of `count` particles. The saddle point gives
+    the term of N particles in the grand partition function: ln Q_N = -Omega - N mu - ln(2 pi dN/dmu) / 2. The
+    result is the derivative of the last term with respect to the length of the first axis at fixed N,
+    including surfaces.
     """
     logarithms = []
     for factor in (1.0 + _STRETCH, 1.0 - _STRETCH):
