@@ -140,7 +140,7 @@ def test_every_rule_states_what_it_needs():
             assert "runtime=" in rule, name
             script = ROOT / f"workflow/scripts/{name}.py"
             assert script.exists()
-            assert f"scripts/{name}.py" in file.read_text()
+            assert re.search(rf'(scripts/|SCRIPTS / "){name}\.py', file.read_text())
 
 
 def modules_in(path):

@@ -13,9 +13,8 @@ from gaspart.engines import Engine, engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
 from gaspart.keys.values import number
-from gaspart.scene.face_checks import check_piston_end
+from gaspart.scene.boundaries import check_piston_end, refuse_sheared
 from gaspart.scene.scene import Scene
-from gaspart.scene.shear import refuse_sheared
 from gaspart.state.given import state_at_time_zero, state_from_arrays
 from gaspart.state.insertion import per_particle
 from gaspart.state.optional_tallies import OptionalTally
@@ -25,8 +24,7 @@ from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.correlator import Correlations, sum_names
 from gaspart.trajectory.opening import open_netcdf_file
 from gaspart.trajectory.pairs import pair_names, pairs_of
-from gaspart.trajectory.run_options import Contents, scene_tallies, stored_contents, tally_axes
-from gaspart.trajectory.until import Until
+from gaspart.trajectory.run_options import Contents, Until, scene_tallies, stored_contents, tally_axes
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
 if TYPE_CHECKING:
