@@ -133,7 +133,9 @@ def test_the_density_at_a_piston_scatters_with_the_enthalpy_of_the_start(dimensi
     """Points of a given enthalpy H have the height h with the density h^N (H - p h)^(freedoms / 2 - 1)."""
     count, sides = 150, (1.0,) * (dimension - 1)
     kind, face = gp.Species(count, 1e-6, temperature=1.0), gp.Piston(mass=150.0, pressure=count / 20.0)
-    made = gp.Scene(gp.Container((*sides, 20.0), "wall"), [kind], faces={"xyz"[dimension - 1] + "_high": face})
+    made = gp.Scene(
+        gp.Container((*sides, 20.0), "wall"), [kind], faces={"xyz"[dimension - 1] + "_high": face}
+    )
     enthalpy = count * (0.5 * dimension + 1.0)
     heights = np.linspace(10.0, 30.0, 4001)
 
