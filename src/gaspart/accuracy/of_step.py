@@ -38,9 +38,8 @@ class StepAdviser(Adviser[TimeStepped]):
         return (kind(1.0),)
 
     def candidate(self, request: AccuracyRequest) -> Candidate:
-        """Return the engine with the longest step that is sufficiently accurate.
-
-        Raises SceneError for a gas without collisions.
+        """Return the engine with the longest step that is sufficiently accurate. Raises SceneError for a gas
+        without collisions.
         """
         conditions, initial = request.conditions, request.initial
         hot = _as_hot(initial, float(conditions.temperature.max())) if initial else None

@@ -405,9 +405,8 @@ def observable(
     theory: tuple[Any, Any] | None = None,
     source: str | None = None,
 ) -> Observable:
-    """Build a result from its parts.
-
-    `along` maps the name of each dimension to its coordinate and the attributes of the coordinate.
+    """Build a result from its parts. `along` maps the name of each dimension to its coordinate and the
+    attributes of the coordinate.
     """
     dims = tuple(along)
     parts = {name: (values, long_name), f"{name}_error": (errors, "standard uncertainty")}

@@ -502,9 +502,8 @@ ALIASES: dict[str, str] = {
 
 
 def observable_name(name: object) -> str:
-    """Return the standard name of an observable, from its name or an alias.
-
-    Raises SceneError for an unknown name.
+    """Return the standard name of an observable, from its name or an alias. Raises SceneError for an unknown
+    name.
     """
     if isinstance(name, str):
         if name in OBSERVABLES:
@@ -541,9 +540,8 @@ def about(name: str, dimension: int) -> dict[str, str]:
 
 
 def name_of(function: str) -> str:
-    """Return the name of the observable that a function of `gaspart.analysis` measures.
-
-    If the function measures no named observable, return the name of the function.
+    """Return the name of the observable that a function of `gaspart.analysis` measures. If the function
+    measures no named observable, return the name of the function.
     """
     return next((name for name, declared in OBSERVABLES.items() if declared.function == function), function)
 
@@ -558,10 +556,9 @@ def require_selection(name: str, selection: Mapping[str, Any]) -> None:
 
 
 def require_defined(name: str, scene: Scene, **selection: Any) -> None:
-    """Raise SceneError, with the reason, if an observable is undefined for a scene.
-
-    The condition does not depend on the length of a run. Also raises SceneError for a selection that the
-    observable or the scene does not allow.
+    """Raise SceneError, with the reason, if an observable is undefined for a scene. The condition does not
+    depend on the length of a run. Also raises SceneError for a selection that the observable or the scene
+    does not allow.
     """
     declared = OBSERVABLES[observable_name(name)]
     require_selection(name, selection)
@@ -589,10 +586,9 @@ def require_run(name: str, scene: Scene, kept: Collection[str] = (), follow: int
 
 
 def walls_of(name: str, scene: Scene) -> tuple[str, ...]:
-    """Return the walls, such as `x low`, for which an observable may have a value.
-
-    For a pressure or force these are all walls; for other observables of faces, the faces with a temperature.
-    For all other observables, no walls are returned.
+    """Return the walls, such as `x low`, for which an observable may have a value. For a pressure or force
+    these are all walls; for other observables of faces, the faces with a temperature. For all other
+    observables, no walls are returned.
     """
     if "face" not in OBSERVABLES[name].along:
         return ()
@@ -602,10 +598,9 @@ def walls_of(name: str, scene: Scene) -> tuple[str, ...]:
 
 
 def require_steady_value(name: str, scene: Scene) -> None:
-    """Raise SceneError, with the reason, if an observable is 0 on average in the steady state.
-
-    A relative accuracy of such an observable is undefined. In a container whose open faces all lead to a
-    vacuum, all observables are 0 in the steady state.
+    """Raise SceneError, with the reason, if an observable is 0 on average in the steady state. A relative
+    accuracy of such an observable is undefined. In a container whose open faces all lead to a vacuum, all
+    observables are 0 in the steady state.
     """
     if scene.is_open and not any(face.temperatures for _, face in scene.faces_of(Open)):
         refuse_open(scene, "has no reservoir: all particles leave, and nothing is steady; give a duration")
@@ -614,10 +609,9 @@ def require_steady_value(name: str, scene: Scene) -> None:
 
 
 def require_modelled(name: str, scene: Scene, engine: Engine) -> None:
-    """Raise SceneError, with the reason, if runs of an engine do not determine an observable.
-
-    This is the case if the equation of the engine does not determine the observable or gives a trivial value,
-    or if the engine does not store the required data.
+    """Raise SceneError, with the reason, if runs of an engine do not determine an observable. This is the
+    case if the equation of the engine does not determine the observable or gives a trivial value, or if the
+    engine does not store the required data.
     """
     declared = OBSERVABLES[observable_name(name)]
     if engine.equation in declared.nothing:
@@ -631,10 +625,7 @@ def require_modelled(name: str, scene: Scene, engine: Engine) -> None:
 
 
 def require_kept(name: str, kept: Collection[str]) -> None:
-    """Raise SceneError if a run lacks the data that an observable needs.
-
-    The message names the option to set.
-
+    """Raise SceneError if a run lacks the data that an observable needs. The message names the option to set.
     `kept` contains the names of the data that the run has stored, such as "fluxes" or "pairs". Paths need not
     be stored, because they can be reconstructed from frames that are close enough in time.
     """

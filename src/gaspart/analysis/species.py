@@ -127,9 +127,8 @@ def _of_velocities(run: Run, kind: int) -> dict[str, Observable]:
 
 
 def _column(name: str, results: list[Observable | None]) -> xr.Dataset:
-    """Combine the values of one observable for all species, with uncertainties.
-
-    The result is empty if the observable could not be measured for any species.
+    """Combine the values of one observable for all species, with uncertainties. The result is empty if the
+    observable could not be measured for any species.
     """
     available = [result for result in results if result is not None]
     if not available:

@@ -103,10 +103,8 @@ def speed_distribution(
 
 
 def _speeds(run: Run, grid: Grid) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Count speeds in bins, reading the frames in parts.
-
-    Returns the counts (groups, bins), the numbers of speeds (groups,), and the sum of squared velocities in
-    each frame (T,).
+    """Count speeds in bins, reading the frames in parts. Returns the counts (groups, bins), the numbers of
+    speeds (groups,), and the sum of squared velocities in each frame (T,).
     """
     about, energy = mean_motion(run), np.zeros(len(run.time))
     # every group contains a fraction of each species; the species are stored one after the other
@@ -337,10 +335,9 @@ def order_parameter(source: Source, start: float | None = None) -> Observable:
 
 
 def _density(run: Run, axis: int, bins: int, species: int | None) -> Means:
-    """Compute the density of the moving particles, or of one species.
-
-    The density is NaN in bins from which fixed particles exclude all centres. Raises SceneError if particles
-    are of several kinds and the file does not contain all of them.
+    """Compute the density of the moving particles, or of one species. The density is NaN in bins from which
+    fixed particles exclude all centres. Raises SceneError if particles are of several kinds and the file does
+    not contain all of them.
     """
     if len(run.scene.kinds) > 1:
         run.require_all()

@@ -202,10 +202,8 @@ def _requests(text: str) -> list[tuple[str, float]]:
 
 
 def _until(options: argparse.Namespace, scene: Scene) -> list[Accuracy] | None:
-    """Return the accuracies of --until.
-
-    Raises UsageError for options that exclude or require each other. Without a duration, the message suggests
-    a duration for the scene.
+    """Return the accuracies of --until. Raises UsageError for options that exclude or require each other.
+    Without a duration, the message suggests a duration for the scene.
     """
     if options.until is not None:
         if options.duration is not None:

@@ -152,9 +152,7 @@ class Controls:
         return "".join(sorted({*self.constant, *"".join(flags)}))
 
     def scene_for(self, settings: dict[str, Any], scene: Scene) -> Scene:
-        """Return a scene with values of controls.
-
-        Other controls have the values of the scene of the page.
+        """Return a scene with values of controls. Other controls have the values of the scene of the page.
 
         scene : the scene of the page, or this scene with another number of particles
         """

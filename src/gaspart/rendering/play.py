@@ -288,10 +288,8 @@ def _changes(base: dict, other: dict) -> dict:
 
 
 def _pressure(scene: Scene, controls: Controls) -> dict | None:
-    """Return p A / k_B T for positions of the side x high; None if unknown.
-
-    A is the accessible area. The walls of a rectangle count as the walls of a square with the same ratio of
-    perimeter and area.
+    """Return p A / k_B T for positions of the side x high; None if unknown. A is the accessible area. The
+    walls of a rectangle count as the walls of a square with the same ratio of perimeter and area.
     """
     gas, lengths = scene.gas, scene.container.lengths
     if gas is None or scene.walls or scene.has_piston:

@@ -143,9 +143,8 @@ def _warm_walls(scene: Scene) -> tuple[DrawnSurface, ...]:
 
 
 def _moving_walls(scene: Scene, position: float | None) -> tuple[DrawnSurface, ...]:
-    """Return the appearance of the moving interior wall.
-
-    The wall is drawn at the coordinate `position`; for None, at its initial coordinate.
+    """Return the appearance of the moving interior wall. The wall is drawn at the coordinate `position`; for
+    None, at its initial coordinate.
     """
     wall = scene.moving_wall
     if wall is None:

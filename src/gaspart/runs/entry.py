@@ -177,19 +177,16 @@ def run(
 
 
 def _engine_of(scene: object, engine: Engine | str | None) -> Engine:
-    """Return the engine of a run, see `resolve_engine`.
-
-    Raises SceneError for an unknown engine, and if `scene` is not a scene.
+    """Return the engine of a run, see `resolve_engine`. Raises SceneError for an unknown engine, and if
+    `scene` is not a scene.
     """
     require_scene(scene)
     return resolve_engine(engine)
 
 
 def _in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
-    """Return the recipes of the replicas of a run.
-
-    Raises SceneError under the same conditions as `in_replicas`, and for an accuracy that the mean of the
-    replicas can never reach.
+    """Return the recipes of the replicas of a run. Raises SceneError under the same conditions as
+    `in_replicas`, and for an accuracy that the mean of the replicas can never reach.
     """
     recipes, until = in_replicas(recipe, replicas), recipe.until
     if until is not None and until.at_most is None and recipe.initial is None:
@@ -231,10 +228,8 @@ def _start(
     replicas: int,
     seed: int | tuple[int, ...],
 ) -> State | None:
-    """Return the initial state of a run; for a file, its last state.
-
-    Raises SceneError if this file is one of the files of the run at `path`, even under another name, because
-    the run would overwrite it.
+    """Return the initial state of a run; for a file, its last state. Raises SceneError if this file is one of
+    the files of the run at `path`, even under another name, because the run would overwrite it.
     """
     paths = replica_paths(_require_path(path), count_of("replicas", replicas, least=1, most=MOST_REPLICAS))
     if not isinstance(initial, str | Path):
@@ -262,9 +257,8 @@ def _request(
     until: Accuracy | list[Accuracy] | tuple[Accuracy, ...] | None,
     at_most: float | None,
 ) -> Until | None:
-    """Return the accuracies that end a run, or None for a run with a duration.
-
-    Raises SceneError for arguments that exclude or require each other.
+    """Return the accuracies that end a run, or None for a run with a duration. Raises SceneError for
+    arguments that exclude or require each other.
     """
     if until is not None:
         if duration is not None:

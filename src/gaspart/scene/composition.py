@@ -47,10 +47,9 @@ class Composition:
 
     @cached_property
     def image_axes(self) -> tuple[bool, ...]:
-        """Flags (d,) of the axes whose periodic images are at fixed distances.
-
-        Such images are displaced by exactly the length of the container. All periodic axes have fixed images,
-        with one exception: in a sheared gas, the images along the gradient move.
+        """Flags (d,) of the axes whose periodic images are at fixed distances. Such images are displaced by
+        exactly the length of the container. All periodic axes have fixed images, with one exception: in a
+        sheared gas, the images along the gradient move.
         """
         sheared = self.shear_rate is not None
         return tuple(
@@ -108,9 +107,8 @@ class Composition:
 
     @cached_property
     def face_temperatures(self) -> frozenset[float]:
-        """Temperatures of all thermal faces and interior walls.
-
-        If the temperature of a face varies, both ends count.
+        """Temperatures of all thermal faces and interior walls. If the temperature of a face varies, both
+        ends count.
         """
         warm = {wall.temperature for wall in self.walls if wall.temperature is not None}
         return frozenset(warm.union(*(face.temperatures for face in self.faces.values())))
@@ -193,9 +191,8 @@ class Composition:
 
     @cached_property
     def vibrates(self) -> bool:
-        """True if a particle may store energy in a vibration.
-
-        Only fixed particles, and particles that stick to a face, can vibrate.
+        """True if a particle may store energy in a vibration. Only fixed particles, and particles that stick
+        to a face, can vibrate.
         """
         return bool(self.faces_of(Sticky)) or any(kind.vibrates for kind in self.kinds)
 

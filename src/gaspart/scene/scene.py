@@ -230,9 +230,8 @@ class Scene(Facts):
         check_room(self.container, self.centres_to_walls, key, particle)
 
     def _check_particle(self, n: int, particle: Particle, earlier: Nearby) -> None:
-        """Raise SceneError for a particle that is outside, or overlaps a wall or another particle.
-
-        The particle is compared only with `earlier` particles.
+        """Raise SceneError for a particle that is outside, or overlaps a wall or another particle. The
+        particle is compared only with `earlier` particles.
         """
         where = f"particles[{n}]"
         finite_vector(f"{where}.position", particle.position, self.dimension)

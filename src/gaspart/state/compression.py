@@ -125,9 +125,8 @@ def compress(
 
 
 def compress_positions(scene: Scene, seed: int | tuple[int, ...]) -> np.ndarray:
-    """Return positions for a scene from compression at the fastest sufficient rate of `RATES`.
-
-    A growth rate is sufficient if the particles reach the packing fraction of the scene before they jam.
+    """Return positions for a scene from compression at the fastest sufficient rate of `RATES`. A growth rate
+    is sufficient if the particles reach the packing fraction of the scene before they jam.
     """
     for rate in RATES[:-1]:
         with suppress(SceneError):
@@ -199,10 +198,7 @@ class _Growing:
             self.pressure = 1.0 + float(tally.sums[self._kernels.VIRIAL].sum()) / (d * n * time)
 
     def final_positions(self, scale: float) -> np.ndarray:
-        """Return the positions (N, d) at a scale.
-
-        Raises SimulationError if two particles overlap.
-        """
+        """Return the positions (N, d) at a scale. Raises SimulationError if two particles overlap."""
         self.flights["radius"] = self._radii * scale
         if self._growth.closest(self.particles, self.boxes, self._space) < 1.0:
             raise SimulationError("growth has left an overlap")

@@ -64,9 +64,8 @@ def _check_correlations(key: str, value: Any) -> Correlations:
 
 
 def _check_tallies(key: str, value: Any) -> tuple[OptionalTally, ...]:
-    """Return requested tallies in the order of their declarations.
-
-    Raises SceneError if `value` does not consist of tallies.
+    """Return requested tallies in the order of their declarations. Raises SceneError if `value` does not
+    consist of tallies.
     """
     tallies = value if isinstance(value, Iterable) and not isinstance(value, str) else (value,)
     requested: dict[str, OptionalTally] = {}
@@ -85,9 +84,8 @@ def tallies_to_json(tallies: Iterable[OptionalTally]) -> str:
 
 
 def tallies_from_json(text: str) -> tuple[OptionalTally, ...]:
-    """Return the tallies that an attribute `tallies` describes; the inverse of `tallies_to_json`.
-
-    Raises SceneError for an unknown name, and TypeError for an unknown setting.
+    """Return the tallies that an attribute `tallies` describes; the inverse of `tallies_to_json`. Raises
+    SceneError for an unknown name, and TypeError for an unknown setting.
     """
     tallies = []
     for settings in json.loads(text):
@@ -100,9 +98,8 @@ def tallies_from_json(text: str) -> tuple[OptionalTally, ...]:
 
 
 def stored_tally(attributes: Mapping[str, Any], kind: type[AnyTally]) -> AnyTally | None:
-    """Return the tally of a class from the attributes of a trajectory, or None.
-
-    Raises SceneError and TypeError under the same conditions as `tallies_from_json`.
+    """Return the tally of a class from the attributes of a trajectory, or None. Raises SceneError and
+    TypeError under the same conditions as `tallies_from_json`.
     """
     tallies = tallies_from_json(attributes.get("tallies", "[]"))
     return next((tally for tally in tallies if isinstance(tally, kind)), None)
@@ -224,9 +221,8 @@ def required_contents(needs: Collection[str]) -> dict[str, bool]:
 
 
 def stored_contents(attributes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the fields of `Contents` from the attributes of a file.
-
-    Raises SceneError, TypeError or ValueError for an attribute that cannot be used.
+    """Return the fields of `Contents` from the attributes of a file. Raises SceneError, TypeError or
+    ValueError for an attribute that cannot be used.
     """
     return {
         item.name: item.metadata["restore"](attributes[item.name])
@@ -236,10 +232,8 @@ def stored_contents(attributes: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def recipe_fields(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the fields of a recipe for settings in plain values.
-
-    Texts and mappings are converted to objects. Raises SceneError for an invalid text of a tally, or for
-    invalid correlations.
+    """Return the fields of a recipe for settings in plain values. Texts and mappings are converted to
+    objects. Raises SceneError for an invalid text of a tally, or for invalid correlations.
 
     settings : fields of `Recipe`, with correlations as a mapping, and texts of tallies by their names
     """
@@ -251,9 +245,8 @@ def recipe_fields(settings: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def contents_of(settings: Mapping[str, Any]) -> Contents:
-    """Return the `Contents` of a run's file from settings in plain values.
-
-    The settings are explained in `recipe_fields`.
+    """Return the `Contents` of a run's file from settings in plain values. The settings are explained in
+    `recipe_fields`.
     """
     names = {item.name for item in fields(Contents)}
     values = recipe_fields(
@@ -283,9 +276,8 @@ def tallied_fields(tallies: Iterable[OptionalTally]) -> list[str]:
 
 
 def tally_axes(tally: OptionalTally, scene: Scene) -> dict[str, int]:
-    """Return the length of each axis of a tally's fields, by name, except `face`.
-
-    The length of an axis is the setting of the tally whose name is the plural of the axis name.
+    """Return the length of each axis of a tally's fields, by name, except `face`. The length of an axis is
+    the setting of the tally whose name is the plural of the axis name.
     """
     lengths = {key.removesuffix("s"): length for key, length in asdict(tally).items()}
     lengths |= {"axis": scene.dimension, "direction": scene.dimension, "species": row_count(scene)}

@@ -24,9 +24,8 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Requirement:
-    """Required accuracy of an observable, as stored in a file.
-
-    See `gaspart.Accuracy`, which validates observables.
+    """Required accuracy of an observable, as stored in a file. See `gaspart.Accuracy`, which validates
+    observables.
     """
 
     observable: str
@@ -77,9 +76,8 @@ class Until:
             object.__setattr__(self, "at_most", longest)
 
     def most_frames(self, sample_interval: float) -> int | None:
-        """Return the maximum number of frames, including time 0; None if there is no limit.
-
-        Raises SceneError if the maximum duration has no frame after time 0.
+        """Return the maximum number of frames, including time 0; None if there is no limit. Raises SceneError
+        if the maximum duration has no frame after time 0.
         """
         if self.at_most is None:
             return None
@@ -99,17 +97,13 @@ class Until:
 
     @classmethod
     def from_dict(cls, values: dict) -> Until:
-        """Make an instance from a mapping, the inverse of `dataclasses.asdict`.
-
-        Raises SceneError.
-        """
+        """Make an instance from a mapping, the inverse of `dataclasses.asdict`. Raises SceneError."""
         return cls(tuple(Requirement(**entry) for entry in values["accuracies"]), values["at_most"])
 
     @classmethod
     def from_json(cls, text: str, at_most: float | None) -> Until:
-        """Make an instance from a text, the inverse of `to_json`.
-
-        Raises SceneError for invalid values, and TypeError or ValueError for a text of another form.
+        """Make an instance from a text, the inverse of `to_json`. Raises SceneError for invalid values, and
+        TypeError or ValueError for a text of another form.
         """
         return cls(tuple(Requirement(**entry) for entry in json.loads(text)), at_most)
 

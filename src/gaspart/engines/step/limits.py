@@ -64,9 +64,8 @@ a slit of 1.5 diameters: 0.49).
 
 
 def oversized_particles(state: State) -> np.ndarray:
-    """Return a mask (N,) of the particles that are too large for boxes and cells.
-
-    There are only a few such particles, and they are much larger than all other particles.
+    """Return a mask (N,) of the particles that are too large for boxes and cells. There are only a few such
+    particles, and they are much larger than all other particles.
     """
     order = np.argsort(state.radii, kind="stable")
     sizes = state.radii[order]
@@ -93,12 +92,10 @@ def check_scene(scene: Scene, state: State, oversized: np.ndarray) -> None:
 
 
 def check_precision(engine: StepSettings, scene: Scene, state: State) -> None:
-    """Raise SceneError if the floating-point precision does not resolve steps or sizes.
-
-    A step is rejected if particles move by less than the rounding error of their positions, or so far that
-    the rounding error is as large as the container. In float32, lengths and speeds are rejected if their
-    squares are out of range. Particles are rejected if the precision cannot resolve their contacts in the
-    container.
+    """Raise SceneError if the floating-point precision does not resolve steps or sizes. A step is rejected if
+    particles move by less than the rounding error of their positions, or so far that the rounding error is as
+    large as the container. In float32, lengths and speeds are rejected if their squares are out of range.
+    Particles are rejected if the precision cannot resolve their contacts in the container.
     """
     longest, speeds = max(scene.container.lengths), np.sqrt((state.velocities**2).sum(axis=1))
     typical, fastest = math.sqrt(float((speeds**2).mean())) if state.count else 0.0, speeds.max(initial=0.0)
@@ -138,19 +135,17 @@ def _kinds_of(state: State) -> Kinds:
 
 
 def missed_contacts(time_step: float, several: bool, state: State) -> float:
-    """Return the fraction of contacts that are missed because they begin and end within a step.
-
-    The fraction is computed for a dilute gas (`MISSED_CONTACTS`) at the present thermal speed of each
-    species. It depends on whether there are several passes. The result is the mean over all pairs of species,
-    weighted by their collision rates.
+    """Return the fraction of contacts that are missed because they begin and end within a step. The fraction
+    is computed for a dilute gas (`MISSED_CONTACTS`) at the present thermal speed of each species. It depends
+    on whether there are several passes. The result is the mean over all pairs of species, weighted by their
+    collision rates.
     """
     return _missed_fraction(time_step, several, state.dimension, _kinds_of(state))
 
 
 def bias(engine: StepSettings, scene: Scene, kind: str) -> float:
-    """Bound the relative error of an observable due to missed contacts and contacts in a wrong order.
-
-    The bound is for the initial temperature, or for the temperature of the hottest face if this is higher.
+    """Bound the relative error of an observable due to missed contacts and contacts in a wrong order. The
+    bound is for the initial temperature, or for the temperature of the hottest face if this is higher.
     Transfers to walls ("walls", "fluxes") have the additional error `at_walls`.
     """
     gas, several, d = _kinds_in(scene), engine.passes > 1, scene.dimension
@@ -168,10 +163,9 @@ def wall_density_error(engine: StepSettings, scene: Scene) -> float:
 
 
 def at_walls(scene: Scene) -> float:
-    """Return the error of transfers to walls, divided by the contacts of a particle in a step.
-
-    Far from walls, momentum is balanced for any order of contacts. So the error is proportional to the
-    fraction of the particles within a radius of a wall.
+    """Return the error of transfers to walls, divided by the contacts of a particle in a step. Far from
+    walls, momentum is balanced for any order of contacts. So the error is proportional to the fraction of the
+    particles within a radius of a wall.
     """
     radius = scene.largest_moving_radius
     lower, upper = (np.array(ends) for ends in scene.reach(radius))
@@ -202,9 +196,8 @@ def _missed_fraction(time_step: float, several: bool, dimension: int, gas: Kinds
 
 
 def check_step(engine: StepSettings, state: State) -> None:
-    """Raise SceneError if the step causes large errors; warn of errors of a few percent.
-
-    The message recommends a sufficiently short step.
+    """Raise SceneError if the step causes large errors; warn of errors of a few percent. The message
+    recommends a sufficiently short step.
     """
     if state.count < 2:
         return
@@ -225,10 +218,9 @@ def check_step(engine: StepSettings, state: State) -> None:
 
 
 def check_late(engine: StepSettings, time: float, met: int, late: int, passed: int) -> None:
-    """Raise SimulationError if too many contacts are found a step too late.
-
-    SimulationError is also raised if particles pass through each other. In both cases the step is too long,
-    because speeds are high or gaps are narrow.
+    """Raise SimulationError if too many contacts are found a step too late. SimulationError is also raised if
+    particles pass through each other. In both cases the step is too long, because speeds are high or gaps are
+    narrow.
     """
     most = [max(FEW, part * met) for part in (LATE_MOST, PASSED_MOST)]
     if engine.passes > 1 and (late > most[0] or passed > most[1]):
@@ -246,11 +238,9 @@ def contacts_per_step(time_step: float, state: State) -> float:
 
 
 def _contacts(time_step: float, dimension: int, gas: Kinds, volume: float) -> float:
-    """Return the mean number of collisions of a particle in a step.
-
-    The number is the step times Enskog's collision rate for particles of one size at the same packing
-    fraction. The contact value is by Carnahan & Starling (1969) for spheres, and by Henderson (1975) for
-    discs.
+    """Return the mean number of collisions of a particle in a step. The number is the step times Enskog's
+    collision rate for particles of one size at the same packing fraction. The contact value is by Carnahan &
+    Starling (1969) for spheres, and by Henderson (1975) for discs.
     """
     count = gas.number.sum()
     if count < 2.0:

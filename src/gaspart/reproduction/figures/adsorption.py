@@ -170,9 +170,8 @@ class Wall:
 
 
 def counts(wall: Wall, height: np.ndarray, velocity: np.ndarray, settings: dict) -> tuple:
-    """Return means over a block: held, free and far particles; slow flux, and flux by speed.
-
-    Heights (T, N) are those of centres above the lowest position; velocities are along x.
+    """Return means over a block: held, free and far particles; slow flux, and flux by speed. Heights (T, N)
+    are those of centres above the lowest position; velocities are along x.
     """
     held, above = height < wall.width if wall.is_well else velocity == 0.0, height - wall.width
     far = (above > wall.sigma) & (above < wall.outside - wall.sigma)
