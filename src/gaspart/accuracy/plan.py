@@ -30,7 +30,7 @@ from gaspart.scene.scene import Scene
 from gaspart.theory import bulk
 from gaspart.trajectory.recipe import MOST_REPLICAS, Recipe
 from gaspart.trajectory.replicas import differ
-from gaspart.trajectory.until import Requirement, Until
+from gaspart.trajectory.run_options import Requirement, Until
 
 ACCURACIES = 1e-8, 1.0
 """Smallest and largest allowed relative accuracy; the smallest is the limit of float64 sums and of the table.

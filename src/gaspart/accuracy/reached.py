@@ -48,7 +48,7 @@ from gaspart.analysis.observables import OBSERVABLES, TOO_SHORT
 from gaspart.errors import SceneError
 from gaspart.trajectory.recipe import read_recipe
 from gaspart.trajectory.replicas import files_of, opened_together
-from gaspart.trajectory.until import Requirement, Until, examined_before
+from gaspart.trajectory.run_options import Requirement, Until, examined_before
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -43,8 +43,7 @@ from gaspart.runs.ending import Accuracy
 from gaspart.scene.scene import Scene, require_scene
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.recipe import multiple
-from gaspart.trajectory.run_options import required_contents
-from gaspart.trajectory.until import Until
+from gaspart.trajectory.run_options import Until, required_contents
 from gaspart.workers import in_processes
 from gaspart.yaml_text import dump_yaml
 

@@ -22,8 +22,7 @@ from gaspart.engines import Engine
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.trajectory.correlator import Correlations
-from gaspart.trajectory.run_options import Contents, required_contents
-from gaspart.trajectory.until import Requirement, Until
+from gaspart.trajectory.run_options import Contents, Requirement, Until, required_contents
 
 
 class Accuracy(Requirement):

@@ -24,8 +24,7 @@ from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.correlator import Correlations, sum_names
 from gaspart.trajectory.opening import open_netcdf_file
 from gaspart.trajectory.pairs import pair_names, pairs_of
-from gaspart.trajectory.run_options import Contents, scene_tallies, stored_contents, tally_axes
-from gaspart.trajectory.until import Until
+from gaspart.trajectory.run_options import Contents, Until, scene_tallies, stored_contents, tally_axes
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
 if TYPE_CHECKING:

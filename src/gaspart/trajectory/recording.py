@@ -21,7 +21,7 @@ from gaspart.trajectory.checkpoint import checkpoint_path, write_checkpoint
 from gaspart.trajectory.correlator import correlator_for
 from gaspart.trajectory.pairs import PairCounter
 from gaspart.trajectory.recipe import Recipe, multiple
-from gaspart.trajectory.until import examined_before, examined_from, is_examined
+from gaspart.trajectory.run_options import examined_before, examined_from, is_examined
 
 Progress = Callable[[float, float, int], None]
 """Callback whose arguments are the present time, the duration, and the number of collisions so far.

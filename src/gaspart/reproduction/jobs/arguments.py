@@ -13,7 +13,7 @@ from typing import Any
 
 from gaspart.engines import engine_from_dict, engine_to_dict
 from gaspart.scene.scene import Scene
-from gaspart.trajectory.until import Until
+from gaspart.trajectory.run_options import Until
 
 _FORMS: dict[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
     "scene": (Scene.to_dict, Scene.from_dict),

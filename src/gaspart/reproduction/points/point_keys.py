@@ -150,8 +150,7 @@ def ending(point: Point) -> dict[str, Any]:
     can reach.
     """
     from gaspart.runs.ending import Accuracy, contents_until, default_sample_interval
-    from gaspart.trajectory.run_options import contents_of
-    from gaspart.trajectory.until import Until
+    from gaspart.trajectory.run_options import Until, contents_of
 
     settings, times = point.settings, point.schedule
     start = times.equilibration if "equilibration" in settings else None
