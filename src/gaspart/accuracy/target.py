@@ -26,8 +26,8 @@ from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine, reference_engine
 from gaspart.errors import SceneError
 from gaspart.scene.boundaries import refuse_open
-from gaspart.scene.faces import wall_of
 from gaspart.scene.scene import Scene
+from gaspart.scene.surfaces import wall_of
 from gaspart.simulation import Simulation
 from gaspart.state.initial import initial_state
 from gaspart.state.optional_tallies import OptionalTally

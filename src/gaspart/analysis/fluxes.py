@@ -17,8 +17,9 @@ from gaspart.analysis.profiles import Means
 from gaspart.analysis.run import Run, Source, open_run, select_particles
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
-from gaspart.scene.faces import FACES, Open
+from gaspart.scene.faces import Open
 from gaspart.scene.scene import Scene
+from gaspart.scene.surfaces import FACES
 from gaspart.trajectory.amber import face_names
 
 _BLOCKS = 4096

@@ -15,7 +15,7 @@ from gaspart.analysis.estimate import concise
 from gaspart.analysis.observables import name_of
 from gaspart.analysis.statistics import correlated_mean, slow_mean
 from gaspart.errors import SceneError
-from gaspart.scene.faces import wall_of
+from gaspart.scene.surfaces import wall_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

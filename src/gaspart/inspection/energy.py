@@ -10,8 +10,8 @@ import xarray as xr
 from gaspart.analysis.fluxes import particle_numbers
 from gaspart.analysis.statistics import autocorrelation_time
 from gaspart.errors import SceneError
-from gaspart.scene.faces import Sticky, Well
 from gaspart.scene.scene import Scene
+from gaspart.scene.surfaces import Sticky, Well
 from gaspart.state.initial import places_in_wells, well_energies
 from gaspart.state.insertion import per_particle
 from gaspart.trajectory.opening import open_netcdf_file

@@ -15,9 +15,10 @@ from typing import Any
 import numpy as np
 
 from gaspart.accuracy.scales import scales
-from gaspart.scene.faces import FACES, Piston, Surface, Thermal
+from gaspart.scene.faces import Piston
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.scene import Scene
+from gaspart.scene.surfaces import FACES, Surface, Thermal
 
 _WEIGHTS = 8.0
 """Largest gravity: energy of a fall through the container, in units of m v^2 of a particle."""

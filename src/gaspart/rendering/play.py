@@ -25,8 +25,8 @@ from gaspart.rendering.controls import RULES, Controls
 from gaspart.rendering.particles import FASTEST
 from gaspart.rendering.view import View, page_of
 from gaspart.scene.boundaries import piston_end
-from gaspart.scene.faces import FACES
 from gaspart.scene.scene import Scene, require_scene
+from gaspart.scene.surfaces import FACES
 from gaspart.scene.walls import Wall
 from gaspart.state.given import state_at_time_zero
 from gaspart.state.initial import initial_state

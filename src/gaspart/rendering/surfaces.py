@@ -15,19 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from gaspart.scene.faces import (
-    FLOW,
-    GRADIENT,
-    LeesEdwards,
-    Open,
-    Piston,
-    Sticky,
-    Surface,
-    Thermal,
-    Vibrating,
-    Well,
-)
+from gaspart.scene.faces import FLOW, GRADIENT, LeesEdwards, Open, Piston, Vibrating
 from gaspart.scene.scene import Scene
+from gaspart.scene.surfaces import Sticky, Surface, Thermal, Well
 
 Colour = tuple[float, float, float]
 INK: Colour = (0.16, 0.16, 0.16)

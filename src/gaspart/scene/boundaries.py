@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
 from gaspart.scene.composition import Composition
-from gaspart.scene.faces import FACES, FLOW, GRADIENT, LeesEdwards, Open, Thermal
+from gaspart.scene.faces import FLOW, GRADIENT, LeesEdwards, Open
 from gaspart.scene.limits import CLOSE_PACKING, ball_volume
+from gaspart.scene.surfaces import FACES, Thermal
 
 if TYPE_CHECKING:
     import numpy as np

@@ -7,20 +7,10 @@ import math
 from gaspart.errors import SceneError, unknown_word
 from gaspart.keys.values import finite_vector, size
 from gaspart.scene.boundaries import attempt_rate
-from gaspart.scene.faces import (
-    FACE_KINDS,
-    FACES,
-    GRADIENT,
-    LeesEdwards,
-    Open,
-    Piston,
-    Sticky,
-    Thermal,
-    Vibrating,
-    Well,
-)
+from gaspart.scene.faces import FACE_KINDS, GRADIENT, LeesEdwards, Open, Piston, Vibrating
 from gaspart.scene.facts import Facts
 from gaspart.scene.features import EXCLUDED, FEATURES
+from gaspart.scene.surfaces import FACES, Sticky, Thermal, Well
 from gaspart.scene.walls import WALL_RULE, Plate, Wall, crossed_axis, wall_kind
 
 _SUM = 1e-12  # relative tolerance for rounding of the sum of all volumes

@@ -13,7 +13,8 @@ from typing import Any, NamedTuple
 
 from gaspart.errors import SceneError
 from gaspart.scene.composition import Composition
-from gaspart.scene.faces import FACE_KINDS, FACES
+from gaspart.scene.faces import FACE_KINDS
+from gaspart.scene.surfaces import FACES
 
 
 class Feature(NamedTuple):

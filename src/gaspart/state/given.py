@@ -13,9 +13,10 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.scene.boundaries import flow_of_rate
-from gaspart.scene.faces import FACES, FLOW, GRADIENT
+from gaspart.scene.faces import FLOW, GRADIENT
 from gaspart.scene.features import FEATURES
 from gaspart.scene.scene import Scene
+from gaspart.scene.surfaces import FACES
 from gaspart.scene.walls import MOVING_WALL
 from gaspart.state.boxes import deepest_overlap
 from gaspart.state.initial import assemble_state, in_flow, masses_of

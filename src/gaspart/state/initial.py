@@ -10,9 +10,9 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.scene.boundaries import flow
-from gaspart.scene.faces import FACES, Well
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import LATTICES, Species
+from gaspart.scene.surfaces import FACES, Well
 from gaspart.scene.walls import MOVING_WALL
 from gaspart.state.compression import compress_positions
 from gaspart.state.insertion import per_particle, random_insertion

@@ -23,8 +23,8 @@ from gaspart.errors import SceneError
 from gaspart.keys import TEXT, Kind, choice, count, declare, describe, flag
 from gaspart.keys.values import number
 from gaspart.scene.boundaries import refuse_open
-from gaspart.scene.faces import wall_of
 from gaspart.scene.features import row_count
+from gaspart.scene.surfaces import wall_of
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.tally import TALLIES, Tally
 

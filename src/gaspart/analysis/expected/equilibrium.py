@@ -14,10 +14,10 @@ from gaspart.analysis import observables
 from gaspart.analysis.run import Run
 from gaspart.analysis.run_data import FLOW
 from gaspart.engines import Engine, engine_from_dict
-from gaspart.scene.faces import Thermal
 from gaspart.scene.gas import Mixture
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
+from gaspart.scene.surfaces import Thermal
 from gaspart.theory import bulk, discretisation
 from gaspart.theory.bulk import BOLTZMANN, ENSKOG, EXACT
 from gaspart.theory.geometry import unit_sphere_surface

@@ -15,8 +15,8 @@ from gaspart import theory
 from gaspart.analysis.expected.equilibrium import Expected, equation_of
 from gaspart.analysis.run import Run
 from gaspart.scene.boundaries import flow
-from gaspart.scene.faces import Thermal
 from gaspart.scene.scene import Scene
+from gaspart.scene.surfaces import Thermal
 from gaspart.scene.walls import Plate
 from gaspart.theory.bulk import BOLTZMANN
 from gaspart.theory.heat import INTERPOLATED, TEMPERATURE_JUMP, interpolated_flux

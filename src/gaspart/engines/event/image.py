@@ -26,9 +26,9 @@ from gaspart.kernels.event import loop, prediction
 from gaspart.kernels.event.pair_contact import Monitors
 from gaspart.kernels.obstacles import moving
 from gaspart.kernels.physics import flight
-from gaspart.scene.faces import FACES
 from gaspart.scene.features import FEATURES
 from gaspart.scene.scene import Scene
+from gaspart.scene.surfaces import FACES
 from gaspart.state.state import State
 
 types: Any = load_numba().core.types

@@ -17,8 +17,9 @@ from gaspart.kernels.obstacles.moving import advance_piston
 from gaspart.kernels.obstacles.opening import NUMBERS, schedule_first
 from gaspart.kernels.physics.running_sum import values
 from gaspart.scene.boundaries import attempt_rate
-from gaspart.scene.faces import FACES, Open, Vibrating
+from gaspart.scene.faces import Open, Vibrating
 from gaspart.scene.scene import Scene
+from gaspart.scene.surfaces import FACES
 from gaspart.state.initial import places_in_wells, well_energies, wells_of
 from gaspart.state.random import key_of
 from gaspart.state.state import State
