@@ -61,6 +61,8 @@ def play(scene: Scene, seed: int = 0) -> View:
     contains the kernels of the event-driven engine, and computes the same bits. After each change the gas
     continues as ``Simulation(scene, seed=seed, initial=state)`` of the changed scene.
 
+    The first page of a kind of scene compiles its kernels, in about a minute.
+
     Parameters
     ----------
     scene : Scene
@@ -78,10 +80,6 @@ def play(scene: Scene, seed: int = 0) -> View:
     SceneError
         If the scene has three dimensions or a feature that is not available in a browser, or if no particle
         moves or falls.
-
-    Notes
-    -----
-    The first page of a kind of scene compiles its kernels, in about a minute.
 
     Examples
     --------

@@ -86,26 +86,12 @@ class Correlations:
 
     @property
     def first(self) -> int:
-        """Index of the first sample, in intervals from time 0.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Correlations(interval=0.1, lags=100, start=2.0).first
-        20
-        """
+        """Index of the first sample, in intervals from time 0."""
         return round(self.start / self.interval)
 
     @property
     def tallies(self) -> tuple[OptionalTally, ...]:
-        """Optional tallies that the correlations need.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> [tally.name for tally in gp.Correlations(interval=0.1, lags=100, stress=True).tallies]
-        ['stress']
-        """
+        """Optional tallies that the correlations need."""
         return (StressTally(),) if self.stress else ()
 
     def to_json(self) -> str:
@@ -115,12 +101,6 @@ class Correlations:
         -------
         str
             JSON of the settings.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Correlations(interval=0.1, lags=100).to_json()
-        '{"interval": 0.1, "lags": 100, "start": 0.0}'
         """
         return json.dumps({key: value for key, value in asdict(self).items() if value is not False})
 
@@ -144,12 +124,6 @@ class Correlations:
             If a value is invalid.
         TypeError, ValueError
             If the text does not describe correlations.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Correlations.from_json('{"interval": 0.1, "lags": 100}').lags
-        100
         """
         return cls(**json.loads(text))
 
