@@ -57,8 +57,9 @@ def compress(
 ) -> Packing:
     """Grow the particles of a scene to a packing fraction, or until they jam.
 
-    The algorithm is by B. D. Lubachevsky and F. H. Stillinger, J. Stat. Phys. 60, 561 (1990). The temperature is reset to 1 every few collisions. If growth is fast, spheres jam at a
-    packing fraction of about 0.64, and discs at 0.84. If growth is slow, they crystallise.
+    The algorithm is by B. D. Lubachevsky and F. H. Stillinger, J. Stat. Phys. 60, 561 (1990). The temperature
+    is reset to 1 every few collisions. If growth is fast, spheres jam at a packing fraction of about 0.64,
+    and discs at 0.84. If growth is slow, they crystallise.
 
     Parameters
     ----------
