@@ -6,16 +6,17 @@ import html
 import math
 import warnings
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any, Protocol
 
 import numpy as np
 
 import gaspart
-from gaspart.engines import Engine, resolve_engine
+from gaspart.engines import Engine, engine_to_dict, resolve_engine
 from gaspart.engines.dynamics import EventLog, check_identity, checkpoint_identity
 from gaspart.errors import SceneError, SimulationError
 from gaspart.keys.values import count_of, number
-from gaspart.scene.face_checks import check_piston_end, piston_end, refuse_open
+from gaspart.scene.boundaries import check_piston_end, piston_end, refuse_open
 from gaspart.scene.scene import DRAWN, THUMBNAIL, Scene, require_scene
 from gaspart.scene.walls import Plate, Wall, box_of_walls
 from gaspart.state.given import check_apart, state_at_time_zero
@@ -23,9 +24,6 @@ from gaspart.state.initial import initial_state
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
 from gaspart.state.tally import StressTally, Tally
-
-if TYPE_CHECKING:
-    from gaspart.rendering.view import View
 
 ENERGY_DRIFT = {"float64": 1e-9, "float32": 1e-3}
 """Relative drift of the gas's energy at which a run is stopped, by the engine's precision."""
@@ -45,6 +43,15 @@ PROPERTIES = (
     "species",
 )
 """Properties of particles that `Simulation.properties` can return; `State` defines them."""
+
+
+class Page(Protocol):
+    """A page that shows itself in a notebook, such as `rendering.view.View`."""
+
+    def save(self, path: str | Path, overwrite: bool = False) -> Path:
+        """Write the page to an .html file."""
+
+    def _repr_html_(self) -> str: ...
 
 
 class Simulation:
@@ -694,7 +701,7 @@ class Simulation:
                 f"at time {self.time:g} the energy has drifted by {drift:g} from {self._energy:g}"
             )
 
-    def show(self, frames: int = 200) -> View:
+    def show(self, frames: int = 200) -> Page:
         """Return an interactive view of the run so far, which shows itself in a notebook.
 
         Parameters
@@ -748,9 +755,9 @@ class Simulation:
 
     def _identity(self) -> dict[str, np.ndarray]:
         """Return the arrays of a checkpoint that identify the run."""
-        return checkpoint_identity(
-            self.scene, self.engine, self.seed, None if self._given is None else self._initial
-        )
+        neutral, given = self.engine.neutral_settings, None if self._given is None else self._initial
+        settings = {key: x for key, x in engine_to_dict(self.engine).items() if key not in neutral}
+        return checkpoint_identity(self.scene, settings, self.seed, given)
 
     def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
         """Continue bitwise identically from a checkpoint.

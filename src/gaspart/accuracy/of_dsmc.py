@@ -15,7 +15,8 @@ from typing import ClassVar
 import numpy as np
 
 from gaspart.accuracy.of_engine import AccuracyRequest, Adviser, Candidate
-from gaspart.engines.dsmc.settings import DSMC, MODELS
+from gaspart.engines.dsmc.engine import DSMC
+from gaspart.engines.dsmc.settings import MODELS
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.theory.conditions import Conditions

@@ -9,10 +9,10 @@ from typing import ClassVar
 import numpy as np
 
 from gaspart.accuracy.of_engine import AccuracyRequest, Adviser, Candidate
+from gaspart.engines.step.engine import TimeStepped
 from gaspart.engines.step.limits import DISORDER, LATER, SAFE, at_walls, contacts_per_step, missed_contacts
-from gaspart.engines.step.settings import TimeStepped
 from gaspart.errors import SceneError
-from gaspart.scene.gas import plain_gas
+from gaspart.scene.facts import plain_gas
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 

@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 
 from gaspart import theory
-from gaspart.scene.face_checks import attempt_rate, piston_end
+from gaspart.scene.boundaries import attempt_rate, piston_end
 from gaspart.scene.faces import Open
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Particle, Species

@@ -18,9 +18,11 @@ from gaspart.accuracy.target import Target
 from gaspart.analysis.observables import OBSERVABLES, observables_with
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
-from gaspart.scene.gas import Gas, plain_gas
+from gaspart.scene.facts import plain_gas
+from gaspart.scene.gas import Gas
 from gaspart.scene.scene import Scene
 from gaspart.theory import bulk
+from gaspart.theory.diffusion import ERPENBECK_WOOD_UNCERTAINTY
 
 # Errors of a gas in equilibrium due to the kinetic equation and the time step, from theory.
 
@@ -42,7 +44,7 @@ def model_error(packing_fraction: float, dimension: int, equation: str, observab
     if math.isnan(exact) or math.isnan(own):
         return math.inf
     remembers = OBSERVABLES[observable].memory and packing_fraction > 0.01
-    return abs(own / exact - 1.0) + (theory.ERPENBECK_WOOD_UNCERTAINTY if remembers else 0.0)
+    return abs(own / exact - 1.0) + (ERPENBECK_WOOD_UNCERTAINTY if remembers else 0.0)
 
 
 FEWEST = 64

@@ -25,7 +25,7 @@ from gaspart.analysis.paths import MOST_FRAMES
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine, reference_engine
 from gaspart.errors import SceneError
-from gaspart.scene.face_checks import refuse_open
+from gaspart.scene.boundaries import refuse_open
 from gaspart.scene.faces import wall_of
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation

@@ -16,12 +16,12 @@ import numpy as np
 from gaspart.analysis import series
 from gaspart.analysis.conditions import DISCS, GROUPS
 from gaspart.analysis.expected.equilibrium import describe
-from gaspart.analysis.flow import FLOW
 from gaspart.analysis.motion import axes_of
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable, scalar, with_freedom
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.paths import Groups, groups_of, stride_of, unwrap_positions
 from gaspart.analysis.run import Run, Source, open_run, select_particles
+from gaspart.analysis.run_data import FLOW
 from gaspart.analysis.statistics import correlated_mean, means_of
 from gaspart.errors import SceneError
 from gaspart.keys.values import number

@@ -55,7 +55,7 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
     The theoretical flux is 0 in equilibrium. Between two plates it is the flux of free molecular flow above a
     Knudsen number of 100. Below 0.1 it follows from Fourier's law with Enskog's conductivity and temperature
     jumps. Between these limits it is an interpolation with an accuracy of 8 %
-    (`gaspart.theory.interpolated_flux`). Between sliding plates it is half of the power of the stress. With
+    (`heat.interpolated_flux`). Between sliding plates it is half of the power of the stress. With
     partial accommodation, theory exists only for free molecular flow.
 
     Examples
@@ -114,7 +114,7 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
     If a force drives a gas along two identical faces, the theoretical force on each face is exactly half of
     the force on the gas. Between sliding plates above a Knudsen number of 100, the theoretical stress is
     computed for free molecular flow. Below 0.1 it follows from Enskog's viscosity with slip. Between these
-    limits it is an interpolation with an accuracy of 8 % (`gaspart.theory.interpolated_stress`). With partial
+    limits it is an interpolation with an accuracy of 8 % (`shear.interpolated_stress`). With partial
     accommodation, theory exists only for free molecular flow.
 
     Examples

@@ -22,7 +22,6 @@ from gaspart.analysis.profiles import BLOCKS, LEAST_FRAMES, Cells, Means, ratio
 from gaspart.analysis.run import Run
 from gaspart.engines import ENGINES, Engine
 from gaspart.errors import SceneError
-from gaspart.scene.features import shares_energy_evenly
 from gaspart.scene.scene import Scene
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.tally import ImpulseTally
@@ -51,7 +50,7 @@ def knows_energies(engine: Engine | type[Engine], scene: Scene) -> bool:
     among the axes. An engine with time steps has such an error near a wall, because particles cross the wall
     within a step.
     """
-    return engine.reference and shares_energy_evenly(scene)
+    return engine.reference and scene.shares_energy_evenly
 
 
 def estimator(

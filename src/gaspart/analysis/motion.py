@@ -16,11 +16,11 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis.expected.equilibrium import describe
-from gaspart.analysis.flow import FLOW
 from gaspart.analysis.observable import Observable, observable, with_freedom
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.paths import Groups, groups_of
 from gaspart.analysis.run import Run, Source, open_run, select_particles
+from gaspart.analysis.run_data import FLOW
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of

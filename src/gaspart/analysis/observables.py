@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from gaspart.analysis import conditions as where
 from gaspart.analysis.declaration import Named, units_in
 from gaspart.errors import SceneError, unknown_word
-from gaspart.scene.face_checks import refuse_open
+from gaspart.scene.boundaries import refuse_open
 from gaspart.scene.faces import FACES, Open
 from gaspart.scene.scene import Scene
 from gaspart.state.tally import StressTally, WallShearTally

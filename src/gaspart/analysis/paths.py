@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaspart.analysis.conditions import GROUPS
-from gaspart.analysis.run import Run, divide_frames
+from gaspart.analysis.run import Run
+from gaspart.analysis.run_data import divide_frames
 from gaspart.errors import SceneError
 
 MOST_FRAMES = 1000

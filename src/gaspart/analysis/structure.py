@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 
 from gaspart.analysis.expected.equilibrium import describe
-from gaspart.analysis.flow import FLOW, Grid, accessible_fraction, mean_motion
+from gaspart.analysis.flow import Grid, accessible_fraction, mean_motion
 from gaspart.analysis.impulses import default_bins, described_density, mixed_density
 from gaspart.analysis.observable import Observable, observable, scalar, with_freedom
 from gaspart.analysis.observables import observables_with, require_defined
 from gaspart.analysis.pairs import STRETCHES, chosen_frames
 from gaspart.analysis.profiles import Cells, Means
 from gaspart.analysis.run import Run, Source, open_run, select_particles
+from gaspart.analysis.run_data import FLOW
 from gaspart.analysis.statistics import histogram_means
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of

@@ -28,8 +28,8 @@ from gaspart.analysis.paths import unwrap_positions
 from gaspart.analysis.run import Run, Source, open_run
 from gaspart.analysis.statistics import correlated_mean, means_of
 from gaspart.errors import SceneError
+from gaspart.scene.boundaries import flow
 from gaspart.scene.scene import Scene
-from gaspart.scene.shear import flow
 from gaspart.state.initial import initial_state
 from gaspart.state.state import State, drift_of
 from gaspart.trajectory.amber import INITIAL

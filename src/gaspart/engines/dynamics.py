@@ -11,7 +11,6 @@ from typing import Any, ClassVar
 import numpy as np
 
 from gaspart import __version__
-from gaspart.engines.engine import Engine, engine_to_dict
 from gaspart.engines.features.part import Part, TallyPart, arrays_of
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
@@ -76,17 +75,17 @@ class EventLog:
 
 
 def checkpoint_identity(
-    scene: Scene, engine: Engine, seed: int | tuple[int, ...], initial: State | None = None
+    scene: Scene, settings: Mapping[str, Any], seed: int | tuple[int, ...], initial: State | None = None
 ) -> dict[str, np.ndarray]:
     """Return texts that identify all input of a simulation, by their keys in a checkpoint.
 
+    settings : name of the engine, and its settings that change the results
     initial : initial state; None if it follows from the scene and the seed
     """
-    settings = {key: x for key, x in engine_to_dict(engine).items() if key not in engine.neutral_settings}
     texts = {
         "version": __version__,
         "scene": hashlib.sha256(_text(scene.to_dict()).encode()).hexdigest(),
-        "engine": _text(settings),
+        "engine": _text(dict(settings)),
         "seed": _text(seed),
         "initial state": _digest(initial),
     }

@@ -194,6 +194,14 @@ def _require_finite(name: str, values: Vectors, path: str) -> None:
             raise SceneError("file", path, f"has {name} {rule}")
 
 
+def require_same_count(counts: list[int], path: Path) -> None:
+    """Raise SceneError if the number of particles differs between frames."""
+    for n, count in enumerate(counts):
+        if count != counts[0]:
+            rule = f"has {count} particles in frame {n} and {counts[0]} in frame 0"
+            raise SceneError("file", str(path), f"{rule}: a changing number cannot be checked")
+
+
 def sort_by_id(contents: Contents, path: str) -> None:
     """Sort the particles of every frame by their ids; reject frames with different ids."""
     if contents.ids is None:

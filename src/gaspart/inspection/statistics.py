@@ -27,6 +27,8 @@ from gaspart.inspection.verdict import Check, compare_with_theory
 from gaspart.scene.gas import Gas
 from gaspart.scene.limits import ball_volume
 from gaspart.theory.bulk import EXACT, collision_rate
+from gaspart.theory.diffusion import ERPENBECK_WOOD_HIGHEST
+from gaspart.theory.speeds import kurtosis_scatter
 
 UNEVEN = 20.0
 """Power of a long wave above which a gas is not uniform. It is 1 on average for independent particles, and
@@ -176,7 +178,7 @@ def judge_speeds(frames: Frames) -> list[Check]:
         return [Check(name, None, reason) for name in names]
     series, expected = frames.squares.kurtosis, _expected_kurtosis(frames)
     clock, rate = count_collisions(frames), theory.KURTOSIS_RELAXATION_RATE[frames.dimension]
-    scatter, skewness = theory.kurtosis_scatter(frames.dimension, frames.count)
+    scatter, skewness = kurtosis_scatter(frames.dimension, frames.count)
     excess = max(abs(series[0] - expected), scatter)
     relaxation = math.log(excess / (RESIDUE * scatter)) / rate
     if clock[-1] < relaxation:
@@ -323,7 +325,7 @@ def why_not(frames: Frames) -> str | None:
     if frames.time is None or not all(frames.periodic):
         return "needs times (--time-step) and a periodic container"
     cubic = np.ptp(frames.lengths) <= 1e-6 * frames.lengths[0]
-    if not cubic or frames.packing_fraction > theory.ERPENBECK_WOOD_HIGHEST:
+    if not cubic or frames.packing_fraction > ERPENBECK_WOOD_HIGHEST:
         return "needs a fluid in a cube"
     if diffusion_in_cube(_gas(frames), float(frames.lengths[0]), frames.engine, frames.scene) is None:
         return "no theory states it in so short a cube, whose images order the fluid"

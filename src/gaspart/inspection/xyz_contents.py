@@ -14,16 +14,16 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
-from gaspart.inspection.contents import Contents, Overrides
+from gaspart.inspection.contents import Contents, Overrides, require_same_count
 
 _PAIR = re.compile(
     r"""(?<![^\s="'{}\[\],])([^\s="'{}\[\],]++)\s*+=\s*+"""
     r"""("[^"]*"|'[^']*'|\{[^}]{0,999}\}|\[.{0,999}?\](?=\s|$)|\S+)"""
 )
 """Pattern of a key with its value, whose time is proportional to the length of the text."""
-_EXPONENT = re.compile(r"[eEdD]\S*")
+_EXPONENT = re.compile(r"[eE]\S*")
 _NO_SIGNS = str.maketrans("", "", "+-.")
-_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _NAMES = {
     "pos": ("pos", "positions"),
     "velo": ("velo", "vel", "velocity", "velocities"),
@@ -40,6 +40,7 @@ _NAMES = {
 """Lower-case names of columns under which programs store each field."""
 _FIELDS = {name: field for field, names in _NAMES.items() for name in names}
 _PLAIN = {"species": (0, 1), "pos": (1, 3)}
+_SIZES = {"lattice": "sides from the second line", "radius": "radii from the fifth column"}
 _TRUE, _FALSE = ("t", "true", "1"), ("f", "false", "0")
 
 
@@ -59,6 +60,7 @@ def read_xyz(path: Path, overrides: Overrides) -> Contents:
     reason = None if overrides.last else _drop_velocities([part for _, part in parts])
     _add_origins([part for _, part in parts])
     first = parts[0][1]
+    require_same_count([len(part["pos"]) for _, part in parts], path)
     for n, part in parts:
         _require_same_fields(n, part, first, path)
     # fields are joined one after the other, and their parts are freed
@@ -81,14 +83,11 @@ def read_xyz(path: Path, overrides: Overrides) -> Contents:
         resolution=_resolution(columns["pos"], int(columns["digits"].max())),
         time_resolution=float(columns["time_digit"].max()) if "time" in columns else 0.0,
         no_velocities=reason,
-        note=_note(columns) if columns["plain"].all() else "",
+        # the format of a plain file does not define sizes
+        note=" and ".join(text for name, text in _SIZES.items() if name in columns)
+        if columns["plain"].all()
+        else "",
     )
-
-
-def _note(columns: dict[str, np.ndarray]) -> str:
-    """Return where a plain file states sizes, which its format does not define."""
-    places = {"lattice": "sides from the second line", "radius": "radii from the fifth column"}
-    return " and ".join(text for name, text in places.items() if name in columns)
 
 
 def _drop_velocities(parts: list[dict]) -> str | None:
@@ -114,10 +113,7 @@ def _add_origins(parts: list[dict]) -> None:
 
 
 def _require_same_fields(n: int, part: dict, first: dict, path: Path) -> None:
-    """Raise SceneError if a frame has other numbers, fields or boundaries than the first."""
-    if len(part["pos"]) != len(first["pos"]):
-        rule = f"has {len(part['pos'])} particles in frame {n} and {len(first['pos'])} in frame 0"
-        raise SceneError("file", str(path), f"{rule}: a changing number cannot be checked")
+    """Raise SceneError if a frame has other fields or boundaries than the first."""
     if part.keys() != first.keys():
         name = min(part.keys() ^ first.keys())
         raise SceneError("file", str(path), f"states {name} in some frames only, not in 0 or not in {n}")
@@ -140,10 +136,7 @@ def _frames(lines: Iterator[str], path: Path) -> Iterator[tuple[str, list[list[s
 
     Blank lines before a frame are skipped.
     """
-    frame = 0
-    for line in lines:
-        if not line.strip():
-            continue
+    for frame, line in enumerate(line for line in lines if line.strip()):
         count = int(line)
         comment = next(lines, "")
         rows = [row.split() for row in islice(lines, max(count, 0))]
@@ -152,7 +145,6 @@ def _frames(lines: Iterator[str], path: Path) -> Iterator[tuple[str, list[list[s
         if len(rows) < count or count < 1:
             raise SceneError("file", str(path), f"is truncated: frame {frame} has {len(rows)} particles")
         yield comment, rows
-        frame += 1
 
 
 def _read_frame(
@@ -185,7 +177,7 @@ def _read_frame(
         elif name == "move_mask":
             fields["fixed"] = np.array([any(part.lower() in _FALSE for part in token) for token in tokens])
         else:
-            values = _numbers(tokens)
+            values = np.array(tokens, dtype=float)
             fields[name] = values if name in ("pos", "velo", "momenta", "forces") else values[:, 0]
     first, count = named["pos"]
     fields["digits"] = _most_digits(token for row in rows for token in row[first : first + count])
@@ -200,7 +192,7 @@ def _plain_columns(rows: list[list[str]]) -> dict[str, tuple[int, int]]:
     """Return the columns of a plain file; positive numbers in a fifth and last column are radii."""
     fifth = [row[4] for row in rows if len(row) == 5]
     radii = len(fifth) == len(rows) and all(_NUMBER.fullmatch(text) for text in fifth)
-    if radii and (_numbers([fifth]) > 0.0).all():
+    if radii and (np.array(fifth, dtype=float) > 0.0).all():
         return {**_PLAIN, "radius": (4, 1)}
     return _PLAIN
 
@@ -210,7 +202,7 @@ def _plain_sides(comment: str) -> str:
     tokens = _words(comment)
     if len(tokens) not in (2, 3) or not all(_NUMBER.fullmatch(token) for token in tokens):
         return ""
-    return " ".join([*tokens, "0"][:3]) if (_numbers([tokens]) > 0.0).all() else ""
+    return " ".join([*tokens, "0"][:3]) if all(float(token) > 0.0 for token in tokens) else ""
 
 
 def _columns(properties: str, path: Path) -> dict[str, tuple[int, int]]:
@@ -229,14 +221,6 @@ def _columns(properties: str, path: Path) -> dict[str, tuple[int, int]]:
     if columns.get("pos", (0, 0))[1] not in (2, 3):
         raise SceneError("Properties", properties, "must have pos of two or three columns", str(path))
     return {**columns, "": (first, 0)}
-
-
-def _numbers(tokens: list[list[str]]) -> np.ndarray:
-    """Convert words to numbers, including Fortran exponents; raise ValueError."""
-    try:
-        return np.array(tokens, dtype=float)
-    except ValueError:
-        return np.array([[re.sub("[dD]", "e", token) for token in row] for row in tokens], dtype=float)
 
 
 def _of_comment(pairs: dict[str, str], dimension: int, overrides: Overrides, path: Path) -> dict:
@@ -282,10 +266,9 @@ def _vector(pairs: dict[str, str], key: str, sizes: tuple[int, ...], option: str
     """
     tokens = _words(pairs[key])
     if len(tokens) not in sizes or not all(_NUMBER.fullmatch(token) for token in tokens):
-        *some, last = map(str, dict.fromkeys(sizes))
-        rule = f"must be {', '.join(some)}{' or ' if some else ''}{last} numbers; give {option}"
+        rule = f"must be {' or '.join(map(str, dict.fromkeys(sizes)))} numbers; give {option}"
         raise SceneError(key, pairs[key], rule, str(path))
-    return _numbers([tokens])[0]
+    return np.array(tokens, dtype=float)
 
 
 def _most_digits(tokens: Iterable[str]) -> int:

@@ -17,7 +17,7 @@ from gaspart.keys.values import count_of, number
 from gaspart.rendering.frames import Film, open_source, particles_of, scene_of
 from gaspart.rendering.particles import FASTEST, Labels, colours_of, legend_of, time_format
 from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, picture, pixels_per_length
-from gaspart.scene.face_checks import refuse_open
+from gaspart.scene.boundaries import refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.state import State

@@ -24,7 +24,7 @@ from gaspart.kernels.compile.webassembly import modules
 from gaspart.rendering.controls import RULES, Controls
 from gaspart.rendering.particles import FASTEST, FIXED
 from gaspart.rendering.view import View, page_of
-from gaspart.scene.face_checks import piston_end
+from gaspart.scene.boundaries import piston_end
 from gaspart.scene.faces import FACES
 from gaspart.scene.scene import Scene, require_scene
 from gaspart.scene.walls import Wall

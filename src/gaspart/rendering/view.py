@@ -22,7 +22,7 @@ from gaspart.rendering.frames import open_source, particles_of, scene_of
 from gaspart.rendering.particles import FASTEST, FIXED, DrawnParticles
 from gaspart.rendering.style import COLOURS
 from gaspart.rendering.surfaces import DrawnSurface
-from gaspart.scene.face_checks import refuse_open
+from gaspart.scene.boundaries import refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.state import State

@@ -23,7 +23,7 @@ from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import autocorrelation_time, average, correlated_mean, jackknife
 from gaspart.keys import Kind
 from gaspart.reproduction.points.point import Point
-from gaspart.scene.gas import plain_gas
+from gaspart.scene.facts import plain_gas
 from gaspart.trajectory.reading import open_trajectory
 
 SOURCE_C = "[source C]"

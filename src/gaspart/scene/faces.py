@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from gaspart.errors import SceneError
 from gaspart.keys import (
@@ -31,7 +31,7 @@ from gaspart.keys.values import one_of, positive_number, size
 if TYPE_CHECKING:
     import numpy as np
 
-    from gaspart.scene.scene import Scene
+    from gaspart.scene.container import Container
 
 FACES = ("x_low", "x_high", "y_low", "y_high", "z_low", "z_high")
 """Keys of faces. In results a face has the name of a wall, such as `x low`. Users may write either form."""
@@ -462,6 +462,11 @@ class Vibrating(Surface):
         return self.amplitude * (1.0 - np.cos(2.0 * math.pi * turns))
 
 
+class _HasContainer(Protocol):
+    @property
+    def container(self) -> Container: ...
+
+
 @dataclass(frozen=True)
 class Piston(Surface):
     """A smooth wall that particles and an external pressure move, or that has a constant speed.
@@ -527,7 +532,7 @@ class Piston(Surface):
             stated = {key: value for key, value in vars(self).items() if value is not None}
             raise SceneError("speed", stated, "must be mass and pressure, or speed alone")
 
-    def acceleration(self, scene: Scene, axis: int) -> float:
+    def acceleration(self, scene: _HasContainer, axis: int) -> float:
         """Return the inward acceleration due to the external pressure, or 0 for a prescribed speed.
 
         Parameters
@@ -750,11 +755,3 @@ def wall_of(face: Any) -> Any:
     if isinstance(face, list | tuple):
         return [wall_of(name) for name in face]
     return face.strip().replace("_", " ") if isinstance(face, str) else face
-
-
-def thermal_face(scene: Scene, name: str) -> Thermal:
-    """Return the face with a name; raise SceneError unless it is thermal with a uniform temperature."""
-    face = scene.faces.get(name)
-    if not isinstance(face, Thermal) or face.varies_along is not None:
-        raise SceneError(f"faces.{name}", face, "must be thermal, at one temperature")
-    return face

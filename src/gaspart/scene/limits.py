@@ -16,7 +16,6 @@ from gaspart.keys.values import finite_vector
 
 if TYPE_CHECKING:
     from gaspart.scene.container import Container
-    from gaspart.scene.scene import Scene
     from gaspart.scene.species import Particle, Species
 
 
@@ -40,7 +39,6 @@ def ball_volume(dimension: int, radius: float = 1.0) -> float:
 _RESOLVED = 1e12
 _ROOM = 1e-6  # minimum clearance of a particle between two walls, in radii
 _UNITS = 8.0 * 2.0**-52  # tolerance, in units in the last place
-_SUM = 1e-12  # relative tolerance for rounding of the sum of all volumes
 
 
 def rounding(position: Iterable[float], *lengths: float) -> float:
@@ -50,23 +48,6 @@ def rounding(position: Iterable[float], *lengths: float) -> float:
     after rounding. The tolerance is a few units in the last place of the largest coordinate.
     """
     return _UNITS * max(*map(abs, position), *lengths)
-
-
-def closest_packing(scene: Scene) -> float:
-    """Return the highest possible packing fraction.
-
-    For particles of one size the fraction is known exactly; otherwise the upper bound 1 is returned.
-    """
-    alike = (
-        len({kind.radius for kind in scene.species if kind.count} | {it.radius for it in scene.particles}) < 2
-    ) and all(kind.alike for kind in scene.species)
-    return CLOSE_PACKING[scene.dimension] if alike else 1.0
-
-
-def check_packing(scene: Scene) -> None:
-    """Raise SceneError for more particles than the container can hold."""
-    if not scene.centres_to_walls and scene.packing_fraction > closest_packing(scene) * (1.0 + _SUM):
-        raise SceneError("packing_fraction", scene.packing_fraction, "exceeds close packing")
 
 
 def check_room(container: Container, centres_to_walls: bool, key: str, particle: Particle | Species) -> None:

@@ -30,17 +30,24 @@ from gaspart.keys import (
     vector,
 )
 from gaspart.keys.values import MOST_PARTICLES, finite_vector
+from gaspart.scene.checks import (
+    check_driven,
+    check_faces,
+    check_features,
+    check_open_faces,
+    check_packing,
+    check_walls,
+)
 from gaspart.scene.container import Container
-from gaspart.scene.driving import Thermostat, check_driven
-from gaspart.scene.face_checks import check_faces, check_open_faces
+from gaspart.scene.driving import Thermostat
 from gaspart.scene.faces import SCHEMA as FACES_SCHEMA
 from gaspart.scene.faces import Surface, key_of, surface_from_dict, surface_to_dict
 from gaspart.scene.facts import Facts
-from gaspart.scene.features import FEATURES, check_features
-from gaspart.scene.limits import Nearby, check_packing, check_region, check_room, rounding
+from gaspart.scene.features import FEATURES
+from gaspart.scene.limits import Nearby, check_region, check_room, rounding
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.species import SHARED, Particle, Species
-from gaspart.scene.walls import WALL_RULE, Plate, Wall, check_walls, wall_kind
+from gaspart.scene.walls import WALL_RULE, Plate, Wall, wall_kind
 from gaspart.yaml_text import read_yaml, write_yaml
 
 THUMBNAIL = (480, 360)
@@ -246,34 +253,6 @@ class Scene(Facts):
             slack = rounding((*particle.position, *other.position), contact)
             if self.separation(particle.position, other.position) < contact - slack:
                 raise SceneError(f"{where}.position", particle.position, f"overlaps particles[{m}]")
-
-    def reach(self, radius: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Return the range of the coordinates of the centre of a particle.
-
-        Parameters
-        ----------
-        radius : float, [length]
-            Radius of the particle.
-
-        Returns
-        -------
-        lower : tuple of float, shape (d,), [length]
-            Lowest coordinates.
-        upper : tuple of float, shape (d,), [length]
-            Highest coordinates.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Scene(gp.Container((9.0, 9.0))).reach(radius=0.5)
-        ((0.5, 0.5), (8.5, 8.5))
-        """
-        lower, upper = [], []
-        for length, periodic in zip(self.container.lengths, self.container.periodic, strict=True):
-            margin = 0.0 if periodic or self.centres_to_walls else radius
-            lower.append(margin)
-            upper.append(length - margin)
-        return tuple(lower), tuple(upper)
 
     def separation(self, a: tuple[float, ...], b: tuple[float, ...]) -> float:
         """Return the distance between two points; on periodic axes, to the nearest image.

@@ -17,7 +17,6 @@ import numpy as np
 
 from gaspart.errors import SceneError, SimulationError
 from gaspart.kernels.memory import aligned_zeros
-from gaspart.scene.limits import closest_packing
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
 from gaspart.state.boxes import make_boxes, sides_for
@@ -109,7 +108,7 @@ def compress(
         return Packing(np.empty((0, scene.dimension)), 1.0, 0.0, 1.0, 0)
     d = scene.dimension
     unit = scene.packing_fraction
-    target = unit if until is None else closest_packing(scene) if until == "jammed" else until
+    target = unit if until is None else scene.closest_packing if until == "jammed" else until
     end = _root(target / unit, d)
     growing = _Growing(scene, seed, min(end, _root(_START[d] / unit, d)), end)
     while growing.scale < end * (1.0 + _SPARE) and growing.pressure < jammed:

@@ -12,10 +12,10 @@ from dataclasses import replace
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.scene.boundaries import flow_of_rate
 from gaspart.scene.faces import FACES, FLOW, GRADIENT
 from gaspart.scene.features import FEATURES
 from gaspart.scene.scene import Scene
-from gaspart.scene.shear import flow_of_rate
 from gaspart.scene.walls import MOVING_WALL
 from gaspart.state.boxes import deepest_overlap
 from gaspart.state.initial import assemble_state, in_flow, masses_of

@@ -9,9 +9,9 @@ from dataclasses import replace
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.scene.boundaries import flow
 from gaspart.scene.faces import FACES, Well
 from gaspart.scene.scene import Scene
-from gaspart.scene.shear import flow
 from gaspart.scene.species import LATTICES, Species
 from gaspart.scene.walls import MOVING_WALL
 from gaspart.state.compression import compress_positions

@@ -13,9 +13,8 @@ from gaspart.engines import Engine, engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
 from gaspart.keys.values import number
-from gaspart.scene.face_checks import check_piston_end
+from gaspart.scene.boundaries import check_piston_end, refuse_sheared
 from gaspart.scene.scene import Scene
-from gaspart.scene.shear import refuse_sheared
 from gaspart.state.given import state_at_time_zero, state_from_arrays
 from gaspart.state.insertion import per_particle
 from gaspart.state.optional_tallies import OptionalTally

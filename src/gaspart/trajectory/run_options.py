@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from gaspart.errors import SceneError
 from gaspart.keys import TEXT, Kind, choice, count, declare, describe, flag
-from gaspart.scene.face_checks import refuse_open
+from gaspart.scene.boundaries import refuse_open
 from gaspart.scene.features import row_count
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.tally import TALLIES, Tally

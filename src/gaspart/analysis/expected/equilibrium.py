@@ -11,8 +11,8 @@ import numpy as np
 
 from gaspart import theory
 from gaspart.analysis import observables
-from gaspart.analysis.flow import FLOW
 from gaspart.analysis.run import Run
+from gaspart.analysis.run_data import FLOW
 from gaspart.engines import Engine, engine_from_dict
 from gaspart.scene.faces import Thermal
 from gaspart.scene.gas import Mixture

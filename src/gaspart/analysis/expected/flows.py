@@ -14,12 +14,13 @@ import numpy as np
 from gaspart import theory
 from gaspart.analysis.expected.equilibrium import Expected, equation_of
 from gaspart.analysis.run import Run
+from gaspart.scene.boundaries import flow
 from gaspart.scene.faces import Thermal
 from gaspart.scene.scene import Scene
-from gaspart.scene.shear import flow
 from gaspart.scene.walls import Plate
 from gaspart.theory.bulk import BOLTZMANN
-from gaspart.theory.heat import INTERPOLATED, TEMPERATURE_JUMP
+from gaspart.theory.heat import INTERPOLATED, TEMPERATURE_JUMP, interpolated_flux
+from gaspart.theory.shear import VELOCITY_SLIP, channel_velocity, interpolated_stress
 
 # Heat flux and shear stress of a gas between two thermal plates, from free molecular flow to the continuum.
 
@@ -216,7 +217,7 @@ def _heat_between_plates(plates: Plates, points: bool) -> Expected | None:
     unit, scale = 1.0 / math.sqrt(plates.mass), _POINTS if points else 1.0
     gap = (plates.length, plates.density / scale**2, hot, cold, plates.diameter * scale)
     if plates.knudsen > FLUID:
-        flux = unit * scale**2 * theory.interpolated_flux(*gap)
+        flux = unit * scale**2 * interpolated_flux(*gap)
         return Expected(flux, flux * INTERPOLATED, f"{_describe_interpolation('heat')}, {at}")
     try:
         flux = unit * scale**2 * theory.conducting_slab(*gap).flux
@@ -242,7 +243,7 @@ def _stress_between_plates(plates: Plates, run: Run) -> Expected | None:
     unit = math.sqrt(plates.mass * temperature)
     gap = (plates.length, plates.density, speed, plates.diameter)
     if plates.knudsen > FLUID:
-        stress = unit * float(theory.interpolated_stress(*gap))
+        stress = unit * float(interpolated_stress(*gap))
         return Expected(stress, stress * INTERPOLATED, f"{_describe_interpolation('stress')}, {at}")
     stress = unit * float(theory.slip_flow_stress(*gap))
     error = stress * (plates.knudsen**2 + heating_of(plates))
@@ -360,7 +361,7 @@ def _between_plates(plates: Plates, run: Run, axis: int, positions: np.ndarray) 
     if plates.dimension == 2 or not fluid:
         return None
     path = plates.knudsen * plates.length
-    gap = plates.length + 2.0 * theory.VELOCITY_SLIP * path
+    gap = plates.length + 2.0 * VELOCITY_SLIP * path
     middle = 0.5 * run.scene.container.lengths[axis]
     values = mean + np.multiply.outer(plates.slide, (positions - middle) / gap)
     wrong = np.abs(plates.slide)[:, None] * (plates.knudsen**2 + heating_of(plates))
@@ -388,7 +389,7 @@ def _channel_velocity(plates: Plates, run: Run, axis: int, positions: np.ndarray
     from_middle = positions - 0.5 * run.scene.container.lengths[axis]
     near = np.abs(from_middle) > 0.5 * length - 2.0 * plates.knudsen * length
     heights = np.append(np.where(near, 0.0, from_middle), 0.0) + 0.5 * length  # heating in the middle
-    speeds = theory.channel_velocity(heights, length, plates.density, 1.0, plates.diameter)
+    speeds = channel_velocity(heights, length, plates.density, 1.0, plates.diameter)
     force = plates.mass * np.array(run.scene.gravity) / math.sqrt(plates.mass * temperature)
     values = np.multiply.outer(force, speeds)
     fastest = values[:, -1]

@@ -19,6 +19,8 @@ from gaspart.analysis.run import Run
 from gaspart.errors import SceneError
 from gaspart.scene.limits import ball_volume
 from gaspart.theory.bulk import BOLTZMANN, ENSKOG, EXACT
+from gaspart.theory.finite_size import insertion_potential
+from gaspart.theory.mixture_properties import mixture_insertion_correction, percus_yevick_partial_factors
 from gaspart.trajectory.pairs import pairs_of
 
 _LEAST_UNIFORM = 16
@@ -110,7 +112,7 @@ def partial_structure_factors(run: Run, wave_number: np.ndarray) -> Expected | N
         factors = np.array([[parts[a] * parts[b]] for a, b in pairs])
         return total._replace(value=same + factors * (total.value - 1.0))
     diameters = [2.0 * kind.radius for kind in species]
-    factors = theory.percus_yevick_partial_factors(wave_number, mixture.packing_fraction, diameters, counts)
+    factors = percus_yevick_partial_factors(wave_number, mixture.packing_fraction, diameters, counts)
     return Expected(np.array([factors[:, a, b] for a, b in pairs]), np.nan, "Percus and Yevick, Lebowitz")
 
 
@@ -132,7 +134,7 @@ def chemical_potential(run: Run) -> Expected | None:
     if run.scene.alike:
         side = min(run.scene.container.lengths) / diameters[0]
         try:
-            value, error = theory.insertion_potential(eta, d, run.count, side)
+            value, error = insertion_potential(eta, d, run.count, side)
         except ValueError:
             return None
         return Expected(value, error, "Gibbs and Duhem, of this number")
@@ -142,7 +144,7 @@ def chemical_potential(run: Run) -> Expected | None:
     numbers = np.bincount(which, counts)
     try:
         value = theory.mixture_chemical_potentials(eta, d, sizes, numbers)
-        value += theory.mixture_insertion_correction(eta, d, sizes, numbers)
+        value += mixture_insertion_correction(eta, d, sizes, numbers)
     except SceneError:  # the differences need densities above the range of the equation of state
         return None
     source = "equation of state of Santos, Yuste and Lopez de Haro, of these numbers"

@@ -25,7 +25,9 @@ from gaspart.scene.gas import Gas
 from gaspart.scene.scene import Scene
 from gaspart.theory import bulk
 from gaspart.theory.bulk import BOLTZMANN, ENSKOG, EXACT
+from gaspart.theory.diffusion import ERPENBECK_WOOD_HIGHEST, VISCOSITY_RATIO_UNCERTAINTY, velocity_decay_rate
 from gaspart.theory.discretisation import contact_values
+from gaspart.theory.mixture_properties import dilute_mixture_conductivity
 from gaspart.theory.modes import diffusion_by_modes
 
 _WINDOW = 12.0, 24.0
@@ -64,7 +66,7 @@ def velocity_autocorrelation(run: Run, time: np.ndarray) -> Expected | None:
     if gas is None or not is_relaxed(run):
         return None
     equation = equation_of(run)
-    rate = float(theory.velocity_decay_rate(**gas.parameters, contact=bulk.contact_value(gas, equation)))
+    rate = float(velocity_decay_rate(**gas.parameters, contact=bulk.contact_value(gas, equation)))
     source = SOURCES[equation]
     decay = gas.temperature / gas.mass * np.exp(-rate * time)
     return Expected(decay, math.nan, f"{source}, exact initial decay")
@@ -110,7 +112,7 @@ def diffusion_in_cube(
     systematic error of the engine. Return None for discs, for spheres denser than the fluid, and for a cube
     so small that the periodic images order the fluid.
     """
-    if gas.dimension == 2 or gas.packing_fraction > theory.ERPENBECK_WOOD_HIGHEST:
+    if gas.dimension == 2 or gas.packing_fraction > ERPENBECK_WOOD_HIGHEST:
         return None
     if engine is None or scene is None or engine.equation == EXACT:
         try:
@@ -186,7 +188,7 @@ def _transport(
         return None
     if equation == EXACT:
         measured = coefficient is bulk.shear_viscosity and gas.dimension == 3
-        error = theory.VISCOSITY_RATIO_UNCERTAINTY * value if measured else math.nan
+        error = VISCOSITY_RATIO_UNCERTAINTY * value if measured else math.nan
         source = f"Enskog{', and the ratio measured in a dense gas' if measured else ''}"
         return Expected(value, error, source)
     error = value / gas.count
@@ -218,9 +220,7 @@ def thermal_conductivity(run: Run, temperature: float) -> Expected | None:
         return _transport(run, temperature, bulk.thermal_conductivity, "conductivity")
     if equation_of(run) != BOLTZMANN or mixture.dimension == 2 or not is_mixed(run):
         return None
-    value = theory.dilute_mixture_conductivity(
-        mixture.diameters, mixture.counts, temperature, masses=mixture.masses
-    )
+    value = dilute_mixture_conductivity(mixture.diameters, mixture.counts, temperature, masses=mixture.masses)
     return Expected(value, math.nan, f"{SOURCES[BOLTZMANN]}, first approximation")
 
 

@@ -30,7 +30,7 @@ from gaspart.theory.discretisation import BEND, HIGHEST, SLOPE
 from gaspart.theory.rates import accessible
 
 if TYPE_CHECKING:
-    from gaspart.engines.dsmc.settings import DSMC
+    from gaspart.engines.dsmc.settings import DsmcSettings
 
 
 _COLLISION_DRAWS = 5  # stream number of these random numbers, after those of thermal walls and kicks
@@ -82,7 +82,7 @@ def kinds_of(state: State) -> tuple[np.ndarray, np.ndarray]:
 
 
 def workspace_for(
-    engine: DSMC, scene: Scene, state: State, step: float, seed: int | tuple[int, ...]
+    engine: DsmcSettings, scene: Scene, state: State, step: float, seed: int | tuple[int, ...]
 ) -> Workspace:
     """Return the workspace of a step, with all counters at zero."""
     kinds, which = kinds_of(state)

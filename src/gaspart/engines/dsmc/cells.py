@@ -33,7 +33,7 @@ from gaspart.theory.discretisation import CELL_VISCOSITY, DENSE_VISCOSITY, STEP_
 from gaspart.theory.rates import MEAN_SQUARE, Rates, accessible, rates, usual_count
 
 if TYPE_CHECKING:
-    from gaspart.engines.dsmc.settings import DSMC
+    from gaspart.engines.dsmc.settings import DsmcSettings
 
 FULL = 64.0
 """Number of particles per cell if the width of cells has no effect."""
@@ -254,7 +254,9 @@ def widths_of(cells: tuple[int, ...], scene: Scene) -> np.ndarray:
     return (upper - lower) / np.array(cells)
 
 
-def medium_for(engine: DSMC, scene: Scene, gas_rates: Rates | None = None, crowding: float = 1.0) -> Medium:
+def medium_for(
+    engine: DsmcSettings, scene: Scene, gas_rates: Rates | None = None, crowding: float = 1.0
+) -> Medium:
     """Return the gas of a scene for an engine.
 
     gas_rates : rates at the mean density; default: at the start
@@ -264,7 +266,7 @@ def medium_for(engine: DSMC, scene: Scene, gas_rates: Rates | None = None, crowd
     return Medium(engine.model, scene, found.at_density(crowding), crowding * usual_count(scene))
 
 
-def cells_for(engine: DSMC, medium: Medium, step: float, crowding: float = 1.0) -> tuple[int, ...]:
+def cells_for(engine: DsmcSettings, medium: Medium, step: float, crowding: float = 1.0) -> tuple[int, ...]:
     """Return the prescribed or recommended number of cells along each axis (d,)."""
     prescribed, d = engine.cells_per_side, medium.scene.dimension
     if prescribed is None or (engine.adapts_cells and crowding > 1.0):
@@ -279,7 +281,7 @@ def cells_for(engine: DSMC, medium: Medium, step: float, crowding: float = 1.0) 
 
 
 def remarks(
-    engine: DSMC, medium: Medium, cells: tuple[int, ...], step: float, when: str = ""
+    engine: DsmcSettings, medium: Medium, cells: tuple[int, ...], step: float, when: str = ""
 ) -> dict[str, str]:
     """Return a remark, by setting, about each setting that causes a notable error.
 
@@ -315,7 +317,7 @@ def remarks(
     return texts
 
 
-def neglected(engine: DSMC, scene: Scene) -> str | None:
+def neglected(engine: DsmcSettings, scene: Scene) -> str | None:
     """Return a remark about the excluded volume if the model neglects a notable part of the collisions."""
     if engine.model == "enskog" or (contact := _contact(scene)) < 1.0 / (1.0 - NOTABLE):
         return None

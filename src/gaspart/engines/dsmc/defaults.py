@@ -15,7 +15,7 @@ from gaspart.state.state import State
 from gaspart.theory.rates import Rates, highest_speed, rates
 
 if TYPE_CHECKING:
-    from gaspart.engines.dsmc.settings import DSMC
+    from gaspart.engines.dsmc.settings import DsmcSettings
     from gaspart.kernels.dsmc.model import Pace
 
 
@@ -189,7 +189,7 @@ def too_fast(time: float, step: float, reach: Reach, pace: Pace) -> SimulationEr
     return SimulationError(f"at time {time:g} time_step = {step:g} {_TOO_LONG}: {fit:.2g} would do")
 
 
-def step_for(engine: DSMC, scene: Scene, gas_rates: Rates) -> float:
+def step_for(engine: DsmcSettings, scene: Scene, gas_rates: Rates) -> float:
     """Return the length of a step: the engine's setting or the recommended length.
 
     Raises SceneError if nothing moves.

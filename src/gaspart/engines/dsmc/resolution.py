@@ -29,7 +29,7 @@ from gaspart.state.state import State
 from gaspart.theory.rates import Rates, accessible, rates, usual_count
 
 if TYPE_CHECKING:
-    from gaspart.engines.dsmc.settings import DSMC
+    from gaspart.engines.dsmc.settings import DsmcSettings
 
 
 # Density around the particles of a gas, relative to the mean density; the cells must resolve it.
@@ -106,7 +106,7 @@ class Resolution:
     """
 
     def __init__(
-        self, engine: DSMC, scene: Scene, state: State, kinds: int, opened: Open | None = None
+        self, engine: DsmcSettings, scene: Scene, state: State, kinds: int, opened: Open | None = None
     ) -> None:
         self._engine, self._scene, self._state, self._kinds = engine, scene, state, kinds
         self._present = opened.present if opened else None

@@ -16,7 +16,7 @@ from gaspart.kernels.obstacles.face import RULES
 from gaspart.kernels.obstacles.moving import advance_piston
 from gaspart.kernels.obstacles.opening import NUMBERS, schedule_first
 from gaspart.kernels.physics.running_sum import values
-from gaspart.scene.face_checks import attempt_rate
+from gaspart.scene.boundaries import attempt_rate
 from gaspart.scene.faces import FACES, Open, Vibrating
 from gaspart.scene.scene import Scene
 from gaspart.state.initial import places_in_wells, well_energies, wells_of

@@ -35,7 +35,7 @@ from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
 
 if TYPE_CHECKING:
-    from gaspart.engines.step.settings import TimeStepped
+    from gaspart.engines.step.settings import StepSettings
 
 _BY_THREAD = ("wall_hits", "wall_impulse", "wall_loss")
 _OF_ALL = ("counts", "sums", "extremes")
@@ -47,7 +47,7 @@ class StepDynamics(SteppedDynamics):
 
     def __init__(
         self,
-        engine: TimeStepped,
+        engine: StepSettings,
         scene: Scene,
         state: State,
         seed: int | tuple[int, ...],

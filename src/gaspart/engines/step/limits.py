@@ -15,7 +15,7 @@ from gaspart.state.state import State
 from gaspart.theory.discretisation import MISSED_CONTACTS, ONE_PASS, contact_values
 
 if TYPE_CHECKING:
-    from gaspart.engines.step.settings import TimeStepped
+    from gaspart.engines.step.settings import StepSettings
 
 
 _OVERSIZED = 16  # maximum number of oversized particles, which are tested against all others
@@ -92,7 +92,7 @@ def check_scene(scene: Scene, state: State, oversized: np.ndarray) -> None:
             raise SceneError("lengths", scene.container.lengths, rule)
 
 
-def check_precision(engine: TimeStepped, scene: Scene, state: State) -> None:
+def check_precision(engine: StepSettings, scene: Scene, state: State) -> None:
     """Raise SceneError if the floating-point precision does not resolve steps or sizes.
 
     A step is rejected if particles move by less than the rounding error of their positions, or so far that
@@ -147,7 +147,7 @@ def missed_contacts(time_step: float, several: bool, state: State) -> float:
     return _missed_fraction(time_step, several, state.dimension, _kinds_of(state))
 
 
-def bias(engine: TimeStepped, scene: Scene, kind: str) -> float:
+def bias(engine: StepSettings, scene: Scene, kind: str) -> float:
     """Bound the relative error of an observable due to missed contacts and contacts in a wrong order.
 
     The bound is for the initial temperature, or for the temperature of the hottest face if this is higher.
@@ -159,7 +159,7 @@ def bias(engine: TimeStepped, scene: Scene, kind: str) -> float:
     return float(error + (at_walls(scene) * met if kind in ("walls", "fluxes") else 0.0))
 
 
-def wall_density_error(engine: TimeStepped, scene: Scene) -> float:
+def wall_density_error(engine: StepSettings, scene: Scene) -> float:
     """Bound the relative error of the density within a few v dt of a wall; 0 without walls."""
     if not scene.walled_axes:
         return 0.0
@@ -201,7 +201,7 @@ def _missed_fraction(time_step: float, several: bool, dimension: int, gas: Kinds
     return float(factor * (rate * missed).sum() / rate.sum())
 
 
-def check_step(engine: TimeStepped, state: State) -> None:
+def check_step(engine: StepSettings, state: State) -> None:
     """Raise SceneError if the step causes large errors; warn of errors of a few percent.
 
     The message recommends a sufficiently short step.
@@ -224,7 +224,7 @@ def check_step(engine: TimeStepped, state: State) -> None:
     warnings.warn(f"gaspart: time_step = {engine.time_step:g} {rule}", stacklevel=4)
 
 
-def check_late(engine: TimeStepped, time: float, met: int, late: int, passed: int) -> None:
+def check_late(engine: StepSettings, time: float, met: int, late: int, passed: int) -> None:
     """Raise SimulationError if too many contacts are found a step too late.
 
     SimulationError is also raised if particles pass through each other. In both cases the step is too long,

@@ -21,7 +21,8 @@ from gaspart.rendering.style import Axes
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table
-from gaspart.scene.gas import plain_gas
+from gaspart.scene.facts import plain_gas
+from gaspart.theory.diffusion import viscosity_ratio
 from gaspart.trajectory.reading import open_trajectory
 
 # Largest sampling interval, in collisions per particle, of a run for short times, without D: Simpson's rule
@@ -58,7 +59,7 @@ class State:
         self.mean_free_path = float(theory.mean_free_path(eta, dimension))
         self.viscosity = float(theory.enskog_viscosity(eta, dimension))
         if dimension == 3:
-            self.viscosity *= float(theory.viscosity_ratio(eta))
+            self.viscosity *= float(viscosity_ratio(eta))
         density, diffusion = theory.number_density(eta, dimension), theory.enskog_diffusion(eta, dimension)
         spreading = float(diffusion) + self.viscosity / density
         self.shear_time = (self.side / (2.0 * math.pi)) ** 2 / spreading

@@ -16,7 +16,7 @@ from gaspart.analysis.series import Blocks
 from gaspart.analysis.statistics import steady_mean
 from gaspart.reproduction.figure import runs
 from gaspart.reproduction.points.point import Point
-from gaspart.scene.faces import thermal_face
+from gaspart.scene.boundaries import thermal_face
 from gaspart.scene.scene import Scene
 
 

@@ -22,7 +22,8 @@ from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import Blocks, Parts, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
-from gaspart.scene.faces import Well, thermal_face
+from gaspart.scene.boundaries import thermal_face
+from gaspart.scene.faces import Well
 from gaspart.theory.equations import STABLE_DISCS
 from gaspart.theory.geometry import Numbers, Values, checked_packing_fraction, particle_volume
 from gaspart.theory.state import compressibility_factor

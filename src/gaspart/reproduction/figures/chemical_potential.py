@@ -34,7 +34,8 @@ from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import PARTICLES, SOURCE_C, Parts, pressure, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
-from gaspart.scene.gas import plain_gas
+from gaspart.scene.facts import plain_gas
+from gaspart.theory.tables import chemical_potential_uncertainty, insertion_finite_size_correction
 
 TITLE, CHAPTER = "Structure and chemical potential", "Equation of state and structure"
 MEASURED = names("the experiments whose frames are measured; of the others Z alone")
@@ -135,12 +136,12 @@ def _row(point: Point, state: MeasuredState, settings: dict) -> dict[str, Any]:
     hits = sum(int(np.count_nonzero(replica.successes)) for replica in replicas)
     frames = sum(len(replica.share) for replica in replicas)
     chance = average([_chance(replica) for replica in replicas])
-    finite = float(theory.insertion_finite_size_correction(eta, dimension, gas.count))
+    finite = float(insertion_finite_size_correction(eta, dimension, gas.count))
     integrated = state.chemical_potential(eta)
     inserted = _minus_log(chance) - finite
     expected = math.exp(-integrated.value - finite)
     resolution = sum(replica.resolution * len(replica.share) ** 2 for replica in replicas) / frames**2
-    stated = theory.excess_chemical_potential, theory.chemical_potential_uncertainty
+    stated = theory.excess_chemical_potential, chemical_potential_uncertainty
     return {
         "dimension": dimension,
         "packing_fraction": eta,

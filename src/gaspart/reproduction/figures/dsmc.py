@@ -31,7 +31,7 @@ from gaspart.reproduction.figures._gap import Gap, averages
 from gaspart.reproduction.figures.msd_spheres import spheres
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, entries, table
-from gaspart.scene.gas import plain_gas
+from gaspart.scene.facts import plain_gas
 from gaspart.theory import bulk
 from gaspart.theory.discretisation import CELL_COEFFICIENTS, STEP_COEFFICIENTS, cell_factor, step_factor
 from gaspart.theory.heat import free_molecular_flux

@@ -24,7 +24,12 @@ from gaspart.reproduction.figure import PARTICLES, SOURCE_C, Parts, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
 from gaspart.scene.restitution import Restitution
-from gaspart.theory.rough import ROUGH_START_UNCERTAINTY
+from gaspart.theory.rough import (
+    ROUGH_START_UNCERTAINTY,
+    rough_cooling,
+    rough_start_excess,
+    rough_wall_difference,
+)
 
 TITLE, CHAPTER = "Granular gases", "Granular matter"
 SETTINGS = {
@@ -171,7 +176,7 @@ def _walls(point: Point) -> dict[str, Any]:
         time = run.time * np.sqrt(kind.temperature / kind.mass) / gap
         translation = kind.mass * squares[:, along].sum(axis=1)
         samples.append(np.stack([translation, rotation]) / translation[0])
-    expected = 0.5 * (1.0 - theory.rough_wall_difference(time, inertia(point)))
+    expected = 0.5 * (1.0 - rough_wall_difference(time, inertia(point)))
     early, late = time <= MIXING, time >= MIXED
     weights = expected[early] / (expected[early] @ expected[early])
     ratio = expected[late].sum() / (1.0 - expected[late]).sum()
@@ -189,7 +194,7 @@ def _walls(point: Point) -> dict[str, Any]:
     }
 
 
-BOLTZMANN = "homogeneous Boltzmann equation, direct simulation (gaspart.theory.boltzmann); "
+BOLTZMANN = "homogeneous Boltzmann equation, direct simulation (tests/theory/homogeneous.py); "
 STATISTICAL = "statistical, of the direct simulation"
 
 
@@ -230,7 +235,7 @@ def _decay(gas: Row) -> Iterator[Claim]:
     expected = 3.0 * q / (1.0 + q) ** 2
     frames = Table(gas.dataset, "frame")
     frames = frames[np.isfinite(frames.collisions)]  # without variables that only other points have
-    beyond = np.asarray(theory.rough_start_excess(q, frames.collisions))
+    beyond = np.asarray(rough_start_excess(q, frames.collisions))
     most = np.abs(np.nan_to_num(beyond)).argmax()
     at, is_computed = frames[most], np.isfinite(beyond[most])
     s, rotation = at.collisions, at.rotation
@@ -255,7 +260,7 @@ def _decay(gas: Row) -> Iterator[Claim]:
 
 def _steady(gas: Row) -> Claim:
     q, tangential = gas.cooling_inertia, gas.tangential
-    matches = [line for line in theory.rough_cooling() if np.allclose(line[:3], (q, tangential, 1.0))]
+    matches = [line for line in rough_cooling() if np.allclose(line[:3], (q, tangential, 1.0))]
     ratio, error = matches[0][3:] if matches else (theory.rough_ratio(q, tangential), 0.0)
     maxwell = theory.rough_ratio(q, tangential) / ratio
     return Claim(
@@ -306,7 +311,7 @@ def _ratios(axis: Axes, cooling: Table, equilibrium: Table) -> None:
         style.points(axis, cooled.tangential, cooled.steady_ratio, kind=kind)
         elastic = np.ones(len(still))
         style.points(axis, elastic, still.equilibrium_ratio, kind=kind, hollow=True, clip_on=False)
-    computed = theory.rough_cooling()
+    computed = rough_cooling()
     computed = computed[np.isin(computed[:, 0], cooling.cooling_inertia)]
     axis.plot(computed[:, 1], computed[:, 3], "x", color=style.DATA, zorder=5, label="Boltzmann equation")
     axis.set(xlim=(-1.0, 1.0), xticks=np.linspace(-1.0, 1.0, 5), ylim=(0.0, 1.08))
@@ -318,7 +323,7 @@ def _at_walls(axis: Axes, gases: Table) -> None:
     fine = np.linspace(0.0, np.nanmax(gases.wall_time), 200)
     for kind, gas in enumerate(gases):
         label = rf"{PARTICLES[gas.wall_dimension]}, $q={gas.wall_inertia:g}$"
-        difference = theory.rough_wall_difference(fine, gas.wall_inertia)
+        difference = rough_wall_difference(fine, gas.wall_inertia)
         axis.plot(fine, 0.5 * (1.0 + difference), color=style.COLOURS[kind], zorder=1)
         style.points(axis, gas.wall_time, gas.wall_translation, kind=kind, label=label)
         axis.plot(fine, 0.5 * (1.0 - difference), color=style.COLOURS[kind], zorder=1)

@@ -25,7 +25,7 @@ from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import Parts, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, entries, table
-from gaspart.scene.gas import plain_gas
+from gaspart.scene.facts import plain_gas
 from gaspart.state.random import stream
 
 TITLE, CHAPTER = "Thin films", "Equation of state and structure"

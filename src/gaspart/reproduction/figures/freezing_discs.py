@@ -36,6 +36,7 @@ from gaspart.reproduction.figures._freezing import (
 )
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
+from gaspart.theory.packing import CRYSTAL_OF_1024_DISCS
 
 TITLE, CHAPTER = "Freezing and melting", "Equation of state and structure"
 SETTINGS = {
@@ -196,7 +197,7 @@ def _liquid(states: Table) -> Iterator[Claim]:
 
 def _crystal(states: Table) -> Iterator[Claim]:
     """Yield claims on the pressure of crystals of the published number, as certain as the literature."""
-    eta, expected, allowance = theory.CRYSTAL_OF_1024_DISCS
+    eta, expected, allowance = CRYSTAL_OF_1024_DISCS
     for state in states[(np.abs(states.packing_fraction - eta) < 1e-4) & (states.count == 1024)]:
         yield Claim(
             f"pressure of the crystal of 1024 discs at packing fraction {eta:g}, k_B T / sigma^2",

@@ -33,6 +33,7 @@ from gaspart.reproduction.figures._freezing import (
 )
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, entries
+from gaspart.theory.packing import ETOMICA_CRYSTAL_UNCERTAINTY
 
 TITLE, CHAPTER = "Freezing and melting", "Equation of state and structure"
 CRYSTAL_ORDER = 0.3  # smallest global Q_6 of a crystal; it is 0.45 and more near melting, 0.03 in the fluid
@@ -146,7 +147,7 @@ def _branch(one: Row) -> Claim:
         phase, source = "crystal", "etomica's fit to simulations of its authors"
         origin = "its distance from runs behind [Pieprzyk 2019]; the next order of finite numbers"
         next_order = (theory.CLOSE_PACKING[3] / eta - 1.0) * one.finite_size
-        allowance = math.hypot(theory.ETOMICA_CRYSTAL_UNCERTAINTY * reference, next_order)
+        allowance = math.hypot(ETOMICA_CRYSTAL_UNCERTAINTY * reference, next_order)
     else:
         phase, source = "fluid", "[Kolafa 2004]"
         origin = "its distance from etomica's equation, or from the virial series"

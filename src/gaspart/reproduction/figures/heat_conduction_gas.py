@@ -20,7 +20,7 @@ from gaspart.reproduction.figure import Blocks, Parts, runs
 from gaspart.reproduction.figures._gap import Gap, averages
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
-from gaspart.scene.faces import thermal_face
+from gaspart.scene.boundaries import thermal_face
 from gaspart.theory.enskog import enskog_conductivity, mean_free_path
 from gaspart.theory.geometry import packing_fraction
 from gaspart.theory.heat import (

@@ -144,7 +144,7 @@ def claims(dataset: xr.Dataset) -> Iterator[Claim]:
             yield Claim(
                 "second-order coefficient of the electrons' temperature against position over the gap",
                 row.bend, Estimate(row.cold * METAL_BEND, row.cold * METAL_BEND_ERROR), 0.1 * row.cold,
-                "the Boltzmann equation of electrons and modes (gaspart.theory.electrons)",
+                "the Boltzmann equation of electrons and modes (tests/theory/electrons.py)",
                 "electrons that conduct as a gas does, whose T^(3/2) is linear",
                 allowance_source="the statistical error of its direct simulation",
                 alternative=-0.25 * slope**2 / (level + 0.5 * slope),

@@ -27,6 +27,7 @@ from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
 from gaspart.scene.gas import Mixture
 from gaspart.scene.sizes import DISTRIBUTIONS, relative_radii
+from gaspart.theory.mixtures import MIXTURE_THEORIES
 from gaspart.theory.speeds import mean_speed_factor
 from gaspart.trajectory.pairs import pairs_of
 
@@ -97,7 +98,7 @@ def _theories(gas: Mixture) -> dict[str, Any]:
     """Return Z by each theory; for two sizes also contact value and rate of each pair."""
     row: dict[str, Any] = {}
     z, sizes = theory.mixture_compressibility_factor, gas.sizes
-    for name, dimensions in theory.MIXTURE_THEORIES.items():
+    for name, dimensions in MIXTURE_THEORIES.items():
         if gas.dimension not in dimensions:
             continue
         row[name] = z(*sizes, theory=name)

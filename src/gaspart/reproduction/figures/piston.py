@@ -23,6 +23,7 @@ from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, merge_with_prefixes, table
 from gaspart.theory.enskog import enskog_longitudinal_viscosity
 from gaspart.theory.speeds import mean_speed
+from gaspart.theory.state import adiabatic_temperature, constant_enthalpy_factor
 
 TITLE, CHAPTER = "Pressure on walls and pistons", "Equation of state and structure"
 
@@ -143,7 +144,7 @@ def claims(dataset: xr.Dataset) -> Iterator[Claim]:
         eta, dimension = state.density.mean(), state.dimension
         yield Claim(
             f"compressibility factor at constant pressure over the reference, {_name(state)}", _factor(state),
-            float(theory.constant_enthalpy_factor(eta, dimension, state.count)), 0.005,
+            float(constant_enthalpy_factor(eta, dimension, state.count)), 0.005,
             f"the equation of state of the infinite fluid, with the volume's fluctuations in {ENSEMBLE}, "
             "to first order in 1/N",
             "a load that is not the pressure of the gas, or a density disturbed by the walls",
@@ -184,7 +185,7 @@ def exponents(path: Row) -> np.ndarray:
     """Compute 1 + 2/d times the ratio of ln T to theory, without viscous heating, shape (replica, frame)."""
     dimension, first = path.dimension, path.packing_fraction
     eta = np.minimum(first / path.volume, theory.HIGHEST_PACKING_FRACTION[dimension])
-    expected = theory.adiabatic_temperature(eta, first, dimension)
+    expected = adiabatic_temperature(eta, first, dimension)
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = (np.log(path.temperature) - path.heating) / np.log(expected)
     return np.asarray(1.0 + 2.0 / dimension * ratio)
@@ -256,7 +257,7 @@ def _draw_path(axis: Axes, path: Row) -> None:
     volume, temperature = path.volume.mean(axis=0), Estimate(*means_of(path.temperature))
     style.points(axis, volume, temperature, kind=kind, label=PARTICLES[dimension])
     fine = np.geomspace(volume.min(), DOUBLED, 60)
-    expected = theory.adiabatic_temperature(first / fine, first, dimension)
+    expected = adiabatic_temperature(first / fine, first, dimension)
     label = rf"adiabat, $\gamma={EXPONENTS[dimension]}$"
     axis.plot(fine, expected, color=style.COLOURS[kind], zorder=1, label=label)
 
@@ -269,7 +270,7 @@ def _draw_states(middle: Axes, lower: Axes, states: Table, dimension: int) -> No
     for axis, ratio in ((middle, factor), (lower, variance)):
         style.points(axis, eta, ratio, kind=dimension - 2, label=name)
     fine, colour = np.linspace(0.0, eta.max(), 60), style.COLOURS[dimension - 2]
-    finite = theory.constant_enthalpy_factor(fine, dimension, states.count[0])
+    finite = constant_enthalpy_factor(fine, dimension, states.count[0])
     middle.plot(fine, finite, color=colour, zorder=1, label=f"{name}, finite $N$")
     isothermal = isothermal_variance(fine, dimension) * theory.speed_of_sound(fine, dimension) ** 2
     lower.plot(fine, isothermal, color=colour, linestyle="--", label=f"{name}, constant $T$")

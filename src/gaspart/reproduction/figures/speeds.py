@@ -25,10 +25,10 @@ from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.figure import Blocks, Parts, kurtosis, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
-from gaspart.scene.gas import plain_gas
+from gaspart.scene.facts import plain_gas
 from gaspart.scene.scene import Scene
 from gaspart.theory.entropy import ENTROPY_UNCERTAINTY, Energies, entropy_deficit, equal_speeds
-from gaspart.theory.speeds import RELAXATION_UNCERTAINTY
+from gaspart.theory.speeds import RELAXATION_UNCERTAINTY, initial_kurtosis_slope
 
 TITLE, CHAPTER = "Speed distributions", "Motion and its memory"
 HISTOGRAM = {
@@ -306,7 +306,7 @@ def claim_relaxation(dataset: xr.Dataset) -> Iterator[Claim]:
         )  # fmt: skip
         yield Claim(
             f"initial slope of the kurtosis per collision and particle {by}",
-            gas.initial_slope, theory.initial_kurtosis_slope(gas.dimension), 0.015,
+            gas.initial_slope, initial_kurtosis_slope(gas.dimension), 0.015,
             "Boltzmann's collision integral (exact)",
             "the first collisions do not scatter as hard spheres do",
         )  # fmt: skip
@@ -370,7 +370,7 @@ def draw_relaxation(dataset: xr.Dataset) -> Figure:
     s = np.linspace(0.0, longest, 300)
     kurtoses.plot(s, relaxation.kurtosis(s), color=style.DATA, label="kinetic theory", zorder=2)
     early = s[s < 1.6]
-    initial = 1.0 + theory.initial_kurtosis_slope(engines.dimension) * early
+    initial = 1.0 + initial_kurtosis_slope(engines.dimension) * early
     kurtoses.plot(early, initial, color=style.GREY, ls=":", label="initial slope 8/35")
     style.level(kurtoses, theory.kurtosis(engines.dimension), ls="--", label="Maxwell: 5/3")
     unhit.semilogy(s, relaxation.never_hit(s), color=style.DATA, zorder=2)

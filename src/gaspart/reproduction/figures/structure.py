@@ -37,7 +37,9 @@ from gaspart.reproduction.figures.chemical_potential import (
 )
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
-from gaspart.scene.gas import Gas, plain_gas
+from gaspart.scene.facts import plain_gas
+from gaspart.scene.gas import Gas
+from gaspart.theory.structure import percus_yevick_rdf, percus_yevick_structure_factor
 
 TITLE, CHAPTER = "Structure and chemical potential", "Equation of state and structure"
 SETTINGS = {
@@ -54,8 +56,8 @@ WIDTH = 0.005  # of the bins of g(r) at contact, in diameters
 WINDOW = 0.45
 BINS, SHELLS, WAVES = 160, 80, 24  # drawn bins of g(r) and S(k); wave vectors in each bin of S(k)
 LAWS = {  # Verlet-Weis, Percus-Yevick
-    "g": (theory.verlet_weis_rdf, theory.percus_yevick_rdf),
-    "s": (theory.verlet_weis_structure_factor, theory.percus_yevick_structure_factor),
+    "g": (theory.verlet_weis_rdf, percus_yevick_rdf),
+    "s": (theory.verlet_weis_structure_factor, percus_yevick_structure_factor),
 }
 
 

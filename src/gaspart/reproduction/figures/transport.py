@@ -25,7 +25,7 @@ from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import ENSKOG_LIMIT, PARTICLES, Parts
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
-from gaspart.scene.gas import plain_gas
+from gaspart.scene.facts import plain_gas
 from gaspart.trajectory.reading import open_trajectory
 
 TITLE, CHAPTER = "Viscosity and conductivity", "Motion and its memory"
