@@ -47,10 +47,9 @@ class Run(RunData):
 
     @cached_property
     def motion(self) -> Peculiar:
-        """Velocities of the moving particles relative to the local flow or the centre of mass.
-
-        If the gas flows, the velocities are relative to the local flow. Otherwise they are relative to the
-        centre of mass along axes on which the momentum is conserved (see `flow`).
+        """Velocities of the moving particles relative to the local flow or the centre of mass. If the gas
+        flows, the velocities are relative to the local flow. Otherwise they are relative to the centre of
+        mass along axes on which the momentum is conserved (see `flow`).
         """
         return about_the_flow(self)
 
@@ -61,10 +60,8 @@ class Run(RunData):
 
     @cached_property
     def freedoms(self) -> np.ndarray:
-        """Number of translational degrees of freedom in each frame, shape (T,).
-
-        Raises SceneError if there is no degree of freedom, for example for one particle in a periodic
-        container.
+        """Number of translational degrees of freedom in each frame, shape (T,). Raises SceneError if there is
+        no degree of freedom, for example for one particle in a periodic container.
         """
         moving = int(self.moving.sum())
         values = np.full(len(self.time), self.dimension * moving - int(self.conserved.sum()), dtype=float)
@@ -81,12 +78,11 @@ class Run(RunData):
 
     @cached_property
     def temperatures(self) -> np.ndarray:
-        """Temperature k_B T of each frame, shape (T,).
-
-        The temperature is twice the translational kinetic energy per degree of freedom, relative to the mean
-        motion (see `motion`). It is set to 0 if this energy is only a rounding error of the centre-of-mass
-        velocity. If the file does not contain all particles, the temperature is computed by `_of_all`. Raises
-        SceneError under the conditions of `freedoms`.
+        """Temperature k_B T of each frame, shape (T,). The temperature is twice the translational kinetic
+        energy per degree of freedom, relative to the mean motion (see `motion`). It is set to 0 if this
+        energy is only a rounding error of the centre-of-mass velocity. If the file does not contain all
+        particles, the temperature is computed by `_of_all`. Raises SceneError under the conditions of
+        `freedoms`.
         """
         refuse_open(self.scene, "changes the particles: there is no temperature of the whole run")
         lacking = self.is_subset or "velocities" not in self.data
@@ -105,10 +101,9 @@ class Run(RunData):
 
     @cached_property
     def _energies(self) -> np.ndarray:
-        """Kinetic energies relative to the flow and to rest, and degrees of freedom.
-
-        The rows of the array (3, T) are twice the energy relative to the flow, twice the energy relative to
-        rest, and the degrees of freedom.
+        """Kinetic energies relative to the flow and to rest, and degrees of freedom. The rows of the array
+        (3, T) are twice the energy relative to the flow, twice the energy relative to rest, and the degrees
+        of freedom.
         """
         masses, about, rows = self.masses[self.moving], mean_motion(self), []
         for _, part in self.parts():
@@ -120,10 +115,9 @@ class Run(RunData):
 
     @property
     def _of_all(self) -> np.ndarray:
-        """Temperature k_B T (T,) of each frame, from the energy of all particles.
-
-        The run must be centred or contain the tally of the stress. The energy includes rotation and is
-        relative to the centre of mass of all particles, even if the file contains only some of them.
+        """Temperature k_B T (T,) of each frame, from the energy of all particles. The run must be centred or
+        contain the tally of the stress. The energy includes rotation and is relative to the centre of mass of
+        all particles, even if the file contains only some of them.
         """
         d, count = self.dimension, self.count
         freedom = d * count - int(self.conserved.sum()) + self.scene.rough * count * (d * (d - 1) // 2)
@@ -151,9 +145,8 @@ class Run(RunData):
 
     @property
     def fluid(self) -> Gas | None:
-        """Gas of the scene, if the scene has at least two particles in a periodic container.
-
-        None otherwise, and unless the particles are a fluid in the density range of its equation of state.
+        """Gas of the scene, if the scene has at least two particles in a periodic container. None otherwise,
+        and unless the particles are a fluid in the density range of its equation of state.
         """
         gas = self.scene.gas
         if gas is None or gas.count < 2 or not self.periodic.all():
@@ -162,9 +155,8 @@ class Run(RunData):
 
     @property
     def _is_fluid(self) -> bool:
-        """True if the density is in the range of the fluid, and the run does not begin in a crystal.
-
-        Above the freezing density a crystal does not melt, whereas a compressed fluid remains one for long.
+        """True if the density is in the range of the fluid, and the run does not begin in a crystal. Above
+        the freezing density a crystal does not melt, whereas a compressed fluid remains one for long.
         """
         scene = self.scene
         if scene.packing_fraction > theory.HIGHEST_PACKING_FRACTION[scene.dimension]:
@@ -184,9 +176,8 @@ class Run(RunData):
 
     @property
     def moving_fluid(self) -> Gas | None:
-        """The `fluid` at the temperature of the run; None if nothing moves.
-
-        Raises SceneError under the conditions of `moving`.
+        """The `fluid` at the temperature of the run; None if nothing moves. Raises SceneError under the
+        conditions of `moving`.
         """
         gas = self.fluid
         return replace(gas, temperature=self.temperature) if gas and self.temperature > 0.0 else None
@@ -222,9 +213,8 @@ def select_particles(run: Run, species: int | None, particles: Sequence[int] | N
 
 
 def require_collisions(run: Run) -> None:
-    """Raise SceneError if no collision occurred in the measured part of a run.
-
-    The scatter of the observable would then be unknown.
+    """Raise SceneError if no collision occurred in the measured part of a run. The scatter of the observable
+    would then be unknown.
     """
     if not run.increments("collisions").any():
         raise SceneError("collisions", 0, "none happened in the measured part; make a longer run")
@@ -239,10 +229,9 @@ def open_run(
     varying: bool = False,
     about: str = FLOW,
 ) -> Iterator[Run]:
-    """Open the part of a source after the time `start`.
-
-    By default the first quarter of the run is discarded. A simulation is run again from its start to its
-    present time. If `pairs` is True, the collisions of each pair of species are counted.
+    """Open the part of a source after the time `start`. By default the first quarter of the run is discarded.
+    A simulation is run again from its start to its present time. If `pairs` is True, the collisions of each
+    pair of species are counted.
 
     sheared : True if the observable is defined in a sheared gas.
     varying : True if the observable is defined with open faces.
@@ -279,9 +268,8 @@ def open_run(
 
 
 def repeat_run(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
-    """Run a simulation again from its start, and return its frames at equally spaced times.
-
-    Raises SceneError for a simulation that has not advanced.
+    """Run a simulation again from its start, and return its frames at equally spaced times. Raises SceneError
+    for a simulation that has not advanced.
     """
     scene, engine = simulation.scene, simulation.engine
     if simulation.time <= 0.0:

@@ -25,8 +25,8 @@ from gaspart.rendering.controls import RULES, Controls
 from gaspart.rendering.particles import FASTEST, FIXED
 from gaspart.rendering.view import View, page_of
 from gaspart.scene.boundaries import piston_end
-from gaspart.scene.faces import FACES
 from gaspart.scene.scene import Scene, require_scene
+from gaspart.scene.surfaces import FACES
 from gaspart.scene.walls import Wall
 from gaspart.state.given import state_at_time_zero
 from gaspart.state.initial import initial_state
@@ -63,6 +63,8 @@ def play(scene: Scene, seed: int = 0) -> View:
     contains the kernels of the event-driven engine, and computes the same bits. After each change the gas
     continues as ``Simulation(scene, seed=seed, initial=state)`` of the changed scene.
 
+    The first page of a kind of scene compiles its kernels, in about a minute.
+
     Parameters
     ----------
     scene : Scene
@@ -80,10 +82,6 @@ def play(scene: Scene, seed: int = 0) -> View:
     SceneError
         If the scene has three dimensions or a feature that is not available in a browser, or if no particle
         moves or falls.
-
-    Notes
-    -----
-    The first page of a kind of scene compiles its kernels, in about a minute.
 
     Examples
     --------
@@ -319,10 +317,8 @@ def _changes(base: dict, other: dict) -> dict:
 
 
 def _pressure(scene: Scene, controls: Controls) -> dict | None:
-    """Return p A / k_B T for positions of the side x high; None if unknown.
-
-    A is the accessible area. The walls of a rectangle count as the walls of a square with the same ratio of
-    perimeter and area.
+    """Return p A / k_B T for positions of the side x high; None if unknown. A is the accessible area. The
+    walls of a rectangle count as the walls of a square with the same ratio of perimeter and area.
     """
     gas, lengths = scene.gas, scene.container.lengths
     if gas is None or scene.walls or scene.has_piston:

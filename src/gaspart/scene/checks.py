@@ -7,20 +7,10 @@ import math
 from gaspart.errors import SceneError, unknown_word
 from gaspart.keys.values import finite_vector, size
 from gaspart.scene.boundaries import attempt_rate
-from gaspart.scene.faces import (
-    FACE_KINDS,
-    FACES,
-    GRADIENT,
-    LeesEdwards,
-    Open,
-    Piston,
-    Sticky,
-    Thermal,
-    Vibrating,
-    Well,
-)
+from gaspart.scene.faces import FACE_KINDS, GRADIENT, LeesEdwards, Open, Piston, Vibrating
 from gaspart.scene.facts import Facts
 from gaspart.scene.features import EXCLUDED, FEATURES
+from gaspart.scene.surfaces import FACES, Sticky, Thermal, Well
 from gaspart.scene.walls import WALL_RULE, Plate, Wall, crossed_axis, wall_kind
 
 _SUM = 1e-12  # relative tolerance for rounding of the sum of all volumes
@@ -150,9 +140,8 @@ def _check_ramp(scene: Facts, name: str, surface: Thermal, axis: int) -> None:
 
 
 def _check_piston(scene: Facts, name: str, surface: Piston) -> None:
-    """Raise SceneError for a second piston, or a piston that moves too fast.
-
-    The speed may be prescribed, or result from the external pressure.
+    """Raise SceneError for a second piston, or a piston that moves too fast. The speed may be prescribed, or
+    result from the external pressure.
     """
     if len(scene.pistons) > 1:
         raise SceneError("faces", [FACES[n] for n, _ in scene.pistons], "must include at most one piston")
@@ -215,9 +204,8 @@ MOST_ATTEMPTS = 1e12
 
 
 def check_open_faces(scene: Facts) -> None:
-    """Raise SceneError if a scene with open faces has a feature that open faces exclude.
-
-    Only scenes with open faces are checked.
+    """Raise SceneError if a scene with open faces has a feature that open faces exclude. Only scenes with
+    open faces are checked.
     """
     for number, reservoir in scene.faces_of(Open):
         face = f"faces.{FACES[number]}"
@@ -230,9 +218,8 @@ def check_open_faces(scene: Facts) -> None:
 
 
 def _check_attempts(scene: Facts, number: int, face: Open) -> None:
-    """Raise SceneError for a reservoir whose particles attempt too often to enter.
-
-    Above this number of attempts, simulated time would practically not advance.
+    """Raise SceneError for a reservoir whose particles attempt too often to enter. Above this number of
+    attempts, simulated time would practically not advance.
     """
     speed = math.sqrt((face.temperature or 0.0) / scene.species[0].mass)
     if speed:
@@ -255,9 +242,8 @@ _ENERGY = "inelastic contacts, or faces or walls at a temperature"
 
 
 def check_driven(scene: Facts) -> None:
-    """Raise SceneError if a force along a periodic axis would accelerate the gas forever.
-
-    The scene must have a sink for the momentum that the force adds, and a sink for the energy that it adds.
+    """Raise SceneError if a force along a periodic axis would accelerate the gas forever. The scene must have
+    a sink for the momentum that the force adds, and a sink for the energy that it adds.
     """
     for axis in scene.driven_axes:
         for has_sink, quantity, by in (
@@ -273,9 +259,8 @@ def check_driven(scene: Facts) -> None:
 
 
 def _takes_momentum(scene: Facts, axis: int) -> bool:
-    """Return True if particles exchange momentum along a periodic axis with other objects.
-
-    The other objects are fixed particles, interior walls and faces of the container.
+    """Return True if particles exchange momentum along a periodic axis with other objects. The other objects
+    are fixed particles, interior walls and faces of the container.
     """
     if scene.has_fixed:
         return True
@@ -292,9 +277,8 @@ def _takes_energy(scene: Facts) -> bool:
 
 
 def _spans(wall: Wall | Plate, axis: int, length: float) -> bool:
-    """Return True if a wall spans the container along an axis.
-
-    No particle then hits the ends of the wall along this axis.
+    """Return True if a wall spans the container along an axis. No particle then hits the ends of the wall
+    along this axis.
     """
     first, *others = wall.corners.values()
     edges = ([b - a for a, b in zip(first, corner, strict=True)] for corner in others)

@@ -28,9 +28,8 @@ _UNIT_BALL = {2: math.pi, 3: 4.0 / 3.0 * math.pi}
 
 
 def ball_volume(dimension: int, radius: float = 1.0) -> float:
-    """Return the area of a disc or the volume of a sphere.
-
-    The area is pi r^2, and the volume is 4 pi r^3 / 3.
+    """Return the area of a disc or the volume of a sphere. The area is pi r^2, and the volume is 4 pi r^3 /
+    3.
     """
     return _UNIT_BALL[dimension] * radius**dimension
 
@@ -42,19 +41,17 @@ _UNITS = 8.0 * 2.0**-52  # tolerance, in units in the last place
 
 
 def rounding(position: Iterable[float], *lengths: float) -> float:
-    """Return the tolerance of prescribed positions.
-
-    Particles and walls that touch in decimal numbers may overlap in binary numbers, because 0.6 - 0.5 < 0.1
-    after rounding. The tolerance is a few units in the last place of the largest coordinate.
+    """Return the tolerance of prescribed positions. Particles and walls that touch in decimal numbers may
+    overlap in binary numbers, because 0.6 - 0.5 < 0.1 after rounding. The tolerance is a few units in the
+    last place of the largest coordinate.
     """
     return _UNITS * max(*map(abs, position), *lengths)
 
 
 def check_room(container: Container, centres_to_walls: bool, key: str, particle: Particle | Species) -> None:
-    """Raise SceneError, with `key`, if a particle does not fit into the container.
-
-    SceneError is also raised for a particle that is not fixed but has no room to move, and for a particle so
-    small that rounding would hide its contacts.
+    """Raise SceneError, with `key`, if a particle does not fit into the container. SceneError is also raised
+    for a particle that is not fixed but has no room to move, and for a particle so small that rounding would
+    hide its contacts.
     """
     radius = particle.largest_radius
     shortest, longest = min(container.lengths), max(container.lengths)
@@ -74,9 +71,8 @@ def check_room(container: Container, centres_to_walls: bool, key: str, particle:
 
 
 def check_region(container: Container, key: str, kind: Species) -> None:
-    """Raise SceneError, with `key`, for an invalid region of a species.
-
-    The region must be a box inside the container that is large enough for one of its particles.
+    """Raise SceneError, with `key`, for an invalid region of a species. The region must be a box inside the
+    container that is large enough for one of its particles.
     """
     if kind.region is None:
         return
@@ -93,9 +89,8 @@ def check_region(container: Container, key: str, kind: Species) -> None:
 
 
 class Nearby:
-    """Cells of width `reach` or more, to find positions near a point quickly.
-
-    Positions are near if their distance is at most `reach`.
+    """Cells of width `reach` or more, to find positions near a point quickly. Positions are near if their
+    distance is at most `reach`.
     """
 
     def __init__(self, container: Container, reach: float) -> None:

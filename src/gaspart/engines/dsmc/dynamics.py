@@ -134,9 +134,8 @@ _WHOLE = 2**FINEST
 
 
 class DsmcDynamics(SteppedDynamics):
-    """Dynamics of a scene under the DSMC engine. Its time is an integer number of steps.
-
-    A step may be divided into parts, and cells may become narrower: see `defaults` and `resolution`.
+    """Dynamics of a scene under the DSMC engine. Its time is an integer number of steps. A step may be
+    divided into parts, and cells may become narrower: see `defaults` and `resolution`.
 
     time_step : length of a step, prescribed or chosen by the engine
     """

@@ -122,9 +122,8 @@ def step_tally(
 def rules_for(
     engine: StepSettings, scene: Scene, state: State, seed: int | tuple[int, ...], space: Space
 ) -> Rules | None:
-    """Return the kernels' `Rules` for special faces or collision laws, or None.
-
-    These faces and laws change more than the momenta of particles, for example spins.
+    """Return the kernels' `Rules` for special faces or collision laws, or None. These faces and laws change
+    more than the momenta of particles, for example spins.
 
     space : space in the form of the kernels of this engine
     """
@@ -175,11 +174,9 @@ def needs_rules(scene: Scene) -> bool:
 
 
 class ImpulsesPart(TallyPart):
-    """Momentum that particles transport through planes across an axis.
-
-    The transported momentum is the momentum below each plane at the last reset (`momenta`), plus all impulses
-    since then, minus the present momentum below the plane. `kernel` contains the fields of a `StepTally`, by
-    name.
+    """Momentum that particles transport through planes across an axis. The transported momentum is the
+    momentum below each plane at the last reset (`momenta`), plus all impulses since then, minus the present
+    momentum below the plane. `kernel` contains the fields of a `StepTally`, by name.
 
     particles : particles of the kernels
     units : unit of mass, and the bound of a particle's momentum in this unit
@@ -215,10 +212,8 @@ class ImpulsesPart(TallyPart):
         self.reset(0.0)
 
     def _momenta(self) -> np.ndarray:
-        """Return the present momenta (rows, bins + 1) of all particles in the impulses' bins.
-
-        Momenta are summed in the order of particle numbers, so that rounding does not depend on the order in
-        memory.
+        """Return the present momenta (rows, bins + 1) of all particles in the impulses' bins. Momenta are
+        summed in the order of particle numbers, so that rounding does not depend on the order in memory.
         """
         particles = self._particles
         order = np.argsort(particles.index)
@@ -332,9 +327,8 @@ def _width(scene: Scene, count: int) -> float:
 
 
 def _skin(engine: StepSettings, scene: Scene, state: State, contact: float) -> float:
-    """Return the skin thickness with the lowest cost.
-
-    With a thin skin, lists must be made often; with a thick skin, they contain many pairs.
+    """Return the skin thickness with the lowest cost. With a thin skin, lists must be made often; with a
+    thick skin, they contain many pairs.
     """
     dimension, density = scene.dimension, state.count / scene.container.volume
     squares = (state.velocities**2).sum(axis=1)

@@ -142,9 +142,8 @@ class StepDynamics(SteppedDynamics):
         return common | {key: getattr(self._tally, key) for key in _BY_THREAD}
 
     def _per_area(self, most: float, sums: np.ndarray) -> np.ndarray:
-        """Return the momentum along each axis and the heat given to each face, per accessible area.
-
-        The shape is (2d, d + 1).
+        """Return the momentum along each axis and the heat given to each face, per accessible area. The shape
+        is (2d, d + 1).
 
         most : inverse of the smallest area
         """
@@ -171,9 +170,8 @@ class StepDynamics(SteppedDynamics):
         return {**super()._checkpoint_data(), "reach": self._particles.bounds, **self._list_parts()}
 
     def _required_arrays(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """Return the arrays required from a checkpoint, except the origin of the neighbour list.
-
-        The origin is not required because the checkpoint may be from another search.
+        """Return the arrays required from a checkpoint, except the origin of the neighbour list. The origin
+        is not required because the checkpoint may be from another search.
         """
         spared = self._list_parts()
         return {key: array for key, array in self.checkpoint().items() if key not in spared}
@@ -187,9 +185,8 @@ class StepDynamics(SteppedDynamics):
             self._particles.bounds[...] = checkpoint["reach"]
 
     def _list_parts(self) -> dict[str, np.ndarray]:
-        """Return the origin (d, N) of the neighbour list by slot, and its settings.
-
-        The origin consists of the positions of the particles when the list was made.
+        """Return the origin (d, N) of the neighbour list by slot, and its settings. The origin consists of
+        the positions of the particles when the list was made.
         """
         if self._search.cells is None:
             return {}
