@@ -95,7 +95,7 @@ def test_a_key_picture_is_one_panel_with_its_labels(tmp_path, number, title):
 
 def test_a_key_picture_breaks_labels_and_legends_that_are_too_long(tmp_path):
     with style.use_style("page"):
-        figure, (axis, other) = style.new((2.4,), (2.4,))
+        figure, (axis, _) = style.new((2.4,), (2.4,))
         for name in ("spheres whose centres reach the walls", "spheres in a periodic container"):
             axis.plot([0.0, 1.0], [0.0, 1.0], label=name)
         figure.legend(ncols=2, loc="outside upper center")
