@@ -139,9 +139,10 @@ def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order:
 
 
 def page_of(name: str, mark: str, **parts: str) -> str:
-    """Return a page from its file, the head that pages share, and texts by the words that they replace."""
+    """Return a page from its file, the shared head and style, and texts by the words that they replace."""
     text = "".join((_FOLDER / part).read_text(encoding="utf-8") for part in ("page.html", name))
-    for word, part in {"TITLE": mark, **parts}.items():
+    style = (_FOLDER / "style.css").read_text(encoding="utf-8")
+    for word, part in {"TITLE": mark, "STYLE": style, **parts}.items():
         text = text.replace(word, part, 1)
     return text
 
