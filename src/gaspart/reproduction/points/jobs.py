@@ -36,7 +36,7 @@ JOBS: Mapping[str, Job] = {
 def validate(point: Point) -> None:
     """Make the arguments of a point's job, to validate them.
 
-    Keys of other jobs are not allowed. Raises SceneError.
+    Keys of other jobs are not allowed.
     """
     others = {key for job in JOBS.values() for key in job.KEYS} - JOBS[point.job].KEYS.keys()
     for key in others & point.settings.keys():

@@ -50,10 +50,7 @@ class Job(Protocol):
         """Return the engines whose kernels the job compiles; none if particles are only placed."""
 
     def arguments(self, point: Point) -> dict:
-        """Return the arguments of the point's function.
-
-        Raises SceneError.
-        """
+        """Return the arguments of the point's function."""
 
 
 @dataclass(frozen=True)
@@ -206,7 +203,7 @@ def variant(point: Point) -> str:
     """Return a text that identifies the compiled kernels of a point.
 
     The text has engine, search or precision, dimension, and a digest of the features of its scene. Kernels
-    are compiled for features, not for numbers. Raises SceneError.
+    are compiled for features, not for numbers.
     """
     scene = point.scene
     parts = ["fill", "random", f"{scene.dimension}d"]
