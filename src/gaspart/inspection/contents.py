@@ -69,9 +69,8 @@ class Contents:
 
 @dataclass(frozen=True)
 class Overrides:
-    """Values passed by the user, which take precedence over the file; see `readers.read_frames`.
-
-    If `last` is True, only the last frame of a GSD or XYZ file is read. This frame must be complete.
+    """Values passed by the user, which take precedence over the file; see `readers.read_frames`. If `last` is
+    True, only the last frame of a GSD or XYZ file is read. This frame must be complete.
     """
 
     radius: float | None = None
@@ -214,11 +213,10 @@ def sort_by_id(contents: Contents, path: str) -> None:
 
 
 def _dimension(contents: Contents, overrides: Overrides, diameter: float) -> int:
-    """Return the number of dimensions, 2 or 3.
-
-    If the file does not state the dimension, it follows from the motion along z. Particles that keep the same
-    z are discs, unless the user passes three side lengths. In a single frame without velocities, particles
-    are discs only if the container has no height or is less than two diameters high.
+    """Return the number of dimensions, 2 or 3. If the file does not state the dimension, it follows from the
+    motion along z. Particles that keep the same z are discs, unless the user passes three side lengths. In a
+    single frame without velocities, particles are discs only if the container has no height or is less than
+    two diameters high.
     """
     positions, velocities = contents.positions, contents.velocities
     if positions.shape[2] == 2:
@@ -284,11 +282,9 @@ def _radii(contents: Contents, overrides: Overrides, path: str) -> np.ndarray:
 
 
 def _times(contents: Contents, overrides: Overrides, path: str) -> np.ndarray | None:
-    """Return the times (T,), or None if the file contains none.
-
-    Equal times in all frames count as missing, because the field was never set. Times that are evenly spaced
-    within their resolution are replaced by evenly spaced times. The reason is that late times deviate more in
-    single precision, or with few digits.
+    """Return the times (T,), or None if the file contains none. Equal times in all frames count as missing,
+    because the field was never set. Times that are evenly spaced within their resolution are replaced by
+    evenly spaced times. The reason is that late times deviate more in single precision, or with few digits.
     """
     frames = len(contents.positions)
     time, resolution = contents.time, contents.time_resolution

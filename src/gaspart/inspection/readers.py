@@ -133,6 +133,9 @@ def read_state(path: str | Path, scene: Scene, seed: int | tuple[int, ...] = 0) 
 
     The state is the last frame of the file.
 
+    The particles of the file are sorted by their ids, if there are any. This order should be the order of the
+    scene. If radii and masses then differ from the scene, particles are assigned by their radii and masses.
+
     Parameters
     ----------
     path : str or Path
@@ -153,12 +156,6 @@ def read_state(path: str | Path, scene: Scene, seed: int | tuple[int, ...] = 0) 
     SceneError
         If the file has another number of particles, other sizes or masses, or another container; if
         `gaspart check` cannot read it; or if `Simulation` rejects the state.
-
-    Notes
-    -----
-    The particles of the file are sorted by their ids, if there are any. This order should be the order of the
-    scene. If radii and masses then differ from the scene, particles are assigned by
-    their radii and masses.
 
     Examples
     --------
@@ -223,9 +220,8 @@ def _in_dimensions(name: str, values: np.ndarray, scene: Scene, path: Path) -> n
 
 
 def _origin(contents: Contents, scene: Scene) -> np.ndarray:
-    """Return the lower corner (d,) of the container.
-
-    A file contains the part of the container up to the piston, which is at its side when a run begins.
+    """Return the lower corner (d,) of the container. A file contains the part of the container up to the
+    piston, which is at its side when a run begins.
     """
     low, sides = np.zeros(scene.dimension), np.array(scene.container.lengths)
     for number, _ in scene.pistons if contents.lengths is not None else ():

@@ -45,9 +45,8 @@ _TRUE, _FALSE = ("t", "true", "1"), ("f", "false", "0")
 
 
 def read_xyz(path: Path, overrides: Overrides) -> Contents:
-    """Read all frames, or the last frame.
-
-    Raises SceneError for contents that cannot be checked, and ValueError for other text.
+    """Read all frames, or the last frame. Raises SceneError for contents that cannot be checked, and
+    ValueError for other text.
     """
     kinds: dict[str, int] = {}  # a number for each species name
     with open_regular(path) as file, TextIOWrapper(file, encoding="utf-8") as lines:
@@ -264,10 +263,9 @@ def _most_digits(tokens: Iterable[str]) -> int:
 
 
 def _resolution(positions: np.ndarray, digits: int) -> float:
-    """Return the resolution of a printed coordinate, one unit of the last printed digit.
-
-    The largest coordinate has `digits` digits. Numbers such as 0 or 2.5, whose trailing zeros were omitted,
-    do not reduce the resolution of the others.
+    """Return the resolution of a printed coordinate, one unit of the last printed digit. The largest
+    coordinate has `digits` digits. Numbers such as 0 or 2.5, whose trailing zeros were omitted, do not reduce
+    the resolution of the others.
     """
     largest = float(np.abs(positions).max())
     if not 0.0 < largest < math.inf:

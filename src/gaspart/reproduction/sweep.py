@@ -43,8 +43,7 @@ from gaspart.runs.ending import Accuracy
 from gaspart.scene.scene import Scene, require_scene
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.recipe import multiple
-from gaspart.trajectory.run_options import required_contents
-from gaspart.trajectory.until import Until
+from gaspart.trajectory.run_options import Until, required_contents
 from gaspart.workers import in_processes
 from gaspart.yaml_text import dump_yaml
 
@@ -80,6 +79,11 @@ def sweep(
     """Run a scene for each combination of parameter values, and measure observables of each run.
 
     Trajectories are stored. A repeated call simulates only what is missing in `folder`.
+
+    If some of radius, packing fraction and count vary, the others keep their values as far as possible. If
+    runs conserve their energy, species with a `temperature` have exactly this temperature at the start;
+    otherwise each point would have another energy. A complete trajectory is not simulated again. An
+    interrupted trajectory is continued.
 
     Parameters
     ----------
@@ -143,13 +147,6 @@ def sweep(
     See Also
     --------
     run : A single run.
-
-    Notes
-    -----
-    If some of radius, packing fraction and count vary, the others keep their values as far as possible. If
-    runs conserve their energy, species with a `temperature` have exactly this temperature at the start;
-    otherwise each point would have another energy. A complete trajectory is not simulated again. An
-    interrupted trajectory is continued.
 
     Examples
     --------

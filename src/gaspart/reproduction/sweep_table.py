@@ -87,10 +87,9 @@ def _draw_curve(axis: Axes, curve: xr.Dataset, name: str, along: str, label: str
 
 
 def columns(name: str, replicas: list[Observable]) -> Iterable[tuple[str, xr.DataArray]]:
-    """Yield the variables of an observable of a point.
-
-    All observables share dimensions whose coordinates are names. Other dimensions belong to one observable;
-    their positions are a variable, because they may differ from point to point.
+    """Yield the variables of an observable of a point. All observables share dimensions whose coordinates are
+    names. Other dimensions belong to one observable; their positions are a variable, because they may differ
+    from point to point.
     """
     first, quantity = replicas[0].estimate, replicas[0].attrs["quantity"]
     own = {dim: f"{name}_{dim}" for dim in first.dims if not DIMENSIONS[str(dim)].names}

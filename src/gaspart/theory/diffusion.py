@@ -93,16 +93,9 @@ def erpenbeck_wood_diffusion(
 
 @check_ranges
 def viscosity_ratio(packing_fraction: Numbers) -> Values:
-    """Compute the shear viscosity of spheres divided by Enskog's viscosity.
-
-    The ratio was measured by this program. It is interpolated linearly between the rows of
-    `data/viscosity_3d.csv`. It is 1 up to eta = 0.3, where 1.00(1) was measured. The uncertainty is
-    `VISCOSITY_RATIO_UNCERTAINTY`, plus about 2 % between the rows.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.4915 (the range of the fluid).
+    """Compute the shear viscosity of spheres divided by Enskog's viscosity. The ratio was measured by this
+    program (`data/viscosity_3d.csv`) and is interpolated linearly. It is 1 up to eta = 0.3, where 1.00(1) was
+    measured. The uncertainty is `VISCOSITY_RATIO_UNCERTAINTY`, plus about 2 % between the rows.
     """
     eta = checked_packing_fraction(packing_fraction, ERPENBECK_WOOD_HIGHEST)
     path = Path(__file__).parent / "data" / "viscosity_3d.csv"
@@ -197,10 +190,9 @@ def velocity_decay_rate(
     mass: float = 1.0,
     contact: Numbers | None = None,
 ) -> Values:
-    """Compute the initial decay rate of the velocity autocorrelation [1/time].
-
-    The rate is 2 nu / d, with the collision rate nu from `collision_rate` (exact in equilibrium). In the
-    first Sonine approximation of Enskog theory, D = k_B T / (m rate).
+    """Compute the initial decay rate of the velocity autocorrelation [1/time]. The rate is 2 nu / d, with the
+    collision rate nu from `collision_rate` (exact in equilibrium). In the first Sonine approximation of
+    Enskog theory, D = k_B T / (m rate).
     """
     rate = collision_rate(packing_fraction, dimension, diameter, temperature, mass, contact)
     return 2.0 / dimension * rate
@@ -256,12 +248,10 @@ def velocity_autocorrelation_tail(
     temperature: float = 1.0,
     mass: float = 1.0,
 ) -> Values:
-    """Compute the long-time tail of the velocity autocorrelation.
-
-    The mean of v(0).v(t) divided by the mean of v^2: ((d-1) / (d rho)) [4 pi (D + nu) t]^(-d/2), by mode
-    coupling (M. H. Ernst, E. H. Hauge and J. M. J. van Leeuwen (1970)): the integral over the shear modes of
-    `modes`. D and the kinematic viscosity nu are Enskog's. Range: after 15 to 30 mean free times, and before
-    sound has crossed the container.
+    """Compute the long-time tail of the velocity autocorrelation. The mean of v(0).v(t) divided by the mean
+    of v^2: ((d-1) / (d rho)) [4 pi (D + nu) t]^(-d/2), by mode coupling (M. H. Ernst, E. H. Hauge and J. M.
+    J. van Leeuwen (1970)): the integral over the shear modes of `modes`. D and the kinematic viscosity nu are
+    Enskog's. Range: after 15 to 30 mean free times, and before sound has crossed the container.
     """
     density, spreading = _spreading(packing_fraction, dimension, diameter, temperature, mass)
     amplitude = (dimension - 1) / (dimension * density)

@@ -42,10 +42,7 @@ def _density_and_contact(
 def _kinetic(
     dilute: float, factor: float, packing_fraction: Numbers, dimension: int, contact: Numbers | None
 ) -> Values:
-    """Compute the kinetic part, (dilute / chi) [1 + factor b chi / (d+2)]^2.
-
-    b is 2^(d-1) times the packing fraction.
-    """
+    """Compute the kinetic part, (dilute / chi) [1 + factor b chi / (d+2)]^2 with b = 2^(d-1) eta."""
     _, contact = _density_and_contact(packing_fraction, dimension, 1.0, contact)
     excess = 2.0 ** (dimension - 1) * np.asarray(packing_fraction) * contact
     return dilute / contact * (1.0 + factor * excess / (dimension + 2)) ** 2
@@ -198,11 +195,9 @@ def enskog_longitudinal_viscosity(
     temperature: float = 1.0,
     mass: float = 1.0,
 ) -> Values:
-    """Compute the longitudinal viscosity of Enskog theory [mass length^(2-d)/time].
-
-    Viscosity of a flow along an axis that varies along this axis. The longitudinal viscosity is 2 (d-1)/d
-    times the shear viscosity plus the bulk viscosity. It damps sound. In a gas between a wall and a piston,
-    it produces heat. The heat per volume and time is the longitudinal viscosity times (du/dx)^2.
+    """Compute the longitudinal viscosity of Enskog theory [mass length^(2-d)/time]. The longitudinal
+    viscosity is 2 (d-1)/d times the shear viscosity plus the bulk viscosity. It damps sound, and its product
+    with (du/dx)^2 is the heat per volume and time in front of a piston.
     """
     shear = enskog_viscosity(packing_fraction, dimension, diameter, temperature, mass)
     bulk = enskog_bulk_viscosity(packing_fraction, dimension, diameter, temperature, mass)

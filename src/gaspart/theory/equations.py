@@ -6,7 +6,6 @@ raises SceneError, a ValueError, outside its range. The module `state` defines t
 
 import numpy as np
 
-from gaspart.scene.limits import CLOSE_PACKING
 from gaspart.theory.geometry import Numbers, Values, checked_dimension, checked_packing_fraction
 
 STABLE_DISCS = 0.70
@@ -86,42 +85,6 @@ def kolafa_labik_malijevsky(packing_fraction: Numbers) -> Values:
     return np.polynomial.polynomial.polyval(eta / (1.0 - eta), _KLM)
 
 
-def percus_yevick_virial(packing_fraction: Numbers) -> Values:
-    """Compute Z of spheres by the virial route of Percus and Yevick's theory.
-
-    Z = (1 + 2 eta + 3 eta^2) / (1 - eta)^2. This solution of the theory is exact.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.539, the density rho sigma^3 = 1.03.
-    """
-    eta = checked_packing_fraction(packing_fraction, METASTABLE_SPHERES)
-    return (1.0 + 2.0 * eta + 3.0 * eta**2) / (1.0 - eta) ** 2
-
-
-def percus_yevick_compressibility(packing_fraction: Numbers) -> Values:
-    """Compute Z of spheres by the compressibility route of Percus and Yevick's theory.
-
-    Z = (1 + eta + eta^2) / (1 - eta)^3. This solution of the theory is exact.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.539, the density rho sigma^3 = 1.03.
-    """
-    eta = checked_packing_fraction(packing_fraction, METASTABLE_SPHERES)
-    return (1.0 + eta + eta**2) / (1.0 - eta) ** 3
-
-
-def scaled_particle(packing_fraction: Numbers) -> Values:
-    """Compute Z of discs by scaled-particle theory.
-
-    Z = 1 / (1 - eta)^2 (E. Helfand and others (1961)). The equation is accurate to 4 %.
-    """
-    return 1.0 / (1.0 - checked_packing_fraction(packing_fraction, STABLE_DISCS)) ** 2
-
-
 def henderson(packing_fraction: Numbers) -> Values:
     """Compute Z of discs by Henderson's equation.
 
@@ -130,18 +93,6 @@ def henderson(packing_fraction: Numbers) -> Values:
     """
     eta = checked_packing_fraction(packing_fraction, STABLE_DISCS)
     return (1.0 + eta**2 / 8.0) / (1.0 - eta) ** 2
-
-
-def santos_haro_yuste(packing_fraction: Numbers) -> Values:
-    """Compute Z of discs by the equation of Santos, Lopez de Haro and Yuste.
-
-    Z = 1 / [1 - 2 eta + (2 eta_c - 1) eta^2 / eta_c^2], where eta_c is the packing fraction at close packing
-    (A. Santos, M. Lopez de Haro and S. B. Yuste (1995)). This is the simplest equation with the correct B2
-    and a pole at close packing. The equation is accurate to 1.6 % up to eta = 0.55.
-    """
-    eta = checked_packing_fraction(packing_fraction, STABLE_DISCS)
-    closest = CLOSE_PACKING[2]
-    return 1.0 / (1.0 - 2.0 * eta + (2.0 * closest - 1.0) * (eta / closest) ** 2)
 
 
 def liu(packing_fraction: Numbers) -> Values:

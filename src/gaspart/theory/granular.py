@@ -50,12 +50,11 @@ def cooling_rate(restitution: Numbers, dimension: int) -> Values:
 
 @check_ranges
 def cooling_rate_finite_size_factor(count: Numbers, dimension: int) -> Values:
-    """Compute the cooling rate of N particles divided by its value for many particles.
-
-    d N / (d (N - 1) + 1), with the temperature T relative to the centre of mass. Relative velocities have the
-    variance 2T N / (N - 1). At a fixed energy, the velocities are uniformly distributed on a sphere in D = d
-    (N - 1) dimensions. The mean energy loss per contact is then D / (D + 1) times its value for Maxwellian
-    velocities (exact for nearly elastic contacts, which do not change this distribution).
+    """Compute the cooling rate of N particles divided by its value for many particles. d N / (d (N - 1) + 1),
+    with the temperature T relative to the centre of mass. At a fixed energy, the velocities are uniformly
+    distributed on a sphere in D = d (N - 1) dimensions. The mean energy loss per contact is then D / (D + 1)
+    times its value for Maxwellian velocities (exact for nearly elastic contacts, which do not change this
+    distribution).
     """
     freedoms = checked_dimension(dimension) * (np.asarray(count, dtype=float) - 1.0)
     return (freedoms + dimension) / (freedoms + 1.0)
@@ -79,12 +78,11 @@ def haff_time(restitution: Numbers, dimension: int, collision_rate: Numbers) -> 
 
 
 def driven_cumulant(restitution: Numbers, dimension: int) -> Values:
-    """Compute the fourth cumulant of a smooth inelastic gas in the steady state under white noise.
-
-    a2 = 16 (1-e) (1-2e^2) / (73 + 56 d - (24 d + 105) e + 30 e^2 (1-e)) (T. P. C. van Noije and M. H. Ernst,
-    Granular Matter 1, 57 (1998)). Derived again (tested): the moments are mu_2 ~ 1 + 3 a2/16 and mu_4 ~ d +
-    3/2 + e^2 + a2 (3 (10 d + 39 + 10 e^2)/32 + (d-1)/(1-e)). The condition mu_4 = (d+2) mu_2 gives this
-    formula, and mu_4 = (d+2) (1 + a2) mu_2 gives `fourth_cumulant`. See also `finite_size_cumulant`.
+    """Compute the fourth cumulant of a smooth inelastic gas in the steady state under white noise. a2 = 16
+    (1-e) (1-2e^2) / (73 + 56 d - (24 d + 105) e + 30 e^2 (1-e)) (T. P. C. van Noije and M. H. Ernst, Granular
+    Matter 1, 57 (1998)). Derived again (tested): the moments are mu_2 ~ 1 + 3 a2/16 and mu_4 ~ d + 3/2 + e^2
+    + a2 (3 (10 d + 39 + 10 e^2)/32 + (d-1)/(1-e)). The condition mu_4 = (d+2) mu_2 gives this formula, and
+    mu_4 = (d+2) (1 + a2) mu_2 gives `fourth_cumulant`.
     """
     e, d = checked_restitution(restitution), checked_dimension(dimension)
     below = 73.0 + 56.0 * d - (24.0 * d + 105.0) * e + 30.0 * e**2 * (1.0 - e)
@@ -93,17 +91,10 @@ def driven_cumulant(restitution: Numbers, dimension: int) -> Values:
 
 @check_ranges
 def finite_size_cumulant(cumulant: Numbers, count: Numbers, dimension: int) -> Values:
-    """Compute the fourth cumulant of N particles from its value for many particles.
-
-    (1 + a2) D / (D + 2) - 1 with D = d (N - 1). <(v^2)^2> is the time average of the squared mean of v^2 over
-    the particles. Velocities are relative to the centre of mass. The formula is exact for a2 = 0: at a fixed
-    energy, the velocities are uniformly distributed on a sphere in D dimensions. Corrections are of the order
-    a2/N.
-
-    Parameters
-    ----------
-    cumulant : array_like, [1]
-        Fourth cumulant a2 of many particles.
+    """Compute the fourth cumulant of N particles from its value for many particles. (1 + a2) D / (D + 2) - 1
+    with D = d (N - 1). <(v^2)^2> is the time average of the squared mean of v^2 over the particles.
+    Velocities are relative to the centre of mass. The formula is exact for a2 = 0: at a fixed energy, the
+    velocities are uniformly distributed on a sphere in D dimensions. Corrections are of the order a2/N.
     """
     freedoms = checked_dimension(dimension) * (np.asarray(count, dtype=float) - 1.0)
     return (1.0 + np.asarray(cumulant)) * freedoms / (freedoms + 2.0) - 1.0

@@ -37,16 +37,8 @@ def ideal_profile(z: Numbers, height: float, weight: float) -> Values:
 
 @check_ranges
 def ideal_mean_height(height: float, weight: Numbers) -> Values:
-    """Compute the mean height of the particles of an ideal gas [length].
-
-    Mean height; height / 2 without a field: 1/w - height / (e^x - 1) with x = w height (exact; canonical).
-
-    Parameters
-    ----------
-    height : float, [length]
-        Largest height that a centre can reach.
-    weight : array_like, [1/length]
-        Reduced weight w = m g / (k_B T).
+    """Compute the mean height of the particles of an ideal gas [length]: 1/w - height / (e^x - 1), x = w
+    height (exact).
     """
     x = np.asarray(weight, dtype=float) * height
     small = np.abs(x) < 1e-4  # both terms cancel here; the next term is x^3 / 720
@@ -56,15 +48,9 @@ def ideal_mean_height(height: float, weight: Numbers) -> Values:
 
 @check_ranges
 def ideal_heat_capacity(x: Numbers, dimension: int) -> Values:
-    """Compute the heat capacity of an ideal gas under gravity in a box.
-
-    C_V / (N k_B): d/2 + 1 - x^2 e^x / (e^x - 1)^2 (exact; canonical). This is d/2 without gravity. It is d/2
-    + 1 in a box much higher than the gas, because the potential energy also increases with T.
-
-    Parameters
-    ----------
-    x : array_like, [1]
-        Reduced height x = m g height / (k_B T).
+    """Compute the heat capacity of an ideal gas under gravity in a box. C_V / (N k_B): d/2 + 1 - x^2 e^x /
+    (e^x - 1)^2 (exact; canonical). This is d/2 without gravity. It is d/2 + 1 in a high box, because the
+    potential energy also increases with T.
     """
     x = np.asarray(x, dtype=float)
     half = np.where(x == 0.0, 1.0, 0.5 * x)
@@ -75,39 +61,11 @@ def ideal_heat_capacity(x: Numbers, dimension: int) -> Values:
 def ideal_energy_moments(
     energy: float, count: int, height: float, force: float, dimension: int, points: int = 2**14
 ) -> tuple[float, float]:
-    """Compute mean and variance of the kinetic energy of an ideal gas at fixed total energy.
-
-    The result is exact. The number of states with potential energy U is proportional to p(U) (E - U)^{dN/2 -
-    1}. Here p is the density of a sum of N independent potential energies, each uniform between 0 and force *
-    height. There are walls on all sides, so no momentum is conserved. p is computed by Fourier transform, as
-    the N-fold convolution of a single density times e^{-bU}. The factor e^{-bU} moves the peak to the right
-    energy, and the factor e^{bU} is restored afterwards. Both moments give T = 2 <K> / (dN) and, for many
-    particles, the heat capacity, see `lebowitz_percus_verlet`.
-
-    Parameters
-    ----------
-    energy : float, [energy]
-        Kinetic plus potential energy of all particles; the floor has potential energy 0.
-    height : float, [length]
-        Largest height that a centre can reach.
-    force : float, [energy/length]
-        Weight m g of a particle.
-    points : int, default 2**14
-        Number of points of the grid of potential energies.
-
-    Returns
-    -------
-    mean : float, [energy]
-        Mean kinetic energy <K>.
-    variance : float, [energy^2]
-        Variance of the kinetic energy.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> mean, variance = theory.ideal_energy_moments(100.0, count=50, height=10.0, force=0.5, dimension=2)
-    >>> round(mean, 3), round(variance, 3)
-    (50.848, 23.264)
+    """Compute mean and variance of the kinetic energy of an ideal gas at fixed total energy. The number of
+    states with potential energy U is proportional to p(U) (E - U)^{dN/2 - 1}. Here p is the density of a sum
+    of N independent potential energies, each uniform between 0 and force * height. The factor e^{-bU} moves
+    the peak to the right energy, and the factor e^{bU} is restored afterwards. Both moments give T = 2 <K> /
+    (dN) and, for many particles, the heat capacity, see `lebowitz_percus_verlet`.
     """
     top = force * height
     freedom = 0.5 * checked_dimension(dimension) * count
@@ -137,9 +95,8 @@ def ideal_energy_moments(
 
 
 def _canonical_temperature(energy: float, top: float, dimension: int) -> float:
-    """Return the temperature at which an ideal-gas particle has this mean energy, by bisection.
-
-    `top` is m g height.
+    """Return the temperature at which an ideal-gas particle has this mean energy, by bisection; `top` is m g
+    height.
     """
     half = 0.5 * dimension
     low, high = 0.5 * energy / (half + 1.0), energy / half
@@ -154,17 +111,9 @@ def _canonical_temperature(energy: float, top: float, dimension: int) -> float:
 
 @check_ranges
 def lebowitz_percus_verlet(mean: Numbers, variance: Numbers, count: int, dimension: int) -> Values:
-    """Compute the heat capacity from the fluctuations of the kinetic energy at fixed total energy.
-
-    C_V / (N k_B): <dK^2> = (d/2) N T^2 (1 - (d/2) N k_B / C_V), to leading order in 1/N (J. L. Lebowitz, J.
-    K. Percus and L. Verlet, Phys. Rev. 153, 250 (1967)) (tested against an exact case).
-
-    Parameters
-    ----------
-    mean : float or ndarray, [energy]
-        Mean of the kinetic energy K.
-    variance : float or ndarray, [energy^2]
-        Variance of the kinetic energy.
+    """Compute the heat capacity from the fluctuations of the kinetic energy at fixed total energy. C_V / (N
+    k_B): <dK^2> = (d/2) N T^2 (1 - (d/2) N k_B / C_V), to leading order in 1/N (J. L. Lebowitz, J. K. Percus
+    and L. Verlet, Phys. Rev. 153, 250 (1967)) (tested against an exact case).
     """
     half = 0.5 * dimension
     relative = variance / (half * count * (mean / (half * count)) ** 2)

@@ -46,8 +46,8 @@ METAL_GAP, METAL_BEND, METAL_BEND_ERROR = 10.0, 0.044, 0.0046
 """Gap, in mean free paths, between walls at temperatures 2 and 1. The second number is the second-order
 coefficient of the temperature of electrons among scatterers with modes, as a function of position divided by
 the gap, without the outermost tenths. The third number is its standard error. The values were computed by the
-program `electrons`: 10 metals of 20 000 electrons, for 800 or 1200 mean free times. The coefficient is 0.037
-for a linear T^0.85, and -0.12 for a linear T^(3/2) of a gas.
+program `tests/theory/electrons.py`: 10 metals of 20 000 electrons, for 800 or 1200 mean free times.
+The coefficient is 0.037 for a linear T^0.85, and -0.12 for a linear T^(3/2) of a gas.
 """
 
 
@@ -97,15 +97,9 @@ def free_molecular_flux(
 @check_ranges
 def dilute_fourier_flux(length: float, hot: float, cold: float, diameter: float = 1.0) -> float:
     """Compute the heat flux through dilute spheres in a wide gap from Fourier's law [energy/(length^2 time)].
-
     Heat flux of spheres of mass 1: (2/3) lambda_0 (T_1^(3/2) - T_2^(3/2)) / length, with the conductivity
     lambda_0 proportional to sqrt T. The formula is exact in the limit of a wide gap and a dilute gas, apart
     from the accuracy of lambda_0. It does not depend on the density (Maxwell 1860).
-
-    Parameters
-    ----------
-    length : float, [length]
-        Width of the gap.
     """
     conductivity = enskog_conductivity(0.0, 3, diameter, 1.0)
     return 2.0 / 3.0 * conductivity * (hot**1.5 - cold**1.5) / length
@@ -114,21 +108,11 @@ def dilute_fourier_flux(length: float, hot: float, cold: float, diameter: float 
 @check_ranges
 def interpolated_flux(length: float, density: float, hot: float, cold: float, diameter: float = 1.0) -> float:
     """Compute the heat flux through dilute spheres between two walls at any Knudsen number [energy/(length^2
-    time)].
-
-    Heat flux of spheres of mass 1: 1 / (1 / free + 1 / fluid), where `free` is the flux of free molecular
-    flow (`free_molecular_flux`) and `fluid` the flux of Fourier's law without temperature jumps
-    (`dilute_fourier_flux`) (F. S. Sherman, Rarefied Gas Dynamics 2, 228 (1963)). The formula is correct in
-    both limits and an approximation between them. For small temperature differences, it is 4 % above the flux
-    with temperature jumps at a Knudsen number of 0.1, and 7 % above the flux of the DSMC engine at a Knudsen
-    number of 1 (`INTERPOLATED`).
-
-    Parameters
-    ----------
-    length : float, [length]
-        Width of the gap.
-    density : float, [1/length^3]
-        Mean number density.
+    time)]. Heat flux of spheres of mass 1: 1 / (1 / free + 1 / fluid), where `free` is the flux of free
+    molecular flow (`free_molecular_flux`) and `fluid` the flux of Fourier's law without temperature jumps
+    (`dilute_fourier_flux`) (F. S. Sherman, Rarefied Gas Dynamics 2, 228 (1963)). For small temperature
+    differences, it is 4 % above the flux with temperature jumps at a Knudsen number of 0.1, and 7 % above the
+    flux of the DSMC engine at a Knudsen number of 1 (`INTERPOLATED`).
     """
     fluid = dilute_fourier_flux(length, hot, cold, diameter)
     free = float(free_molecular_flux(density, hot, cold, 3))
@@ -221,28 +205,7 @@ def _slab_without_jumps(length: float, density: float, hot: float, cold: float, 
 
 
 class Shock(NamedTuple):
-    """Steady shock, behind which the gas moves with the piston.
-
-    See also `shock_before_piston`.
-
-    Parameters
-    ----------
-    speed : float, [length/time]
-        Speed of the front in the gas at rest.
-    packing_fraction : float, [1]
-        Packing fraction behind the front.
-    temperature : float, [energy]
-        Temperature k_B T behind the front.
-    pressure : float, [energy/length^dimension]
-        Pressure behind the front.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> shock = theory.shock_before_piston(0.01, dimension=3, speed=2.0)
-    >>> round(shock.speed, 4), round(shock.temperature, 4)
-    (3.317, 2.7518)
-    """
+    """Steady shock, behind which the gas moves with the piston."""
 
     speed: float
     packing_fraction: float

@@ -50,28 +50,14 @@ def mixture_chemical_potentials(
 def mixture_insertion_correction(
     packing_fraction: float, dimension: int, diameters: Sizes, counts: Sizes, theory: str = "santos"
 ) -> np.ndarray:
-    """Compute the shift of the insertion potential of a mixture due to finite particle numbers.
-
-    -ln P_i is the change of the free energy when one particle is added. For finite numbers the free energy is
-    F + (1/2) ln(det G / prod N_a). Here G are the covariances of the numbers in an open container. The
-    formula follows from the saddle point of the grand partition function, as in
-    `state.finite_size_correction`. In an ideal gas G is diagonal and equal to the numbers. With the matrix H
-    of second derivatives of F relative to the ideal gas, the result is
+    """Compute the shift of the insertion potential of a mixture due to finite particle numbers. -ln P_i is
+    the change of the free energy when one particle is added. For finite numbers the free energy is F + (1/2)
+    ln(det G / prod N_a). Here G are the covariances of the numbers in an open container. The formula follows
+    from the saddle point of the grand partition function, as in `state.finite_size_correction`. In an ideal
+    gas G is diagonal and equal to the numbers. With the matrix H of second derivatives of F relative to the
+    ideal gas, the result is
 
         H_ii / 2 - (1/2) d ln det(1 + N H) / dN_i,    where N is the diagonal matrix of the numbers.
-
-    See also `insertion_finite_size_correction`.
-
-    Parameters
-    ----------
-    counts : array_like, shape (S,)
-        Numbers of particles of the species.
-
-    Returns
-    -------
-    ndarray, shape (S,), [1]
-        -ln P_i - mu_i / k_B T to first order in the inverse numbers, in a periodic container. P_i is the
-        probability that a random position in the container is free for one more particle of species i.
     """
     parts, unit, free_energy = _free_energy(packing_fraction, dimension, diameters, counts, theory)
     step = _STEP * unit
@@ -90,11 +76,8 @@ def mixture_insertion_correction(
 def _free_energy(
     packing_fraction: float, dimension: int, diameters: Sizes, fractions: Sizes | None, theory: str
 ) -> tuple[np.ndarray, np.ndarray, Callable[[np.ndarray], float]]:
-    """Return fractions (S,), units of changes (S,), and F / k_B T as a function of numbers (S,).
-
-    The volume is constant. It is chosen such that F is per particle if the numbers are equal to the
-    fractions. F depends on moments of the diameters. A unit of change is the number of particles of a species
-    that doubles a moment.
+    """Return fractions (S,), units of changes (S,) and F / k_B T of numbers (S,); a unit doubles a moment of
+    the diameters.
     """
     eta, sizes, parts = checked_mixture(theory, packing_fraction, dimension, diameters, fractions)
     powers = (sizes / sizes.max()) ** np.arange(dimension + 1)[:, None]
@@ -138,7 +121,6 @@ def percus_yevick_partial_factors(
     wave_number: Numbers, packing_fraction: float, diameters: Sizes, fractions: Sizes | None = None
 ) -> np.ndarray:
     """Compute the partial structure factors of a mixture of spheres, by Percus and Yevick's equation.
-
     Lebowitz's solution (J. L. Lebowitz, Phys. Rev. 133, A895 (1964)) in Baxter's factorised form (R. J.
     Baxter, J. Chem. Phys. 52, 4559 (1970)). The inverse matrix is Q^H Q with
 
@@ -152,21 +134,6 @@ def percus_yevick_partial_factors(
     and xi_n = (pi / 6) sum rho sigma^n. The sum of sqrt(x_a x_b) S_ab is S(k) of all particles. Tested: for
     equal spheres the result is S(k) of `percus_yevick_structure_factor`, and k = 0 gives the Percus-Yevick
     compressibility.
-
-    Parameters
-    ----------
-    wave_number : array_like, [1/length]
-        Wave numbers k, in inverse units of the diameters.
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.539.
-    fractions : array_like, shape (S,), optional, [1]
-        Number fractions, all positive. Default: equal.
-
-    Returns
-    -------
-    ndarray, shape (..., S, S), [1]
-        S_ab(k) = <rho_a(k) rho_b(-k)> / sqrt(N_a N_b) of each pair of species. In an ideal gas it is 1 for
-        equal species and 0 otherwise.
     """
     eta, sizes, parts = checked_mixture("santos", packing_fraction, 3, diameters, fractions)
     k = np.asarray(wave_number, dtype=float)[..., None, None, None]
@@ -194,7 +161,6 @@ def dilute_mixture_conductivity(
     masses: Numbers | Sizes = 1.0,
 ) -> float:
     """Compute the thermal conductivity of a dilute mixture of spheres, without diffusion [1/(length time)].
-
     Conductivity kappa, with k_B = 1. The unit of length is the unit of the diameters. The first approximation
     of Chapman and Enskog (C. Muckenfuss and C. F. Curtiss, J. Chem. Phys. 29, 1273 (1958)) is kappa = -4 x
     L^-1 x with

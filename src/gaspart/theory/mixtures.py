@@ -77,9 +77,8 @@ def _numbers(name: str, values: Sizes) -> np.ndarray:
 
 
 def _moment(parts: np.ndarray, sizes: np.ndarray, power: int) -> float:
-    """Return the mean of a power of the diameters, with a single rounding.
-
-    Sums of BLAS depend on the processor, and this mean determines the lengths of runs.
+    """Return the mean of a power of the diameters, with a single rounding. Sums of BLAS depend on the
+    processor, and this mean determines the lengths of runs.
     """
     return math.fsum(parts * np.prod([sizes] * power, axis=0)) if power else math.fsum(parts)
 

@@ -83,16 +83,8 @@ def insertion_saturation(
 def insertion_saturation_uncertainty(
     dimension: int, side_over_diameter: float | None = None, boundary: str = "periodic"
 ) -> float:
-    """Compute the standard uncertainty of `insertion_saturation`.
-
-    The uncertainty of the literature's value and the uncertainty of the wall excess, added in quadrature.
-
-    Parameters
-    ----------
-    side_over_diameter : float, optional, [1]
-        Side of the container divided by the diameter, at least 1. Default: an infinite container.
-    boundary : {"periodic", "wall", "centres_to_walls"}, default "periodic"
-        Faces of the container, as for `insertion_saturation`.
+    """Compute the standard uncertainty of `insertion_saturation`, from the literature's value and the wall
+    excess.
     """
     relative = RSA_SATURATION_UNCERTAINTY[checked_dimension(dimension)] / RSA_SATURATION[dimension]
     value = insertion_saturation(dimension, side_over_diameter, boundary)
@@ -105,17 +97,10 @@ def insertion_saturation_uncertainty(
 
 
 def available_fraction(packing_fraction: Numbers, dimension: int) -> Values:
-    """Compute the probability that a random attempt to insert a particle succeeds.
-
-    1 - 2^d eta + c_2 eta^2, with c_2 = 6 sqrt 3 / pi (2D) or 17 (3D). The fraction is exact to order eta^2,
-    up to which random insertion and equilibrium agree (B. Widom (1966)) (P. Schaaf and J. Talbot (1989)). So
-    c_2 follows from B2 and B3 (tested). The value is for an infinite or periodic container. The third order
-    is neglected. This limits the range for an accuracy of about 1 % to eta = 0.05 in 3D and 0.1 in 2D.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to the minimum of the parabola: 0.605 for discs, 0.235 for spheres.
+    """Compute the probability that a random attempt to insert a particle succeeds. 1 - 2^d eta + c_2 eta^2,
+    with c_2 = 6 sqrt 3 / pi (2D) or 17 (3D). It is exact to order eta^2, up to which random insertion and
+    equilibrium agree (B. Widom (1966); P. Schaaf and J. Talbot (1989)). So c_2 follows from B2 and B3
+    (tested). The accuracy is about 1 % up to eta = 0.05 in 3D and 0.1 in 2D.
     """
     first = 2.0 ** checked_dimension(dimension)
     second = _AVAILABLE_SECOND[dimension]
@@ -190,21 +175,6 @@ def _expansion(eta: Numbers, dimension: int) -> np.ndarray:
         low, high = LOWEST_CRYSTAL[dimension], CLOSE_PACKING[dimension]
         raise ValueError(f"packing_fraction: {eta} (this formula holds from {low} to {high:.4f})")
     return CLOSE_PACKING[dimension] / eta - 1.0
-
-
-def speedy_crystal(packing_fraction: Numbers) -> Values:
-    """Compute Z of the face-centred cubic crystal of spheres by Speedy's equation.
-
-    Z = 3/(1-z) - 0.5921 (z - 0.7072)/(z - 0.601) with z = eta / eta_c (R. J. Speedy, J. Phys.: Condens.
-    Matter 10, 4387 (1998)). The coefficients are copied from SklogWiki.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0.49 (`LOWEST_CRYSTAL`) to below close packing, 0.7405.
-    """
-    z = 1.0 / (1.0 + _expansion(packing_fraction, 3))
-    return 3.0 / (1.0 - z) - 0.5921 * (z - 0.7072) / (z - 0.601)
 
 
 def etomica_crystal(packing_fraction: Numbers) -> Values:

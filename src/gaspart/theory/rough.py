@@ -14,23 +14,11 @@ from gaspart.theory.granular import checked_restitution
 
 
 def rough_matrix(inertia: float, tangential: float, normal: float = 1.0) -> np.ndarray:
-    """Compute the matrix that describes the exchange of translational and rotational energy of rough discs.
-
-    M = [[-2A, 2B], [4B, -4C]] with A = (1 - normal^2)/4 + h (1 - h)/2, B = h^2 / 2q, C = h (1 - h/q) / 2q and
-    h = q (1 + tangential) / (2q + 2) (M. Huthmann and A. Zippelius, Phys. Rev. E 56, R6275 (1997)) (S. Luding
+    """Compute the matrix that describes the exchange of translational and rotational energy of rough discs. M
+    = [[-2A, 2B], [4B, -4C]] with A = (1 - normal^2)/4 + h (1 - h)/2, B = h^2 / 2q, C = h (1 - h/q) / 2q and h
+    = q (1 + tangential) / (2q + 2) (M. Huthmann and A. Zippelius, Phys. Rev. E 56, R6275 (1997)) (S. Luding
     and others, Phys. Rev. E 58, 3416 (1998)) (exact averages over Maxwellian velocities and spins, tested).
-    T_tr = m <v^2> / 2, T_rot = I <w^2>. In a perfectly rough gas, T_tr - T_rot decays at the rate 3q /
-    (1+q)^2.
-
-    Parameters
-    ----------
-    tangential : float, [1]
-        Coefficient of tangential restitution, from -1 (smooth) to 1 (perfectly rough).
-
-    Returns
-    -------
-    ndarray, shape (2, 2), [1]
-        Matrix M in d(T_tr, T_rot)/ds = M (T_tr, T_rot), with s collisions of a particle.
+    In a perfectly rough gas, T_tr - T_rot decays at the rate 3q / (1+q)^2.
     """
     q = float(inertia)
     if not q > 0.0:
@@ -108,18 +96,11 @@ ROUGH_START_UNCERTAINTY = 0.002
 
 @check_ranges
 def rough_start_excess(inertia: float, collisions: Numbers) -> Values:
-    """Return the deviation of rough discs from Maxwellian energy exchange, for a start without spin.
-
-    T_tr - T_rot of perfectly rough discs divided by the initial temperature, minus exp(-3 q s / (1 + q)^2).
-    NaN if it was not computed. The exponential is the result for Maxwellian velocities (M. Huthmann and A.
+    """Return the deviation of rough discs from Maxwellian energy exchange, for a start without spin. T_tr -
+    T_rot of perfectly rough discs divided by the initial temperature, minus exp(-3 q s / (1 + q)^2). NaN if
+    it was not computed. The exponential is the result for Maxwellian velocities (M. Huthmann and A.
     Zippelius, Phys. Rev. E 56, R6275 (1997)). The values were computed by direct simulation of the
-    homogeneous Boltzmann equation (`boltzmann.rough_start`). The standard uncertainty is
-    `ROUGH_START_UNCERTAINTY`.
-
-    Parameters
-    ----------
-    collisions : array_like, [1]
-        Number s of collisions of a particle.
+    homogeneous Boltzmann equation (`tests/theory/homogeneous.py`).
     """
     table = np.loadtxt(Path(__file__).parent / "data" / "rough_start.csv", delimiter=",", skiprows=1)
     s, excess = table[np.isclose(table[:, 0], inertia), 1:].T
@@ -130,22 +111,13 @@ def rough_start_excess(inertia: float, collisions: Numbers) -> Values:
 
 @check_ranges
 def rough_wall_difference(time: Numbers, inertia: float) -> Values:
-    """Compute the temperature difference of rough particles that collide only with two rough walls.
-
-    (T_par - T_rot) / T_par(0). The particles are perfectly rough and initially have no spin. The walls are
-    parallel. A wall hit rotates the pair (v, sqrt(q) R w) by the angle a, with cos a = (1 - q)/(1 + q)
-    (Spencer 2022, Eq. 40). Here v is a tangential velocity and w the corresponding spin, relative to the
+    """Compute the temperature difference of rough particles that collide only with two rough walls. (T_par -
+    T_rot) / T_par(0). A wall hit rotates the pair (v, sqrt(q) R w) by the angle a, with cos a = (1 - q)/(1 +
+    q) (Spencer 2022, Eq. 40). Here v is a tangential velocity and w the corresponding spin, relative to the
     wall. After K hits v is v(0) cos(K a), and the difference is the mean of cos(2 K a). For uniform
     positions, its mean at a given normal speed is linear in time between the times of integer K. Written as a
     Fourier series and averaged over Maxwellian normal velocities, it is the sum over integers j of (sin a /
-    (a + pi j))^2 exp(-2 (a + pi j)^2 time^2). The result is exact. The sum is truncated at j = 1000, which
-    causes an error (2e-4) only for times below 0.002.
-
-    Parameters
-    ----------
-    time : array_like, [1]
-        Reduced time t sqrt(k_B T / m) / h, with the distance h between the walls that is accessible to
-        centres.
+    (a + pi j))^2 exp(-2 (a + pi j)^2 time^2).
     """
     q = float(inertia)
     if not q > 0.0:

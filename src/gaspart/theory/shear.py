@@ -83,20 +83,9 @@ def channel_velocity(
     height: Numbers, length: Numbers, density: Numbers, force: Numbers, diameter: float = 1.0
 ) -> Values:
     """Compute the velocity of dilute spheres that a force drives along two resting walls [length/time].
-
     Velocity of spheres of mass 1 at temperature 1. The profile is Poiseuille's parabola with slip: density
-    force / (2 mu) [height (length - height) + `VELOCITY_SLIP` l_0 length], with the viscosity mu. It is of
-    first order in `force` and l_0 / length. The next order in l_0 adds 0.6 density force l_0^2 / mu (N. G.
-    Hadjiconstantinou, Phys. Fluids 15, 2352 (2003)).
-
-    Parameters
-    ----------
-    height : array_like, [length]
-        Height above one of the walls.
-    length : array_like, [length]
-        Distance between the walls.
-    force : array_like, [mass length/time^2]
-        Force on each particle.
+    force / (2 mu) [height (length - height) + `VELOCITY_SLIP` l_0 length], with the viscosity mu. The next
+    order in l_0 adds 0.6 density force l_0^2 / mu (N. G. Hadjiconstantinou, Phys. Fluids 15, 2352 (2003)).
     """
     height, length, density, force = (np.asarray(a, dtype=float) for a in (height, length, density, force))
     path = 1.0 / (np.sqrt(2.0) * np.pi * density * diameter**2)
@@ -105,54 +94,14 @@ def channel_velocity(
 
 
 @check_ranges
-def free_flight_drift(
-    time: Numbers, length: float, force: float = 1.0, temperature: float = 1.0, mass: float = 1.0
-) -> Values:
-    """Compute the mean velocity, along two walls, of particles that collide only with the walls
-    [length/time].
-
-    Exact (closed form). The drift is force / mass times the mean time since a particle last hit a wall,
-    limited to `time`. This mean is an integral over t of the fraction of particles that have not hit a wall
-    for the time t. The fraction is the average of 1 - abs(v) t / length, if positive, over Maxwell's
-    distribution. The drift grows with the logarithm of time without limit, because many particles cross
-    slowly.
-
-    Parameters
-    ----------
-    time : array_like, [time]
-        Time since a force on each particle was switched on; before that the gas was in equilibrium.
-    length : float, [length]
-        Distance between the walls.
-    force : float, default 1.0, [mass length/time^2]
-        Force on each particle.
-    """
-    from scipy.special import erf, exp1
-
-    crossing = length / np.sqrt(temperature / mass)
-    s = np.asarray(time, dtype=float) / crossing
-    w = 0.5 / np.maximum(s, 1e-9) ** 2
-    age = s * erf(np.sqrt(w)) + (0.5 * exp1(w) + s**2 * np.expm1(-w)) / np.sqrt(2.0 * np.pi)
-    return force / mass * crossing * age
-
-
-@check_ranges
 def interpolated_stress(
     length: Numbers, density: Numbers, velocity: Numbers, diameter: float = 1.0
 ) -> Values:
     """Compute the shear stress of dilute spheres between sliding walls at any Knudsen number [mass/(length
-    time^2)].
-
-    Shear stress of spheres of mass 1 at temperature 1: 1 / (1 / free + 1 / fluid), where `free` is the stress
-    of free molecular flow and `fluid` the stress without slip, in Sherman's form (F. S. Sherman, Rarefied Gas
-    Dynamics 2, 228 (1963)). To first order in `velocity` the formula is correct in both limits. Between the
-    limits it is an approximation: 2 % above the stress with slip at a Knudsen number of 0.1.
-
-    Parameters
-    ----------
-    length : array_like, [length]
-        Distance between the walls.
-    velocity : array_like, [length/time]
-        Difference of the walls' velocities.
+    time^2)]. Shear stress of spheres of mass 1 at temperature 1: 1 / (1 / free + 1 / fluid), where `free` is
+    the stress of free molecular flow and `fluid` the stress without slip, in Sherman's form (F. S. Sherman,
+    Rarefied Gas Dynamics 2, 228 (1963)). Between the limits it is an approximation: 2 % above the stress with
+    slip at a Knudsen number of 0.1.
     """
     free = free_molecular_stress(density, 1.0)
     fluid = enskog_viscosity(0.0, 3, diameter) / length
@@ -161,12 +110,10 @@ def interpolated_stress(
 
 @check_ranges
 def viscous_heating(packing_fraction: Numbers, dimension: int) -> Values:
-    """Compute Enskog's viscosity divided by twice the thermal conductivity [mass].
-
-    Ratio in units of mass / k_B. Between two walls, T plus this ratio times u^2 is uniform. The velocity u is
-    relative to the position of the highest temperature. The result is exact if the ratio of the two
-    coefficients is constant; both are proportional to the square root of T. The ratio is 2 / 15 in the first
-    Sonine approximation of dilute spheres.
+    """Compute Enskog's viscosity divided by twice the thermal conductivity [mass]. Between two walls, T plus
+    this ratio times u^2 is uniform. u is relative to the position of the highest temperature. The result is
+    exact if the ratio of the two coefficients is constant; both are proportional to the square root of T. The
+    ratio is 2 / 15 in the first Sonine approximation of dilute spheres.
     """
     conductivity = enskog_conductivity(packing_fraction, dimension)
     return 0.5 * enskog_viscosity(packing_fraction, dimension) / conductivity

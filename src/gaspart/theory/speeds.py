@@ -147,19 +147,11 @@ def kurtosis(dimension: int, count: int | None = None, zero_momentum: bool = Fal
 
 @check_ranges
 def kurtosis_scatter(dimension: int, count: int) -> tuple[float, float]:
-    """Compute the equilibrium scatter of the instantaneous kurtosis of N particles.
-
-    The velocities are uniform on a sphere in D = d N dimensions (exact). The kurtosis is N sum(q) / (sum e)^2
-    with e = v^2 and q = e^2. At constant energy it does not depend on sum(e). So its moment of order m is N^m
-    <sum(q)^m> / <(sum e)^2m> for independent normal velocities, for which <e^k> is d (d+2) ... (d+2k-2). If
-    the total momentum is fixed at zero, the scatter changes by the relative amount 1/N (neglected).
-
-    Returns
-    -------
-    deviation : float, [1]
-        Standard deviation.
-    skewness : float, [1]
-        Skewness.
+    """Compute the equilibrium scatter of the instantaneous kurtosis of N particles. The velocities are
+    uniform on a sphere in D = d N dimensions (exact). The kurtosis is N sum(q) / (sum e)^2 with e = v^2 and q
+    = e^2. So its moment of order m is N^m <sum(q)^m> / <(sum e)^2m> for independent normal velocities, for
+    which <e^k> is d (d+2) ... (d+2k-2). If the total momentum is fixed at zero, the scatter changes by the
+    relative amount 1/N (neglected).
     """
 
     def moment(freedoms: int, order: int) -> float:
@@ -179,10 +171,7 @@ def kurtosis_scatter(dimension: int, count: int) -> tuple[float, float]:
 
 
 def initial_kurtosis_slope(dimension: int) -> float:
-    """Return the initial slope dK/ds of the kurtosis of a gas that starts from equal speeds.
-
-    Slope at s = 0, with s collisions per particle: 64/225 in 2D, 8/35 in 3D (exact).
-    """
+    """Return the initial slope dK/ds of the kurtosis from equal speeds: 64/225 in 2D, 8/35 in 3D (exact)."""
     return {2: 64.0 / 225.0, 3: 8.0 / 35.0}[checked_dimension(dimension)]
 
 

@@ -38,10 +38,8 @@ _NODES = 32  # number of nodes of an integral over ln(eta), whose integrand is a
 
 
 def virial_with_tail(packing_fraction: Numbers, dimension: int = 2) -> Values:
-    """Compute Z by the virial series to B10 and an extrapolation of its tail.
-
-    `partial_sum` plus `virial.linear_tail` (literature and a computed extrapolation). For discs this is the
-    reference, up to eta = 0.70. For spheres it only tests the reference at low density.
+    """Compute Z by the virial series to B10 plus `virial.linear_tail`: the reference for discs, up to eta =
+    0.70.
     """
     eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
     return partial_sum(eta, HIGHEST_ORDER, dimension) + linear_tail(eta, dimension)
@@ -125,17 +123,8 @@ def speed_of_sound(packing_fraction: Numbers, dimension: int) -> Values:
 
 
 def adiabatic_temperature(packing_fraction: Numbers, initial: Numbers, dimension: int) -> Values:
-    """Compute the temperature after adiabatic compression divided by the initial temperature.
-
-    exp(2/d times the integral of Z over ln eta), because d/2 N k_B dT = -P dV (exact), with Z of
-    `compressibility_factor`. It is (V_0 / V)^(2/d) if Z is 1.
-
-    Parameters
-    ----------
-    packing_fraction : float or ndarray, [1]
-        Packing fraction eta after the compression, above 0, up to 0.70 for discs and 0.539 for spheres.
-    initial : float or ndarray, [1]
-        Packing fraction before the compression, in the same range.
+    """Compute the temperature after adiabatic compression divided by the initial temperature. exp(2/d times
+    the integral of Z over ln eta), because d/2 N k_B dT = -P dV (exact), with Z of `compressibility_factor`.
     """
     highest = HIGHEST_PACKING_FRACTION[checked_dimension(dimension)]
     start = np.log(checked_packing_fraction(initial, highest))

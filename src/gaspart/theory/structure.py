@@ -23,18 +23,11 @@ _SMALL = 1e-3  # wave number below which a quotient of small numbers is replaced
 
 @check_ranges
 def percus_yevick_structure_factor(wave_number: Numbers, packing_fraction: float) -> Values:
-    """Compute S(k) of spheres from the Percus-Yevick equation.
-
-    S(k) = 1 / (1 - rho c(k)). The direct correlation function is -(a + b r + a eta r^3 / 2) inside the
-    diameter and 0 outside, with a = (1 + 2 eta)^2 / (1 - eta)^4, b = -6 eta (1 + eta / 2)^2 / (1 - eta)^4 (M.
-    S. Wertheim, Phys. Rev. Lett. 10, 321 (1963)) (E. Thiele, J. Chem. Phys. 39, 474 (1963)). The integral is
-    computed by Gauss-Legendre quadrature, exact to rounding up to k = 100. S(0) is consistent with
-    `percus_yevick_compressibility`.
-
-    Parameters
-    ----------
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.539.
+    """Compute S(k) of spheres from the Percus-Yevick equation. S(k) = 1 / (1 - rho c(k)). The direct
+    correlation function is -(a + b r + a eta r^3 / 2) inside the diameter and 0 outside, with a = (1 + 2
+    eta)^2 / (1 - eta)^4, b = -6 eta (1 + eta / 2)^2 / (1 - eta)^4 (M. S. Wertheim, Phys. Rev. Lett. 10, 321
+    (1963)) (E. Thiele, J. Chem. Phys. 39, 474 (1963)). The integral is computed by Gauss-Legendre quadrature,
+    exact to rounding up to k = 100.
     """
     eta = float(checked_packing_fraction(packing_fraction, METASTABLE_SPHERES))
     k = np.asarray(wave_number, dtype=float)
@@ -49,20 +42,12 @@ def percus_yevick_structure_factor(wave_number: Numbers, packing_fraction: float
 
 @check_ranges
 def percus_yevick_rdf(distance: Numbers, packing_fraction: float) -> Values:
-    """Compute g(r) of spheres from the Percus-Yevick equation, up to 5 diameters.
-
-    Pair distribution g(r), which is 0 inside the diameter: r g(r) is the inverse of Wertheim's Laplace
-    transform (M. S. Wertheim, Phys. Rev. Lett. 10, 321 (1963)). With L = (1 + eta / 2) t + 1 + 2 eta and S =
-    (1 - eta)^2 t^3 + 6 eta (1 - eta) t^2 + 18 eta^2 t - 12 eta (1 + 2 eta), it is a sum over n < r. The terms
-    are the residues of (-12 eta)^(n-1) t (L / S)^n e^{t (r - n)} at the three zeros of S. The residues are
-    computed together, as an integral over circles around all three zeros.
-
-    Parameters
-    ----------
-    distance : array_like, [diameter]
-        Distances r, at most 5.
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.539.
+    """Compute g(r) of spheres from the Percus-Yevick equation, up to 5 diameters. Pair distribution g(r),
+    which is 0 inside the diameter: r g(r) is the inverse of Wertheim's Laplace transform (M. S. Wertheim,
+    Phys. Rev. Lett. 10, 321 (1963)). With L = (1 + eta / 2) t + 1 + 2 eta and S = (1 - eta)^2 t^3 + 6 eta (1
+    - eta) t^2 + 18 eta^2 t - 12 eta (1 + 2 eta), it is a sum over n < r. The terms are the residues of (-12
+    eta)^(n-1) t (L / S)^n e^{t (r - n)} at the three zeros of S. The residues are computed together, as an
+    integral over circles around all three zeros.
     """
     eta = float(checked_packing_fraction(packing_fraction, METASTABLE_SPHERES))
     r = np.asarray(distance, dtype=float)
@@ -81,9 +66,8 @@ def percus_yevick_rdf(distance: Numbers, packing_fraction: float) -> Values:
 
 @cache
 def _circles(eta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return nodes (n,) on circles around the zeros of S, their weights, and L / S.
-
-    The weights are for integrals divided by 2 pi i.
+    """Return nodes (n,) on circles around the zeros of S, their weights for integrals over 2 pi i,
+    and L / S.
     """
     linear = 6.0 * eta * (1.0 - eta)
     cubic = np.array([(1.0 - eta) ** 2, linear, 18.0 * eta**2, -12.0 * eta * (1.0 + 2.0 * eta)])
@@ -122,10 +106,7 @@ def _verlet_weis(eta: float) -> tuple[float, float, float, float]:
 
 
 def _overlapping(k: np.ndarray, eta: float, effective: float, diameter: float) -> np.ndarray:
-    """Return the contribution to S(k) of pairs between the smaller diameter and 1.
-
-    The result is 24 eta times the integral of r^2 g(r) sin(kr) / (kr).
-    """
+    """Return the contribution to S(k) of pairs between the smaller diameter and 1."""
     nodes, weights = np.polynomial.legendre.leggauss(12)
     r = 0.5 * (1.0 - diameter) * (nodes + 1.0) + diameter
     g = percus_yevick_rdf(r / diameter, effective)

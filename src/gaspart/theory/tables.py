@@ -147,10 +147,8 @@ def excess_chemical_potential(packing_fraction: Numbers, dimension: int) -> Valu
 
 
 def chemical_potential_uncertainty(packing_fraction: Numbers, dimension: int) -> Values:
-    """Compute the standard uncertainty of `excess_chemical_potential`.
-
-    The uncertainty of Z at this and all lower packing fractions, assumed to have the same sign everywhere
-    (computed estimate).
+    """Compute the standard uncertainty of `excess_chemical_potential`; errors of Z are assumed to have the
+    same sign.
     """
     eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
     nodes, weights = np.polynomial.legendre.leggauss(40)
@@ -170,17 +168,15 @@ def activity(packing_fraction: Numbers, dimension: int) -> Values:
 
 @check_ranges
 def insertion_finite_size_correction(packing_fraction: Numbers, dimension: int, count: int) -> Values:
-    """Compute the shift of the insertion potential due to the finite number of particles.
-
-    The value is -ln P_N - mu_excess / (k_B T), to first order in 1/N, in a periodic container. P_N is the
-    probability that a random position in the container is free for another particle. With the configuration
-    integral Q_N as in `state.finite_size_correction`, P_N = Q_(N+1) / (V Q_N) is
+    """Compute the shift of the insertion potential due to the finite number of particles. The value is -ln
+    P_N - mu_excess / (k_B T), to first order in 1/N, in a periodic container. P_N is the probability that a
+    random position in the container is free for another particle. With the configuration integral Q_N as in
+    `state.finite_size_correction`, P_N = Q_(N+1) / (V Q_N) is
 
         (1 / 2N) [1 / S - 1 + eta S' / S],    where S = `reduced_compressibility` and S' is its derivative
         with respect to eta
 
-    . To first order in the density the correction is zero, which is exact. See also
-    `mixture_insertion_correction`.
+    To first order in the density the correction is zero, which is exact.
     """
     highest = HIGHEST_PACKING_FRACTION[checked_dimension(dimension)]
     eta = np.clip(checked_packing_fraction(packing_fraction, highest), _STEP, highest - _STEP)

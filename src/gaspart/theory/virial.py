@@ -100,16 +100,8 @@ def partial_sum(packing_fraction: Numbers, order: int, dimension: int) -> Values
 
 
 def partial_sum_uncertainty(packing_fraction: Numbers, order: int, dimension: int) -> Values:
-    """Compute the standard uncertainty of `partial_sum` from the uncertainties of the coefficients.
-
-    The errors of the coefficients are assumed to be independent. The truncation error is not included.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to close packing.
-    order : int
-        Order of the last coefficient, from 1 to 10.
+    """Compute the standard uncertainty of `partial_sum` from independent uncertainties of the
+    coefficients.
     """
     _, uncertainties = virial_coefficients(dimension, order)
     eta = checked_packing_fraction(packing_fraction, CLOSE_PACKING[dimension])
@@ -117,17 +109,10 @@ def partial_sum_uncertainty(packing_fraction: Numbers, order: int, dimension: in
 
 
 def linear_tail(packing_fraction: Numbers, dimension: int) -> Values:
-    """Compute the terms beyond B10, if b_n grows linearly with the last known difference.
-
-    The result is a computed extrapolation: b_(10+k) = b_10 + k (b_10 - b_9), so the tail is eta^10 [b_10 /
-    (1-eta) + (b_10 - b_9) / (1-eta)^2]. In 2D the differences converge (0.989, 0.967, 0.953, 0.944), so this
-    is a good estimate up to eta = 0.65. In 3D they still grow by about 2 per order, so this is a lower bound.
-    See also `linear_tail_uncertainty`.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to close packing.
+    """Compute the terms beyond B10, if b_n grows linearly with the last known difference. The result is a
+    computed extrapolation: b_(10+k) = b_10 + k (b_10 - b_9), so the tail is eta^10 [b_10 / (1-eta) + (b_10 -
+    b_9) / (1-eta)^2]. In 2D the differences converge (0.989, 0.967, 0.953, 0.944), so this is a good estimate
+    up to eta = 0.65. In 3D they still grow by about 2 per order, so this is a lower bound.
     """
     coefficients, _ = virial_coefficients(dimension)
     eta = checked_packing_fraction(packing_fraction, CLOSE_PACKING[dimension])

@@ -30,9 +30,8 @@ def leads_out(name: str) -> bool:
 
 
 def scene_files(config: Any) -> list[str]:
-    """Return the distinct normalised paths of the scene files of all experiments in a merged config.
-
-    They are the texts under `scene` in points and grids.
+    """Return the distinct normalised paths of the scene files of all experiments in a merged config. They are
+    the texts under `scene` in points and grids.
     """
     paths: dict[str, None] = {}
     blocks = [config.get("experiments") if isinstance(config, dict) else None]
@@ -54,10 +53,9 @@ _WHOLE = {"experiments", "figures"}
 
 @dataclass(frozen=True)
 class Finished:
-    """Finished run: merged config, its files, and points of figures and films.
-
-    All paths are relative to `root`, the folder of the workflow. `results` is `results` or `results/<run>`,
-    in the folder of the module's prefix if there is a prefix.
+    """Finished run: merged config, its files, and points of figures and films. All paths are relative to
+    `root`, the folder of the workflow. `results` is `results` or `results/<run>`, in the folder of the
+    module's prefix if there is a prefix.
     """
 
     root: Path
@@ -73,9 +71,8 @@ class Finished:
 
     @property
     def is_copy(self) -> bool:
-        """True if `root` is a copy of the project.
-
-        Otherwise `root` has another workflow, which uses this project as a module.
+        """True if `root` is a copy of the project. Otherwise `root` has another workflow, which uses this
+        project as a module.
         """
         return (self.root / "workflow/rules/common.smk").is_file()
 
@@ -111,11 +108,10 @@ class Finished:
 
 
 def find_finished(results: str | Path, config: str | Path | None = None) -> Finished:
-    """Find the finished run whose results are in the folder `results` or `results/<run>`.
-
-    By default, `config` is the one config of the project with the name of this run. If another workflow uses
-    this one as a module, the project is that of the other workflow. Raises SceneError if results are missing,
-    or if trajectories were made with settings that differ from the config.
+    """Find the finished run whose results are in the folder `results` or `results/<run>`. By default,
+    `config` is the one config of the project with the name of this run. If another workflow uses this one as
+    a module, the project is that of the other workflow. Raises SceneError if results are missing, or if
+    trajectories were made with settings that differ from the config.
     """
     folder = resolve_path(results)
     if not (folder / "tables/claims.csv").is_file():
@@ -217,10 +213,8 @@ _OF_PACKAGE = Path(__file__).parents[4]
 
 
 def sources(run: Finished) -> Iterator[str]:
-    """Yield the files of the project with which the run can be repeated.
-
-    If another workflow uses this one as a module, it has some of these files, and CITATION.cff. Raises
-    SceneError if a necessary file is missing.
+    """Yield the files of the project with which the run can be repeated. If another workflow uses this one as
+    a module, it has some of these files, and CITATION.cff. Raises SceneError if a necessary file is missing.
     """
     required = (run.workflow, CITATION, *(_NEEDED if run.is_copy else ()))
     for name in required:
