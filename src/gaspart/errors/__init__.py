@@ -131,12 +131,6 @@ class SimulationError(OneLine, RuntimeError):
     """Violation of an invariant during a run, or a run that cannot continue.
 
     The caller keeps the last valid state.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> issubclass(gp.SimulationError, RuntimeError)
-    True
     """
 
 

@@ -135,6 +135,9 @@ def read_state(path: str | Path, scene: Scene, seed: int | tuple[int, ...] = 0) 
 
     The state is the last frame of the file.
 
+    The particles of the file are sorted by their ids, if there are any. This order should be the order of the
+    scene. If radii and masses then differ from the scene, particles are assigned by their radii and masses.
+
     Parameters
     ----------
     path : str or Path
@@ -155,12 +158,6 @@ def read_state(path: str | Path, scene: Scene, seed: int | tuple[int, ...] = 0) 
     SceneError
         If the file has another number of particles, other sizes or masses, or another container; if
         `gaspart check` cannot read it; or if `Simulation` rejects the state.
-
-    Notes
-    -----
-    The particles of the file are sorted by their ids, if there are any. This order should be the order of the
-    scene. If radii and masses then differ from the scene, particles are assigned by
-    their radii and masses.
 
     Examples
     --------

@@ -80,6 +80,11 @@ def sweep(
 
     Trajectories are stored. A repeated call simulates only what is missing in `folder`.
 
+    If some of radius, packing fraction and count vary, the others keep their values as far as possible. If
+    runs conserve their energy, species with a `temperature` have exactly this temperature at the start;
+    otherwise each point would have another energy. A complete trajectory is not simulated again. An
+    interrupted trajectory is continued.
+
     Parameters
     ----------
     scene : Scene
@@ -142,13 +147,6 @@ def sweep(
     See Also
     --------
     run : A single run.
-
-    Notes
-    -----
-    If some of radius, packing fraction and count vary, the others keep their values as far as possible. If
-    runs conserve their energy, species with a `temperature` have exactly this temperature at the start;
-    otherwise each point would have another energy. A complete trajectory is not simulated again. An
-    interrupted trajectory is continued.
 
     Examples
     --------

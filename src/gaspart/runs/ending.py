@@ -28,6 +28,10 @@ from gaspart.trajectory.run_options import Contents, Requirement, Until, require
 class Accuracy(Requirement):
     """Requested accuracy of an observable: its standard error divided by its absolute value.
 
+    The run also stores an `ImpulseTally` under three conditions: the accuracy is required for the density, or
+    for the pressure on walls across a single axis; the engine supports the tally; and the tally makes the run
+    shorter.
+
     Parameters
     ----------
     observable : str
@@ -52,12 +56,6 @@ class Accuracy(Requirement):
     --------
     run : Run a scene until such accuracies are reached.
     reached_accuracy : Accuracies that a run has reached.
-
-    Notes
-    -----
-    The run also stores an `ImpulseTally` under three conditions: the accuracy is required for the density, or
-    for the pressure on walls across a single axis; the engine supports the tally; and the tally makes the run
-    shorter.
 
     Examples
     --------

@@ -87,26 +87,12 @@ class Correlations:
 
     @property
     def first(self) -> int:
-        """Index of the first sample, in intervals from time 0.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Correlations(interval=0.1, lags=100, start=2.0).first
-        20
-        """
+        """Index of the first sample, in intervals from time 0."""
         return round(self.start / self.interval)
 
     @property
     def tallies(self) -> tuple[OptionalTally, ...]:
-        """Optional tallies that the correlations need.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> [tally.name for tally in gp.Correlations(interval=0.1, lags=100, stress=True).tallies]
-        ['stress']
-        """
+        """Optional tallies that the correlations need."""
         return (StressTally(),) if self.stress else ()
 
     def to_json(self) -> str:
@@ -116,12 +102,6 @@ class Correlations:
         -------
         str
             JSON of the settings.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Correlations(interval=0.1, lags=100).to_json()
-        '{"interval": 0.1, "lags": 100, "start": 0.0}'
         """
         return json.dumps({key: value for key, value in asdict(self).items() if value is not False})
 
@@ -145,12 +125,6 @@ class Correlations:
             If a value is invalid.
         TypeError, ValueError
             If the text does not describe correlations.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Correlations.from_json('{"interval": 0.1, "lags": 100}').lags
-        100
         """
         return cls(**json.loads(text))
 
@@ -304,7 +278,6 @@ class StressCorrelator(_Correlator):
 
     @property
     def next(self) -> int:
-        """Index of the next sample, in intervals from time 0."""
         return super().next + self._begun
 
     def add(self, simulation: Simulation) -> None:
@@ -330,12 +303,10 @@ class StressCorrelator(_Correlator):
         return {"correlated_samples": float(self._samples), **named}
 
     def checkpoint(self) -> dict[str, Any]:
-        """Return arrays from which `restore` continues bitwise identically."""
         begun = {_PREFIX + "latest": self._latest, _PREFIX + "begun": np.array(self._begun)}
         return {**super().checkpoint(), **begun}
 
     def restore(self, arrays: dict[str, np.ndarray]) -> None:
-        """Continue from the checkpoint of a correlator with the same settings."""
         super().restore(arrays)
         self._latest, self._begun = arrays[_PREFIX + "latest"].copy(), bool(arrays[_PREFIX + "begun"])
 

@@ -269,6 +269,10 @@ def _rows(template: str, *columns: np.ndarray) -> Iterator[str]:
 def last_state(path: str | Path) -> State:
     """Return the state of all particles at the end of a trajectory.
 
+    The state is exact if the run was made with `keep_checkpoint`. Otherwise positions, velocities and spins
+    are from the last frame, in single precision, and a warning is issued. The motion of a piston and the
+    displacement of sheared images are exact.
+
     Parameters
     ----------
     path : str or Path
@@ -286,12 +290,6 @@ def last_state(path: str | Path) -> State:
         Without a checkpoint, SceneError is also raised if the last frame does not contain all particles
         (`follow`) or all properties (`keep`), or if a frame does not determine the state (in a scene with
         sticky faces).
-
-    Notes
-    -----
-    The state is exact if the run was made with `keep_checkpoint`. Otherwise positions, velocities and spins
-    are from the last frame, in single precision, and a warning is issued. The motion of a piston and the
-    displacement of sheared images are exact.
 
     Examples
     --------

@@ -232,7 +232,9 @@ def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
             default={},
         ),
         "opening": describe(
-            {**TEXT, **_NAME}, "the film that opens the report; by default the first", default=""
+            {**TEXT, **_NAME},
+            "the scene of `gaspart new`, of two dimensions, that runs on the first screen of the report",
+            default="",
         ),
     }
 
