@@ -16,8 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from gaspart.errors import SceneError, short_repr
 from gaspart.keys.values import MOST_PARTICLES
 from gaspart.reproduction.points.point_keys import EXTENTS, GAS, PREFIX
-from gaspart.scene.limits import ball_volume
-from gaspart.scene.sizes import DISTRIBUTIONS
+from gaspart.scene.sizes import DISTRIBUTIONS, ball_volume
 from gaspart.yaml_text import read_yaml
 
 if TYPE_CHECKING:
