@@ -31,7 +31,7 @@ from gaspart.kernels.compile.sources import source_digest
 from gaspart.simulation import Simulation
 from gaspart.state.given import state_at_time_zero
 from gaspart.theory.conditions import Conditions
-from gaspart.trajectory.last_state import last_state
+from gaspart.trajectory.export import last_state
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.run import WriteOptions, extend, record

@@ -23,7 +23,7 @@ from gaspart.state.tally import FURTHEST, PairImpulseTally
 from gaspart.theory.bulk import EXACT
 from gaspart.theory.geometry import unit_sphere_surface
 from gaspart.theory.speeds import mean_speed_factor
-from gaspart.trajectory.pairs import pair_names, pairs_of
+from gaspart.trajectory.correlator import pair_names, pairs_of
 from gaspart.trajectory.run_options import stored_tally
 from gaspart.workers import in_threads
 

@@ -218,7 +218,7 @@ def _of_engine(file: str) -> list[str]:
 def _of_seeds(trajectory: Any, name: str) -> dict[str, str]:
     """Return a remark if runs with other seeds have other energies."""
     from gaspart.accuracy.scatter import scatter_of_run
-    from gaspart.cli.stated_run import other_seeds
+    from gaspart.cli.options import other_seeds
 
     if not OBSERVABLES[name].power:
         return {}

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.scene.limits import ball_volume
+from gaspart.scene.sizes import ball_volume
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene

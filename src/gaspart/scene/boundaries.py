@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from gaspart.errors import SceneError
 from gaspart.scene.composition import Composition
 from gaspart.scene.faces import FLOW, GRADIENT, LeesEdwards, Open
-from gaspart.scene.limits import CLOSE_PACKING, ball_volume
+from gaspart.scene.sizes import CLOSE_PACKING, ball_volume
 from gaspart.scene.surfaces import FACES, Thermal
 
 if TYPE_CHECKING:

@@ -37,16 +37,17 @@ from gaspart.scene.checks import (
     check_features,
     check_open_faces,
     check_packing,
+    check_region,
+    check_room,
     check_walls,
 )
 from gaspart.scene.container import Container
-from gaspart.scene.driving import Thermostat
 from gaspart.scene.faces import SCHEMA as FACES_SCHEMA
 from gaspart.scene.faces import surface_from_dict, surface_to_dict
 from gaspart.scene.facts import Facts
 from gaspart.scene.features import FEATURES
-from gaspart.scene.limits import Nearby, check_region, check_room, rounding
-from gaspart.scene.restitution import Restitution
+from gaspart.scene.restitution import Restitution, Thermostat
+from gaspart.scene.sizes import Nearby, rounding
 from gaspart.scene.species import SHARED, Particle, Species
 from gaspart.scene.surfaces import Surface, key_of
 from gaspart.scene.walls import WALL_RULE, Plate, Wall, wall_kind

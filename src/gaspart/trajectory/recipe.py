@@ -21,9 +21,8 @@ from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.random import stream
 from gaspart.state.state import State
 from gaspart.trajectory import amber, provenance
-from gaspart.trajectory.correlator import Correlations, sum_names
+from gaspart.trajectory.correlator import Correlations, pair_names, pairs_of, sum_names
 from gaspart.trajectory.opening import open_netcdf_file
-from gaspart.trajectory.pairs import pair_names, pairs_of
 from gaspart.trajectory.run_options import Contents, Until, scene_tallies, stored_contents, tally_axes
 from gaspart.yaml_text import dump_yaml, parse_yaml
 

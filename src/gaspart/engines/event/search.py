@@ -8,7 +8,7 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.kernels.model import NUMBER_BITS
-from gaspart.scene.limits import ball_volume
+from gaspart.scene.sizes import ball_volume
 from gaspart.state.boxes import make_boxes
 
 if TYPE_CHECKING:

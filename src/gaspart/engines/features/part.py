@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gaspart.kernels.model import Gravity, Model, Shear, no_support
-from gaspart.scene.driving import Thermostat
 from gaspart.scene.faces import FLOW, GRADIENT
+from gaspart.scene.restitution import Thermostat
 from gaspart.scene.scene import Scene
 from gaspart.state.random import key_of
 from gaspart.state.state import State

@@ -21,8 +21,8 @@ from gaspart.kernels.simd import WIDTH
 from gaspart.scene.accessible import Accessible
 from gaspart.scene.faces import FLOW, GRADIENT
 from gaspart.scene.features import row_count
-from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
+from gaspart.scene.sizes import ball_volume
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State, drift_of
 from gaspart.state.tally import ImpulseTally, PairImpulseTally, PerAreaTally

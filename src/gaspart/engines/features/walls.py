@@ -13,7 +13,7 @@ from gaspart.kernels.obstacles.moving import advance_wall
 from gaspart.scene.scene import Scene
 from gaspart.scene.walls import MOVING_WALL
 from gaspart.state.boxes import Boxes
-from gaspart.state.interior_walls import wall_rows, walls_near
+from gaspart.state.insertion import wall_rows, walls_near
 from gaspart.state.random import key_of
 from gaspart.state.state import State
 

@@ -19,8 +19,8 @@ from gaspart.kernels.step.box_search import StepBoxes
 from gaspart.kernels.step.model import Cells, Search, StepModel, StepParticles, StepTally
 from gaspart.kernels.step.neighbour_list import roomy
 from gaspart.scene.features import row_count
-from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
+from gaspart.scene.sizes import ball_volume
 from gaspart.state.boxes import cube_side, make_boxes
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
