@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 def predict(path: str) -> list[str]:
     """Predict the core-hours of each experiment of a config on this machine, as lines of text. The last line
-    is the sum. A config next to `config.yaml` is merged over it, as in the workflow. Raises SceneError.
+    is the sum. A config next to `config.yaml` is merged over it, as in the workflow.
     """
     lines, total, unknown = [], 0.0, []
     with open_config(path) as (_, planned):

@@ -5,29 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from gaspart.errors import SceneError
-from gaspart.keys import declare, in_range, not_negative, positive, validate
+from gaspart.keys import declare, documented, in_range, not_negative, positive, validate
 
 
+@documented
 @dataclass(frozen=True)
 class Restitution:
     """Effect of a contact on the relative velocity of the two surfaces (Spencer 2022, Eq. 22).
-
-    Parameters
-    ----------
-    normal : float, default 1.0, [1]
-        Coefficient of normal restitution e_n, from 0 (no rebound) to 1 (elastic). A contact multiplies the
-        normal component of the relative velocity by -e_n.
-    tangential : float, default -1.0, [1]
-        Coefficient of tangential restitution e_t, from -1 (perfectly smooth) to 1 (perfectly rough). A
-        contact multiplies the tangential components of the relative velocity by -e_t.
-    contact_duration : float, [time], optional
-        Duration t_c of a contact. A contact of a particle less than t_c after its last contact is elastic.
-        With t_c = 0 no contact becomes elastic. Default: under gravity 0.01 times the time scale of a fall
-        through the smallest diameter; without gravity 0.
-    reference_speed : float, [length/time], optional
-        Makes the particles viscoelastic: `normal` is then the coefficient for two particles of the first
-        species that approach each other at this normal speed. Slower contacts lose a smaller fraction of
-        their energy.
 
     Raises
     ------
@@ -46,7 +30,10 @@ class Restitution:
         default=1.0,
         metadata=declare(
             in_range(
-                "the normal part is multiplied by minus this: from 0 (they stick) to 1 (elastic)", 0.0, 1.0
+                "coefficient e_n: a contact multiplies the normal relative velocity by -e_n; 0 (no "
+                "rebound) to 1 (elastic)",
+                0.0,
+                1.0,
             )
         ),
     )
@@ -54,7 +41,10 @@ class Restitution:
         default=-1.0,
         metadata=declare(
             in_range(
-                "likewise the tangential part: from -1 (perfectly smooth) to 1 (perfectly rough)", -1.0, 1.0
+                "coefficient e_t: likewise the tangential components; -1 (perfectly smooth) to 1 "
+                "(perfectly rough)",
+                -1.0,
+                1.0,
             )
         ),
     )
@@ -63,8 +53,9 @@ class Restitution:
         default=None,
         metadata=declare(
             not_negative(
-                "a contact of a particle less than this after its last one is elastic; 0: none is; default: "
-                "under gravity 0.01 of the time scale of a fall through the smallest diameter, else 0"
+                "duration t_c [time]: a contact of a particle less than t_c after its last one is "
+                "elastic; 0: none is; default: under gravity 0.01 of the time scale of a fall through"
+                " the smallest diameter, else 0"
             )
         ),
     )
@@ -73,8 +64,9 @@ class Restitution:
         default=None,
         metadata=declare(
             positive(
-                "with it particles are viscoelastic: `normal` is the restitution of two particles of the "
-                "first species that approach at this normal speed; slower contacts take less"
+                "with it particles are viscoelastic [length/time]: `normal` is the coefficient of two"
+                " particles of the first species that approach at this normal speed; slower contacts "
+                "lose less"
             )
         ),
     )

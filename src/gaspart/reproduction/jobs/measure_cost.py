@@ -78,7 +78,7 @@ def engines(point: Point) -> list[Engine]:
 
 
 def arguments(point: Point) -> dict:
-    """Return the arguments of `measure_cost`. Raises SceneError."""
+    """Return the arguments of `measure_cost`."""
     extras = {key: point.settings[key] for key in EXTRAS if point.settings.get(key)}
     if "record_events" in extras and not point.engine.records_events:
         raise point.make_error("record_events", "has a meaning with job: measure_cost and engine: event only")

@@ -35,14 +35,14 @@ class Extents(NamedTuple):
 
 
 def scene(point: Point) -> Scene:
-    """Return the ``Scene`` of a point. Raises SceneError."""
+    """Return the ``Scene`` of a point."""
     return _read(point) if "scene" in point.settings else _made(point)
 
 
 def extents(point: Point) -> Extents:
     """Return the extents of a point. Three of count, radius, packing fraction and side are given, and the
     fourth is computed. A computed count is rounded to an integer. A computed side is equal on all axes. With
-    a scene file, all extents are known from the file. Raises SceneError.
+    a scene file, all extents are known from the file.
     """
     settings = point.settings
     if "scene" in settings:
