@@ -121,9 +121,8 @@ def boltzmann_error(request: AccuracyRequest) -> float:
 
 def enskog_error(request: AccuracyRequest, cells: tuple[int, ...] | None = None) -> float:
     """Bound the relative error of the Enskog equation. In this equation, the centres of a colliding pair are
-    one diameter apart, and the contact value is the value at the local density.
-
-    cells : number of cells along each axis. Default: cells so narrow that they cause no error
+    one diameter apart, and the contact value is the value at the local density. `cells`: number of cells
+    along each axis. Default: cells so narrow that they cause no error.
     """
     conditions = request.conditions
     error = _STATIC + _layers(request)

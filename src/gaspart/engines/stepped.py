@@ -47,10 +47,8 @@ class SteppedDynamics(Dynamics):
     def _place(
         self, slots: np.ndarray, positions: np.ndarray, velocities: np.ndarray, images: np.ndarray
     ) -> None:
-        """Place the particles into their slots.
-
-        slots : (N,), particle number in each slot
-        positions, velocities, images : (N, d)
+        """Place the particles into their slots. `slots`: (N,), particle number in each slot. `positions` and
+        `velocities` and `images`: (N, d).
         """
 
     @property

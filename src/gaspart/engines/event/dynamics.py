@@ -95,9 +95,8 @@ def particles_of(state: State, boxes: Boxes) -> Particles:
 def event_model(
     scene: Scene, state: State, seed: int | tuple[int, ...], boxes: Boxes, largest: float
 ) -> tuple[Model, float]:
-    """Return the model of a scene for the kernels, and its unit of mass.
-
-    largest : largest radius of the particles that are sorted into boxes
+    """Return the model of a scene for the kernels, and its unit of mass. `largest`: largest radius of the
+    particles that are sorted into boxes.
     """
     law = contact_law(scene, state)
     law = law._replace(duration=contact_duration(scene, law)) if law else None
@@ -238,11 +237,9 @@ class EventDynamics(Dynamics):
         """Process events up to time `until`, at most `max_events` of them. Events are collisions, wall hits,
         and attempted entries through open faces. Raises SimulationError, with the state saved, in two cases.
         The first is a collapse: infinitely many collisions in a finite time. The second is a run without an
-        end time in which no event occurs during a thousand flights through the container.
-
-        max_work : maximum work: the sum of the numbers of events, box crossings and predictions at the start
-            of epochs. At this limit, the call returns before the time `until`. The work exceeds the limit by
-            at most a factor of 2.
+        end time in which no event occurs during a thousand flights through the container. `max_work`: maximum
+        work: the sum of the numbers of events, box crossings and predictions at the start of epochs. At this
+        limit, the call returns before the time `until`. The work exceeds the limit by at most a factor of 2.
         """
         remaining, work = (
             np.iinfo(np.int64).max if number is None else number for number in (max_events, max_work)
@@ -313,9 +310,7 @@ class EventDynamics(Dynamics):
 
     def _next_epoch(self, endless: bool) -> float:
         """Restart the clocks from zero and predict all events again. Returns the length of the previous
-        epoch.
-
-        endless : True if only a number of events ends the run
+        epoch. `endless`: True if only a number of events ends the run.
         """
         length = self._epoch
         check_clocks(self._start, self._epoch)
@@ -337,9 +332,8 @@ class EventDynamics(Dynamics):
         return length
 
     def _base_from(self, present: float) -> float:
-        """Return the length of the next epoch, before `Epochs.quiet` extends it.
-
-        present : length of the previous epoch, also before the extension
+        """Return the length of the next epoch, before `Epochs.quiet` extends it. `present`: length of the
+        previous epoch, also before the extension.
         """
         stored = sum(part.stored for part in self._parts)
         return self._epochs.base(self._flights["velocity"], stored, present)

@@ -185,9 +185,7 @@ class Jams:
         time: float,
     ) -> bool:
         """Fix the particles that belong to a jam at this time, for positions (N, d). Returns True if events
-        must be predicted again.
-
-        stays : (N,), True if a particle has not moved away from its position
+        must be predicted again. `stays`: (N,), True if a particle has not moved away from its position.
         """
         from gaspart.kernels.event.jams import (
             HELD,

@@ -107,10 +107,7 @@ class ShearedStressPart(StressPart):
 def stress_part(
     tally: OptionalTally, flights: np.ndarray, model: Model, unit_mass: float, scene: Scene, state: State
 ) -> StressPart:
-    """Return the stress part for a gas with or without shear.
-
-    state : initial state
-    """
+    """Return the stress part for a gas with or without shear. `state`: initial state."""
     kind = StressPart if model.shear is None else ShearedStressPart
     return kind(flights, model, unit_mass, drift_of(scene, state))
 
@@ -147,9 +144,8 @@ class ImpulsesPart(TallyPart):
         super().__init__("impulses", kernels.Impulses(sums, axis, per_length, row), {"impulses": sums})
 
     def _add_momenta(self, clock: float, sign: float, sums: np.ndarray) -> None:
-        """Add `sign` times the momenta of all particles at a time to the sums.
-
-        clock : time on the clocks of the epoch
+        """Add `sign` times the momenta of all particles at a time to the sums. `clock`: time on the clocks of
+        the epoch.
         """
         flights, model = self._flights.copy(), self._model
         advance_all(flights, clock, model.space, model.gravity)

@@ -140,9 +140,7 @@ class StepDynamics(SteppedDynamics):
 
     def _per_area(self, most: float, sums: np.ndarray) -> np.ndarray:
         """Return the momentum along each axis and the heat given to each face, per accessible area. The shape
-        is (2d, d + 1).
-
-        most : inverse of the smallest area
+        is (2d, d + 1). `most`: inverse of the smallest area.
         """
         d = self._scene.dimension
         units = np.array(self._largest) * (self._unit_mass * most)
