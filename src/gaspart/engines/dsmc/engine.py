@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from gaspart.engines.dsmc.settings import DsmcSettings
 from gaspart.engines.engine import register
+from gaspart.keys import documented
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.cells import Errors, Medium
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from gaspart.state.state import State
 
 
+@documented
 @register
 @dataclass(frozen=True)
 class DSMC(DsmcSettings):
@@ -26,23 +28,17 @@ class DSMC(DsmcSettings):
     In each step all particles move freely, and then pairs in the same cell collide. The result is bitwise
     identical for any number of threads.
 
-    Parameters
-    ----------
-    time_step : float, [time], optional
-        Length of a step. Default: a step of at most a fifth of the scene's mean free time.
-    cells_per_side : int or (d,) sequence of int, optional
-        Number of cells along each axis. Default: the cells with the smallest error; a single cell along
-        periodic axes on which the gas does not vary.
-    model : {"boltzmann", "enskog"}, default "boltzmann"
-        Collision model. "boltzmann": a dilute gas [1]_ [2]_. "enskog": a dense gas [3]_, in which the centres
-        of collision partners are one diameter apart, and the collision rate is multiplied by the contact
-        value.
-    adapt : {"nothing", "steps", "cells", "both"}, optional
-        Settings that the engine adapts during a run. "steps": steps are divided if speeds rise. "cells":
-        cells become narrower if the gas becomes denser somewhere. Default: all settings that are not
-        prescribed.
-    threads : int, default 1
-        Number of threads that share the work.
+    In the model "enskog" the centres of collision partners are one diameter apart, and the collision rate is
+    multiplied by the contact value. With `adapt` "steps" are divided if speeds rise, and "cells" become
+    narrower if the gas becomes denser somewhere.
+
+    The errors are described in docs/dsmc.md.
+
+    Literature: G. A. Bird, Molecular Gas Dynamics and the Direct Simulation of Gas Flows (1994).
+
+    Literature: M. S. Ivanov and S. V. Rogasinsky, Sov. J. Numer. Anal. Math. Modelling 3, 453 (1988).
+
+    Literature: J. M. Montanero and A. Santos, Phys. Rev. E 54, 438 (1996); Phys. Fluids 9, 2057 (1997).
 
     Raises
     ------
@@ -53,16 +49,6 @@ class DSMC(DsmcSettings):
     --------
     EventDriven : Exact collisions of hard particles.
     TimeStepped : Time steps with overlap resolution.
-
-    Notes
-    -----
-    The errors are described in docs/dsmc.md.
-
-    References
-    ----------
-    .. [1] G. A. Bird, Molecular Gas Dynamics and the Direct Simulation of Gas Flows (1994).
-    .. [2] M. S. Ivanov and S. V. Rogasinsky, Sov. J. Numer. Anal. Math. Modelling 3, 453 (1988).
-    .. [3] J. M. Montanero and A. Santos, Phys. Rev. E 54, 438 (1996); Phys. Fluids 9, 2057 (1997).
 
     Examples
     --------

@@ -23,12 +23,17 @@ class DsmcSettings(Engine):
 
     time_step: float | None = field(
         default=None,
-        metadata=declare(positive("duration of a step; by default a fifth of a mean free time, at most")),
+        metadata=declare(
+            positive("duration of a step [time]; by default a fifth of a mean free time, at most")
+        ),
     )
     cells_per_side: int | tuple[int, ...] | None = field(
         default=None,
         metadata=declare(
-            per_side("number of cells, or one for each axis; by default those with the smallest error")
+            per_side(
+                "number of cells, or one for each axis; by default those with the smallest error, a "
+                "single one along periodic axes on which the gas does not vary"
+            )
         ),
     )
     model: str = field(
