@@ -58,8 +58,8 @@ class DSMC(DsmcSettings):
     """
 
     def for_scene(self, scene: Scene, interval: float | None = None) -> DSMC:
-        """Return a copy with cells and time step, a fraction of `interval`, for a scene. Raises SceneError if nothing moves, or
-        `cells_per_side` does not fit the dimension.
+        """Return a copy with cells and time step, a fraction of `interval`, for a scene. Raises SceneError if
+        nothing moves, or `cells_per_side` does not fit the dimension.
         """
         _, cells, step = self._chosen(scene)
         if self.time_step is None and interval is not None:
@@ -77,8 +77,8 @@ class DSMC(DsmcSettings):
 
     def added_bulk_viscosity(self, scene: Scene) -> float:
         """Return the bulk viscosity of the Boltzmann model, which is due to its cells alone: (A / d^2) n m nu
-        times the sum of the squared sides of a cell, with the number density n, the collision rate nu, and
-        A = 1/18 for spheres and 1/12 for discs [mass length^(2-d)/time].
+        times the sum of the squared sides of a cell, with the number density n, the collision rate nu, and A
+        = 1/18 for spheres and 1/12 for discs [mass length^(2-d)/time].
         """
         medium, cells, _ = self._chosen(scene)
         return medium.bulk_viscosity(cells)
