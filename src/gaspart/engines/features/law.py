@@ -24,8 +24,8 @@ _BISECTIONS = 100  # until adjacent floating-point numbers enclose the damping o
 
 
 def contact_law(scene: Scene, state: State) -> ContactLaw | None:
-    """Return the collision law for the kernels; None for elastic, smooth collisions. If particles are fixed,
-    a law is always returned.
+    """Return the collision law for the kernels; None for elastic, smooth collisions without fixed
+    particles.
     """
     rule = scene.restitution or Restitution()
     if rule.smooth_and_elastic and not np.isinf(state.masses).any():
@@ -74,7 +74,6 @@ class LawPart(Part):
 
     @property
     def stored(self) -> float:
-        """Total energy of spins and of vibrations."""
         squares = (self.arrays["spins"] ** 2).sum(axis=1)
         turning = squares > 0.0  # excludes smooth particles, whose moment of inertia may be infinite
         spins = 0.5 * float((squares[turning] / self._inverse_inertia[turning]).sum())
@@ -82,7 +81,6 @@ class LawPart(Part):
         return spins + (0.0 if vibrations is None else float(np.maximum(vibrations, 0.0).sum()))
 
     def write(self, state: State, clock: float) -> None:
-        """Write the spins into a state, and add the vibrational energies of fixed particles."""
         spins = self.arrays["spins"]
         state.spins = (spins[:, 2] if state.dimension == 2 else spins).copy()
         if state.vibrations is not None and "vibrations" in self.arrays:
@@ -146,8 +144,8 @@ def slowest_that_moves(scene: Scene) -> float:
 
 
 def _tilt(gravity: tuple[float, ...]) -> np.ndarray:
-    """Return the accelerations (2, 3) or (4, 3) of gravity, tilted in all directions. A particle counts as
-    supported if it is supported against each of these accelerations.
+    """Return gravity tilted in all directions, (2, 3) or (4, 3), against each of which a support
+    must hold.
     """
     acceleration = np.zeros(3)
     acceleration[: len(gravity)] = gravity
@@ -186,11 +184,7 @@ class Jams:
         tally: Tally,
         time: float,
     ) -> bool:
-        """Fix the particles that belong to a jam at this time, for positions (N, d). Returns True if events
-        must be predicted again.
-
-        stays : (N,), True if a particle has not moved away from its position
-        """
+        """Fix the particles of jams, for positions (N, d); `stays` (N,): unmoved. True if events change."""
         from gaspart.kernels.event.jams import (
             HELD,
             PRESSED,
@@ -233,9 +227,7 @@ _ARRAYS = ("latest", "met", "island", "contacts", "elastic", "kept")
 
 
 def contact_duration(scene: Scene, law: ContactLaw) -> ContactDuration | None:
-    """Return the initial data for the rule of lasting contacts; None without this rule. Without this rule
-    every contact dissipates.
-    """
+    """Return the initial data for lasting contacts; None if every contact dissipates."""
     return lasting_contacts(scene, law) if scene.contact_duration > 0.0 else None
 
 
@@ -269,11 +261,9 @@ class DurationPart(Part):
             self.arrays["inverse_mass"] = law.inverse_mass
 
     def reset(self, clock: float) -> None:
-        """Reset the counters."""
         self._duration.elastic[:], self._duration.kept[:] = 0, 0.0
 
     def counts(self, clock: float) -> dict[str, float]:
-        """Return the number of elastic contacts, and the energy that they did not dissipate."""
         kept = running_sum.net(self._duration.kept)
         return {"elastic_contacts": int(self._duration.elastic[0]), "retained_energy": kept}
 
@@ -309,7 +299,6 @@ class RestWatch(Part):
 
     @property
     def at_rest(self) -> bool:
-        """True if all particles rest."""
         return bool(self._rests[0])
 
     def set_clock(self, clock: float) -> None:
@@ -317,8 +306,8 @@ class RestWatch(Part):
         self._next[0] = clock + self._window
 
     def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
-        """Find the particles that are at rest, and stop them. Returns True if events must be predicted again,
-        and False if all particles rest.
+        """Find particles at rest, and stop them; True if events must be predicted again, False if
+        all rest.
         """
         from gaspart.kernels.event.jams import MOVES, RESTS, find_resting, stop_all
 
@@ -351,9 +340,7 @@ class RestWatch(Part):
 
 
 def rest_watch(scene: Scene, state: State) -> RestWatch | None:
-    """Return the test for a scene in which all particles may come to rest, or None. Such a scene has lasting
-    contacts and gravity without a flow, and no face or wall of it adds energy.
-    """
+    """Return the test for a scene whose particles may all rest (nothing adds energy), or None."""
     falls = scene.gravity is not None and not scene.driven_axes
     still = not (scene.faces or scene.face_temperatures)
     return RestWatch(scene, state) if scene.contact_duration > 0.0 and falls and still else None

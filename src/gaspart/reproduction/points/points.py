@@ -281,7 +281,7 @@ def _plain(key: str, value: Any) -> Any:
 
 
 def _chosen(point: Point) -> Point:
-    """Return a point with the engine that `engine: auto` selects. Raises SceneError."""
+    """Return a point with the engine that `engine: auto` selects."""
     where = f"experiments.{point.experiment}"
     if point.settings.get("engine") == "auto":
         from gaspart.reproduction.points.engine import chosen
