@@ -99,9 +99,7 @@ def kept_beside(path: Path, header: bytes, otherwise: str) -> Checkpoint | None:
 
 
 def _checkpoint(path: Path, header: bytes) -> Checkpoint | None:
-    """Read a checkpoint like `read_checkpoint`, but raise SceneError if it is unusable. A checkpoint is
-    unusable if it is damaged, or belongs to another run. A file of another kind is unusable, too.
-    """
+    """Read a checkpoint like `read_checkpoint`; SceneError if damaged, of another run or no checkpoint."""
     try:
         with open_regular(path) as file:
             if not _is_intact(file):  # checked here, because zipfile and numpy raise many kinds of errors
@@ -133,9 +131,7 @@ def _is_intact(file: BinaryIO) -> bool:
 
 
 def _checksum(file: BinaryIO, size: int | None = None) -> int:
-    """Compute the checksum of a file, or of its first `size` bytes. The next read of the file starts after
-    these bytes.
-    """
+    """Compute the checksum of a file, or of its first `size` bytes, after which the next read starts."""
     remaining = file.seek(0, os.SEEK_END) if size is None else size
     file.seek(0)
     value = 0
