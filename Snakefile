@@ -33,6 +33,11 @@ include: "workflow/rules/animate.smk"
 # many start in a second: after a few hundred jobs that takes a core. On one machine no limit is needed. There jobs are
 # copies of a process that has loaded their modules; Snakemake runs scripts by the command in sys.executable.
 onstart:
+    # A later run with less effort would replace these points.
+    made = {
+        job.wildcards.experiment for job in workflow.dag.jobs if job.rule.name in ("simulate", "compute")
+    }
+    write_efforts(folder_of_points(), {experiment: effort_of(config, experiment) for experiment in made})
     if workflow.local_exec:
         workflow.scheduler.job_rate_limiter = None
         sys.executable = job_server.start(sys.executable, SCRIPTS / "_client.py")

@@ -22,8 +22,8 @@ if " " in sys.executable:
 from gaspart.reproduction import job_server
 from gaspart.reproduction.claims.table import fill_caption
 from gaspart.reproduction.claims.table import summary
-from gaspart.reproduction.config import FAMILIES, add_families, check, explain_error, is_own
-from gaspart.reproduction.config import read_numbers, remove_null
+from gaspart.reproduction.config import EFFORTS, FAMILIES, add_families, check, explain_error, is_own
+from gaspart.reproduction.config import effort_of, keep_efforts, read_numbers, remove_null, write_efforts
 from gaspart.reproduction import registry
 from gaspart.reproduction.registry import caption, find, of_claims
 from gaspart.reproduction.points.modules import digest, kernel_digest, measuring_digest
@@ -33,6 +33,11 @@ from gaspart.reproduction.points.points import figure_points as points_of_figure
 from gaspart.reproduction.points.point import compile_task, variant
 from gaspart.errors import SceneError
 
+
+def folder_of_points():
+    return Path(workflow.modifier.modify_path(str(config.get("points"))))
+
+
 # A job on a cluster reads this file again, but need not validate ten thousand points again.
 files = ["config/config.yaml", *workflow.overwrite_configfiles]
 files = [str(name) for name in files if os.path.exists(name)]
@@ -41,6 +46,9 @@ if workflow.is_main_process:
     try:
         files = [*add_families(config, FOLDER_OF_FAMILIES), *files]
         read_numbers(config, files)
+        if kept := keep_efforts(config, folder_of_points()):
+            text = f"{len(kept)} experiments keep the larger effort with which they were made"
+            print(f"{folder_of_points() / EFFORTS}: {text}; delete this file for less", file=sys.stderr)
         POINTS = check(config, files)
         for kept in (workflow.modifier.modify_path("results"), ".snakemake"):
             folder = next(path for path in (kept, *Path(kept).parents) if os.path.exists(path))
@@ -56,8 +64,10 @@ else:
     files = [*add_families(config, FOLDER_OF_FAMILIES), *files]
     remove_null(config)
     read_numbers(config, files)
+    keep_efforts(config, folder_of_points())
     POINTS = all_points(config)
 
+EFFORTS_OF_RUNS = sorted({effort_of(config, name) for name in config["experiments"]})
 FIGURES = {name: find(name, block)[0] for name, block in config["figures"].items()}  # family of each
 FIRST = [name for name in ("virial_discs", "speed_relaxation", "speed_distribution_discs") if name in FIGURES]
 OWN_CAPTIONS = {name: caption(block) for name, block in config["figures"].items() if is_own(block)}

@@ -101,6 +101,7 @@ rule report:
         films=FILMS,
         opening=config.get("opening"),
         title=lambda wildcards: config["title"],
+        efforts=EFFORTS_OF_RUNS,
         one_file=False,
     script:
         "../scripts/report.py"
@@ -119,6 +120,7 @@ use rule report as report_in_one_file with:
         films=FILMS,
         opening=config.get("opening"),
         title=lambda wildcards: config["title"],
+        efforts=EFFORTS_OF_RUNS,
         one_file=True,
 
 
@@ -137,4 +139,5 @@ use rule report as report_of_first with:
         films={},
         opening=None,
         title=lambda wildcards: f"{len(FIRST)} of {len(FIGURES)} figures",
+        efforts=EFFORTS_OF_RUNS,
         one_file=False,

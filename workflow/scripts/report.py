@@ -104,6 +104,7 @@ with job(snakemake):
         findings=page.findings(read_yaml(given.findings), claims),
         statements=statements,
         headline=page.headline(claims),
+        efforts=[f"{effort:g}" for effort in params.efforts],
         verdicts=page.verdicts(claims),
         states=explore.states(measured),
         engines=explore.choice_of_engine(measured),
