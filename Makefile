@@ -1,5 +1,5 @@
 # make            set up, reproduce every figure, write results/report.html, print the verdicts; EFFORT=1 continues all
-#                 runs to four times their length
+#                 runs to four times their length; FROM=archive.zip measures the points of a deposit instead
 # make decide     continue exactly the runs behind claims that are open; says first which and how long
 # make first      set up, three figures of the sources: results/first.html, in some two minutes
 # make test       set up, run the tests that catch most per second; OPTIONS=... are options of pytest
@@ -37,7 +37,10 @@ VERDICTS = @.venv/bin/python -c 'import sys; from gaspart.reproduction.claims im
 own = @test ! -e $(1) -o -e $(1)/made_by_make -o -e $(1)/environment.stamp || { echo \
 	"make: $(1) exists and was not made by make, which would replace it; move it away" >&2; exit 2; }
 
+START = .venv/bin/python -c 'import sys; from gaspart.reproduction.start import start; sys.exit(start(*sys.argv[1:]))'
+
 all: setup
+	$(if $(FROM),@$(START) $(FROM) config/config.yaml)
 	$(SNAKEMAKE) --quiet rules
 	$(VERDICTS) results/tables/claims.csv
 	@echo "report: results/report.html"
@@ -147,7 +150,7 @@ lint: develop
 	.venv/bin/python -m ruff format --check .
 	.venv/bin/python -m mypy
 	.venv/bin/lint-imports --no-cache
-	.venv/bin/python -m snakefmt --check Snakefile workflow
+	.venv/bin/python -m snakefmt --check workflow
 	.venv/bin/python -m snakemake --lint
 
 report: setup

@@ -93,11 +93,15 @@ def keep_efforts(config: dict[str, Any], points: str | Path) -> dict[str, float]
 
     A run of less effort would replace what was paid for. Raises SceneError for efforts that cannot be read.
     """
-    made = read_efforts(Path(points))
-    kept = {name: effort for name, effort in made.items() if effort > effort_of(config, name)}
-    for name, effort in kept.items():
+    return raise_efforts(config, read_efforts(Path(points)))
+
+
+def raise_efforts(config: dict[str, Any], efforts: Mapping[str, float]) -> dict[str, float]:
+    """Raise the efforts of experiments of a merged config, in place, and return those that changed."""
+    raised = {name: effort for name, effort in efforts.items() if effort > effort_of(config, name)}
+    for name, effort in raised.items():
         config["experiments"][name]["effort"] = effort
-    return kept
+    return raised
 
 
 def effort_of(config: dict[str, Any], experiment: str) -> float:

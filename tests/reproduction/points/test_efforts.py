@@ -31,7 +31,9 @@ def span(point):
 @pytest.mark.parametrize("effort", [0.03, 0.06, 0.125, 0.25, 0.5, 2.0, 8.0])
 def test_every_figure_has_its_blocks_lags_and_replicas(effort):
     planned = all_points(FULL | {"effort": effort})
-    simulated = [name for name, block in FULL["experiments"].items() if block.get("job", "simulate") == "simulate"]
+    simulated = [
+        name for name, block in FULL["experiments"].items() if block.get("job", "simulate") == "simulate"
+    ]
     for experiment in simulated:
         for name, whole in WHOLE[experiment].items():
             point = planned[experiment][name]
