@@ -25,10 +25,11 @@ from gaspart.engines import EventDriven
 from gaspart.errors import SceneError, SimulationError
 from gaspart.files import FileKind, begins_with, open_regular, writing
 from gaspart.keys.values import count_of, number
+from gaspart.scene.boundaries import refuse_sheared
 from gaspart.scene.scene import Scene
-from gaspart.scene.shear import refuse_sheared
 from gaspart.simulation import Simulation
 from gaspart.system import descriptor_path, memory
+from gaspart.theory.free_flights import free_time_pdf
 from gaspart.theory.geometry import unit_sphere_surface
 from gaspart.theory.speeds import mean_speed, mean_speed_factor
 from gaspart.trajectory.provenance import git_revision, versions
@@ -319,7 +320,7 @@ def free_flight_times(simulation: Simulation, bins: int = 40) -> Observable:
     Notes
     -----
     Uncertainties come from the scatter of 16 groups of particles. The uncertainty of an empty bin is NaN.
-    Theory exists for equal particles. The theoretical density is `theory.free_time_pdf`, which assumes
+    Theory exists for equal particles. The theoretical density is `free_flights.free_time_pdf`, which assumes
     independent collisions. The theoretical mean free time and path are exact in equilibrium, apart from the
     uncertainty of the contact value. They include the correction for the finite number of particles.
 
@@ -377,9 +378,8 @@ def free_flight_times(simulation: Simulation, bins: int = 40) -> Observable:
 
 
 def _theory(simulation: Simulation, edges: np.ndarray) -> tuple[np.ndarray, tuple[float, float]] | None:
-    """Compute the theoretical density of free times, and the mean free time and path.
-
-    The density is averaged over each bin, shape (bins,). Return None if no theory exists.
+    """Compute the theoretical density of free times, and the mean free time and path. The density is averaged
+    over each bin, shape (bins,). Return None if no theory exists.
     """
     gas, state = simulation.scene.gas, simulation.state
     if gas is None or gas.packing_fraction > theory.HIGHEST_PACKING_FRACTION[gas.dimension]:
@@ -388,7 +388,7 @@ def _theory(simulation: Simulation, edges: np.ndarray) -> tuple[np.ndarray, tupl
     settings = {**gas.parameters, "temperature": temperature}
     inner = np.linspace(edges[:-1], edges[1:], 5)  # Boole's rule
     weights = np.array([7.0, 32.0, 12.0, 32.0, 7.0]) / 90.0
-    density = weights @ theory.free_time_pdf(inner, **settings)
+    density = weights @ free_time_pdf(inner, **settings)
     # `collision_rate_finite_size_factor` refers to a temperature defined with d N degrees of freedom
     fewer = math.sqrt((gas.count - 1) / gas.count)
     shape = gas.packing_fraction, gas.dimension

@@ -175,9 +175,8 @@ def wall_force(source: Source, start: float | None = None) -> Observable:
 
 @contextmanager
 def _open_walls(source: Source, start: float | None, name: str) -> Iterator[tuple[Run, np.ndarray]]:
-    """Open a run, and find the frames (K + 1,) that bound its K blocks.
-
-    Raises SceneError if the observable `name`, a property of faces, is undefined.
+    """Open a run, and find the frames (K + 1,) that bound its K blocks. Raises SceneError if the observable
+    `name`, a property of faces, is undefined.
     """
     with open_run(source, start, sheared=True, varying=True) as run:
         require_defined(name, run.scene)
@@ -238,10 +237,9 @@ def on_walls(run: Run, ends: np.ndarray, name: str) -> tuple[np.ndarray, np.ndar
 
 
 def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
-    """Compute the momentum (K, 2d) that particles at rest give to each face.
-
-    The K intervals lie between the frames `ends` (K + 1,). A particle at rest touches without events. If no
-    face exerts a force along itself, the momentum of a floor follows from the balance
+    """Compute the momentum (K, 2d) that particles at rest give to each face. The K intervals lie between the
+    frames `ends` (K + 1,). A particle at rest touches without events. If no face exerts a force along itself,
+    the momentum of a floor follows from the balance
 
         change of the momentum = momentum from gravity + impulses of the lower face - impulses of the upper
         face.
@@ -273,9 +271,8 @@ def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
 
 
 def count_at_rest(run: Run) -> int:
-    """Count the particles that rest: their velocity along gravity is 0 in two successive frames.
-
-    If contacts lose no energy, no particle comes to rest, and only the first two frames are read.
+    """Count the particles that rest: their velocity along gravity is 0 in two successive frames. If contacts
+    lose no energy, no particle comes to rest, and only the first two frames are read.
     """
     along = np.flatnonzero(run.scene.gravity or ())
     moving = np.flatnonzero(run.moving)

@@ -17,8 +17,9 @@ from gaspart.analysis.profiles import Means
 from gaspart.analysis.run import Run, Source, open_run, select_particles
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
-from gaspart.scene.faces import FACES, Open
+from gaspart.scene.faces import Open
 from gaspart.scene.scene import Scene
+from gaspart.scene.surfaces import FACES
 from gaspart.trajectory.amber import face_names
 
 _BLOCKS = 4096
@@ -55,7 +56,7 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
     The theoretical flux is 0 in equilibrium. Between two plates it is the flux of free molecular flow above a
     Knudsen number of 100. Below 0.1 it follows from Fourier's law with Enskog's conductivity and temperature
     jumps. Between these limits it is an interpolation with an accuracy of 8 %
-    (`gaspart.theory.interpolated_flux`). Between sliding plates it is half of the power of the stress. With
+    (`heat.interpolated_flux`). Between sliding plates it is half of the power of the stress. With
     partial accommodation, theory exists only for free molecular flow.
 
     Examples
@@ -114,7 +115,7 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
     If a force drives a gas along two identical faces, the theoretical force on each face is exactly half of
     the force on the gas. Between sliding plates above a Knudsen number of 100, the theoretical stress is
     computed for free molecular flow. Below 0.1 it follows from Enskog's viscosity with slip. Between these
-    limits it is an interpolation with an accuracy of 8 % (`gaspart.theory.interpolated_stress`). With partial
+    limits it is an interpolation with an accuracy of 8 % (`shear.interpolated_stress`). With partial
     accommodation, theory exists only for free molecular flow.
 
     Examples
@@ -148,10 +149,8 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
 
 
 def _amounts_per_area(run: Run, name: str, tallied: str) -> np.ndarray:
-    """Return the amount that each face receives per interval and accessible area.
-
-    The shape is (T - 1, 2d, ...). See `per_area`. Raises SceneError if the frames do not contain the sum
-    `name`.
+    """Return the amount that each face receives per interval and accessible area. The shape is (T - 1, 2d,
+    ...). See `per_area`. Raises SceneError if the frames do not contain the sum `name`.
     """
     if name not in run.data:
         raise SceneError(name, "missing", "the engine does not tally it, or an older version wrote the file")
@@ -184,12 +183,11 @@ def _steady(run: Run, faces: np.ndarray, amounts: np.ndarray, stored: list[np.nd
 
 
 def _mean_without_stores(rates: np.ndarray, changes: list[np.ndarray]) -> Estimate:
-    """Compute the mean of rates (K,) in blocks, corrected for changes of bounded sums.
-
-    The blocks are consecutive. An amount that the gas stores in one block is later returned, so stored
-    amounts do not change the long-time mean. The contribution of the changes (K,) of the bounded sums is
-    removed by least squares. Blocks may be shorter than the correlation time. In free flight, the correlation
-    time is the flight time from wall to wall. Therefore the error is computed as for a correlated series.
+    """Compute the mean of rates (K,) in blocks, corrected for changes of bounded sums. The blocks are
+    consecutive. An amount that the gas stores in one block is later returned, so stored amounts do not change
+    the long-time mean. The contribution of the changes (K,) of the bounded sums is removed by least squares.
+    Blocks may be shorter than the correlation time. In free flight, the correlation time is the flight time
+    from wall to wall. Therefore the error is computed as for a correlated series.
     """
     used = [change / np.abs(change).max() for change in changes if change.any()]
     design = np.stack([np.ones(len(rates)), *used], axis=1)
@@ -198,10 +196,9 @@ def _mean_without_stores(rates: np.ndarray, changes: list[np.ndarray]) -> Estima
 
 
 def _energies(run: Run) -> list[np.ndarray]:
-    """Compute the kinetic energy relative to the mean velocity of the faces, and its first moments.
-
-    Each result is an array (T,). Only translational energy counts. The moments are taken along the normals of
-    the faces. The result is empty if the file does not contain all particles.
+    """Compute the kinetic energy relative to the mean velocity of the faces, and its first moments. Each
+    result is an array (T,). Only translational energy counts. The moments are taken along the normals of the
+    faces. The result is empty if the file does not contain all particles.
     """
     if run.is_subset:
         return []
@@ -210,10 +207,9 @@ def _energies(run: Run) -> list[np.ndarray]:
 
 
 def _momenta(run: Run, axis: int) -> list[np.ndarray]:
-    """Compute the momentum relative to the mean velocity of the faces, and its first moments.
-
-    Each result is an array (T,). The momentum is the component along `axis`. The moments are taken along the
-    normals of the faces.
+    """Compute the momentum relative to the mean velocity of the faces, and its first moments. Each result is
+    an array (T,). The momentum is the component along `axis`. The moments are taken along the normals of the
+    faces.
     """
     if run.is_subset:
         return []
@@ -222,9 +218,8 @@ def _momenta(run: Run, axis: int) -> list[np.ndarray]:
 
 
 def _about_faces(run: Run) -> np.ndarray:
-    """Compute velocities (T, M, d) relative to the mean velocity of the thermal faces.
-
-    These relative velocities do not depend on the frame of reference.
+    """Compute velocities (T, M, d) relative to the mean velocity of the thermal faces. These relative
+    velocities do not depend on the frame of reference.
     """
     frame = np.zeros(run.dimension)
     for _, face in run.scene.sliding_faces:
@@ -233,10 +228,9 @@ def _about_faces(run: Run) -> np.ndarray:
 
 
 def _with_moments(run: Run, carried: Callable[[Run], np.ndarray]) -> list[np.ndarray]:
-    """Sum an amount that particles carry, and its first moments across the thermal faces.
-
-    `carried` returns the amounts (T, M) in a part of the run; each sum has the shape (T,). For the moments,
-    positions are relative to the middle of the container.
+    """Sum an amount that particles carry, and its first moments across the thermal faces. `carried` returns
+    the amounts (T, M) in a part of the run; each sum has the shape (T,). For the moments, positions are
+    relative to the middle of the container.
     """
     across = sorted({number // 2 for number in run.scene.thermal_numbers})
     sums = []
@@ -324,9 +318,8 @@ def particle_flux(
 
 
 def _entered_beyond(run: Run, axis: int) -> np.ndarray | int:
-    """Return the net number (T,) of particles that have entered through the upper face.
-
-    The number is 0 if this face is not open.
+    """Return the net number (T,) of particles that have entered through the upper face. The number is 0 if
+    this face is not open.
     """
     upper = 2 * axis + 1
     if not isinstance(run.scene.faces.get(FACES[upper]), Open):
@@ -338,9 +331,8 @@ def _entered_beyond(run: Run, axis: int) -> np.ndarray | int:
 
 
 def particle_numbers(scene: Scene, data: xr.Dataset) -> np.ndarray:
-    """Return the number of particles in the container in each frame.
-
-    This number is the initial number plus the particles that have entered minus the particles that have left.
+    """Return the number of particles in the container in each frame. This number is the initial number plus
+    the particles that have entered minus the particles that have left.
     """
     opened = [number for number, _ in scene.faces_of(Open)]
     moved = data["entries"].values.sum(axis=1) - data["wall_hits"].values[:, opened].sum(axis=1)

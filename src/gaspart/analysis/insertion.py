@@ -64,10 +64,9 @@ class Insertions:
 
     @property
     def resolution(self) -> float:
-        """Probability that corresponds to a single free position in all trials.
-
-        The trials are equivalent to a larger number of random positions in the whole container. The
-        probability is 1 divided by this number.
+        """Probability that corresponds to a single free position in all trials. The trials are equivalent to
+        a larger number of random positions in the whole container. The probability is 1 divided by this
+        number.
         """
         return float(self.share.mean() / (self.trials * len(self.share)))
 
@@ -98,10 +97,9 @@ def insertions(
 def _try(
     groups: list[tuple[np.ndarray, float]], lengths: np.ndarray, number: int, generator: np.random.Generator
 ) -> tuple[float, int]:
-    """Count the free positions among trials in the region that no single particle covers.
-
-    Returns the volume of this region as a fraction of the container, and the count. `groups` contains
-    positions of particles, each array with its contact distance.
+    """Count the free positions among trials in the region that no single particle covers. Returns the volume
+    of this region as a fraction of the container, and the count. `groups` contains positions of particles,
+    each array with its contact distance.
     """
     from scipy.spatial import cKDTree
 
@@ -116,9 +114,8 @@ def _try(
 
 
 def _apart(trees: list[tuple[Any, float]], positions: np.ndarray, less: float) -> np.ndarray:
-    """Mark the positions (M, d) that are far enough from all particles.
-
-    The distance from each particle must exceed the contact distance minus `less`.
+    """Mark the positions (M, d) that are far enough from all particles. The distance from each particle must
+    exceed the contact distance minus `less`.
     """
     is_free = np.ones(len(positions), dtype=bool)
     for tree, distance in trees:
@@ -153,11 +150,10 @@ def _remaining(
 def _find_covered_cells(
     groups: list[tuple[np.ndarray, float]], sides: np.ndarray, number: np.ndarray
 ) -> np.ndarray:
-    """Find the grid cells (cells,) that lie completely within the contact distance of one particle.
-
-    The grid has the shape (*number). Cells that differ only in their index along the last axis form a strip.
-    In each nearby strip, a particle covers an interval of cells. The number 1 is added at the first cell of
-    the interval and subtracted after its last cell. The cumulative sum along the strip is then the number of
+    """Find the grid cells (cells,) that lie completely within the contact distance of one particle. The grid
+    has the shape (*number). Cells that differ only in their index along the last axis form a strip. In each
+    nearby strip, a particle covers an interval of cells. The number 1 is added at the first cell of the
+    interval and subtracted after its last cell. The cumulative sum along the strip is then the number of
     particles that cover each cell. Intervals continue periodically from the last to the first cell.
     """
     last, strips = int(number[-1]), int(np.prod(number[:-1]))
@@ -256,9 +252,8 @@ def chemical_potential(source: Source, trials: int = TRIALS, start: float | None
 
 
 def _hosts(run: Run) -> list[Hosts]:
-    """Return the contact distances of an inserted particle of each species.
-
-    For equal particles the result has a single element.
+    """Return the contact distances of an inserted particle of each species. For equal particles the result
+    has a single element.
     """
     radii = [kind.radius for kind in run.scene.kinds if kind.count]
     if run.scene.alike:

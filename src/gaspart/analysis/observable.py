@@ -15,7 +15,7 @@ from gaspart.analysis.estimate import concise
 from gaspart.analysis.observables import name_of
 from gaspart.analysis.statistics import correlated_mean, slow_mean
 from gaspart.errors import SceneError
-from gaspart.scene.faces import wall_of
+from gaspart.scene.surfaces import wall_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -405,9 +405,8 @@ def observable(
     theory: tuple[Any, Any] | None = None,
     source: str | None = None,
 ) -> Observable:
-    """Build a result from its parts.
-
-    `along` maps the name of each dimension to its coordinate and the attributes of the coordinate.
+    """Build a result from its parts. `along` maps the name of each dimension to its coordinate and the
+    attributes of the coordinate.
     """
     dims = tuple(along)
     parts = {name: (values, long_name), f"{name}_error": (errors, "standard uncertainty")}

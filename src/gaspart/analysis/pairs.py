@@ -38,9 +38,8 @@ _MOST_BOXES = 4
 def pair_counts(
     frames: np.ndarray, lengths: Sequence[float] | np.ndarray, bins: int, furthest: float, threads: int = 1
 ) -> np.ndarray:
-    """Count the pairs of all frames in equal intervals of the distance.
-
-    Distances are to the nearest image, in double precision.
+    """Count the pairs of all frames in equal intervals of the distance. Distances are to the nearest image,
+    in double precision.
     """
     from gaspart.kernels.analysis.pairs import MARGIN, count_pairs  # importing numba takes 0.4 s
 
@@ -83,10 +82,8 @@ def _boxes(size: np.ndarray, count: int, furthest: float, first: int) -> np.ndar
 def radial_distribution(
     frames: np.ndarray, lengths: Sequence[float] | np.ndarray, bins: int, furthest: float, threads: int = 1
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Compute g(r), averaged over frames (T, N, d), at the centres of shells.
-
-    Returns the centres (bins,) and g(r) (bins,). The counts are divided by the counts for an ideal gas with N
-    (N - 1) / 2 pairs.
+    """Compute g(r), averaged over frames (T, N, d), at the centres of shells. Returns the centres (bins,) and
+    g(r) (bins,). The counts are divided by the counts for an ideal gas with N (N - 1) / 2 pairs.
     """
     count = np.shape(frames)[1]
     counts = pair_counts(frames, lengths, bins, furthest, threads)
@@ -115,9 +112,8 @@ _ALIKE = 1e-9
 
 
 def read_pair_impulses(run: Run) -> PairImpulseTally | None:
-    """Return the stored pair impulses of a run, or None.
-
-    None is also returned if the file does not contain all particles, because the temperature is then unknown.
+    """Return the stored pair impulses of a run, or None. None is also returned if the file does not contain
+    all particles, because the temperature is then unknown.
     """
     return None if run.is_subset else stored_tally(run.data.attrs, PairImpulseTally)
 
@@ -128,12 +124,10 @@ def shell_volumes(bins: int, dimension: int) -> np.ndarray:
 
 
 def g_by_impulses(run: Run, starts: np.ndarray, bins: int, furthest: float) -> np.ndarray | None:
-    """Compute two contributions (2, S, bins) to g(r): from colliding pairs and from all other pairs.
-
-    The contributions are for S blocks of a run that begin at the frames `starts` (S,). Return None if the run
-    has not stored pair impulses, if the shells do not consist of whole stored shells, if a block has no
-    duration, or if no pair has collided. Without collisions impulses do not determine g(r), although g(r) is
-    not 0.
+    """Compute two contributions (2, S, bins) to g(r): from colliding pairs and from all other pairs. The
+    contributions are for S blocks of a run that begin at the frames `starts` (S,). Return None if the run has
+    not stored pair impulses, if the shells do not consist of whole stored shells, if a block has no duration,
+    or if no pair has collided. Without collisions impulses do not determine g(r), although g(r) is not 0.
     """
     has = read_pair_impulses(run)
     if has is None or starts[-1] == len(run.time) - 1 or furthest > has.furthest * (1.0 + _ALIKE):
@@ -153,9 +147,8 @@ def g_by_impulses(run: Run, starts: np.ndarray, bins: int, furthest: float) -> n
 
 
 def mixed_g(counted: np.ndarray, parts: np.ndarray, volumes: np.ndarray) -> np.ndarray:
-    """Compute g(r) (S, bins) in S blocks from counts (S, bins) and impulses (2, S, bins).
-
-    `volumes` (bins,) are the volumes of the shells.
+    """Compute g(r) (S, bins) in S blocks from counts (S, bins) and impulses (2, S, bins). `volumes` (bins,)
+    are the volumes of the shells.
     """
     contacts, total = parts[0].mean(axis=0), parts.sum(axis=0)
     missing = ((counted - total) @ volumes) / (contacts @ volumes)
@@ -373,9 +366,8 @@ def contact_values(source: Source, start: float | None = None) -> Observable:
 
 
 def rate_scales(run: Run) -> np.ndarray:
-    """Compute the number of collisions of each pair of species per collision of one particle.
-
-    The particle belongs to the first species of the pair.
+    """Compute the number of collisions of each pair of species per collision of one particle. The particle
+    belongs to the first species of the pair.
     """
     counts = [kind.count for kind in run.scene.species]
     pairs = pairs_of(run.scene)

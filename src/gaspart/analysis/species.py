@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gaspart.analysis.flow import FLOW, mean_motion
+from gaspart.analysis.flow import mean_motion
 from gaspart.analysis.frames import measure_single
 from gaspart.analysis.observable import Observable, scalar
 from gaspart.analysis.observables import observables_with, selecting
 from gaspart.analysis.run import Run, Source, open_run, select_particles
+from gaspart.analysis.run_data import FLOW
 from gaspart.errors import SceneError
 from gaspart.trajectory.reading import open_trajectory
 
@@ -126,9 +127,8 @@ def _of_velocities(run: Run, kind: int) -> dict[str, Observable]:
 
 
 def _column(name: str, results: list[Observable | None]) -> xr.Dataset:
-    """Combine the values of one observable for all species, with uncertainties.
-
-    The result is empty if the observable could not be measured for any species.
+    """Combine the values of one observable for all species, with uncertainties. The result is empty if the
+    observable could not be measured for any species.
     """
     available = [result for result in results if result is not None]
     if not available:

@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 
 from gaspart.analysis.expected.equilibrium import describe
-from gaspart.analysis.flow import FLOW, Grid, accessible_fraction, mean_motion
+from gaspart.analysis.flow import Grid, accessible_fraction, mean_motion
 from gaspart.analysis.impulses import default_bins, described_density, mixed_density
 from gaspart.analysis.observable import Observable, observable, scalar, with_freedom
 from gaspart.analysis.observables import observables_with, require_defined
 from gaspart.analysis.pairs import STRETCHES, chosen_frames
 from gaspart.analysis.profiles import Cells, Means
 from gaspart.analysis.run import Run, Source, open_run, select_particles
+from gaspart.analysis.run_data import FLOW
 from gaspart.analysis.statistics import histogram_means
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
@@ -102,10 +103,8 @@ def speed_distribution(
 
 
 def _speeds(run: Run, grid: Grid) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Count speeds in bins, reading the frames in parts.
-
-    Returns the counts (groups, bins), the numbers of speeds (groups,), and the sum of squared velocities in
-    each frame (T,).
+    """Count speeds in bins, reading the frames in parts. Returns the counts (groups, bins), the numbers of
+    speeds (groups,), and the sum of squared velocities in each frame (T,).
     """
     about, energy = mean_motion(run), np.zeros(len(run.time))
     # every group contains a fraction of each species; the species are stored one after the other
@@ -336,10 +335,9 @@ def order_parameter(source: Source, start: float | None = None) -> Observable:
 
 
 def _density(run: Run, axis: int, bins: int, species: int | None) -> Means:
-    """Compute the density of the moving particles, or of one species.
-
-    The density is NaN in bins from which fixed particles exclude all centres. Raises SceneError if particles
-    are of several kinds and the file does not contain all of them.
+    """Compute the density of the moving particles, or of one species. The density is NaN in bins from which
+    fixed particles exclude all centres. Raises SceneError if particles are of several kinds and the file does
+    not contain all of them.
     """
     if len(run.scene.kinds) > 1:
         run.require_all()

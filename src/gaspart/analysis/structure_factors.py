@@ -30,12 +30,9 @@ candidates. Up to twice this number, every second wave along each axis is a cand
 
 
 def wave_vectors(lengths: Sequence[float] | np.ndarray, highest: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return one of each pair of wave vectors k, -k with 0 < |k| <= highest.
-
-    The wave vectors are k = 2 pi n / L.
-
-    Both vectors of a pair k, -k have the same S. `lengths` has shape (d,). Returns the integers n (M, d) and
-    |k| (M,), by ascending |k|.
+    """Return one of each pair of wave vectors k, -k with 0 < |k| <= highest. The wave vectors are k = 2 pi n
+    / L. Both vectors of a pair k, -k have the same S. `lengths` has shape (d,). Returns the integers n (M, d)
+    and |k| (M,), by ascending |k|.
     """
     unit = 2.0 * np.pi / np.asarray(lengths, dtype=float)
     most = (highest / unit).astype(int)
@@ -52,13 +49,10 @@ def wave_vectors(lengths: Sequence[float] | np.ndarray, highest: float) -> tuple
 def shells_of(
     lengths: Sequence[float] | np.ndarray, highest: float, bins: int, most: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Select up to `most` wave vectors (see `wave_vectors`) in each interval of |k|.
-
-    `bins` is the number of equal intervals.
-
-    The selected vectors are evenly distributed among the candidates. If there are too many wave vectors, only
-    every second (fourth, ...) wave along each axis is a candidate. Returns n (M, d), the shell number of each
-    vector (M,), and the mean |k| (S,) of the S nonempty shells.
+    """Select up to `most` wave vectors (see `wave_vectors`) in each interval of |k|. `bins` is the number of
+    equal intervals. The selected vectors are evenly distributed among the candidates. If there are too many
+    wave vectors, only every second (fourth, ...) wave along each axis is a candidate. Returns n (M, d), the
+    shell number of each vector (M,), and the mean |k| (S,) of the S nonempty shells.
     """
     parts, low, step = [], 0.0, 1
     while low < highest:
@@ -92,9 +86,8 @@ def factors(
 def amplitudes(
     frames: np.ndarray, lengths: Sequence[float] | np.ndarray, waves: np.ndarray, threads: int = 1
 ) -> np.ndarray:
-    """Compute the sum of exp(i k.r) over the particles in each frame, for several wave vectors.
-
-    The wave vectors are k = 2 pi n / L.
+    """Compute the sum of exp(i k.r) over the particles in each frame, for several wave vectors. The wave
+    vectors are k = 2 pi n / L.
     """
     from gaspart.kernels.analysis.waves import sum_waves  # importing numba takes 0.4 s
 
@@ -111,11 +104,9 @@ def amplitudes(
 
 
 def _factor_rows(waves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the products from which all exponential factors are computed, and the rows of each wave.
-
-    The factors are exp(2 pi i n x / L).
-
-    For waves (M, d), `sum_waves` expects the products and the rows as arrays (R, 2) and (M, d).
+    """Return the products from which all exponential factors are computed, and the rows of each wave. The
+    factors are exp(2 pi i n x / L). For waves (M, d), `sum_waves` expects the products and the rows as arrays
+    (R, 2) and (M, d).
     """
     from gaspart.kernels.analysis.waves import CONJUGATE
 
@@ -286,10 +277,9 @@ def _average_products(
     highest: float | None,
     products: Callable[[np.ndarray, np.ndarray], np.ndarray],
 ) -> tuple[np.ndarray, dict[str, Any]]:
-    """Average `products` in each of 16 blocks of the run, in intervals of |k|.
-
-    `products` is a function of (frames, waves) that returns an array (T, ..., M). Returns an array (16, ...,
-    wave_number), and the coordinate. Raises SceneError under the conditions of `structure_factor`.
+    """Average `products` in each of 16 blocks of the run, in intervals of |k|. `products` is a function of
+    (frames, waves) that returns an array (T, ..., M). Returns an array (16, ..., wave_number), and the
+    coordinate. Raises SceneError under the conditions of `structure_factor`.
     """
     bins = count_of("bins", bins, least=2)
     lengths = run.scene.container.lengths

@@ -28,8 +28,8 @@ from gaspart.analysis.paths import unwrap_positions
 from gaspart.analysis.run import Run, Source, open_run
 from gaspart.analysis.statistics import correlated_mean, means_of
 from gaspart.errors import SceneError
+from gaspart.scene.boundaries import flow
 from gaspart.scene.scene import Scene
-from gaspart.scene.shear import flow
 from gaspart.state.initial import initial_state
 from gaspart.state.state import State, drift_of
 from gaspart.trajectory.amber import INITIAL
@@ -56,10 +56,8 @@ from gaspart.trajectory.correlator import Correlations
 
 
 def conductivity_without_diffusion(run: Run, lag: float) -> Observable:
-    """Measure the thermal conductivity of a mixture from correlations up to the time `lag`.
-
-    Raises SceneError if frames are unevenly spaced, too far apart, or too few, and if the file does not
-    contain all particles.
+    """Measure the thermal conductivity of a mixture from correlations up to the time `lag`. Raises SceneError
+    if frames are unevenly spaced, too far apart, or too few, and if the file does not contain all particles.
     """
     steps = np.diff(run.time)
     if np.ptp(steps) > 1e-6 * steps.mean():
@@ -86,9 +84,8 @@ def conductivity_without_diffusion(run: Run, lag: float) -> Observable:
 
 
 def _sum_displacements(run: Run) -> np.ndarray:
-    """Sum the displacements of each species relative to the centre of mass.
-
-    The shape is (S - 1, T, d), because the sum for the last species follows from the other sums.
+    """Sum the displacements of each species relative to the centre of mass. The shape is (S - 1, T, d),
+    because the sum for the last species follows from the other sums.
     """
     moving, masses = run.moving, run.masses  # raises SceneError if the file lacks particles
     members = [run.species == kind for kind in np.unique(run.species)[:-1]]
@@ -100,12 +97,11 @@ def _sum_displacements(run: Run) -> np.ndarray:
 
 
 def _products(flux: np.ndarray, other_flux: np.ndarray, lags: int) -> np.ndarray:
-    """Compute products of changes of two sets of time-integrated fluxes.
-
-    The integrals have the shapes (A, T, d) and (B, T, d), and the products the shape (A, B, T - 1 - lags).
-    The change of one integral over an interval is multiplied by a sum of changes of the other integral: half
-    of its change over the same interval plus its change over the next `lags` intervals. The result is
-    averaged over both orders of the two integrals and over axes.
+    """Compute products of changes of two sets of time-integrated fluxes. The integrals have the shapes (A, T,
+    d) and (B, T, d), and the products the shape (A, B, T - 1 - lags). The change of one integral over an
+    interval is multiplied by a sum of changes of the other integral: half of its change over the same
+    interval plus its change over the next `lags` intervals. The result is averaged over both orders of the
+    two integrals and over axes.
     """
 
     def half(first: np.ndarray, second: np.ndarray) -> np.ndarray:
@@ -312,10 +308,9 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
 
 
 def _read_settings(run: Run) -> Correlations:
-    """Return the settings of the stress correlations of a run.
-
-    Raises SceneError if the run has none. Older versions of gaspart stored fluxes that are not relative to
-    the centre of mass. A run of such a version is rejected if the gas moves as a whole.
+    """Return the settings of the stress correlations of a run. Raises SceneError if the run has none. Older
+    versions of gaspart stored fluxes that are not relative to the centre of mass. A run of such a version is
+    rejected if the gas moves as a whole.
     """
     text = run.data.attrs.get("correlations")
     settings = Correlations.from_json(text) if text else None
@@ -359,9 +354,8 @@ def _response(run: Run, lag: float | None) -> Observable:
 
 
 def _coefficient(run: Run, public: str, name: str, lag: float | None) -> Observable:
-    """Measure a transport coefficient from the correlations of a flux.
-
-    `name` is the name of the flux in `trajectory.correlator.STRESS`.
+    """Measure a transport coefficient from the correlations of a flux. `name` is the name of the flux in
+    `trajectory.correlator.STRESS`.
     """
     require_defined(public, run.scene)
     settings = _read_settings(run)
@@ -398,9 +392,8 @@ def _lags_until(settings: Correlations, lag: float | None) -> int:
 
 
 def green_kubo(run: Run, name: str) -> np.ndarray:
-    """Compute a transport coefficient from the correlation up to each lag, in each block.
-
-    A block is an interval between frames. Only intervals in which pairs of samples of all lags end are used.
+    """Compute a transport coefficient from the correlation up to each lag, in each block. A block is an
+    interval between frames. Only intervals in which pairs of samples of all lags end are used.
     """
     interval = _read_settings(run).interval
     products, _ = _blocks(run, name)
@@ -423,11 +416,8 @@ def _scale(run: Run, name: str) -> float:
 
 
 def _blocks(run: Run, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return the correlation of V J and the squared change of G for each block.
-
-    Both arrays have the shape (B, lags).
-
-    A nonzero mean of the flux is subtracted.
+    """Return the correlation of V J and the squared change of G for each block. Both arrays have the shape
+    (B, lags). A nonzero mean of the flux is subtracted.
     """
     data: xr.Dataset = run.data
     samples = data["correlated_samples"].values

@@ -42,9 +42,8 @@ LARGEST_FILM = 50_000_000
 
 
 class Picture(np.ndarray):
-    """Array of pixels, uint8 (H, W, 3), that a notebook shows as a picture.
-
-    Slices and results of arithmetic that are not pictures are shown as arrays.
+    """Array of pixels, uint8 (H, W, 3), that a notebook shows as a picture. Slices and results of arithmetic
+    that are not pictures are shown as arrays.
     """
 
     def _repr_png_(self) -> bytes | None:
@@ -252,9 +251,8 @@ def _place(piston: np.ndarray | None) -> float | None:
 
 
 def _walls(scene: Scene, time: float, piston: float | np.ndarray | None) -> np.ndarray:
-    """Return the segments (M, 2, d) of walls, sides of plates, and moving faces.
-
-    `piston` is the position of a piston along its axis, if there is one.
+    """Return the segments (M, 2, d) of walls, sides of plates, and moving faces. `piston` is the position of
+    a piston along its axis, if there is one.
     """
     segments: list[tuple] = []
     moving = scene.moving_wall

@@ -19,9 +19,8 @@ _LETTER = re.compile(r"^\([a-z]\)\s*")
 
 
 def save_key_picture(figure: Figure, number: int | None, path: str | Path) -> None:
-    """Reduce a finished figure to one of its panels, and write it.
-
-    Renders stay whole, as does a figure without a number.
+    """Reduce a finished figure to one of its panels, and write it. Renders stay whole, as does a figure
+    without a number.
     """
     if number is not None and figure.axes[number].axison:
         _keep(figure, figure.axes[number])

@@ -24,9 +24,9 @@ from gaspart.kernels.compile.webassembly import modules
 from gaspart.rendering.controls import RULES, Controls
 from gaspart.rendering.particles import FASTEST
 from gaspart.rendering.view import View, page_of
-from gaspart.scene.face_checks import piston_end
-from gaspart.scene.faces import FACES
+from gaspart.scene.boundaries import piston_end
 from gaspart.scene.scene import Scene, require_scene
+from gaspart.scene.surfaces import FACES
 from gaspart.scene.walls import Wall
 from gaspart.state.given import state_at_time_zero
 from gaspart.state.initial import initial_state
@@ -288,10 +288,8 @@ def _changes(base: dict, other: dict) -> dict:
 
 
 def _pressure(scene: Scene, controls: Controls) -> dict | None:
-    """Return p A / k_B T for positions of the side x high; None if unknown.
-
-    A is the accessible area. The walls of a rectangle count as the walls of a square with the same ratio of
-    perimeter and area.
+    """Return p A / k_B T for positions of the side x high; None if unknown. A is the accessible area. The
+    walls of a rectangle count as the walls of a square with the same ratio of perimeter and area.
     """
     gas, lengths = scene.gas, scene.container.lengths
     if gas is None or scene.walls or scene.has_piston:

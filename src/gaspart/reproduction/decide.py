@@ -69,9 +69,8 @@ def decide(path: str | Path) -> list[str]:
 def find_open(
     figure: str, block: Mapping[str, Any], dataset: xr.Dataset, present: Mapping[str, float]
 ) -> list[Open]:
-    """Return the claims of a figure that more effort could decide.
-
-    `present` is the effort of each experiment.
+    """Return the claims of a figure that more effort could decide. `present` is the effort of each
+    experiment.
     """
     stated = claims_of(figure, block, dataset)
     names = block["experiments"]
@@ -106,9 +105,8 @@ def with_larger_errors(dataset: xr.Dataset, experiment: str) -> xr.Dataset:
 
 
 def next_efforts(undecided: list[Open], present: Mapping[str, float]) -> dict[str, float]:
-    """Return the efforts of the experiments to continue: twice the present ones, at most `MOST`.
-
-    A claim that would need more than twice `MOST` is left open.
+    """Return the efforts of the experiments to continue: twice the present ones, at most `MOST`. A claim that
+    would need more than twice `MOST` is left open.
     """
     wanted = {name for one in undecided if one.effort <= 2.0 * MOST for name in one.experiments}
     return {name: min(2.0 * present[name], MOST) for name in sorted(wanted) if present[name] < MOST}

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.scene.boundaries import flow
 from gaspart.scene.faces import FLOW, GRADIENT
 from gaspart.scene.scene import Scene
-from gaspart.scene.shear import flow
 
 
 @dataclass(repr=False)

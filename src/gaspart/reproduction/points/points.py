@@ -105,9 +105,8 @@ _TAKEN = (
 
 
 def _of_any_engine() -> dict[str, Kind]:
-    """Return the keys of all engines.
-
-    If a key has different meanings for engines, the description lists them.
+    """Return the keys of all engines. If a key has different meanings for engines, the description lists
+    them.
     """
     merged: dict[str, Kind] = {}
     for engine, keys in ENGINE_KEYS.items():
@@ -185,9 +184,8 @@ ANIMATION: dict[str, Kind] = {
 
 
 def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
-    """Return the top level of a config from the entries of its figures by name.
-
-    Figures with other names have the entry `own`.
+    """Return the top level of a config from the entries of its figures by name. Figures with other names have
+    the entry `own`.
     """
     named = {"type": "object", "propertyNames": _NAME}
     return {
@@ -247,9 +245,8 @@ MOST_POINTS = 100_000
 
 
 def points(config: dict, experiment: str) -> list[Point]:
-    """Return all points of an experiment.
-
-    Raises SceneError for an empty grid, or for two points of equal name.
+    """Return all points of an experiment. Raises SceneError for an empty grid, or for two points of equal
+    name.
     """
     block = config["experiments"][experiment]
     where = f"experiments.{experiment}"
@@ -285,10 +282,7 @@ def _plain(key: str, value: Any) -> Any:
 
 
 def _chosen(point: Point) -> Point:
-    """Return a point with the engine that `engine: auto` selects.
-
-    Raises SceneError.
-    """
+    """Return a point with the engine that `engine: auto` selects. Raises SceneError."""
     where = f"experiments.{point.experiment}"
     if point.settings.get("engine") == "auto":
         from gaspart.reproduction.points.engine import chosen
@@ -301,10 +295,7 @@ def _chosen(point: Point) -> Point:
 
 
 def all_points(config: dict) -> dict[str, dict[str, Point]]:
-    """Return the points of all experiments, by experiment and name.
-
-    Raises SceneError as in `points`.
-    """
+    """Return the points of all experiments, by experiment and name. Raises SceneError as in `points`."""
     return {
         experiment: {point.name: point for point in points(config, experiment)}
         for experiment in config["experiments"]
@@ -312,9 +303,8 @@ def all_points(config: dict) -> dict[str, dict[str, Point]]:
 
 
 def figure_points(config: dict, figure: str, planned: Mapping[str, Mapping[str, Point]]) -> list[Point]:
-    """Return the points of all experiments that a figure lists, in the figure's order.
-
-    `planned` is a result of `all_points`. Raises SceneError for an unknown experiment.
+    """Return the points of all experiments that a figure lists, in the figure's order. `planned` is a result
+    of `all_points`. Raises SceneError for an unknown experiment.
     """
     chosen: list[Point] = []
     for experiment in config["figures"][figure]["experiments"]:
@@ -340,9 +330,8 @@ def _check_size(config: dict, experiment: str) -> None:
 
 
 def _combinations(grid: Any, where: str) -> list[dict]:
-    """Return all combinations of the values in a mapping of lists.
-
-    For several mappings, their combinations are concatenated.
+    """Return all combinations of the values in a mapping of lists. For several mappings, their combinations
+    are concatenated.
     """
     if isinstance(grid, list):
         if not grid:
