@@ -95,7 +95,8 @@ def _verify(options: argparse.Namespace) -> None:
 _EXAMPLES_OF_BUDGET = """examples:
   gaspart budget config/config.yaml
   gaspart budget config/precise.yaml -o budget.csv    # a line for each claim
-  gaspart budget config/config.yaml --next; snakemake --cores all"""
+  gaspart budget config/config.yaml --status          # what is made and left
+  gaspart budget config/config.yaml --next            # then snakemake --cores all"""
 
 
 def add_budget(parser: Parser) -> None:
@@ -109,6 +110,8 @@ def add_budget(parser: Parser) -> None:
     set_command(parser, _budget, text, _EXAMPLES_OF_BUDGET)
     parser.add_argument("config", metavar="FILE", help="config of the workflow (YAML)")
     parser.add_argument("-o", "--output", metavar="FILE", help="write a line for each claim (CSV) instead")
+    text = "print the points of each figure that are made and left instead, while the workflow runs too"
+    parser.add_argument("--status", action="store_true", help=text)
     parser.add_argument(
         "--next",
         action="store_true",
@@ -131,4 +134,4 @@ def _budget(options: argparse.Namespace) -> None:
         if not lines:
             raise CheckFailed
         return
-    print_lines(config_command("budget")(options.config, options.output))
+    print_lines(config_command("budget")(options.config, options.output, options.status))

@@ -63,11 +63,11 @@ def _take(archive: Path, config: str | Path) -> str:
             used = [point for point in points if _place(replace(point, root=str(root)), Path(point.path))]
         names = {point.experiment for point in used}
         write_efforts(folder, {name: effort_of(own, name) for name in names})
-    left = [point for point in points if point not in used]
-    others = {stamp(point, _SCRIPTS) for point in left}
-    for path in {stamp(point, _SCRIPTS) for point in used} - others:  # no kernel is needed
-        Path(path).parent.mkdir(parents=True, exist_ok=True)
-        Path(path).touch()
+        left = [point for point in points if point not in used]
+        others = {stamp(point, _SCRIPTS) for point in left}
+        for path in {stamp(point, _SCRIPTS) for point in used} - others:  # no kernel is needed
+            Path(path).parent.mkdir(parents=True, exist_ok=True)
+            Path(path).touch()
     return _describe(archive, summary, used, left)
 
 
