@@ -86,9 +86,8 @@ class Adviser(Generic[E]):
         return 0.0
 
     def at_step(self, scene: Scene, step: float, precision: str) -> E:
-        """Return the engine with the settings of a row of the table of costs.
-
-        step : time step in the unit of the table of costs
+        """Return the engine with the settings of a row of the table of costs. `step`: time step in the unit
+        of the table of costs.
         """
         return self.engine
 
@@ -102,8 +101,7 @@ class Adviser(Generic[E]):
         return f"{self.engine.name}, {self.engine.precision}"
 
     def notes(self, scene: Scene, observable: str, paths: bool) -> dict[str, str]:
-        """Return remarks about the engine for a plan, by title.
-
-        paths : True if the observable depends on the paths of particles
+        """Return remarks about the engine for a plan, by title. `paths`: True if the observable depends on
+        the paths of particles.
         """
         return {"boxes": self.pairs}

@@ -111,12 +111,9 @@ def fluid_option(
     value: float = 1.0,
     discarded: float = EQUILIBRATION,
 ) -> Option:
-    """Return the option of an engine for a fluid, by the cost of a contact.
-
-    each : CPU time per contact.
-    noise : relative variance of the observable times the number of contacts.
-    value : value of the observable.
-    discarded : minimum fraction of a run before the measurement begins.
+    """Return the option of an engine for a fluid, by the cost of a contact. `each`: CPU time per contact.
+    `noise`: relative variance of the observable times the number of contacts. `value`: value of the
+    observable. `discarded`: minimum fraction of a run before the measurement begins.
     """
     frequency = float(theory.collision_rate(**gas.parameters))
     contacts = 0.5 * gas.count * frequency  # per time
@@ -175,10 +172,9 @@ def suitable_engines(target: Target) -> tuple[list[Engine], dict[str, str]]:
 def candidates(
     target: Target, accuracy: float, conditions: Conditions
 ) -> tuple[list[Candidate], dict[str, str]]:
-    """Return the `suitable_engines` with their settings, and the reason for each rejected engine.
-
-    accuracy : requested accuracy of the observable, from which time steps are chosen.
-    conditions : local conditions of the steady scene.
+    """Return the `suitable_engines` with their settings, and the reason for each rejected engine. `accuracy`:
+    requested accuracy of the observable, from which time steps are chosen. `conditions`: local conditions of
+    the steady scene.
     """
     engines, refused = suitable_engines(target)
     request, proposals = make_request(target, accuracy, conditions), []

@@ -31,7 +31,7 @@ from gaspart.kernels.compile.sources import source_digest
 from gaspart.simulation import Simulation
 from gaspart.state.given import state_at_time_zero
 from gaspart.theory.conditions import Conditions
-from gaspart.trajectory.last_state import last_state
+from gaspart.trajectory.export import last_state
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.run import WriteOptions, extend, record
@@ -206,12 +206,9 @@ def _estimate(trajectory: xr.Dataset, target: Target) -> dict[str, Component] | 
 
 
 def run_pilot(target: Target, engine: Engine, seconds: float, speed: float, fraction: float = 1.0) -> Pilot:
-    """Run a pilot of about the given CPU time, and measure the observable.
-
-    speed : result of `speed_of`.
-    fraction : fraction of the CPU time that remains after preparation, unless a stored pilot is reused.
-
-    A pilot in a transient is extended to at most four times its length. If the observable needs a longer run,
+    """Run a pilot of about the given CPU time, and measure the observable. `speed`: result of `speed_of`.
+    `fraction`: fraction of the CPU time that remains after preparation, unless a stored pilot is reused. A
+    pilot in a transient is extended to at most four times its length. If the observable needs a longer run,
     the pilot has no measured value. Raises SceneError if the observable is undefined in the scene.
     """
     scheduled = target.schedule(engine, fraction * seconds / speed)

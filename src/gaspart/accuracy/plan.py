@@ -188,20 +188,15 @@ def plan(
     announce: Announce = lambda text: None,
 ) -> Plan:
     """Find the cheapest run that measures an observable of `gaspart measure` to a relative accuracy. The
-    observable may name one wall, such as `pressure:x low`.
-
-    accuracy : relative accuracy: the standard error plus the bound on systematic errors, divided by the
-        value. A run with `--until` requires this accuracy of its standard error alone.
-    budget : CPU time of the run in seconds. If it does not suffice, the plan is the most accurate run within
-        it.
-    pilot_seconds : total CPU time of the pilots, for scenes and observables that the table does not cover.
-        Most scenes need two pilots. If the preparation takes more than 5 s, for example to compress
-        particles, it may use up to half of this time. The pilots take longer if a third engine turns out to
-        be the best, or if a pilot in a transient is extended.
-    announce : function that is called with a text before each pilot.
-
-    Raises SceneError if the scene has no steady state, if the observable is undefined in the scene, or if the
-    pilots are too short for the observable.
+    observable may name one wall, such as `pressure:x low`. `accuracy`: relative accuracy: the standard error
+    plus the bound on systematic errors, divided by the value. A run with `--until` requires this accuracy of
+    its standard error alone. `budget`: CPU time of the run in seconds. If it does not suffice, the plan is
+    the most accurate run within it. `pilot_seconds`: total CPU time of the pilots, for scenes and observables
+    that the table does not cover. Most scenes need two pilots. If the preparation takes more than 5 s, for
+    example to compress particles, it may use up to half of this time. The pilots take longer if a third
+    engine turns out to be the best, or if a pilot in a transient is extended. `announce`: function that is
+    called with a text before each pilot. Raises SceneError if the scene has no steady state, if the
+    observable is undefined in the scene, or if the pilots are too short for the observable.
     """
     if known.is_tabulated(scene, observable):
         return plan_from_table(scene, observable, accuracy, budget)

@@ -43,6 +43,10 @@ def replicas(
 ) -> Observable:
     """Measure a named observable as the mean over independent runs of one scene.
 
+    The uncertainty is the standard error of the mean, computed from the scatter between runs. It requires no
+    assumption about correlations within a run. Its number of degrees of freedom (`freedom`) is the number of
+    runs minus one.
+
     Parameters
     ----------
     name : str
@@ -70,12 +74,6 @@ def replicas(
         difference); if two runs are identical (same initial state and same seed, or same initial state in a
         scene without random numbers); or if curves have different coordinates, such as densities in different
         bins. Also under the conditions of the observable's function.
-
-    Notes
-    -----
-    The uncertainty is the standard error of the mean, computed from the scatter between runs. It requires no
-    assumption about correlations within a run. Its number of degrees of freedom (`freedom`) is the number of
-    runs minus one.
 
     Examples
     --------

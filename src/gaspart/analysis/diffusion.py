@@ -51,14 +51,20 @@ def diffusion_coefficient(
 ) -> Observable:
     """Measure the diffusion coefficient D from the slope of the mean-squared displacement.
 
+    Slopes are computed between the lags of 6, 12, 24, 48 ... collisions of a particle, as far as the run
+    permits. D is the first slope that agrees with the previous slope within two standard errors of their
+    difference. If no slope agrees, but the last slope has changed by less than 6 %, only a slow tail is
+    missing. D is then the last slope, and the estimated size of the tail is added to the error.
+
+    D at a `lag` is the integral of the velocity autocorrelation up to this lag. This integral exists even if
+    D does not exist, for example for discs and between walls.
+
+    The theoretical D of spheres in a periodic cube is the result of Erpenbeck and Wood with the correction of
+    Yeh and Hummer; its uncertainty is half of this correction. If a lag is passed, the theoretical value is
+    the derivative of the theoretical mean-squared displacement.
+
     Parameters
     ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
-    species : int, optional
-        Measure only this species, as in `mean_squared_displacement`.
     particles : sequence of int, optional
         Measure only these particles, as in `mean_squared_displacement`. For fewer than 16 particles, such as
         a single tracer, the run is divided into 16 blocks, and each block must contain the lags.
@@ -86,30 +92,6 @@ def diffusion_coefficient(
         If there is neither a periodic axis nor a lag, if the run is too short, or if it has too few frames.
         If no lag is passed, also if the slope still changes at the longest lags, and for discs whose total
         momentum persists for more than 12 collisions. The squared displacement of such discs grows as t ln t.
-
-    Notes
-    -----
-    Slopes are computed between the lags of 6, 12, 24, 48 ... collisions of a particle, as far as the run
-    permits. D is the first slope that agrees with the previous slope within two standard errors of their
-    difference. If no slope agrees, but the last slope has changed by less than 6 %, only a slow tail is
-    missing. D is then the last slope, and the estimated size of the tail is added to the error.
-
-    D at a `lag` is the integral of the velocity autocorrelation up to this lag. This integral exists even if
-    D does not exist, for example for discs and between walls.
-
-    The theoretical D of spheres in a periodic cube is the result of Erpenbeck and Wood with the correction of
-    Yeh and Hummer; its uncertainty is half of this correction. If a lag is passed, the theoretical value is
-    the derivative of the theoretical mean-squared displacement.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(40.0)
-    >>> gp.analysis.diffusion_coefficient(simulation, lag=1.0).estimate.attrs["units"]
-    'length^2 / time'
     """
     with open_run(source, start, about=about) as run:
         require_defined("D", run.scene, species=species, particles=particles, lag=lag, about=about)
@@ -278,12 +260,20 @@ def settled_slope(slopes: np.ndarray, sizes: Sequence[int] | None = None) -> tup
 def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
     """Measure the Maxwell-Stefan coefficient of mutual diffusion of two species.
 
-    Parameters
-    ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
+    X_1 and X_2 are the mean displacements of the species, and x_1 and x_2 their fractions of the N particles.
+    Then
+
+        D_12 = x_1 x_2 N / (2 d) d/dt <|X_1(t) - X_2(t)|^2>,
+
+    Slopes are computed between the lags of 6, 12, 24, 48 ... collisions of a particle. The derivative is the
+    first slope that agrees with the previous slope within two standard errors (E. Helfand, Phys. Rev. 119, 1
+    (1960)) (R. Krishna and J. M. van Baten, Ind. Eng. Chem. Res. 44, 6939 (2005)). The attribute `lags`
+    contains the two lags of this slope. The longest lag is a 32nd of the run, but at least 24 collisions. If
+    no slope agrees, but the last slope has changed by less than 6 %, only a slow tail is missing. The
+    estimated size of the tail is added to the error. Fick's coefficient is D_12 times the thermodynamic
+    factor, which is 1 for species of one size. If the species differ only in their numbers, D_12 is exactly
+    the D of a single particle. X_1 - X_2 is a single vector for any number of particles, so only longer runs
+    are more accurate.
 
     Returns
     -------
@@ -296,38 +286,6 @@ def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
         If there are not exactly two species; if there are fixed particles, walls or contacts that lose
         energy; for discs, for which the coefficient does not exist; if frames are too far apart or the run is
         too short; or if the slope still changes at the longest lags.
-
-    Notes
-    -----
-    X_1 and X_2 are the mean displacements of the species, and x_1 and x_2 their fractions of the N particles.
-    Then
-
-        D_12 = x_1 x_2 N / (2 d) d/dt <|X_1(t) - X_2(t)|^2>,
-
-    Slopes are computed between the lags of 6, 12, 24, 48 ... collisions of a particle. The derivative is the
-    first slope that agrees with the previous slope within two standard errors [1]_ [2]_. The attribute `lags`
-    contains the two lags of this slope. The longest lag is a 32nd of the run, but at least 24 collisions. If
-    no slope agrees, but the last slope has changed by less than 6 %, only a slow tail is missing. The
-    estimated size of the tail is added to the error. Fick's coefficient is D_12 times the thermodynamic
-    factor, which is 1 for species of one size. If the species differ only in their numbers, D_12 is exactly
-    the D of a single particle. X_1 - X_2 is a single vector for any number of particles, so only longer runs
-    are more accurate.
-
-    References
-    ----------
-    .. [1] E. Helfand, Phys. Rev. 119, 1 (1960).
-    .. [2] R. Krishna and J. M. van Baten, Ind. Eng. Chem. Res. 44, 6939 (2005).
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((5.0, 5.0, 5.0), boundary="periodic")
-    >>> gases = [gp.Species(20, radius, temperature=1.0) for radius in (0.4, 0.5)]
-    >>> scene = gp.Scene(box, gases)
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(60.0)
-    >>> gp.analysis.mutual_diffusion(simulation).estimate.attrs["units"]
-    'length^2 / time'
     """
     with open_run(source, start) as run:
         require_defined("mutual_diffusion", run.scene)

@@ -182,15 +182,18 @@ def _find_covered_cells(
 def chemical_potential(source: Source, trials: int = TRIALS, start: float | None = None) -> Observable:
     """Measure the excess chemical potential of a periodic fluid, divided by k_B T, by insertion.
 
+    The error refers to the mean over frames, to first order. In a dense fluid ln P has a large standard
+    deviation s between frames. Frames about s standard deviations above the median contribute most to the
+    mean of P. Among n independent frames, the best frame is about sqrt(2 ln n) standard deviations above the
+    median. If sqrt(2 ln n) is less than s + 1.5, the frames that contribute most are missing. Then the result
+    is too large, its error is NaN, and a note says so. The theoretical value follows from the equation of
+    state, for the same number of particles.
+
     Parameters
     ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
     trials : int, default 512
         Number of random positions that are tried in each of up to 2048 frames. The positions lie in the
         region where a particle may fit.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
@@ -205,25 +208,6 @@ def chemical_potential(source: Source, trials: int = TRIALS, start: float | None
     SceneError
         If the scene is not a periodic container of smooth elastic particles, or is a mixture with single
         particles or a polydisperse species; if there are too few frames; or if no position was free.
-
-    Notes
-    -----
-    The error refers to the mean over frames, to first order. In a dense fluid ln P has a large standard
-    deviation s between frames. Frames about s standard deviations above the median contribute most to the
-    mean of P. Among n independent frames, the best frame is about sqrt(2 ln n) standard deviations above the
-    median. If sqrt(2 ln n) is less than s + 1.5, the frames that contribute most are missing. Then the result
-    is too large, its error is NaN, and a note says so. The theoretical value follows from the equation of
-    state, for the same number of particles.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(40.0)
-    >>> gp.analysis.chemical_potential(simulation, trials=50).estimate.attrs["units"]
-    '1'
     """
     trials = count_of("trials", trials, least=1)
     with open_run(source, start) as run:

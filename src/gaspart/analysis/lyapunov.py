@@ -104,6 +104,9 @@ def follow(deviation: Deviation, scene: Scene, masses: np.ndarray, events: Mappi
 def lyapunov_exponent(simulation: Simulation, start: float | None = None, seed: int = 0) -> Observable:
     """Measure the largest Lyapunov exponent from the recorded events of an event-driven run.
 
+    The growth rates in equal intervals form a correlated series. The uncertainty is the error of the mean of
+    this series. The computation takes about 10 microseconds per event.
+
     Parameters
     ----------
     simulation : Simulation
@@ -124,11 +127,6 @@ def lyapunov_exponent(simulation: Simulation, start: float | None = None, seed: 
     SceneError
         If there is no record, if it has too few events, or if the scene has anything other than moving
         particles with smooth elastic contacts and hard faces.
-
-    Notes
-    -----
-    The growth rates in equal intervals form a correlated series. The uncertainty is the error of the mean of
-    this series. The computation takes about 10 microseconds per event.
 
     Examples
     --------

@@ -211,17 +211,15 @@ def mean_squared_displacement(
 ) -> Observable:
     """Measure the mean-squared displacement <|r(t) - r(0)|^2> over moving particles and time origins.
 
+    If the run has stored correlations with displacements, and none of `lags`, `species`, `particles` and
+    `per_axis` is passed, all samples are used, and the lags are the lags of the correlations.
+    `gaspart.analysis.flow` defines the local flow. The theoretical curve follows from the linear Boltzmann
+    equation with Enskog's diffusion coefficient.
+
     Parameters
     ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
     lags : int, optional
         Number of lags, in frames. Default: half of the frames.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
-    species : int, optional
-        Measure only this species, identified by its number in the scene. Single particles have the number
-        after the last species.
     particles : sequence of int, optional
         Measure only these particles. For fewer than 16 particles the error follows from the scatter between
         blocks of the run.
@@ -243,23 +241,6 @@ def mean_squared_displacement(
         If there are fewer than 16 moving particles and no selection is passed; if the flow changes with time;
         if frames are unevenly spaced; or if frames are too far apart to follow particles across periodic
         faces.
-
-    Notes
-    -----
-    If the run has stored correlations with displacements, and none of `lags`, `species`, `particles` and
-    `per_axis` is passed, all samples are used, and the lags are the lags of the correlations.
-    `gaspart.analysis.flow` defines the local flow. The theoretical curve follows from the linear Boltzmann
-    equation with Enskog's diffusion coefficient.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(40.0)
-    >>> gp.analysis.mean_squared_displacement(simulation, lags=5).estimate.dims
-    ('lag',)
     """
     with open_run(source, start, about=about) as run:
         require_defined("msd", run.scene, species=species, particles=particles, about=about)
@@ -290,20 +271,14 @@ def velocity_autocorrelation(
 ) -> Observable:
     """Measure the velocity autocorrelation <v(0) . v(t)> / d over moving particles and time origins.
 
+    If the run has stored correlations, all samples are used, as in `mean_squared_displacement`, but the
+    correlations need not include displacements. The theoretical curve is (k_B T / m) exp(-2 nu t / d), where
+    nu is the collision rate. It is exact at short times, but does not contain the long-time tail.
+
     Parameters
     ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
     lags : int, optional
         Number of lags, in frames. Default: half of the frames.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
-    species : int, optional
-        Measure only this species, as in `mean_squared_displacement`.
-    particles : sequence of int, optional
-        Measure only these particles, as in `mean_squared_displacement`.
-    about : {"flow", "rest"}, default "flow"
-        Frame of reference, as in `mean_squared_displacement`.
 
     Returns
     -------
@@ -314,22 +289,6 @@ def velocity_autocorrelation(
     ------
     SceneError
         If there are fewer than 16 moving particles, or if frames are unevenly spaced.
-
-    Notes
-    -----
-    If the run has stored correlations, all samples are used, as in `mean_squared_displacement`, but the
-    correlations need not include displacements. The theoretical curve is (k_B T / m) exp(-2 nu t / d), where
-    nu is the collision rate. It is exact at short times, but does not contain the long-time tail.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(40.0)
-    >>> gp.analysis.velocity_autocorrelation(simulation, lags=5).estimate.dims
-    ('lag',)
     """
     with open_run(source, start, about=about) as run:
         require_defined("vacf", run.scene, species=species, particles=particles, about=about)

@@ -23,7 +23,7 @@ from gaspart.state.tally import FURTHEST, PairImpulseTally
 from gaspart.theory.bulk import EXACT
 from gaspart.theory.geometry import unit_sphere_surface
 from gaspart.theory.speeds import mean_speed_factor
-from gaspart.trajectory.pairs import pair_names, pairs_of
+from gaspart.trajectory.correlator import pair_names, pairs_of
 from gaspart.trajectory.run_options import stored_tally
 from gaspart.workers import in_threads
 
@@ -167,17 +167,24 @@ def rdf(
 ) -> Observable:
     """Measure the radial distribution function g(r) of all particles of a periodic scene.
 
+    g(r) is the number of pairs at the distance r divided by the mean number for N independent particles,
+    which form N (N - 1) / 2 pairs. So it is 1 at all distances in an ideal gas of any N. In a fluid it tends
+    to 1 + (1 - S(0)) / N at large distances; S(0) is the reduced compressibility (J. L. Lebowitz and J. K.
+    Percus, Phys. Rev. 122, 1675 (1961)).
+
+    If the run has stored pair impulses, and each bin consists of an equal number of stored shells, g(r) is
+    more accurate than from counts alone (`gaspart.analysis.pairs`). The attribute `estimator` names the
+    method. The theoretical value is the mean over each bin of the approximation of Verlet and Weis, for
+    spheres in the fluid phase. The error of an empty bin is NaN, or 0 at distances at which hard particles
+    would overlap.
+
     Parameters
     ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
     bins : int, optional
         Number of bins. Default: 100, or the bins of the stored pair impulses.
     furthest : float, [length], optional
         Largest distance. Default: the largest distance of the stored pair impulses. Without stored impulses,
         the default is five times the largest diameter, but less than half of the shortest side.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
@@ -189,32 +196,6 @@ def rdf(
     SceneError
         If the scene has walls or fewer than two particles, if there are too few frames, or if the distance is
         too large.
-
-    Notes
-    -----
-    g(r) is the number of pairs at the distance r divided by the mean number for N independent particles,
-    which form N (N - 1) / 2 pairs. So it is 1 at all distances in an ideal gas of any N. In a fluid it tends
-    to 1 + (1 - S(0)) / N at large distances; S(0) is the reduced compressibility [1]_.
-
-    If the run has stored pair impulses, and each bin consists of an equal number of stored shells, g(r) is
-    more accurate than from counts alone (`gaspart.analysis.pairs`). The attribute `estimator` names the
-    method. The theoretical value is the mean over each bin of the approximation of Verlet and Weis, for
-    spheres in the fluid phase. The error of an empty bin is NaN, or 0 at distances at
-    which hard particles would overlap.
-
-    References
-    ----------
-    .. [1] J. L. Lebowitz and J. K. Percus, Phys. Rev. 122, 1675 (1961).
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(40.0)
-    >>> gp.analysis.rdf(simulation, bins=20).sizes["distance"]
-    20
     """
     with open_run(source, start) as run:
         require_defined("rdf", run.scene)
@@ -271,13 +252,15 @@ def stretches_of(run: Run) -> list[slice]:
 def pair_collision_rates(source: Source, start: float | None = None) -> Observable:
     """Measure the collision rate of a particle of one species with a second species.
 
+    The theoretical rate is exact except for the contact values. These are for an infinite mixture. A particle
+    of species i has N_i - 1 partners of its own species. The mean speed is computed for the finite number of
+    particles at fixed energy.
+
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
         A trajectory of a run with `pairs` (a path or an open trajectory), or a simulation, which is run
         again.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
@@ -290,12 +273,6 @@ def pair_collision_rates(source: Source, start: float | None = None) -> Observab
     SceneError
         If the scene has single particles, if there are too few frames, or if the run was made without
         `pairs`.
-
-    Notes
-    -----
-    The theoretical rate is exact except for the contact values. These are for an infinite mixture. A particle
-    of species i has N_i - 1 partners of its own species. The mean speed is computed for the finite number of
-    particles at fixed energy.
 
     Examples
     --------
@@ -316,13 +293,19 @@ def pair_collision_rates(source: Source, start: float | None = None) -> Observab
 def contact_values(source: Source, start: float | None = None) -> Observable:
     """Measure the contact value g_ij of each pair of species from its collision rate.
 
+    The number N_ij of collisions in the time t is
+
+        n_ij S sigma_ij^(d-1) g_ij sqrt(k_B T / (2 pi mu_ij)) t / V,
+
+    with n_ij = N_i N_j or N_i (N_i - 1) / 2 pairs of particles, S = 2 pi (2D) or 4 pi (3D), and the reduced
+    mass mu_ij. This formula is exact in equilibrium (S. Chapman and T. G. Cowling (1970)), if the mean speed
+    is computed for the finite number of particles at fixed energy.
+
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
         A trajectory of a run with `pairs` (a path or an open trajectory), or a simulation, which is run
         again.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
@@ -334,31 +317,6 @@ def contact_values(source: Source, start: float | None = None) -> Observable:
     SceneError
         Under the conditions of `pair_collision_rates`, and for a scene with walls, contacts that lose energy,
         or a polydisperse species.
-
-    Notes
-    -----
-    The number N_ij of collisions in the time t is
-
-        n_ij S sigma_ij^(d-1) g_ij sqrt(k_B T / (2 pi mu_ij)) t / V,
-
-    with n_ij = N_i N_j or N_i (N_i - 1) / 2 pairs of particles, S = 2 pi (2D) or 4 pi (3D), and the reduced
-    mass mu_ij. This formula is exact in equilibrium [1]_, if the mean speed is computed for the finite number
-    of particles at fixed energy.
-
-    References
-    ----------
-    .. [1] S. Chapman and T. G. Cowling (1970).
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> gases = [gp.Species(20, radius, temperature=1.0) for radius in (0.3, 0.5)]
-    >>> scene = gp.Scene(box, gases)
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(40.0)
-    >>> gp.analysis.contact_values(simulation).sizes["pair"]
-    3
     """
     with open_run(source, start, pairs=True) as run:
         estimates = estimates_of(run, contact_scales(run))

@@ -26,7 +26,7 @@ from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.state import by_number
 from gaspart.state.tally import Tally
-from gaspart.trajectory.pairs import PairCounter
+from gaspart.trajectory.correlator import PairCounter
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.run_options import tallies_to_json
 from gaspart.yaml_text import dump_yaml, parse_yaml

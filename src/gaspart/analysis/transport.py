@@ -119,14 +119,17 @@ _SLIGHT = 1e-6  # fraction of k_B T: energy of the motion of the whole gas that 
 def shear_viscosity(source: Source, lag: float | None = None, start: float | None = None) -> Observable:
     """Measure the shear viscosity.
 
+    Between sheared faces (`LeesEdwards`) the result is the response -P_yx / shear_rate instead. It needs no
+    lag and has no curves. The antisymmetric part of the stress is included. This part is zero unless
+    collisions violate the conservation of angular momentum, as in the cells of DSMC. The theoretical value is
+    Enskog's viscosity.
+
     Parameters
     ----------
     source : str, Path or Dataset
         A trajectory with correlations of the stress (a path or an open trajectory).
     lag : float, [time], optional
         Longest time difference of the correlations that are summed. Default: the longest stored lag.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
@@ -138,13 +141,6 @@ def shear_viscosity(source: Source, lag: float | None = None, start: float | Non
     SceneError
         If the run has no correlations of the stress, if the lag exceeds their longest lag, if there are fewer
         than 17 frames, or if the shear rate is 0.
-
-    Notes
-    -----
-    Between sheared faces (`LeesEdwards`) the result is the response -P_yx / shear_rate instead. It needs no
-    lag and has no curves. The antisymmetric part of the stress is included. This part is zero unless
-    collisions violate the conservation of angular momentum, as in the cells of DSMC. The theoretical value is
-    Enskog's viscosity.
 
     Examples
     --------
@@ -166,14 +162,15 @@ def shear_viscosity(source: Source, lag: float | None = None, start: float | Non
 def bulk_viscosity(source: Source, lag: float | None = None, start: float | None = None) -> Observable:
     """Measure the bulk viscosity from fluctuations of the pressure relative to its mean.
 
+    The mean pressure is computed from the run itself, which has the duration T. Therefore the result is too
+    low by about the fraction 2 lag / T. The theoretical value is Enskog's bulk viscosity.
+
     Parameters
     ----------
     source : str, Path or Dataset
         A trajectory with correlations of the stress (a path or an open trajectory).
     lag : float, [time], optional
         Longest time difference of the correlations that are summed. Default: the longest stored lag.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
@@ -184,21 +181,6 @@ def bulk_viscosity(source: Source, lag: float | None = None, start: float | None
     ------
     SceneError
         Under the conditions of `shear_viscosity`.
-
-    Notes
-    -----
-    The mean pressure is computed from the run itself, which has the duration T. Therefore the result is too
-    low by about the fraction 2 lag / T. The theoretical value is Enskog's bulk viscosity.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-    >>> stress = gp.Correlations(interval=0.1, lags=10, stress=True)
-    >>> path = gp.run(scene, "event", 1, 40.0, 1.0, "gas.nc", correlations=stress)
-    >>> gp.analysis.bulk_viscosity(path, lag=0.5).green_kubo.dims
-    ('lag',)
     """
     with open_run(source, start) as run:
         return _coefficient(run, "bulk_viscosity", "bulk", lag)
@@ -207,14 +189,16 @@ def bulk_viscosity(source: Source, lag: float | None = None, start: float | None
 def thermal_conductivity(source: Source, lag: float | None = None, start: float | None = None) -> Observable:
     """Measure the thermal conductivity.
 
+    For a mixture the result is the conductivity without diffusion (see `conduction`). It is computed from the
+    fluxes between frames, and the curves are absent. The time between frames must not exceed the lag. The
+    theoretical value is Enskog's conductivity.
+
     Parameters
     ----------
     source : str, Path or Dataset
         A trajectory with correlations of the stress (a path or an open trajectory).
     lag : float, [time], optional
         Longest time difference of the correlations that are summed. Default: the longest stored lag.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
@@ -226,22 +210,6 @@ def thermal_conductivity(source: Source, lag: float | None = None, start: float 
     SceneError
         Under the conditions of `shear_viscosity`; also for a polydisperse species, and for single particles
         in a mixture.
-
-    Notes
-    -----
-    For a mixture the result is the conductivity without diffusion (see `conduction`). It is computed from the
-    fluxes between frames, and the curves are absent. The time between frames must not exceed the lag. The
-    theoretical value is Enskog's conductivity.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-    >>> stress = gp.Correlations(interval=0.1, lags=10, stress=True)
-    >>> path = gp.run(scene, "event", 1, 40.0, 1.0, "gas.nc", correlations=stress)
-    >>> gp.analysis.thermal_conductivity(path, lag=0.5).helfand.dims
-    ('lag',)
     """
     with open_run(source, start) as run:
         if run.scene.alike:
@@ -256,12 +224,13 @@ def thermal_conductivity(source: Source, lag: float | None = None, start: float 
 def pressure_tensor(source: Source, start: float | None = None) -> Observable:
     """Measure the components of the pressure tensor.
 
+    In a sheared gas, velocities are relative to the flow. The theoretical value, for a gas at rest, follows
+    from the equation of state.
+
     Parameters
     ----------
     source : str, Path or Dataset
         A trajectory with correlations of the stress (a path or an open trajectory).
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
@@ -272,21 +241,6 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
     ------
     SceneError
         If the run has no correlations of the stress, or if there are fewer than 17 frames.
-
-    Notes
-    -----
-    In a sheared gas, velocities are relative to the flow. The theoretical value, for a gas at rest, follows
-    from the equation of state.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-    >>> stress = gp.Correlations(interval=0.1, lags=10, stress=True)
-    >>> path = gp.run(scene, "event", 1, 40.0, 1.0, "gas.nc", correlations=stress)
-    >>> gp.analysis.pressure_tensor(path).component.values.tolist()
-    ['xx', 'xy', 'yx', 'yy']
     """
     with open_run(source, start, sheared=True) as run:
         require_defined("pressure_tensor", run.scene)

@@ -17,8 +17,7 @@ from gaspart.cli.arguments import (
     several,
 )
 from gaspart.cli.progress import waiting
-from gaspart.errors import SceneError
-from gaspart.errors.words import meant
+from gaspart.errors import SceneError, meant
 from gaspart.scene.scene import Scene
 from gaspart.yaml_text import read_yaml
 

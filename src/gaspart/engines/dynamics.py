@@ -58,12 +58,9 @@ class EventLog:
 
     @property
     def events(self) -> dict[str, np.ndarray]:
-        """Recorded events as arrays, by name, for M events.
-
-        time : (M,)
-        particles : (M, 2); for a wall hit the second entry is -1 - face
-        positions, velocities : (M, 2, d); for a wall hit the second entry is NaN
-        spins : (M, 2) or (M, 2, 3)
+        """Recorded events as arrays, by name, for M events. `time`: (M,). `particles`: (M, 2); for a wall hit
+        the second entry is -1 - face. `positions` and `velocities`: (M, 2, d); for a wall hit the second
+        entry is NaN. `spins`: (M, 2) or (M, 2, 3).
         """
         parts = zip(*(self._parts or [self._copy(0)]), strict=True)
         return dict(zip(self._keys, map(np.concatenate, parts), strict=True))
@@ -77,10 +74,9 @@ class EventLog:
 def checkpoint_identity(
     scene: Scene, settings: Mapping[str, Any], seed: int | tuple[int, ...], initial: State | None = None
 ) -> dict[str, np.ndarray]:
-    """Return texts that identify all input of a simulation, by their keys in a checkpoint.
-
-    settings : name of the engine, and its settings that change the results
-    initial : initial state; None if it follows from the scene and the seed
+    """Return texts that identify all input of a simulation, by their keys in a checkpoint. `settings`: name
+    of the engine, and its settings that change the results. `initial`: initial state; None if it follows from
+    the scene and the seed.
     """
     texts = {
         "version": __version__,

@@ -88,10 +88,9 @@ class Engine:
         return []
 
     def bias(self, scene: Scene, kind: str) -> float:
-        """Return an upper bound of the relative error of a quantity due to the settings.
-
-        kind : kind of quantity: "rates" of collisions, "paths" of particles, "fluxes" of momentum and heat,
-            or pressures on "walls"
+        """Return an upper bound of the relative error of a quantity due to the settings. `kind`: kind of
+        quantity: "rates" of collisions, "paths" of particles, "fluxes" of momentum and heat, or pressures on
+        "walls".
         """
         return 0.0
 
@@ -162,10 +161,8 @@ class Engine:
         tallies: Sequence[OptionalTally] = (),
     ) -> Dynamics:
         """Prepare the engine for a scene in an initial state. Raises SceneError for features that the engine
-        does not support.
-
-        seed : seed of thermal walls and kicks
-        tallies : optional tallies in addition to the counters of every run; `check_tally` must accept them
+        does not support. `seed`: seed of thermal walls and kicks. `tallies`: optional tallies in addition to
+        the counters of every run; `check_tally` must accept them.
         """
         raise NotImplementedError
 

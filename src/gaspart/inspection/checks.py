@@ -63,10 +63,8 @@ _PRESSURE, _DIFFUSION = "pressure Z", "diffusion coefficient D"
 
 
 def judge(frames: Frames, tolerance: float | None = None, driven: bool = False) -> list[Check]:
-    """Perform all checks of a trajectory.
-
-    tolerance : the allowed overlap, as a fraction of a diameter.
-    driven : True if something may give energy to the particles or take it.
+    """Perform all checks of a trajectory. `tolerance`: the allowed overlap, as a fraction of a diameter.
+    `driven`: True if something may give energy to the particles or take it.
     """
     checks = [*judge_places(frames, tolerance), *judge_conserved(frames, driven)]
     reason, acting = frames.no_identity, [check.name for check in checks if check.acts]
@@ -88,9 +86,7 @@ def _allowed_overlap(frames: Frames, tolerance: float | None) -> float:
     diameter = 2.0 * float(frames.radii.min())
     coarse = min(max(TOUCH, 4.0 * frames.resolution / diameter), COARSEST)
     step = frames.engine.quantum if frames.engine else None
-    if (
-        step and frames.velocities is not None
-    ):  # a pair that a step has pushed together separates in later steps
+    if step and frames.velocities is not None:  # a pair that a step pushed together separates in later ones
         coarse = max(coarse, 2.0 * math.sqrt(float(frames.squares.largest.max())) * step / diameter)
     return coarse if tolerance is None else tolerance
 
@@ -284,7 +280,7 @@ def judge_open(path: Path, tolerance: float | None = None) -> tuple[str, list[Ch
         if "keep" not in data.attrs:
             frames = _frames(recipe, data)
             checks = [*judge_places(frames, tolerance), *checks, judge_flights(frames)]
-    unknown = "speed law", "pressure Z", "diffusion coefficient D"
+    unknown = SPEEDS[0], _PRESSURE, _DIFFUSION
     return title, [*checks, *(Check(name, None, _CHANGING) for name in unknown)]
 
 

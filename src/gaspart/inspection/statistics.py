@@ -25,7 +25,7 @@ from gaspart.analysis.statistics import histogram_chi_square, mean_of
 from gaspart.inspection.frames import Frames
 from gaspart.inspection.verdict import Check, compare_with_theory
 from gaspart.scene.gas import Gas
-from gaspart.scene.limits import ball_volume
+from gaspart.scene.sizes import ball_volume
 from gaspart.theory.bulk import EXACT, collision_rate
 from gaspart.theory.diffusion import ERPENBECK_WOOD_HIGHEST
 from gaspart.theory.speeds import kurtosis_scatter

@@ -97,6 +97,10 @@ def render(
 ) -> Picture:
     """Draw a frame of a trajectory, a simulation, a state or a scene.
 
+    Spheres are drawn in perspective, with light and shadow, over the floor of the container (z = 0). Discs
+    are drawn from above. At periodic faces they are cut, and the other part is drawn at the opposite side.
+    Interior walls of a state are not drawn. The same particles give the same pixels.
+
     Parameters
     ----------
     source : str, Path, Dataset, Simulation, State or Scene
@@ -127,12 +131,6 @@ def render(
     SceneError
         If the frame does not exist, the size or the camera is impossible, the colouring is unknown, or the
         particles of a scene do not fit.
-
-    Notes
-    -----
-    Spheres are drawn in perspective, with light and shadow, over the floor of the container (z = 0). Discs
-    are drawn from above. At periodic faces they are cut, and the other part is drawn at the opposite side.
-    Interior walls of a state are not drawn. The same particles give the same pixels.
 
     Examples
     --------

@@ -81,6 +81,9 @@ def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order:
     The page can play, turn, move and zoom. It shows colours by speed or species, faces as in pictures, a
     legend, the time and a scale.
 
+    Positions are rounded to 1/64 of the smallest radius, or to 1/65534 of the side if that is larger. With
+    ten thousand particles in 200 frames, the page has about 7 MB.
+
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
@@ -100,11 +103,6 @@ def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order:
     ------
     SceneError
         If a simulation has not advanced, or a file cannot be read.
-
-    Notes
-    -----
-    Positions are rounded to 1/64 of the smallest radius, or to 1/65534 of the side if that is larger. With
-    ten thousand particles in 200 frames, the page has about 7 MB.
 
     Examples
     --------
@@ -141,9 +139,10 @@ def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order:
 
 
 def page_of(name: str, mark: str, **parts: str) -> str:
-    """Return a page from its file, the head that pages share, and texts by the words that they replace."""
+    """Return a page from its file, the shared head and style, and texts by the words that they replace."""
     text = "".join((_FOLDER / part).read_text(encoding="utf-8") for part in ("page.html", name))
-    for word, part in {"TITLE": mark, **parts}.items():
+    style = (_FOLDER / "style.css").read_text(encoding="utf-8")
+    for word, part in {"TITLE": mark, "STYLE": style, **parts}.items():
         text = text.replace(word, part, 1)
     return text
 

@@ -57,7 +57,7 @@ _SECTIONS = {"experiments", "figures", "animations"}
 def add_families(config: dict[str, Any], folder: Path) -> list[Path]:
     """Merge a config, in place, over the files of its families, and return these files. The key `families`
     names files of the folder, or is `all`. The key `sizes` names a block in these files, which is merged over
-    the rest. Raises SceneError.
+    the rest.
     """
     named, sizes = config.pop("families", None), config.get("sizes")
     if named is None:
@@ -270,7 +270,7 @@ def scene_schema() -> Kind:
 def open_config(path: str | Path) -> Iterator[tuple[dict[str, Any], dict[str, dict[str, Point]]]]:
     """Yield the valid config of a file and its points. The working directory is changed to the folder of the
     scenes. For a config in a folder named `config`, this is the parent folder; otherwise it is the folder of
-    the file. Raises SceneError.
+    the file.
     """
     merged, files = merged_with_default(Path(path))
     folder = files[-1].parent
@@ -286,7 +286,7 @@ def open_config(path: str | Path) -> Iterator[tuple[dict[str, Any], dict[str, di
 def check(config: dict, files: Sequence[str | Path] = ()) -> dict[str, dict[str, Point]]:
     """Validate a merged config against the schema, then the parameters of every point's job. `files` are the
     merged YAML files, in the order of merging. An error names the last file that contains the key. Returns
-    all points, by experiment and name. Raises SceneError.
+    all points, by experiment and name.
     """
     contents = _contents(config, files)
     try:
@@ -399,7 +399,7 @@ def _animation(config: dict, animation: str, block: dict) -> None:
 
 def checked_points(config: dict, experiment: str) -> dict[str, Point]:
     """Return the points of an experiment, by name, after a check of every point. Each value of the grid is
-    checked too. Raises SceneError.
+    checked too.
     """
     points = gridded_points(config, experiment)
     for point in points.values():
@@ -409,7 +409,7 @@ def checked_points(config: dict, experiment: str) -> dict[str, Point]:
 
 def gridded_points(config: dict, experiment: str) -> dict[str, Point]:
     """Return the points of an experiment, by name, after a check of its grid. Each value of the grid is
-    checked alone, without the other keys. Raises SceneError.
+    checked alone, without the other keys.
     """
     where = f"experiments.{experiment}"
     for key, value in _grid_values(config["experiments"][experiment].get("grid")):

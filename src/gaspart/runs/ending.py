@@ -28,6 +28,10 @@ from gaspart.trajectory.run_options import Contents, Requirement, Until, require
 class Accuracy(Requirement):
     """Requested accuracy of an observable: its standard error divided by its absolute value.
 
+    The run also stores an `ImpulseTally` under three conditions: the accuracy is required for the density, or
+    for the pressure on walls across a single axis; the engine supports the tally; and the tally makes the run
+    shorter.
+
     Parameters
     ----------
     observable : str
@@ -52,12 +56,6 @@ class Accuracy(Requirement):
     --------
     run : Run a scene until such accuracies are reached.
     reached_accuracy : Accuracies that a run has reached.
-
-    Notes
-    -----
-    The run also stores an `ImpulseTally` under three conditions: the accuracy is required for the density, or
-    for the pressure on walls across a single axis; the engine supports the tally; and the tally makes the run
-    shorter.
 
     Examples
     --------
@@ -118,9 +116,8 @@ def contents_until(
     until: Until, scene: Scene, engine: Engine, contents: Contents, from_state: bool
 ) -> Contents:
     """Return the contents of a file, with displacements if a requested accuracy needs them. Raises SceneError
-    for an accuracy that this run cannot measure or can never reach.
-
-    from_state : True if the run starts from a prescribed state.
+    for an accuracy that this run cannot measure or can never reach. `from_state`: True if the run starts from
+    a prescribed state.
     """
     for requirement in until.accuracies:
         require_measurable(requirement, scene, engine, contents)

@@ -30,7 +30,7 @@ from gaspart.state.state import State
 from gaspart.trajectory import run as trajectory
 from gaspart.trajectory.checkpoint import checkpoint_path
 from gaspart.trajectory.correlator import Correlations
-from gaspart.trajectory.last_state import last_state
+from gaspart.trajectory.export import last_state
 from gaspart.trajectory.opening import partial_path
 from gaspart.trajectory.recipe import MOST_REPLICAS, Recipe
 from gaspart.trajectory.recording import Progress
@@ -68,6 +68,9 @@ def run(
     The run ends after `duration`, or, with `until`, when all requested accuracies are reached. If an
     interrupted run with the same settings and program version is at `path`, it is continued. If a complete
     run with the same settings is at `path`, nothing is changed.
+
+    If contacts are rough, the file also contains spins. After SIGINT or SIGTERM a checkpoint is written
+    before the handlers of the caller are executed.
 
     Parameters
     ----------
@@ -142,11 +145,6 @@ def run(
     resume : Finish or extend a run.
     open_trajectory : Open the file as an xarray.Dataset.
     Simulation : Advance a scene without a file.
-
-    Notes
-    -----
-    If contacts are rough, the file also contains spins. After SIGINT or SIGTERM a checkpoint is written
-    before the handlers of the caller are executed.
 
     Examples
     --------
@@ -273,6 +271,11 @@ def resume(
     Without a `duration` the interrupted run whose file is ``<path>.partial`` is continued to its end. With a
     `duration` the complete run at `path` is continued to that time.
 
+    The file of an extended run has the same bytes as the file of a single run of this duration. If the run
+    was made with `keep_checkpoint`, the extension starts from its final state, and the extended run has a
+    checkpoint, too. Otherwise the whole run is repeated from its start. The file is replaced when the longer
+    run is complete. To finish an interrupted extension, call `resume` with or without `duration`.
+
     Parameters
     ----------
     path : str or Path
@@ -304,13 +307,6 @@ def resume(
     See Also
     --------
     run : Begin a run.
-
-    Notes
-    -----
-    The file of an extended run has the same bytes as the file of a single run of this duration. If the run
-    was made with `keep_checkpoint`, the extension starts from its final state, and the extended run has a
-    checkpoint, too. Otherwise the whole run is repeated from its start. The file is replaced when the longer
-    run is complete. To finish an interrupted extension, call `resume` with or without `duration`.
 
     Examples
     --------

@@ -17,7 +17,7 @@ from gaspart.scene.composition import Composition
 from gaspart.scene.faces import Open, Piston, Vibrating
 from gaspart.scene.features import FEATURES
 from gaspart.scene.gas import Gas, Mixture, mixture_of
-from gaspart.scene.limits import ball_volume
+from gaspart.scene.sizes import ball_volume
 from gaspart.scene.surfaces import Thermal
 from gaspart.scene.walls import MovingWall, moving_wall_among
 

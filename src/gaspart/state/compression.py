@@ -57,6 +57,10 @@ def compress(
 ) -> Packing:
     """Grow the particles of a scene to a packing fraction, or until they jam.
 
+    The algorithm is by B. D. Lubachevsky and F. H. Stillinger, J. Stat. Phys. 60, 561 (1990). The temperature
+    is reset to 1 every few collisions. If growth is fast, spheres jam at a packing fraction of about 0.64,
+    and discs at 0.84. If growth is slow, they crystallise.
+
     Parameters
     ----------
     scene : Scene
@@ -81,16 +85,6 @@ def compress(
     SceneError
         If the scene has single particles, interior walls or fixed particles, or if the particles jam before
         the requested packing fraction.
-
-    Notes
-    -----
-    The algorithm is by Lubachevsky and Stillinger [1]_. The temperature is reset to 1 every few collisions.
-    If growth is fast, spheres jam at a packing fraction of about 0.64, and discs at 0.84. If growth is slow,
-    they crystallise.
-
-    References
-    ----------
-    .. [1] B. D. Lubachevsky and F. H. Stillinger, J. Stat. Phys. 60, 561 (1990).
 
     Examples
     --------

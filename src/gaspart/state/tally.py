@@ -31,6 +31,8 @@ class Tally:
     In the shapes, F is the number of faces: the 2 d faces of the container (x low, x high, y low, ...), then
     the interior walls.
 
+    Literature: E. Helfand, Phys. Rev. 119, 1 (1960).
+
     Parameters
     ----------
     time : float, [time]
@@ -119,10 +121,6 @@ class Tally:
     See Also
     --------
     Simulation : Simulation that has a tally.
-
-    References
-    ----------
-    .. [1] E. Helfand, Phys. Rev. 119, 1 (1960).
 
     Examples
     --------

@@ -12,8 +12,7 @@ import xarray as xr
 from xarray.backends import BackendArray, NetCDF4DataStore
 from xarray.core import indexing
 
-from gaspart.errors import SceneError
-from gaspart.errors.words import MissingName
+from gaspart.errors import MissingName, SceneError
 from gaspart.trajectory.amber import CheckedFrames
 from gaspart.trajectory.opening import damage
 

@@ -89,9 +89,8 @@ def read_checkpoint(path: Path, header: bytes) -> Checkpoint | None:
 def kept_beside(path: Path, header: bytes, otherwise: str) -> Checkpoint | None:
     """Return the checkpoint that was stored with a trajectory, or None. `header` is the header of the
     trajectory. Raises SceneError for a checkpoint that cannot be used, because it must not be replaced
-    silently by less exact data.
-
-    otherwise : words for the message that state what the user can do without the checkpoint.
+    silently by less exact data. `otherwise`: words for the message that state what the user can do without
+    the checkpoint.
     """
     try:
         return _checkpoint(checkpoint_path(path), header)

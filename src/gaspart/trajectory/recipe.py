@@ -21,9 +21,8 @@ from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.random import stream
 from gaspart.state.state import State
 from gaspart.trajectory import amber, provenance
-from gaspart.trajectory.correlator import Correlations, sum_names
+from gaspart.trajectory.correlator import Correlations, pair_names, pairs_of, sum_names
 from gaspart.trajectory.opening import open_netcdf_file
-from gaspart.trajectory.pairs import pair_names, pairs_of
 from gaspart.trajectory.run_options import Contents, Until, scene_tallies, stored_contents, tally_axes
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
@@ -179,7 +178,6 @@ class Recipe(Contents):
             raise SceneError("keep", self.keep, f"{path} holds nothing else of its particles")
 
     def attributes(self) -> dict[str, Any]:
-        """Return the recipe as attributes of the file, from which `read_recipe` restores it."""
         seed = [int(part) for part in self.seed] if isinstance(self.seed, (tuple, list)) else int(self.seed)
         return {
             "scene": dump_yaml(self.scene.to_dict()),
@@ -209,9 +207,8 @@ class Recipe(Contents):
         return {name: np.array(part) for name, part in parts.items() if part is not None}
 
     def header(self, revision: str) -> bytes:
-        """Return the bytes before the first frame of a file that this program writes.
-
-        revision : git revision of the program; "" without a revision.
+        """Return the bytes before the first frame of a file that this program writes. `revision`: git
+        revision of the program; "" without a revision.
         """
         from gaspart.kernels.compile.sources import source_digest
 
@@ -253,9 +250,8 @@ def read_recipe(path: str | Path) -> Recipe:
 
 
 def stored_recipe(file: netCDF4.Dataset, path: Path) -> Recipe:
-    """Return the recipe of an open trajectory. Raises SceneError if it has no recipe.
-
-    path : path of the trajectory, for messages
+    """Return the recipe of an open trajectory. Raises SceneError if it has no recipe. `path`: path of the
+    trajectory, for messages.
     """
     stored = file.__dict__
     try:

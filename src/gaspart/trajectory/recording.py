@@ -18,8 +18,7 @@ from gaspart.state.state import State, by_number
 from gaspart.trajectory import amber
 from gaspart.trajectory.amber import Frames
 from gaspart.trajectory.checkpoint import checkpoint_path, write_checkpoint
-from gaspart.trajectory.correlator import correlator_for
-from gaspart.trajectory.pairs import PairCounter
+from gaspart.trajectory.correlator import PairCounter, correlator_for
 from gaspart.trajectory.recipe import Recipe, multiple
 from gaspart.trajectory.run_options import examined_before, examined_from, is_examined
 
@@ -124,9 +123,8 @@ class Recording:
 
     def _estimate(self, frames: int, excess: float) -> float:
         """Return the time at which a run is expected to reach its accuracy. Errors decrease as 1 /
-        sqrt(time). Accuracies are tested only at certain frames.
-
-        excess : present error divided by the required error.
+        sqrt(time). Accuracies are tested only at certain frames. `excess`: present error divided by the
+        required error.
         """
         required_frames = frames * excess**2 if math.isfinite(excess) else 0.0
         expected = examined_from(min(max(required_frames, frames + 1.0), self._recipe.frames))

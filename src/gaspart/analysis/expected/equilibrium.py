@@ -22,7 +22,7 @@ from gaspart.theory import bulk, discretisation
 from gaspart.theory.bulk import BOLTZMANN, ENSKOG, EXACT
 from gaspart.theory.geometry import unit_sphere_surface
 from gaspart.theory.speeds import mean_speed_factor
-from gaspart.trajectory.pairs import pairs_of
+from gaspart.trajectory.correlator import pairs_of
 
 # Theory depends on the engine of a run and on its number of particles.
 #

@@ -17,11 +17,11 @@ from gaspart.analysis.expected.equilibrium import (
 )
 from gaspart.analysis.run import Run
 from gaspart.errors import SceneError
-from gaspart.scene.limits import ball_volume
+from gaspart.scene.sizes import ball_volume
 from gaspart.theory.bulk import BOLTZMANN, ENSKOG, EXACT
 from gaspart.theory.finite_size import insertion_potential
 from gaspart.theory.mixture_properties import mixture_insertion_correction, percus_yevick_partial_factors
-from gaspart.trajectory.pairs import pairs_of
+from gaspart.trajectory.correlator import pairs_of
 
 _LEAST_UNIFORM = 16
 """Minimum number of hard particles with a uniform density in a run that conserves momentum. Relative to the

@@ -22,8 +22,8 @@ from gaspart.kernels.dsmc.model import PADDED, Faces, Grid, Law, Particles, Work
 from gaspart.kernels.model import ContactLaw, Open, flight_dtype
 from gaspart.kernels.physics.exact_sum import WIDTH
 from gaspart.scene.accessible import Accessible
-from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
+from gaspart.scene.sizes import ball_volume
 from gaspart.state.random import key_of
 from gaspart.state.state import State
 from gaspart.theory.discretisation import BEND, HIGHEST, SLOPE

@@ -253,10 +253,8 @@ def widths_of(cells: tuple[int, ...], scene: Scene) -> np.ndarray:
 def medium_for(
     engine: DsmcSettings, scene: Scene, gas_rates: Rates | None = None, crowding: float = 1.0
 ) -> Medium:
-    """Return the gas of a scene for an engine.
-
-    gas_rates : rates at the mean density; default: at the start
-    crowding : density around a particle, averaged over particles, divided by the mean density
+    """Return the gas of a scene for an engine. `gas_rates`: rates at the mean density; default: at the start.
+    `crowding`: density around a particle, averaged over particles, divided by the mean density.
     """
     found = gas_rates or rates(scene, engine.model == "enskog")
     return Medium(engine.model, scene, found.at_density(crowding), crowding * usual_count(scene))
@@ -280,9 +278,7 @@ def remarks(
     engine: DsmcSettings, medium: Medium, cells: tuple[int, ...], step: float, when: str = ""
 ) -> dict[str, str]:
     """Return a remark, by setting, about each setting that causes a notable error. A remark recommends other
-    values if their error is much smaller.
-
-    when : words that describe the time
+    values if their error is much smaller. `when`: words that describe the time.
     """
     texts, gas_rates = {}, medium.gas_rates
     error, shorter = medium.errors(cells, step).of("fluxes"), step

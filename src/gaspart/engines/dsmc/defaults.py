@@ -152,10 +152,7 @@ def levels(reach: Reach, step: float, divided: bool) -> tuple[np.ndarray, np.nda
 def pace_for(
     scene: Scene, reach: Reach, step: float, divided: bool, present: np.ndarray | None = None
 ) -> Pace:
-    """Return the levels of a step as the kernels' `Pace`.
-
-    present : see `kernels.dsmc.model.Faces`
-    """
+    """Return the levels of a step as the kernels' `Pace`. `present`: see `kernels.dsmc.model.Faces`."""
     from gaspart.kernels.dsmc import model as pace
 
     pulls = scene.gravity or (0.0,) * scene.dimension

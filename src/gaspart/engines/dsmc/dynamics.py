@@ -56,10 +56,8 @@ def check_scene(scene: Scene, state: State) -> None:
 
 
 def check_made(counts: np.ndarray, time: float, most: int) -> None:
-    """Raise SimulationError if steps could not be completed.
-
-    counts : see `kernels.dsmc.model`
-    most : maximum number of particles
+    """Raise SimulationError if steps could not be completed. `counts`: see `kernels.dsmc.model`. `most`:
+    maximum number of particles.
     """
     from gaspart.kernels.dsmc.model import CROWDED, FAR, UNFINISHED
 
@@ -97,7 +95,6 @@ class StressPart(TallyPart):
         return exact_parts(self.kernel.sums)[:, 0]
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the sums by the names of their fields in `Tally`."""
         return tallied_fluxes(self.read(clock), self.kernel.drift)
 
 
@@ -111,7 +108,6 @@ class WallShearPart(Part):
         super().__init__({}, sums={"shear": shear})
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the momentum by the name of its field in `Tally`."""
         return {"wall_shear": exact_parts(self.sums["shear"])[..., 0]}
 
 
@@ -122,10 +118,7 @@ PARTS = {"stress": StressPart}
 def tally_parts(
     tallies: Iterable[OptionalTally], scene: Scene, state: State, threads: int
 ) -> list[TallyPart]:
-    """Return the parts for optional tallies.
-
-    state : state at time 0
-    """
+    """Return the parts for optional tallies. `state`: state at time 0."""
     return [PARTS[tally.name](tally, scene, state, threads) for tally in tallies]
 
 
@@ -227,7 +220,6 @@ class DsmcDynamics(SteppedDynamics):
         return self._steps + self._place_in_step / _WHOLE
 
     def _advance_to(self, step: int) -> None:
-        """Advance to a step. Raises SimulationError if the particles become too fast for any step."""
         while self._steps < step:
             epoch = self._steps - self._steps % EPOCH + EPOCH
             self._make(min(step, epoch) if self._resolution.crowds else step)
@@ -250,9 +242,8 @@ class DsmcDynamics(SteppedDynamics):
             check_made(self._workspace.counts, self.time, self._scene.capacity)
 
     def _run(self, level: int, number: int) -> int:
-        """Run the kernel for some parts of a step, and return the number of completed parts.
-
-        level : level of the division: the step has 2^level parts
+        """Run the kernel for some parts of a step, and return the number of completed parts. `level`: level
+        of the division: the step has 2^level parts.
         """
         now = self._resolution
         pace = now.pace and now.pace._replace(level=level)
@@ -263,7 +254,6 @@ class DsmcDynamics(SteppedDynamics):
         return loop.run_steps(self._particles, now.grid, context, number, self._threads, options)
 
     def reset_tally(self) -> None:
-        """Reset all counters."""
         super().reset_tally()
         self._clock_since = int(self._workspace.clock[0])
 
@@ -286,7 +276,6 @@ class DsmcDynamics(SteppedDynamics):
         return sum_over_threads(sums) if sums.shape[-1] == WIDTH else super()._sum_threads(sums)
 
     def _counts(self) -> dict[str, Any]:
-        """Return the counts, including the number of divided steps."""
         workspace, counts = self._workspace, self._workspace.counts.sum(axis=0)
         return {
             "collisions": int(counts[layout.COLLISIONS]),
@@ -302,7 +291,6 @@ class DsmcDynamics(SteppedDynamics):
         return {**super()._arrays(), "clock": self._workspace.clock}
 
     def _checkpoint_data(self) -> dict[str, Any]:
-        """Return the data of a checkpoint, with the density level and the dense gas's fields."""
         dense = self._resolution.dense
         fields = {"fields": dense.fields} if dense else {}
         return {**super()._checkpoint_data(), "crowded": self._resolution.crowded, **fields}
@@ -321,7 +309,6 @@ class DsmcDynamics(SteppedDynamics):
         return required
 
     def _place_again(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Put the particles into cells for the density level of the checkpoint."""
         resolution, crowded = self._resolution, int(checkpoint["crowded"])
         if crowded != resolution.crowded:
             resolution.set(crowded)

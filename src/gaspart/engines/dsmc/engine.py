@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from gaspart.engines.dsmc.settings import DsmcSettings
 from gaspart.engines.engine import register
+from gaspart.keys import documented
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.cells import Errors, Medium
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from gaspart.state.state import State
 
 
+@documented
 @register
 @dataclass(frozen=True)
 class DSMC(DsmcSettings):
@@ -26,23 +28,17 @@ class DSMC(DsmcSettings):
     In each step all particles move freely, and then pairs in the same cell collide. The result is bitwise
     identical for any number of threads.
 
-    Parameters
-    ----------
-    time_step : float, [time], optional
-        Length of a step. Default: a step of at most a fifth of the scene's mean free time.
-    cells_per_side : int or (d,) sequence of int, optional
-        Number of cells along each axis. Default: the cells with the smallest error; a single cell along
-        periodic axes on which the gas does not vary.
-    model : {"boltzmann", "enskog"}, default "boltzmann"
-        Collision model. "boltzmann": a dilute gas [1]_ [2]_. "enskog": a dense gas [3]_, in which the centres
-        of collision partners are one diameter apart, and the collision rate is multiplied by the contact
-        value.
-    adapt : {"nothing", "steps", "cells", "both"}, optional
-        Settings that the engine adapts during a run. "steps": steps are divided if speeds rise. "cells":
-        cells become narrower if the gas becomes denser somewhere. Default: all settings that are not
-        prescribed.
-    threads : int, default 1
-        Number of threads that share the work.
+    In the model "enskog" the centres of collision partners are one diameter apart, and the collision rate is
+    multiplied by the contact value. With `adapt` "steps" are divided if speeds rise, and "cells" become
+    narrower if the gas becomes denser somewhere.
+
+    The errors are described in docs/dsmc.md.
+
+    Literature: G. A. Bird, Molecular Gas Dynamics and the Direct Simulation of Gas Flows (1994).
+
+    Literature: M. S. Ivanov and S. V. Rogasinsky, Sov. J. Numer. Anal. Math. Modelling 3, 453 (1988).
+
+    Literature: J. M. Montanero and A. Santos, Phys. Rev. E 54, 438 (1996); Phys. Fluids 9, 2057 (1997).
 
     Raises
     ------
@@ -53,16 +49,6 @@ class DSMC(DsmcSettings):
     --------
     EventDriven : Exact collisions of hard particles.
     TimeStepped : Time steps with overlap resolution.
-
-    Notes
-    -----
-    The errors are described in docs/dsmc.md.
-
-    References
-    ----------
-    .. [1] G. A. Bird, Molecular Gas Dynamics and the Direct Simulation of Gas Flows (1994).
-    .. [2] M. S. Ivanov and S. V. Rogasinsky, Sov. J. Numer. Anal. Math. Modelling 3, 453 (1988).
-    .. [3] J. M. Montanero and A. Santos, Phys. Rev. E 54, 438 (1996); Phys. Fluids 9, 2057 (1997).
 
     Examples
     --------
@@ -134,7 +120,6 @@ class DSMC(DsmcSettings):
         return {"viscosity_error": self.bias(scene, "fluxes")}
 
     def cells_along(self, scene: Scene) -> int:
-        """Return the largest number of cells along an axis."""
         return max(self._chosen(scene)[1])
 
     def added_bulk_viscosity(self, scene: Scene) -> float:
@@ -212,7 +197,6 @@ class DSMC(DsmcSettings):
         return medium.errors(cells, step)
 
     def remarks(self, scene: Scene) -> list[str]:
-        """Return remarks about notable errors of settings and model, each a line."""
         from gaspart.engines.dsmc.cells import neglected, remarks
 
         text = neglected(self, scene)
@@ -228,14 +212,12 @@ class DSMC(DsmcSettings):
         return medium, cells_for(self, medium, step), step
 
     def variant(self, scene: Scene) -> str:
-        """Return the name of the kernels for model, steps that may adapt, and several threads."""
         from gaspart.engines.dsmc.defaults import may_speed_up
 
         paced = "-paced" if may_speed_up(scene) else ""
         return self.model + paced + ("-threads" if self.threads > 1 else "")
 
     def for_small_scene(self, scene: Scene) -> DSMC:
-        """Return the engine with a single cell, and with the step for the full scene."""
         return self.for_scene(scene)._with(cells_per_side=1, adapts=(self.adapts_steps, False))
 
     def start(
@@ -245,7 +227,6 @@ class DSMC(DsmcSettings):
         seed: int | tuple[int, ...] = 0,
         tallies: Sequence[OptionalTally] = (),
     ) -> DsmcDynamics:
-        """Prepare the engine; raises SceneError if it does not model the scene."""
         from gaspart.engines.dsmc.dynamics import DsmcDynamics
 
         return DsmcDynamics(self, scene, state, seed, tallies)

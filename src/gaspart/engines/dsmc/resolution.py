@@ -78,9 +78,8 @@ def crowding(positions: np.ndarray, cells: tuple[int, ...], scene: Scene) -> flo
 
 
 def next_level(level: int, times: float) -> int:
-    """Return the new density level for a gas with the relative density `times`.
-
-    level : present density level
+    """Return the new density level for a gas with the relative density `times`. `level`: present density
+    level.
     """
     exact = math.log2(max(times, 1.0))
     return level if abs(exact - level) <= _CHANGED else min(round(exact), HIGHEST)
@@ -163,9 +162,8 @@ class Resolution:
     def level(self, particles: Particles, position: int, time: float) -> int:
         """Return the level of division for the next part of a step. The speeds of the particles determine the
         level. If the completed fraction of the step is not a multiple of a part at this level, a higher level
-        is returned. Raises SimulationError if the particles are too fast for every level.
-
-        position : completed fraction of the step, in units of the shortest part
+        is returned. Raises SimulationError if the particles are too fast for every level. `position`:
+        completed fraction of the step, in units of the shortest part.
         """
         if self.pace is None:
             return 0
@@ -182,9 +180,8 @@ class Resolution:
             self._warn(replace(self._medium(self.crowded), gas_rates=gas_rates), f" by time {time:g}")
 
     def _warn(self, medium: Medium, when: str) -> None:
-        """Warn once about each setting that causes a notable error.
-
-        when : words that describe the time in the warning
+        """Warn once about each setting that causes a notable error. `when`: words that describe the time in
+        the warning.
         """
         for key, text in remarks(self._engine, medium, self.cells, self.step, when).items():
             if key not in self._warned:

@@ -95,9 +95,8 @@ def particles_of(state: State, boxes: Boxes) -> Particles:
 def event_model(
     scene: Scene, state: State, seed: int | tuple[int, ...], boxes: Boxes, largest: float
 ) -> tuple[Model, float]:
-    """Return the model of a scene for the kernels, and its unit of mass.
-
-    largest : largest radius of the particles that are sorted into boxes
+    """Return the model of a scene for the kernels, and its unit of mass. `largest`: largest radius of the
+    particles that are sorted into boxes.
     """
     law = contact_law(scene, state)
     law = law._replace(duration=contact_duration(scene, law)) if law else None
@@ -205,7 +204,6 @@ class EventDynamics(Dynamics):
         self._predict()
 
     def reset_tally(self) -> None:
-        """Reset all counters to zero."""
         self._tally.reset(self.time, self._clock)
 
     def _make_lists(self) -> None:
@@ -227,7 +225,6 @@ class EventDynamics(Dynamics):
 
     @property
     def time(self) -> float:
-        """Present simulation time."""
         return self._start + self._clock
 
     def advance(
@@ -240,11 +237,9 @@ class EventDynamics(Dynamics):
         """Process events up to time `until`, at most `max_events` of them. Events are collisions, wall hits,
         and attempted entries through open faces. Raises SimulationError, with the state saved, in two cases.
         The first is a collapse: infinitely many collisions in a finite time. The second is a run without an
-        end time in which no event occurs during a thousand flights through the container.
-
-        max_work : maximum work: the sum of the numbers of events, box crossings and predictions at the start
-            of epochs. At this limit, the call returns before the time `until`. The work exceeds the limit by
-            at most a factor of 2.
+        end time in which no event occurs during a thousand flights through the container. `max_work`: maximum
+        work: the sum of the numbers of events, box crossings and predictions at the start of epochs. At this
+        limit, the call returns before the time `until`. The work exceeds the limit by at most a factor of 2.
         """
         remaining, work = (
             np.iinfo(np.int64).max if number is None else number for number in (max_events, max_work)
@@ -315,9 +310,7 @@ class EventDynamics(Dynamics):
 
     def _next_epoch(self, endless: bool) -> float:
         """Restart the clocks from zero and predict all events again. Returns the length of the previous
-        epoch.
-
-        endless : True if only a number of events ends the run
+        epoch. `endless`: True if only a number of events ends the run.
         """
         length = self._epoch
         check_clocks(self._start, self._epoch)
@@ -339,9 +332,8 @@ class EventDynamics(Dynamics):
         return length
 
     def _base_from(self, present: float) -> float:
-        """Return the length of the next epoch, before `Epochs.quiet` extends it.
-
-        present : length of the previous epoch, also before the extension
+        """Return the length of the next epoch, before `Epochs.quiet` extends it. `present`: length of the
+        previous epoch, also before the extension.
         """
         stored = sum(part.stored for part in self._parts)
         return self._epochs.base(self._flights["velocity"], stored, present)
@@ -374,17 +366,14 @@ class EventDynamics(Dynamics):
 
     @property
     def tally(self) -> Tally:
-        """Counters and sums since the last `reset_tally`."""
         return self._tally.read(self.time, self._clock)
 
     @property
     def dissipated(self) -> float:
-        """Energy removed by contacts and thermal walls since time 0, minus the energy added by kicks."""
         return self._tally.dissipated
 
     @property
     def exchanged(self) -> float:
-        """Sum of the absolute energies that contacts and each face have exchanged since time 0."""
         return self._tally.exchanged
 
     def _present(self) -> np.ndarray:
@@ -396,7 +385,6 @@ class EventDynamics(Dynamics):
 
     @property
     def state(self) -> State:
-        """State of all particles at the present time."""
         flights = self._present()
         state = replace(
             self._reference,
@@ -419,7 +407,6 @@ class EventDynamics(Dynamics):
         self._tally.since = time
 
     def _arrays(self) -> dict[str, np.ndarray]:
-        """Return the arrays, by name, that the kernels change and that cannot be recomputed."""
         arrays = {**self._particles._asdict(), **self._tally.changing, **super()._arrays()}
         arrays |= {"event_count": self._event_count, "lost": self._tally.lost}
         if self._boxes.lists:

@@ -156,9 +156,8 @@ def _words(kind: Any, value: Any, address: Callable[[np.ndarray], int]) -> list[
 
 
 def image_of(scene: Scene, state: State, seed: int, scaled: bool = True) -> Image:
-    """Return the image of a scene; positions and velocities of the state are not in it.
-
-    scaled : False if the addresses `scaled` are not needed
+    """Return the image of a scene; positions and velocities of the state are not in it. `scaled`: False if
+    the addresses `scaled` are not needed.
     """
     check_scene(scene)
     arrays = _Arrays(scene, state, seed)

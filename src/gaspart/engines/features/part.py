@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gaspart.kernels.model import Gravity, Model, Shear, no_support
-from gaspart.scene.driving import Thermostat
 from gaspart.scene.faces import FLOW, GRADIENT
+from gaspart.scene.restitution import Thermostat
 from gaspart.scene.scene import Scene
 from gaspart.state.random import key_of
 from gaspart.state.state import State
@@ -63,17 +63,14 @@ class Part:
         """Set the present time, on the clocks of the epoch, at the start of a run."""
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
-        """Set the data that depend on the epoch, and return the kernel model with these data.
-
-        length : length of the epoch
-        start : time at which it starts
+        """Set the data that depend on the epoch, and return the kernel model with these data. `length`:
+        length of the epoch. `start`: time at which it starts.
         """
         return model
 
     def close_epoch(self, length: float) -> None:
-        """Add the contribution of flights in an epoch before the particles move to its end.
-
-        length : length of the epoch
+        """Add the contribution of flights in an epoch before the particles move to its end. `length`: length
+        of the epoch.
         """
 
     def end_epoch(self, length: float, start: float) -> None:
@@ -86,9 +83,7 @@ class Part:
 
     def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
         """Perform the event scheduled for the time `next`. Returns True if all events must be predicted
-        again.
-
-        start : start of the epoch
+        again. `start`: start of the epoch.
         """
         raise NotImplementedError
 
@@ -98,16 +93,14 @@ class Part:
             sums[...] = 0
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the counters since the last `reset`, by their names in `state.tally.Tally`.
-
-        clock : present time on the clocks of the epoch
+        """Return the counters since the last `reset`, by their names in `state.tally.Tally`. `clock`: present
+        time on the clocks of the epoch.
         """
         return {}
 
     def write(self, state: State, clock: float) -> None:
-        """Write the properties of particles and scene that belong to this feature into a state.
-
-        clock : present time on the clocks of the epoch
+        """Write the properties of particles and scene that belong to this feature into a state. `clock`:
+        present time on the clocks of the epoch.
         """
 
 
@@ -129,9 +122,8 @@ class TallyPart(Part):
         self.name, self.kernel = name, kernel
 
     def read(self, clock: float) -> np.ndarray:
-        """Return all sums since the last `reset` in one array.
-
-        clock : present time on the clocks of the epoch
+        """Return all sums since the last `reset` in one array. `clock`: present time on the clocks of the
+        epoch.
         """
         raise NotImplementedError
 
@@ -263,7 +255,6 @@ class Kicks(Part):
 
     @property
     def given(self) -> float:
-        """Energy added by kicks since the last reset."""
         from gaspart.kernels.physics import running_sum  # importing numba takes 0.4 s
 
         return running_sum.net(self._given) * self._unit_mass
@@ -276,7 +267,6 @@ class Kicks(Part):
         self._next[0] = (int(self._number[0]) + 1) * self._interval - start
 
     def reset(self, clock: float) -> None:
-        """Reset the sum of energies."""
         self._given[:] = 0.0
 
     def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
@@ -314,7 +304,6 @@ class StepKicks(Part):
         super().__init__({"given": self.given_terms})
 
     def reset(self, clock: float) -> None:
-        """Reset the sum of energies."""
         self.given_terms[:] = 0.0
 
     def _kicks_by(self, steps: float) -> int:
@@ -323,9 +312,7 @@ class StepKicks(Part):
 
     def until(self, steps: float, part: float) -> int:
         """Return the number of parts of a step from now until the next kick. The kick is at the end of the
-        last of these parts.
-
-        part : length of a part, in steps
+        last of these parts. `part`: length of a part, in steps.
         """
         due = self._kicks_by(steps)
         number = max(1, math.floor(((due + 1) / self._per_step - steps) / part) - 1)
@@ -334,9 +321,8 @@ class StepKicks(Part):
         return number
 
     def due(self, steps: float, part: float) -> tuple[float, tuple[np.ndarray, int]] | None:
-        """Return the width and number of the kick that is due after these steps, or None.
-
-        part : length of the part that has just been completed
+        """Return the width and number of the kick that is due after these steps, or None. `part`: length of
+        the part that has just been completed.
         """
         due = self._kicks_by(steps)
         number = due - self._kicks_by(steps - part)

@@ -19,8 +19,8 @@ from gaspart.kernels.step.box_search import StepBoxes
 from gaspart.kernels.step.model import Cells, Search, StepModel, StepParticles, StepTally
 from gaspart.kernels.step.neighbour_list import roomy
 from gaspart.scene.features import row_count
-from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
+from gaspart.scene.sizes import ball_volume
 from gaspart.state.boxes import cube_side, make_boxes
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
@@ -31,9 +31,8 @@ if TYPE_CHECKING:
 
 
 def empty_particles(engine: StepSettings, scene: Scene, state: State, ordinary: int) -> StepParticles:
-    """Return empty arrays for the particles, with masses but without a neighbour list.
-
-    ordinary : number of particles that are not oversized
+    """Return empty arrays for the particles, with masses but without a neighbour list. `ordinary`: number of
+    particles that are not oversized.
     """
     real = np.dtype(engine.precision).type
     _, masses = masses_of(scene, state)
@@ -62,10 +61,8 @@ def masses_of(scene: Scene, state: State) -> tuple[float, np.ndarray]:
 def model_for(
     engine: StepSettings, scene: Scene, state: State, seed: int | tuple[int, ...], radii: np.ndarray
 ) -> StepModel:
-    """Return the kernel model of a scene.
-
-    radii : radii of the particles that are not oversized
-    seed : seed of the random numbers of thermal walls
+    """Return the kernel model of a scene. `radii`: radii of the particles that are not oversized. `seed`:
+    seed of the random numbers of thermal walls.
     """
     real = np.dtype(engine.precision).type
     lengths, margin = scene.container.lengths, real(not scene.centres_to_walls)
@@ -91,12 +88,9 @@ def step_tally(
     areas: tuple[np.ndarray, np.ndarray] | None,
     fixed: bool,
 ) -> StepTally:
-    """Return a tally for a number of faces, with all counters at zero.
-
-    largest : see `largest_terms`
-    parts : parts for optional tallies
-    areas : result of `inverse_areas` if the areas differ between particle sizes, otherwise None
-    fixed : True if there are fixed particles
+    """Return a tally for a number of faces, with all counters at zero. `largest`: see `largest_terms`.
+    `parts`: parts for optional tallies. `areas`: result of `inverse_areas` if the areas differ between
+    particle sizes, otherwise None. `fixed`: True if there are fixed particles.
     """
     tally = StepTally(
         counts=np.zeros(layout.PASSED + 1, dtype=np.int64),
@@ -123,9 +117,8 @@ def rules_for(
     engine: StepSettings, scene: Scene, state: State, seed: int | tuple[int, ...], space: Space
 ) -> Rules | None:
     """Return the kernels' `Rules` for special faces or collision laws, or None. These faces and laws change
-    more than the momenta of particles, for example spins.
-
-    space : space in the form of the kernels of this engine
+    more than the momenta of particles, for example spins. `space`: space in the form of the kernels of this
+    engine.
     """
     if not needs_rules(scene):
         return None
@@ -227,7 +220,6 @@ class ImpulsesPart(TallyPart):
         return binned
 
     def reset(self, clock: float) -> None:
-        """Begin to count from zero."""
         super().reset(clock)
         self.arrays["momenta"][...] = self._momenta()
 
@@ -238,7 +230,6 @@ class ImpulsesPart(TallyPart):
         return np.asarray(self._unit_mass * below[:, :-1])
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the momentum under its field of `Tally`."""
         return {"momentum_flux_sum": self.read(clock)}
 
 
@@ -254,10 +245,8 @@ def tally_parts(
     threads: int,
     units: tuple[float, float],
 ) -> list[TallyPart]:
-    """Return the parts for optional tallies.
-
-    particles : arrays of the particles, in their slots at time 0
-    units : see `ImpulsesPart`
+    """Return the parts for optional tallies. `particles`: arrays of the particles, in their slots at time 0.
+    `units`: see `ImpulsesPart`.
     """
     return [PARTS[tally.name](tally, particles, model, scene, threads, units) for tally in tallies]
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from gaspart.engines.engine import register
 from gaspart.engines.step.settings import StepSettings
+from gaspart.keys import documented
 
 if TYPE_CHECKING:
     from gaspart.engines.step.dynamics import StepDynamics
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from gaspart.state.state import State
 
 
+@documented
 @register
 @dataclass(frozen=True)
 class TimeStepped(StepSettings):
@@ -24,30 +26,9 @@ class TimeStepped(StepSettings):
     After the collision, the pair moves for the rest of the step. The result is bitwise identical for any
     `boxes_per_side`, `near_boxes`, `skin` and `threads`.
 
-    Parameters
-    ----------
-    time_step : float, [time]
-        Length of a step.
-    boxes_per_side : int or (d,) sequence of int, optional
-        Number of boxes along each axis. With boxes, pairs are searched in neighbouring boxes; with 1 box, all
-        pairs are tested. Default: a neighbour list instead of boxes.
-    precision : {"float64", "float32"}, default "float64"
-        Floating-point type of the state.
-    rewind : bool, default True
-        Move pairs back to their contact before they collide. If False, pairs collide at their positions after
-        the step, which shows the effect of rewinding.
-    passes : int, default 4
-        Maximum number of searches for overlaps per step. The step ends after the first search that finds no
-        overlap. With more than one search, overlapping pairs that touched within the step but already
-        separate are resolved, too. A single search is the original method [1]_.
-    skin : float, [length], optional
-        Distance beyond the contact distance up to which pairs are in the neighbour list. Default: the engine
-        chooses the distance.
-    near_boxes : bool, default False
-        Search only neighbouring boxes that are closer to the particle than the contact distance.
-    threads : int, default 1
-        Number of threads that share the work. Only a search with a neighbour list uses several threads, which
-        are faster only above about 5e4 particles (docs/performance.md).
+    docs/time-stepped.md describes the measured effect of each setting.
+
+    Literature: Frederickx and Meerts (2010).
 
     Raises
     ------
@@ -58,14 +39,6 @@ class TimeStepped(StepSettings):
     --------
     EventDriven : Exact collisions of hard particles.
     DSMC : Collision partners drawn at random.
-
-    Notes
-    -----
-    docs/time-stepped.md describes the measured effect of each setting.
-
-    References
-    ----------
-    .. [1] Frederickx and Meerts (2010).
 
     Examples
     --------
@@ -131,7 +104,6 @@ class TimeStepped(StepSettings):
         return found
 
     def remarks(self, scene: Scene) -> list[str]:
-        """Return a remark if the density at walls has a notable error."""
         from gaspart.engines.step.limits import NOTABLE, wall_density_error
 
         error = wall_density_error(self, scene)
@@ -150,7 +122,6 @@ class TimeStepped(StepSettings):
         seed: int | tuple[int, ...] = 0,
         tallies: Sequence[OptionalTally] = (),
     ) -> StepDynamics:
-        """Prepare the engine; raises SceneError if the step is too long or the scene is not supported."""
         from gaspart.engines.step.dynamics import StepDynamics
 
         return StepDynamics(self, scene, state, seed, tallies)

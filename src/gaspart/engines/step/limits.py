@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from gaspart.errors import SceneError, SimulationError
-from gaspart.scene.limits import CLOSE_PACKING, ball_volume
 from gaspart.scene.scene import Scene
+from gaspart.scene.sizes import CLOSE_PACKING, ball_volume
 from gaspart.state.state import State
 from gaspart.theory.discretisation import HIGHEST, MISSED_CONTACTS, ONE_PASS, contact_values
 

@@ -29,7 +29,7 @@ from gaspart.scene.gas import Mixture
 from gaspart.scene.sizes import DISTRIBUTIONS, relative_radii
 from gaspart.theory.mixtures import MIXTURE_THEORIES
 from gaspart.theory.speeds import mean_speed_factor
-from gaspart.trajectory.pairs import pairs_of
+from gaspart.trajectory.correlator import pairs_of
 
 TITLE, CHAPTER = "Mixtures", "Equation of state and structure"
 PAIRS = {"large-large": (0, 0), "large-small": (0, 1), "small-small": (1, 1)}

@@ -73,7 +73,7 @@ def modules(point: Point) -> list[str]:
 
 
 def arguments(point: Point) -> dict:
-    """Return the arguments of `simulate`. Raises SceneError."""
+    """Return the arguments of `simulate`."""
     times, settings = point.schedule, point.settings
     common = {"scene": point.scene, "engine": point.engine, "seeds": point.seeds}
     options = {key: settings[key] for key in OPTIONS if settings.get(key)}
@@ -104,7 +104,7 @@ def arguments(point: Point) -> dict:
 
 
 def _frame_interval(point: Point) -> float:
-    """Compute the time between two stored frames. Raises SceneError."""
+    """Compute the time between two stored frames."""
     times, settings = point.schedule, point.settings
     if "frames" in settings:
         if "lags" not in settings:

@@ -235,7 +235,9 @@ def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
             default={},
         ),
         "opening": describe(
-            {**TEXT, **_NAME}, "the film that opens the report; by default the first", default=""
+            {**TEXT, **_NAME},
+            "the scene of `gaspart new`, of two dimensions, that runs on the first screen of the report",
+            default="",
         ),
     }
 
@@ -282,7 +284,7 @@ def _plain(key: str, value: Any) -> Any:
 
 
 def _chosen(point: Point) -> Point:
-    """Return a point with the engine that `engine: auto` selects. Raises SceneError."""
+    """Return a point with the engine that `engine: auto` selects."""
     where = f"experiments.{point.experiment}"
     if point.settings.get("engine") == "auto":
         from gaspart.reproduction.points.engine import chosen

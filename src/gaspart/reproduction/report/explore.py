@@ -6,10 +6,9 @@ observable, packing fraction and accuracy.
 
 from __future__ import annotations
 
-import html
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -196,16 +195,14 @@ def cited_references(texts: Iterable[str], references: Mapping[str, Reference]) 
     return {item.key: replace(item, number=number) for number, item in enumerate(kept, 1)}
 
 
-def link_citations(text: str, references: Mapping[str, Reference]) -> str:
-    """Return HTML with citations replaced by names and a numbered link to the list."""
-
-    def link(citation: re.Match[str]) -> str:
-        reference = find_reference(citation, references)
-        if reference is None:
-            return citation[0]
-        name = citation[1] if reference.is_source else html.escape(reference.short)
-        title = html.escape(reference.text)
-        anchor = f'<a href="#reference-{reference.number}" title="{title}">[{reference.number}]</a>'
-        return f"{name}\N{NO-BREAK SPACE}{anchor}"
-
-    return CITATION.sub(link, text)
+def split_citations(text: str, references: Mapping[str, Reference]) -> Iterator[tuple[str, Reference | None]]:
+    """Yield the parts of a text, with the reference that is cited at the end of a part. The names of authors
+    take the place of the key in brackets.
+    """
+    start = 0
+    for citation in CITATION.finditer(text):
+        if (reference := find_reference(citation, references)) is not None:
+            yield text[start : citation.start()], None
+            yield text[slice(*citation.span(1))] if reference.is_source else reference.short, reference
+            start = citation.end()
+    yield text[start:], None

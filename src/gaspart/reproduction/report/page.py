@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gaspart.reproduction.claims import counts
+from gaspart.reproduction.claims.judging import FAMILY_LEVEL
 from gaspart.reproduction.claims.table import fill_caption
 from gaspart.reproduction.registry import chapter
 
@@ -183,6 +184,8 @@ CHAPTERS = (
     "Own figures",
 )
 """Chapters in the order of the page."""
+_FEW = 6
+"""Number of findings of a page without chosen ones."""
 _KEY, _SHARPNESS = 360, 1.6
 """Width of a key picture in pixels, and resolution of pictures inside the page, in pixels per pixel of the
 page."""
@@ -231,21 +234,19 @@ def by_chapter(sections: Iterable[Section]) -> dict[str, list[Section]]:
     return {title: members for title, members in of_chapter.items() if members}
 
 
-def findings(chosen: Iterable[Mapping[str, str]], rows: list[dict[str, Any]]) -> list[dict[str, str]]:
-    """Return the key findings of the figures that have claims, [{figure, text}]. `chosen` are the findings
-    with placeholders for numbers, as in a caption. The measured numbers are filled in.
+def findings(chosen: Iterable[Mapping[str, str]], sections: Iterable[Section]) -> list[dict[str, str]]:
+    """Return the key findings of the page, [{figure, text}], with measured numbers filled in. `chosen` are
+    findings with placeholders for numbers, as in a caption. If their figures are not on the page, the
+    findings of its first figures take their place.
     """
-    present = {row["figure"] for row in rows}
-    return [
-        {
-            "figure": finding["figure"],
-            "text": html_of(
-                fill_caption(finding["text"], [row for row in rows if row["figure"] == finding["figure"]])
-            ),
-        }
-        for finding in chosen
-        if finding["figure"] in present
+    present = {section.name: section for section in sections}
+    shown = [
+        {"figure": one["figure"], "text": _inline(fill_caption(one["text"], present[one["figure"]].claims))}
+        for one in chosen
+        if one["figure"] in present
     ]
+    first = list(present.values())[:_FEW]
+    return shown or [{"figure": one.name, "text": f"{one.caption.finding}."} for one in first]
 
 
 def statements(documents: Iterable[Mapping[str, Any]], rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -267,16 +268,25 @@ def _inline(text: str) -> str:
 
 def headline(rows: list[dict[str, Any]]) -> dict[str, Any]:
     """Return the result of all claims: numbers by verdict, by kind and verdict, and disagreements. Families
-    are counted too, so that the numbers of all kinds add up to the total.
+    are counted too, so that the numbers of all kinds add up to the total. `chance` is a bound on the
+    probability that any claim disagrees if all are true: the sum over all that is judged together, which are
+    the tests and reproductions of a figure, and each other claim with an uncertainty.
     """
     found = verdicts(rows)
+    judged = [row for row in rows if row["uncertainty"] > 0.0 and row["verdict"] != "no verdict"]
+    together = {(row["figure"], _is_tested_alone(row) and row["claim"]) for row in judged}
     return {
         "agree": found.get("agrees", 0) + found.get("reproduced", 0),
         "open": found.get("inconclusive", 0),
         "in_error": found.get("source in error", 0),
         "kinds": counts(rows),
         "disagree": [row for row in rows if row["verdict"] == "disagrees"],
+        "chance": min(1.0, FAMILY_LEVEL * len(together)),
     }
+
+
+def _is_tested_alone(row: dict[str, Any]) -> bool:
+    return row["kind"] in ("identity", "family")
 
 
 def verdicts(rows: Iterable[dict[str, Any]]) -> dict[str, int]:
