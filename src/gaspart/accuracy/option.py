@@ -88,8 +88,8 @@ class Option:
         return self.whole(self._length(accuracy)) * self.speed
 
     def whole(self, measured: float) -> float:
-        """Compute the duration of a run from the duration of its measured part. By default a quarter of the
-        run is discarded, and at least the time `settling`.
+        """Compute the duration of a run from its measured part: a quarter, at least `settling`, is
+        discarded.
         """
         return max(measured + self.settling, measured / (1.0 - self.discarded))
 
@@ -125,9 +125,7 @@ def fluid_option(
 
 
 def sort_by_cost(options: list[Option]) -> list[Option]:
-    """Sort options: first accurate options by cost, then the others by accuracy. The exact engine comes first
-    unless another engine is cheaper by a factor of at least `WORTH`.
-    """
+    """Sort accurate options by cost, the others by accuracy; the exact engine first unless `WORTH` dearer."""
 
     def key(option: Option) -> tuple[float, float]:
         seconds = option.seconds * (1.0 if option.engine.reference else WORTH)
@@ -155,9 +153,7 @@ def replicas_of(option: Option, longest: float) -> int:
 
 
 def suitable_engines(target: Target) -> tuple[list[Engine], dict[str, str]]:
-    """Return the engines that can simulate a scene and an observable, the exact engine first. Also return the
-    reason for each rejected engine, under the engine's name in the table.
-    """
+    """Return the engines for a scene and an observable, the exact one first, and reasons for the others."""
     suitable, refused = [], {}
     for engine in candidate_engines():
         try:
@@ -195,9 +191,7 @@ def make_request(target: Target, accuracy: float, conditions: Conditions) -> Acc
 
 
 def depends_on_transport(scene: Scene, observable: str) -> bool:
-    """Return True if an observable depends on transport coefficients. This is true for observables with lags,
-    and for all observables if the scene drives a flow of heat or momentum.
-    """
+    """Return True if an observable has lags, or the scene drives a flow of heat or momentum."""
     lost = scene.dissipates
     flows = len(scene.face_temperatures) > 1 or lost or bool(scene.sliding_faces)
     return OBSERVABLES[observable].memory or flows

@@ -108,9 +108,7 @@ class Engine:
         return 0
 
     def check_features(self, scene: Scene) -> None:
-        """Raise SceneError for features of a scene that this engine does not support. The message names the
-        engines that support them.
-        """
+        """Raise SceneError for unsupported features of a scene, with the engines that support them."""
         present = scene.features
         missing = [(name, "none") for name in FEATURES if name in present - self.models]
         together = [pair for pair in self.excludes if set(pair) <= present]
@@ -135,9 +133,7 @@ class Engine:
         return self.equation != "exact" or bool(scene.face_temperatures) or scene.thermostat is not None
 
     def variant(self, scene: Scene) -> str:
-        """Return the name of the compiled kernel variant for a scene. The name does not depend on the
-        features of the scene.
-        """
+        """Return the name of the compiled kernel variant, which does not depend on the scene's features."""
         raise NotImplementedError
 
     def for_small_scene(self, scene: Scene) -> Engine:
@@ -204,9 +200,7 @@ def required_settings(engine: type[Engine]) -> list[str]:
 
 
 def constructors() -> str:
-    """Return constructor calls of all engines, for messages. The calls include all settings that have no
-    default.
-    """
+    """Return constructor calls of all engines, with settings that have no default, for messages."""
     *others, last = (
         f"{engine.__name__}({', '.join(required_settings(engine))})" for engine in ENGINES.values()
     )

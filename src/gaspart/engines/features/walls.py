@@ -23,8 +23,8 @@ _INTERIOR_DRAWS = 6  # stream number of these random numbers, after those of the
 def interior_walls(
     scene: Scene, boxes: Boxes, largest_radius: float, warm: WarmWalls | None, moving: MovingWall | None
 ) -> InteriorWalls:
-    """Return the interior walls, with a list of the walls near each box. The list can be used for particles
-    with radii up to `largest_radius`. A moving wall is not in the list of any box.
+    """Return the interior walls and a list of those at rest near each box, for radii up to
+    `largest_radius`.
     """
     rows, wall = wall_rows(scene)
     if moving:
