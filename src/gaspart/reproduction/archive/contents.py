@@ -15,7 +15,7 @@ from gaspart.errors import SceneError
 from gaspart.files import resolve_path
 from gaspart.reproduction.claims import table
 from gaspart.reproduction.claims.table import fill_caption
-from gaspart.reproduction.config import check, is_own, merged_with_default
+from gaspart.reproduction.config import check, is_own, keep_efforts, merged_with_default
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
 from gaspart.reproduction.points.points import figure_points
 from gaspart.reproduction.points.trust import require_own
@@ -129,6 +129,7 @@ def find_finished(results: str | Path, config: str | Path | None = None) -> Fini
         raise SceneError("run", merged.get("run"), f"must be {name or 'absent'}, as {results} is", str(file))
     prefix = parent.relative_to(root)
     inside = [str(path.relative_to(root)) for path in files if path.is_relative_to(root)]
+    keep_efforts(merged, parent / str(merged.get("points")))
     with chdir(root):  # folder from which scene files are read
         points = _select_points(merged, check(merged, files))
         points = [replace(point, root=str(prefix / point.root)) for point in points]
